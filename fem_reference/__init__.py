@@ -1,0 +1,1 @@
+"""fem_reference"""
