@@ -1,1 +1,1 @@
-"""cases/library"""
+"""The cases: one file each, a short paper that is also a test."""

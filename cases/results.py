@@ -1,0 +1,537 @@
+"""What a run produces: frozen, validated records, from the single number up to the whole run.
+
+Everything a report shows is one of these records; a report computes nothing.  Lengths, forces and stresses are SI.
+A non-finite number cannot be stored: what could not be computed is ``None`` beside a status that says why.
+"""
+
+from dataclasses import field
+from enum import StrEnum
+from typing import Annotated, Literal, Self
+
+from pydantic import ConfigDict, Field, model_validator
+from pydantic.dataclasses import dataclass
+
+from cases.status import Status, worst
+
+SCHEMA_VERSION = 1
+
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
+NotNegative = Annotated[float, Field(allow_inf_nan=False, ge=0)]
+Vector = tuple[Finite, ...]
+Scalar = bool | int | Finite | str
+Mapping = dict[str, Scalar]
+
+_RECORD = ConfigDict(extra="forbid")
+
+
+class Kind(StrEnum):
+    """What a claim compares with."""
+
+    EXACT = "exact"  # closed form or literature
+    ORDER = "order"  # observed order of convergence against the formal one
+    AGREEMENT = "agreement"  # two methods, both uncertainties known
+    INVARIANT = "invariant"  # a law of the mechanics
+    REGRESSION = "regression"  # own earlier output; never verification
+
+
+class Origin(StrEnum):
+    """Where an expected number comes from; the four are never mixed."""
+
+    CLOSED_FORM = "closed form"
+    LITERATURE = "literature"
+    INDEPENDENT_METHOD = "independent method"
+    OWN_EARLIER_OUTPUT = "own earlier output"
+
+
+class Verdict(StrEnum):
+    """The word a claim is reported with."""
+
+    PASS = "PASS"
+    FAIL = "FAIL"
+    AGREE = "AGREE"
+    DISAGREE = "DISAGREE"
+    MARGINAL = "MARGINAL"
+    INCONCLUSIVE = "INCONCLUSIVE"
+    NONE = "NONE"  # nothing could be compared: the status says why
+
+
+class ConvergenceClass(StrEnum):
+    """How a sequence of refinements behaves."""
+
+    MONOTONE = "monotone"
+    OSCILLATORY = "oscillatory"
+    DIVERGENT = "divergent"
+    FLOOR = "floor"  # differences within ten times the round-off floor
+    TOO_FEW = "too-few"
+    SPECTRAL = "spectral"  # digits per refinement
+
+
+# -- one method on one scene ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Quantity:
+    """A computed quantity along the steps of the loading.
+
+    Attributes:
+        name: for example "normal_force".
+        unit: SI unit, "1" for a ratio.
+        scale: declared size that errors are relative to, same unit; positive, so a zero crossing does no harm.
+        values: shape (n,).
+        uncertainty: the method's own numerical uncertainty, same unit, shape (n,); empty when the method states none.
+    """
+
+    name: str
+    unit: str
+    scale: Positive
+    values: Vector
+    uncertainty: tuple[NotNegative, ...] = ()
+
+    @model_validator(mode="after")
+    def _one_uncertainty_per_value(self) -> Self:
+        if self.uncertainty and len(self.uncertainty) != len(self.values):
+            message = f"{self.name}: {len(self.uncertainty)} uncertainties for {len(self.values)} values; give one each"
+            raise ValueError(message)
+        return self
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Curve:
+    """A sampled field or history, y(x), for example the pressure over the radius.
+
+    Attributes:
+        name: for example "pressure".
+        x_name: for example "radius".
+        x_unit: SI unit of x.
+        x: shape (n,).
+        unit: SI unit of y.
+        y: shape (n,).
+    """
+
+    name: str
+    x_name: str
+    x_unit: str
+    x: Vector
+    unit: str
+    y: Vector
+
+    @model_validator(mode="after")
+    def _equal_lengths(self) -> Self:
+        if len(self.x) != len(self.y):
+            message = f"{self.name}: {len(self.x)} abscissae for {len(self.y)} ordinates; they must match"
+            raise ValueError(message)
+        return self
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Stage:
+    """One stage of a solution: the raw data of the effect ledger."""
+
+    name: str
+    calls: int
+    seconds: NotNegative
+    cpu_seconds: NotNegative = 0.0
+    bytes: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class CostRecord:
+    """What a solution cost: seconds, peak memory [bytes], unknowns, and counters that repeat exactly."""
+
+    wall_seconds: NotNegative
+    cpu_seconds: NotNegative
+    peak_memory_bytes: int
+    unknowns: int
+    counters: dict[str, int] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class SceneRun:
+    """One method on one scene: PASS with quantities, or another status with its reason.
+
+    Attributes:
+        key: content key; equal keys mean equal scene, settings, code and versions.
+        scene: name of the scene within its case.
+        method: name of the method in the method table.
+        settings: numerical settings of the method.
+        status: PASS when solved.
+        reason: why not, when not solved; one sentence.
+        shared_inputs: names of the inputs (a flat-punch table, a kernel) other methods may use as well.
+    """
+
+    key: str
+    scene: str
+    method: str
+    settings: Mapping
+    status: Status
+    reason: str
+    quantities: tuple[Quantity, ...] = ()
+    curves: tuple[Curve, ...] = ()
+    cost: CostRecord | None
+    stages: tuple[Stage, ...] = ()
+    shared_inputs: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    @property
+    def solved(self) -> bool:
+        """Whether this run has numbers."""
+        return self.status is Status.PASS
+
+    def quantity(self, name: str) -> Quantity:
+        """Return the quantity called ``name``.
+
+        Raises:
+            KeyError: if this run has none of that name.
+        """
+        return {q.name: q for q in self.quantities}[name]
+
+    def curve(self, name: str) -> Curve:
+        """Return the curve called ``name``.
+
+        Raises:
+            KeyError: if this run has none of that name.
+        """
+        return {c.name: c for c in self.curves}[name]
+
+
+# -- what is claimed of them ---------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Claim:
+    """A claim and its end.
+
+    Attributes:
+        name: unique within the case.
+        kind: what it compares with.
+        scene: name of the scene, or of the group of scenes it speaks about.
+        methods: the method, or the two methods compared.
+        quantity: what is compared.
+        unit: unit of observed, expected and tolerance; "1" when they are relative.
+        status: how it ended; decides the exit code.
+        verdict: the word for the reader.
+        observed: measured error, difference or order; None when nothing could be compared.
+        expected: the number it is compared with, None where there is none (an invariant's residual is compared with 0).
+        tolerance: largest permitted error, same unit as observed.
+        fraction: error divided by tolerance; at most 1 passes.
+        uncertainty: numerical uncertainty of each method that took part, same unit as observed.
+        origin: where the expected number comes from.
+        source: closed form, page and table, or method.
+        because: why the claim should hold.
+        derived_from: how the tolerance was chosen.
+        shared_inputs: what the compared answers share; agreement says nothing about those.
+        message: what was seen, one sentence.
+    """
+
+    name: str
+    kind: Kind
+    scene: str
+    methods: tuple[str, ...]
+    quantity: str
+    unit: str
+    status: Status
+    verdict: Verdict
+    observed: Finite | None
+    expected: Finite | None
+    tolerance: Positive
+    fraction: NotNegative | None
+    uncertainty: dict[str, NotNegative] = field(default_factory=dict)
+    origin: Origin
+    source: str
+    because: str
+    derived_from: str
+    shared_inputs: tuple[str, ...] = ()
+    message: str
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Grid:
+    """One refinement of a convergence study; ``gci`` is relative, None where it is not defined."""
+
+    length: Positive
+    unknowns: int
+    seconds: NotNegative
+    value: Finite
+    error: NotNegative | None
+    gci: NotNegative | None
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class ConvergenceStudy:
+    """A quantity under refinement, finest grid first.
+
+    Attributes:
+        grids: finest first; ``error`` is absolute, against the reference.
+        scale: size that errors are relative to, unit of the quantity.
+        mesh_family: the formal order belongs to it.
+        kind: class of behaviour.
+        observed_order: of the three finest grids or the least-squares fit; None where the class has none.
+        formal_order: None for spectral convergence, which has no order.
+        digits_per_refinement: of spectral convergence; None otherwise.
+        extrapolated: value at vanishing length; None where the class has none.
+        asymptotic: whether the honest asymptotic test passed; None with too few grids.
+        reference: closed form or finest independent answer; None without one.
+        reference_uncertainty: of the reference.
+    """
+
+    scene: str
+    method: str
+    quantity: str
+    unit: str
+    scale: Positive
+    mesh_family: str
+    kind: ConvergenceClass
+    grids: tuple[Grid, ...]
+    formal_order: Positive | None
+    observed_order: Finite | None
+    digits_per_refinement: Finite | None
+    extrapolated: Finite | None
+    asymptotic: bool | None
+    reference: Finite | None
+    reference_uncertainty: NotNegative
+    reference_source: str
+
+
+# -- what accuracy costs -------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class WorkPoint:
+    """One setting of one method, timed: relative error, its bound U = error + reference uncertainty, and the cost.
+
+    A failed setting has no error and no bound; its ``reason`` says why, its ``seconds`` what it took to fail.
+    ``on_front``: no other setting of any method is at least as accurate and clearly faster.
+    """
+
+    method: str
+    settings: Mapping
+    label: str
+    status: Status
+    reason: str
+    error: NotNegative | None
+    bound: NotNegative | None
+    samples: tuple[NotNegative, ...]
+    seconds: NotNegative
+    lower_quartile: NotNegative
+    upper_quartile: NotNegative
+    unknowns: int
+    peak_memory_bytes: int
+    counters: dict[str, int] = field(default_factory=dict)
+    stages: tuple[Stage, ...] = ()
+    on_front: bool
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class CheapestRun:
+    """T*(tau) of one method: the smallest time with U <= tau, never interpolated.
+
+    Where the tolerance was not reached ``reached`` is False and the numbers are those of the most accurate run
+    ("not reached, best U = .."); a method without any successful run has None.
+    """
+
+    tolerance: Positive
+    method: str
+    reached: bool
+    label: str
+    seconds: NotNegative | None
+    bound: NotNegative | None
+    peak_memory_bytes: int | None
+    speed_up: Positive | None  # over the reference method's T* at the same tolerance; None where either is missing
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class DigitPrice:
+    """What the next digit costs on the front: decades of time per digit between neighbours."""
+
+    method: str
+    from_label: str
+    to_label: str
+    decades_per_digit: Finite
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class WorkPrecision:
+    """Error against seconds for the methods on one scene; errors relative.
+
+    Attributes:
+        reference_source: what the errors are measured against.
+        reference_uncertainty: u_ref, relative.
+        baseline_method: the method speed-ups are relative to ("fem").
+        fast_method: the method the crossover is about ("mdr").
+        null_spread: relative spread d of repeated times.
+        crossover: smallest tolerance where the fast method still wins; None where it never does.
+    """
+
+    scene: str
+    quantity: str
+    reference_source: str
+    reference_uncertainty: NotNegative
+    baseline_method: str
+    fast_method: str
+    null_spread: NotNegative
+    points: tuple[WorkPoint, ...]
+    cheapest: tuple[CheapestRun, ...]
+    prices: tuple[DigitPrice, ...]
+    crossover: Positive | None
+
+
+# -- figures: all numbers, no ink ----------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Series:
+    """One line or set of symbols; ``group`` lines of one scene share a colour, ``method`` chooses line or symbol.
+
+    ``half_width`` is the uncertainty of y (shape as y) or empty.
+    """
+
+    label: str
+    method: str
+    group: str
+    x: Vector
+    y: Vector
+    half_width: Vector = ()
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Panel:
+    """One pair of axes; labels carry symbol and unit in mathtext."""
+
+    title: str
+    x_label: str
+    y_label: str
+    x_scale: Literal["linear", "log"] = "linear"
+    y_scale: Literal["linear", "log"] = "linear"
+    series: tuple[Series, ...]
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Figure:
+    """A figure of a case, for example Fig. 7 of the paper redrawn from both methods."""
+
+    name: str
+    title: str
+    caption: str
+    panels: tuple[Panel, ...]
+
+
+# -- a case and a run ----------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class SceneDescription:
+    """A scene of a case: its name, the parameters that set it apart, and the scene itself as canonical JSON."""
+
+    name: str
+    parameters: Mapping
+    canonical: str
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class EffectEntry:
+    """What a listed effect costs (share of the time) and what it moves (relative change without it)."""
+
+    scene: str
+    method: str
+    effect: str
+    share_of_time: NotNegative
+    quantity: str
+    change: Finite
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class CaseResult:
+    """A case: its text, what each method answered, and how its claims ended."""
+
+    name: str
+    title: str
+    question: str
+    equations: tuple[str, ...]
+    text: str
+    scenes: tuple[SceneDescription, ...]
+    runs: tuple[SceneRun, ...]
+    claims: tuple[Claim, ...]
+    convergence: tuple[ConvergenceStudy, ...] = ()
+    work_precision: tuple[WorkPrecision, ...] = ()
+    effects: tuple[EffectEntry, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+    @property
+    def status(self) -> Status:
+        """The status that decides for this case, of solutions that broke down and of claims."""
+        return worst([claim.status for claim in self.claims] + [run.status for run in self.runs])
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Acceptance:
+    """An entry of the baseline history: who accepted which change, and why."""
+
+    date: str
+    case: str
+    method: str
+    quantity: str
+    old: Finite | None
+    new: Finite | None
+    old_tolerance: NotNegative | None
+    new_tolerance: NotNegative | None
+    reason: str
+    revision: str
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Stamp:
+    """Where and with what a run was made.
+
+    Attributes:
+        started: UTC, ISO 8601.
+        wall_seconds: duration of the run.
+        revision: commit of the source; "unknown" outside a repository.
+        dirty: whether the working tree had changes.
+        python: version.
+        platform: operating system and machine.
+        processor: model name.
+        cores: processors this run could use.
+        threads: threads of each numerical library really loaded, by name ("openblas 0.3.27 Haswell": 1).
+        versions: of the packages computed with.
+        mesh_hashes: by case, scene and method.
+    """
+
+    started: str
+    wall_seconds: NotNegative
+    revision: str
+    dirty: bool
+    python: str
+    platform: str
+    processor: str
+    cores: int
+    threads: dict[str, int]
+    versions: dict[str, str]
+    mesh_hashes: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class RunResult:
+    """A whole run; ``complete`` is False when it was interrupted, and its records are valid all the same."""
+
+    schema_version: Literal[1] = 1
+    suite: str
+    complete: bool
+    stamp: Stamp
+    cases: tuple[CaseResult, ...]
+    acceptances: tuple[Acceptance, ...] = ()
+
+    def case(self, name: str) -> CaseResult:
+        """Return the case called ``name``.
+
+        Raises:
+            KeyError: if the run has none of that name.
+        """
+        return {case.name: case for case in self.cases}[name]
+
+    @property
+    def statuses(self) -> tuple[Status, ...]:
+        """Every status of the run: of solutions and of claims."""
+        runs = [run.status for case in self.cases for run in case.runs]
+        claims = [claim.status for case in self.cases for claim in case.claims]
+        return tuple(runs + claims)
