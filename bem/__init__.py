@@ -1,1 +1,1 @@
-"""bem"""
+"""Boundary elements: layer kernels, flat-punch data, direct contact."""

@@ -1,4 +1,1 @@
-"""The case registry and the engine around it: what is claimed, how far methods agree, what accuracy costs.
-
-- ``results``, ``status``: the records of a run and how a check can end
-"""
+"""Cases, claims, runs, baselines: what is verified and how far it holds."""

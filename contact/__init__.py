@@ -1,1 +1,95 @@
-"""contact"""
+"""What a scene is and what an answer is: the vocabulary that all methods share.
+
+Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
+"""
+
+from contact.coated_pair import CoatedPair
+from contact.effects import Adhesion, Effect, KelvinVoigt, PronySeries, Relaxation, StandardSolid, Viscoelasticity
+from contact.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
+from contact.layer import Layer
+from contact.loading import (
+    ContactRadii,
+    DepthHistory,
+    Detachment,
+    ForceHistory,
+    Impact,
+    IndentationDepths,
+    Loading,
+    NormalForces,
+)
+from contact.method import Method, Supported, Unsupported
+from contact.profiles import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+from contact.scene import Scene
+from contact.scene_file import load_scene, scene_from_mapping, scene_to_mapping
+from contact.solution import (
+    UNITS,
+    ContactPath,
+    CriticalPoint,
+    DetachmentPath,
+    Fields,
+    HistoryPath,
+    ImpactHistory,
+    Solution,
+)
+from contact.stages import Cost, StageLog, StageRecord
+
+__all__ = [
+    "UNITS",
+    "Adhesion",
+    "CoatedPair",
+    "Cone",
+    "ContactError",
+    "ContactPath",
+    "ContactRadii",
+    "Cost",
+    "CriticalPoint",
+    "DepthHistory",
+    "Detachment",
+    "DetachmentPath",
+    "Effect",
+    "Fields",
+    "FlatPunch",
+    "ForceHistory",
+    "HistoryPath",
+    "Impact",
+    "ImpactHistory",
+    "IndentationDepths",
+    "InvalidInput",
+    "KelvinVoigt",
+    "Layer",
+    "Loading",
+    "Method",
+    "NormalForces",
+    "NotConvergedError",
+    "Paraboloid",
+    "PowerLaw",
+    "Profile",
+    "PronySeries",
+    "Relaxation",
+    "Scene",
+    "Solution",
+    "Sphere",
+    "StageLog",
+    "StageRecord",
+    "StandardSolid",
+    "Supported",
+    "Tabulated",
+    "TruncatedCone",
+    "TruncatedParaboloid",
+    "Unsupported",
+    "UnsupportedSceneError",
+    "Viscoelasticity",
+    "load_scene",
+    "scene_from_mapping",
+    "scene_to_mapping",
+]

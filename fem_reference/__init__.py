@@ -1,1 +1,1 @@
-"""fem_reference"""
+"""The independent axisymmetric finite element reference."""

@@ -1,1 +1,1 @@
-"""mdr"""
+"""The method of dimensionality reduction."""

@@ -1,1 +1,1 @@
-"""reports"""
+"""What people and continuous integration see; computes nothing."""

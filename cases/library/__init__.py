@@ -1,1 +1,1 @@
-"""The cases: one file each, a short paper that is also a test."""
+"""The cases, one file each."""

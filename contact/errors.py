@@ -1,0 +1,31 @@
+"""The three ways a computation may say no. Each is loud, and each names what to do next."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+
+class ContactError(Exception):
+    """Base of every error that this project raises on purpose."""
+
+
+class InvalidInput(ContactError, ValueError):
+    """The input contradicts itself or the physics; the message gives value, place and remedy."""
+
+
+class UnsupportedSceneError(ContactError):
+    """The scene is valid, but the method asked does not model it; the message says what does."""
+
+
+class NotConvergedError(ContactError, ArithmeticError):
+    """An iteration or a solve missed its tolerance; no number is returned in its place.
+
+    Args:
+        message: What did not converge, and what may be changed.
+        residuals: Name of each monitored residual and its last value, dimensionless.
+    """
+
+    def __init__(self, message: str, residuals: Mapping[str, float] | None = None) -> None:
+        self.residuals = dict(residuals or {})
+        shown = ", ".join(f"{name} = {value:.3e}" for name, value in self.residuals.items())
+        super().__init__(f"{message} ({shown})" if shown else message)

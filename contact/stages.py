@@ -1,0 +1,120 @@
+"""Stage log: which computations ran, how often and for how long. The raw data of the effect ledger and of all cost."""
+
+from __future__ import annotations
+
+import resource
+import sys
+import time
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True, kw_only=True)
+class StageRecord:
+    """One kind of computation within one solve.
+
+    Attributes:
+        name: What was computed, such as "flat_punch_data".
+        calls: How many times.
+        wall_seconds: Own wall time [s]; time inside nested stages is theirs.
+        cpu_seconds: Own processor time [s].
+        bytes: Size of the arrays it made, as far as the method declares them.
+    """
+
+    name: str
+    calls: int
+    wall_seconds: float
+    cpu_seconds: float
+    bytes: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cost:
+    """What one solve cost.
+
+    Attributes:
+        wall_seconds: [s].
+        cpu_seconds: [s], all threads.
+        peak_memory_bytes: High-water mark of the process so far; meaningful in a process of its own.
+        unknowns: Size of the largest system solved.
+        counters: Deterministic counts (factorisations, iterations, transforms, steps).
+    """
+
+    wall_seconds: float
+    cpu_seconds: float
+    peak_memory_bytes: int
+    unknowns: int
+    counters: Mapping[str, int]
+
+
+@dataclass
+class _Tally:
+    calls: int = 0
+    wall: float = 0.0
+    cpu: float = 0.0
+    bytes: int = 0
+
+
+@dataclass
+class StageLog:
+    """Collects stage times and counters during one solve. Nested stages are timed apart from their parents."""
+
+    _tallies: dict[str, _Tally] = field(default_factory=dict)
+    _counters: dict[str, int] = field(default_factory=dict)
+    _open: list[str] = field(default_factory=list)
+    _mark: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
+    _start: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
+
+    @contextmanager
+    def stage(self, name: str) -> Iterator[None]:
+        """Time the body of a `with` statement under this name."""
+        self._settle()
+        self._open.append(name)
+        self._tallies.setdefault(name, _Tally()).calls += 1
+        try:
+            yield
+        finally:
+            self._settle()
+            self._open.pop()
+
+    def count(self, name: str, by: int = 1) -> None:
+        """Add to a deterministic counter."""
+        self._counters[name] = self._counters.get(name, 0) + by
+
+    def hold(self, *sizes: int) -> None:
+        """Declare bytes of arrays made by the stage that is open."""
+        self._tallies[self._open[-1]].bytes += sum(sizes)
+
+    def _settle(self) -> None:
+        """Give the time since the last mark to the innermost open stage."""
+        now = (time.perf_counter(), time.process_time())
+        if self._open:
+            tally = self._tallies[self._open[-1]]
+            tally.wall += now[0] - self._mark[0]
+            tally.cpu += now[1] - self._mark[1]
+        self._mark = now
+
+    @property
+    def records(self) -> tuple[StageRecord, ...]:
+        """One record for each stage, in order of first call."""
+        return tuple(
+            StageRecord(name=name, calls=t.calls, wall_seconds=t.wall, cpu_seconds=t.cpu, bytes=t.bytes)
+            for name, t in self._tallies.items()
+        )
+
+    def cost(self, *, unknowns: int) -> Cost:
+        """Cost since the log was made."""
+        return Cost(
+            wall_seconds=time.perf_counter() - self._start[0],
+            cpu_seconds=time.process_time() - self._start[1],
+            peak_memory_bytes=peak_memory_bytes(),
+            unknowns=unknowns,
+            counters=dict(self._counters),
+        )
+
+
+def peak_memory_bytes() -> int:
+    """High-water mark of this process's resident memory."""
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak if sys.platform == "darwin" else 1024 * peak  # Linux counts in KiB

@@ -1,0 +1,219 @@
+"""HDF5 storage: nested mappings of arrays, and solutions, to a file and back without loss. The only user of h5py."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import tempfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.errors import InvalidInput
+from contact.scene_file import scene_from_mapping, scene_to_mapping
+from contact.solution import ContactPath, CriticalPoint, DetachmentPath, HistoryPath, ImpactHistory, Solution
+from contact.stages import Cost, StageRecord
+from contact.validation import FloatArray
+
+Tree: TypeAlias = Mapping[str, Any]  # values: arrays, numbers, strings, None, or mappings of the same
+
+SCHEMA = "contact-verification/solution/1"
+MAX_BYTES = 2_000_000_000  # of one array; a larger one is refused before memory is taken
+_EMPTY = "\0none"  # HDF5 attributes know no None
+
+_KINDS: dict[str, type[Solution]] = {
+    cls.__name__: cls for cls in (ContactPath, DetachmentPath, HistoryPath, ImpactHistory)
+}
+
+
+def write_tree(path: str | Path, tree: Tree) -> None:
+    """Write nested mappings of arrays and scalars; the file appears complete or not at all.
+
+    Raises:
+        InvalidInput: If the folder cannot be written or an entry is of another type.
+    """
+    file = Path(path)
+    try:
+        handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
+    except OSError as error:
+        raise InvalidInput(f"{file}: cannot be written ({error.strerror}); check that the folder exists") from None
+    os.close(handle)
+    try:
+        with h5py.File(temporary, "w", track_order=True) as root:
+            _write(root, tree)
+        _flush(temporary)
+        os.replace(temporary, file)
+    finally:
+        Path(temporary).unlink(missing_ok=True)
+
+
+def _flush(path: str) -> None:
+    descriptor = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def _write(group: h5py.Group, tree: Tree) -> None:
+    for name, value in tree.items():
+        if isinstance(value, Mapping):
+            _write(group.create_group(name, track_order=True), value)
+        elif isinstance(value, np.ndarray):
+            group.create_dataset(name, data=value, track_times=False)
+        elif value is None:
+            group.attrs[name] = _EMPTY
+        elif isinstance(value, bool | int | float | str | np.generic):
+            group.attrs[name] = value
+        else:
+            raise InvalidInput(
+                f"{group.name}/{name}: a {type(value).__name__} cannot be stored; give an array or number"
+            )
+
+
+def read_tree(path: str | Path) -> dict[str, Any]:
+    """Read what `write_tree` wrote.
+
+    Raises:
+        InvalidInput: If the file is missing, is no HDF5 file, is damaged, or is beyond `MAX_BYTES`.
+    """
+    file = Path(path)
+    if not file.is_file():
+        raise InvalidInput(f"{file}: no such file")
+    try:
+        with h5py.File(file, "r") as root:
+            return _read(root)
+    except (OSError, RuntimeError, KeyError) as error:
+        reason = str(error).splitlines()[0][:160]
+        raise InvalidInput(f"{file}: not a readable HDF5 file ({reason}); it may be truncated") from None
+
+
+def _read(group: h5py.Group) -> dict[str, Any]:
+    tree = {name: _scalar(value) for name, value in group.attrs.items()}
+    for name, item in group.items():
+        if isinstance(item, h5py.Group):
+            tree[name] = _read(item)
+            continue
+        if item.nbytes > MAX_BYTES:
+            raise InvalidInput(f"{item.name}: {item.nbytes} bytes are more than an array here can have ({MAX_BYTES})")
+        tree[name] = item[()]
+    return tree
+
+
+def _scalar(value: Any) -> Any:
+    plain = value.item() if isinstance(value, np.generic) else value
+    return None if isinstance(plain, str) and plain == _EMPTY else plain
+
+
+@dataclass(frozen=True)
+class SampledFields:
+    """Surface fields known at stored radii only; any other radius is refused, never interpolated.
+
+    Attributes:
+        radius: r [m], shape (n, m): m radii for each of n steps.
+        pressures: p [Pa], same shape.
+        displacements: w [m], same shape.
+    """
+
+    radius: FloatArray
+    pressures: FloatArray
+    displacements: FloatArray
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p [Pa] at stored radii."""
+        return np.asarray(self.pressures[step, self._places(radius, step)])
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w [m] at stored radii."""
+        return np.asarray(self.displacements[step, self._places(radius, step)])
+
+    def _places(self, radius: FloatArray, step: int) -> NDArray[np.intp]:
+        stored = self.radius[step]
+        places = np.minimum(np.searchsorted(stored, radius), stored.size - 1)
+        missing = stored[places] != radius
+        if missing.any():
+            wanted = radius[missing][0]
+            raise InvalidInput(
+                f"radius = {wanted:.17g}: not among the {stored.size} stored radii; solve the scene again"
+            )
+        return places
+
+
+def save_solution(path: str | Path, solution: Solution, radius: FloatArray | None = None) -> None:
+    """Write a solution; `radius` [m], increasing, shape (m,) or (n, m), says where its surface fields are kept."""
+    write_tree(path, solution_to_tree(solution, radius))
+
+
+def load_solution(path: str | Path) -> Solution:
+    """Read a solution back; every number equals the stored one.
+
+    Raises:
+        InvalidInput: If the file is not one that `save_solution` wrote.
+    """
+    try:
+        return solution_from_tree(read_tree(path))
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+        raise InvalidInput(f"{path}: not a stored solution ({error!r}); write it with save_solution") from None
+
+
+def solution_to_tree(solution: Solution, radius: FloatArray | None = None) -> dict[str, Any]:
+    """The solution as a tree of arrays and scalars."""
+    arrays = {name: getattr(solution, name) for name in solution.ARRAYS}
+    tree: dict[str, Any] = {
+        "schema": SCHEMA,
+        "kind": type(solution).__name__,
+        "scene": json.dumps(scene_to_mapping(solution.scene)),
+        "method": solution.method,
+        "settings": dict(solution.settings),
+        "error_estimate": dict(solution.error_estimate),
+        "cost": json.dumps(dataclasses.asdict(solution.cost)),
+        "stages": json.dumps([dataclasses.asdict(stage) for stage in solution.stages]),
+        "notes": json.dumps(solution.notes),
+        "arrays": arrays | {name: getattr(solution, name) for name in solution.SCALARS},
+    }
+    if isinstance(solution, DetachmentPath):
+        tree["arrays"]["stable_displacement_control"] = solution.stable_displacement_control
+        tree["arrays"]["stable_force_control"] = solution.stable_force_control
+        tree["critical_points"] = json.dumps([dataclasses.asdict(point) for point in solution.critical_points])
+    if isinstance(solution, ContactPath) and radius is not None:
+        tree["fields"] = _sampled(solution, np.asarray(radius, dtype=np.float64))
+    return tree
+
+
+def _sampled(path: ContactPath, radius: FloatArray) -> dict[str, FloatArray]:
+    rows = np.broadcast_to(radius, (len(path), radius.shape[-1]))
+    if np.any(np.diff(rows, axis=1) <= 0.0):
+        raise InvalidInput("radius: stored radii must increase strictly")
+    return {
+        "radius": np.array(rows),
+        "pressures": np.array([path.pressure(row, step) for step, row in enumerate(rows)]),
+        "displacements": np.array([path.surface_displacement(row, step) for step, row in enumerate(rows)]),
+    }
+
+
+def solution_from_tree(tree: Tree) -> Solution:
+    """The inverse of `solution_to_tree`."""
+    if tree.get("schema") != SCHEMA:
+        raise InvalidInput(f"schema = {tree.get('schema')!r}: this version reads {SCHEMA!r}")
+    extra: dict[str, Any] = {}
+    if "critical_points" in tree:
+        extra["critical_points"] = tuple(CriticalPoint(**point) for point in json.loads(tree["critical_points"]))
+    if "fields" in tree:
+        extra["fields"] = SampledFields(**tree["fields"])
+    return _KINDS[tree["kind"]](
+        scene=scene_from_mapping(json.loads(tree["scene"])),
+        method=tree["method"],
+        settings=tree["settings"],
+        error_estimate=tree["error_estimate"],
+        cost=Cost(**json.loads(tree["cost"])),
+        stages=tuple(StageRecord(**stage) for stage in json.loads(tree["stages"])),
+        notes=tuple(json.loads(tree["notes"])),
+        **tree["arrays"],
+        **extra,
+    )

@@ -1,0 +1,135 @@
+"""Field validators: each names what is required and how to mend it; the value and its place are added by `record`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from numbers import Real
+from typing import Annotated, Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import PlainValidator, WithJsonSchema
+
+FloatArray: TypeAlias = NDArray[np.float64]
+
+MAX_ENTRIES = 1_000_000  # a longer list in a scene is a mistake or an attack, never a measurement
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, Real) and not isinstance(value, bool | np.bool_)
+
+
+def _number(value: object, remedy: str) -> float:
+    if not _is_number(value):
+        raise ValueError(f"must be a number; {remedy}")
+    try:
+        return float(value)  # type: ignore[arg-type]  # Real has __float__
+    except OverflowError:
+        raise ValueError(f"must fit into double precision; {remedy}") from None
+
+
+def positive(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """A finite number above zero."""
+
+    def validate(value: object) -> float:
+        number = _number(value, remedy)
+        if not 0.0 < number < math.inf:
+            raise ValueError(f"must be positive and finite; {remedy}")
+        return number
+
+    return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
+
+
+def positive_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """A number above zero; infinity is allowed."""
+
+    def validate(value: object) -> float:
+        number = _number(value, remedy)
+        if not number > 0.0:
+            raise ValueError(f"must be positive; {remedy}")
+        return number
+
+    return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
+
+
+def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """A finite number in the closed interval [low, high]."""
+
+    def validate(value: object) -> float:
+        number = _number(value, remedy)
+        if not (low <= number <= high and math.isfinite(number)):
+            limits = f"lie in [{low:g}, {high:g}]" if math.isfinite(high) else f"be finite and at least {low:g}"
+            raise ValueError(f"must {limits}; {remedy}")
+        return number
+
+    schema: dict[str, Any] = {"type": "number", "minimum": low}
+    return PlainValidator(validate), WithJsonSchema(schema | ({"maximum": high} if math.isfinite(high) else {}))
+
+
+def _as_vector(value: object, remedy: str) -> FloatArray:
+    if isinstance(value, str | bytes) or not isinstance(value, Sequence | np.ndarray):
+        raise ValueError(f"must be a list of numbers; {remedy}")  # noqa: TRY004  # pydantic collects ValueError only
+    if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
+        raise ValueError(f"must be a one-dimensional array of real numbers; {remedy}")
+    if len(value) == 0:
+        raise ValueError(f"must hold at least one number; {remedy}")
+    if len(value) > MAX_ENTRIES:
+        raise ValueError(f"must hold at most {MAX_ENTRIES} numbers, got {len(value)}; {remedy}")
+    entries = value if isinstance(value, np.ndarray) else [_number(entry, remedy) for entry in value]
+    vector = np.array(entries, dtype=np.float64)
+    bad = np.flatnonzero(~np.isfinite(vector))
+    if bad.size:
+        raise ValueError(f"must be finite, but entry {bad[0]} is {vector[bad[0]]}; {remedy}")
+    vector.setflags(write=False)
+    return vector
+
+
+def _vector_validator(
+    check: Callable[[FloatArray], tuple[str, NDArray[np.bool_]] | None], remedy: str
+) -> tuple[PlainValidator, WithJsonSchema]:
+    """A validator of finite vectors; `check` returns what is required and where it is violated."""
+
+    def validate(value: object) -> FloatArray:
+        vector = _as_vector(value, remedy)
+        verdict = check(vector)
+        if verdict is not None and verdict[1].any():
+            entry = int(np.flatnonzero(verdict[1])[0])
+            raise ValueError(f"must {verdict[0]}, but entry {entry} is {vector[entry]:g}; {remedy}")
+        return vector
+
+    schema = {"type": "array", "items": {"type": "number"}, "minItems": 1, "maxItems": MAX_ENTRIES}
+    return PlainValidator(validate), WithJsonSchema(schema)
+
+
+def finite_vector(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """Finite numbers in any order."""
+    return _vector_validator(lambda _: None, remedy)
+
+
+def increasing_vector(
+    remedy: str, *, least: float | None = None, above: float | None = None
+) -> tuple[PlainValidator, WithJsonSchema]:
+    """Strictly increasing finite numbers, the first at `least` or strictly `above` a bound where given."""
+
+    def check(vector: FloatArray) -> tuple[str, NDArray[np.bool_]]:
+        if least is not None and vector[0] < least:
+            return f"be at least {least:g}", vector < least
+        if above is not None and vector[0] <= above:
+            return f"be above {above:g}", vector <= above
+        return "increase strictly", np.concatenate([[False], np.diff(vector) <= 0.0])
+
+    return _vector_validator(check, remedy)
+
+
+def bounded_vector(remedy: str, *, least: float, strict: bool = False) -> tuple[PlainValidator, WithJsonSchema]:
+    """Finite numbers, each at least (or, if strict, above) a bound."""
+    relation = "be above" if strict else "be at least"
+
+    def check(vector: FloatArray) -> tuple[str, NDArray[np.bool_]]:
+        return f"{relation} {least:g}", vector <= least if strict else vector < least
+
+    return _vector_validator(check, remedy)
+
+
+PositiveLength = Annotated[float, *positive("give the length in metres")]
