@@ -142,7 +142,7 @@ class SampledFields:
             raise InvalidInput(
                 f"radius = {wanted:.17g}: not among the {stored.size} stored radii; solve the scene again"
             )
-        return places
+        return np.asarray(places, dtype=np.intp)
 
 
 def save_solution(path: str | Path, solution: Solution, radius: FloatArray | None = None) -> None:

@@ -69,7 +69,7 @@ def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, With
 
 def _as_vector(value: object, remedy: str) -> FloatArray:
     if isinstance(value, str | bytes) or not isinstance(value, Sequence | np.ndarray):
-        raise ValueError(f"must be a list of numbers; {remedy}")  # noqa: TRY004  # pydantic collects ValueError only
+        raise ValueError(f"must be a list of numbers; {remedy}")  # pydantic collects ValueError only
     if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
         raise ValueError(f"must be a one-dimensional array of real numbers; {remedy}")
     if len(value) == 0:
