@@ -1,0 +1,111 @@
+"""Compliance of an elastic layer in wavenumber space, Eqs. (27)-(31) of Forsbach (2023).
+
+A surface pressure ``p^(k)`` displaces the surface by ``u^(k) = 2 chi(kh) / (k E*) p^(k)``. With ``q = kh``,
+
+    unbonded   chi = 2 sinh^2(q) / (2q + sinh 2q)                                        Eq. (29)
+    bonded     chi = (2 kappa sinh 2q - 4q) / (1 + 4q^2 + kappa^2 + 2 kappa cosh 2q)     Eq. (31), kappa = 3 - 4 nu
+
+As printed these overflow at q = 400 and cancel for small q. Here numerator and denominator are multiplied by
+``D = exp(-2q)``, and every difference that is left is formed by ``expm1`` or by a series of positive terms. What
+remains are sums of positive numbers, so the relative error stays at a few units of the last place for all q > 0.
+
+All functions take real q >= 0, or complex q with Re q >= 0, in any floating precision, and answer in the same.
+"""
+
+from __future__ import annotations
+
+from math import factorial
+from typing import Any, Final, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Support = Literal["bonded", "unbonded"]
+Values = NDArray[Any]  # real or complex, in the precision of the argument
+
+SERIES_LIMIT: Final = 1.5  # |q| up to which sinh 2q - 2q is summed; beyond, 1 - D^2 - 4qD loses no digit
+SERIES_TERMS: Final = 17  # (2q)^(2k)/(2k+3)! falls below 1e-20 of the sum at the limit
+
+
+def compliance_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> Values:
+    """Ratio chi of the layer's compliance to the half-space's, Eqs. (29) and (31).
+
+    Args:
+        q: Wavenumber times layer thickness, any shape.
+        support: "bonded", or "unbonded" (frictionless base).
+        poissons_ratio: nu in [0, 0.5]; it does not influence the unbonded layer.
+
+    Returns:
+        chi in the shape of q: 0 at q = 0, tending to 1 for large q.
+    """
+    q = _floating(q)
+    return q * compliance_over_wavenumber(q, support, poissons_ratio)
+
+
+def compliance_over_wavenumber(q: ArrayLike, support: Support, poissons_ratio: float) -> Values:
+    """chi(q)/q, finite at q = 0 (`zero_mode`). Arguments as in `compliance_kernel`."""
+    q = _floating(q)
+    D, S = np.exp(-2 * q), _decay_over_q(q)
+    if support == "unbonded":
+        chi_over_q: Values = S / (4 * D / S + 1 + D)  # divided by S, whose square underflows for huge q
+        return chi_over_q
+    # 2 kappa sinh 2q - 4q = 2 (kappa - 1) sinh 2q + 2 (sinh 2q - 2q): both terms are positive
+    numerator: Values = 2 * (1 - 2 * _same_precision(poissons_ratio, q)) * S * (1 + D) + _shear_bracket_over_q(q)
+    return numerator / _bonded_denominator(q, poissons_ratio)
+
+
+def one_minus_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> Values:
+    """1 - chi, also where it is exponentially small. Arguments as in `compliance_kernel`."""
+    q = _floating(q)
+    D = np.exp(-2 * q)
+    if support == "unbonded":
+        S = _decay_over_q(q)
+        complement: Values = 2 * D * (2 + S) / (4 * D + S * (1 + D))
+        return complement
+    kappa = 3 - 4 * _same_precision(poissons_ratio, q)
+    # D (1 + 2q)^2 is squared as a whole: q^2 alone could overflow
+    numerator: Values = D * kappa * (kappa + 2 * D) + ((1 + 2 * q) * np.exp(-q)) ** 2
+    return numerator / _bonded_denominator(q, poissons_ratio)
+
+
+def zero_mode(support: Support, poissons_ratio: float) -> float:
+    """Limit of chi(q)/q at q = 0: the layer's answer to a uniform pressure, zero only if bonded and incompressible."""
+    if support == "unbonded":
+        return 0.5
+    return (1 - 2 * poissons_ratio) / (2 * (1 - poissons_ratio) ** 2)
+
+
+def _floating(q: ArrayLike) -> Values:
+    values: Values = np.asarray(q)
+    return values if values.dtype.kind in "fc" else values.astype(np.float64)
+
+
+def _same_precision(value: float, q: Values) -> Any:  # noqa: ANN401 - a numpy scalar of the real type of q
+    return q.real.dtype.type(value)
+
+
+def _decay_over_q(q: Values) -> Values:
+    """(1 - exp(-2q))/q by expm1, 2 at q = 0."""
+    values: Values = np.divide(-np.expm1(-2 * q), q, out=np.full_like(q, 2), where=q != 0)
+    return values
+
+
+def _bonded_denominator(q: Values, poissons_ratio: float) -> Values:
+    """D (1 + 4q^2 + kappa^2 + 2 kappa cosh 2q) with D = exp(-2q), term by term positive."""
+    kappa = 3 - 4 * _same_precision(poissons_ratio, q)
+    D = np.exp(-2 * q)
+    denominator: Values = kappa * (1 + D**2) + (1 + kappa**2) * D + (2 * q * np.exp(-q)) ** 2
+    return denominator
+
+
+def _shear_bracket_over_q(q: Values) -> Values:
+    """2 D (sinh 2q - 2q)/q with D = exp(-2q): series where the difference cancels, direct elsewhere."""
+    small = np.abs(q) < SERIES_LIMIT
+    D = np.exp(-2 * q)
+    t2 = np.where(small, 2 * q, 0) ** 2
+    series = np.zeros_like(q)
+    for k in reversed(range(SERIES_TERMS)):
+        series = series * t2 + 1 / q.real.dtype.type(factorial(2 * k + 3))
+    direct = (1 - D**2 - 4 * q * D) / np.where(small, 1, q)
+    bracket: Values = np.where(small, 4 * t2 * D * series, direct)
+    return bracket

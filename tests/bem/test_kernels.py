@@ -1,0 +1,89 @@
+"""Kernels of the layer against 60-digit arithmetic of the printed Eqs. (29) and (31)."""
+
+import mpmath
+import numpy as np
+import pytest
+
+from bem.kernels import compliance_kernel, compliance_over_wavenumber, one_minus_kernel, zero_mode
+
+# Rounding analysis: a dozen operations on positive numbers plus exp of an exact argument, half an ulp each.
+FEW_ULPS = 8 * np.finfo(float).eps
+WAVENUMBERS = np.concatenate([np.logspace(-8, 8, 161), np.linspace(0.05, 6, 120), [1.4999999, 1.5, 1.5000001]])
+POISSONS_RATIOS = [0.0, 0.1, 0.25, 0.3, 0.45, 0.49, 0.4999999, 0.5 - 1e-12, 0.5]
+LAYERS = [("unbonded", 0.3), *(("bonded", nu) for nu in POISSONS_RATIOS)]
+
+
+def printed_kernel(q, support, nu):
+    """chi exactly as printed, in 60 digits (plus the digits that exp(2q) eats)."""
+    q, kappa = mpmath.mpf(float(q)), 3 - 4 * mpmath.mpf(nu)
+    if q > 300:  # 1 - chi is below 1e-250: the limit is exact in double precision
+        return mpmath.mpf(1)
+    if support == "unbonded":
+        return 2 * mpmath.sinh(q) ** 2 / (2 * q + mpmath.sinh(2 * q))
+    return (2 * kappa * mpmath.sinh(2 * q) - 4 * q) / (1 + 4 * q**2 + kappa**2 + 2 * kappa * mpmath.cosh(2 * q))
+
+
+def relative_errors(values, exact):
+    return np.array([float(abs(mpmath.mpf(float(v)) / e - 1)) for v, e in zip(values, exact, strict=True)])
+
+
+@pytest.mark.parametrize(("support", "nu"), LAYERS)
+def test_kernel_keeps_full_relative_accuracy(support, nu):
+    with mpmath.workdps(330):
+        exact = [printed_kernel(q, support, nu) for q in WAVENUMBERS]
+        assert relative_errors(compliance_kernel(WAVENUMBERS, support, nu), exact).max() < FEW_ULPS
+
+
+@pytest.mark.parametrize(("support", "nu"), LAYERS)
+def test_kernel_over_wavenumber_keeps_full_relative_accuracy(support, nu):
+    with mpmath.workdps(330):
+        exact = [printed_kernel(q, support, nu) / mpmath.mpf(float(q)) for q in WAVENUMBERS]
+        assert relative_errors(compliance_over_wavenumber(WAVENUMBERS, support, nu), exact).max() < FEW_ULPS
+
+
+@pytest.mark.parametrize(("support", "nu"), LAYERS)
+def test_complement_keeps_full_relative_accuracy_where_it_is_exponentially_small(support, nu):
+    wavenumbers = WAVENUMBERS[WAVENUMBERS < 300]
+    with mpmath.workdps(330):
+        exact = [1 - printed_kernel(q, support, nu) for q in wavenumbers]
+        assert relative_errors(one_minus_kernel(wavenumbers, support, nu), exact).max() < FEW_ULPS
+
+
+@pytest.mark.parametrize(("support", "nu"), LAYERS)
+def test_zero_wavenumber_is_the_limit(support, nu):
+    assert compliance_kernel(0.0, support, nu) == 0.0
+    assert one_minus_kernel(0.0, support, nu) == pytest.approx(1.0, abs=FEW_ULPS)
+    assert compliance_over_wavenumber(0.0, support, nu) == pytest.approx(zero_mode(support, nu), rel=FEW_ULPS)
+
+
+def test_small_wavenumber_of_the_incompressible_bonded_layer_is_cubic():
+    q = 1e-6
+    assert compliance_kernel(q, "bonded", 0.5) == pytest.approx(2 / 3 * q**3, rel=1e-11)  # next term is O(q^2)
+
+
+def test_huge_wavenumber_neither_overflows_nor_warns():
+    q = np.array([400.0, 1e8, 1e150, 1e300])
+    for support in ("bonded", "unbonded"):
+        np.testing.assert_array_equal(compliance_kernel(q, support, 0.5), 1.0)
+        np.testing.assert_array_equal(one_minus_kernel(q[1:], support, 0.5), 0.0)
+
+
+def test_complex_wavenumbers_continue_the_real_ones_analytically():
+    q = np.array([0.3, 1.4, 1.6, 4.0])
+    for support in ("bonded", "unbonded"):
+        near = compliance_kernel(q + 1e-9j, support, 0.45)
+        np.testing.assert_allclose(near.real, compliance_kernel(q, support, 0.45), rtol=1e-14)
+        np.testing.assert_allclose(
+            compliance_kernel(q * np.exp(0.4j), support, 0.45) + one_minus_kernel(q * np.exp(0.4j), support, 0.45),
+            1.0,
+            rtol=1e-14,
+        )
+
+
+def test_extended_precision_is_kept():
+    q = np.logspace(-4, 1, 30).astype(np.longdouble)
+    chi = compliance_kernel(q, "bonded", 0.3)
+    assert chi.dtype == np.longdouble
+    np.testing.assert_allclose(
+        (chi + one_minus_kernel(q, "bonded", 0.3)).astype(float), 1.0, rtol=4 * float(np.finfo(np.longdouble).eps)
+    )
