@@ -25,7 +25,6 @@ Tree: TypeAlias = Mapping[str, Any]  # values: arrays, numbers, strings, None, o
 
 SCHEMA = "contact-verification/solution/1"
 MAX_BYTES = 2_000_000_000  # of one array; a larger one is refused before memory is taken
-_EMPTY = "\0none"  # HDF5 attributes know no None
 
 _KINDS: dict[str, type[Solution]] = {
     cls.__name__: cls for cls in (ContactPath, DetachmentPath, HistoryPath, ImpactHistory)
@@ -68,7 +67,7 @@ def _write(group: h5py.Group, tree: Tree) -> None:
         elif isinstance(value, np.ndarray):
             group.create_dataset(name, data=value, track_times=False)
         elif value is None:
-            group.attrs[name] = _EMPTY
+            group.attrs[name] = h5py.Empty("f8")  # HDF5 knows no None
         elif isinstance(value, bool | int | float | str | np.generic):
             group.attrs[name] = value
         else:
@@ -107,8 +106,9 @@ def _read(group: h5py.Group) -> dict[str, Any]:
 
 
 def _scalar(value: Any) -> Any:
-    plain = value.item() if isinstance(value, np.generic) else value
-    return None if isinstance(plain, str) and plain == _EMPTY else plain
+    if isinstance(value, h5py.Empty):
+        return None
+    return value.item() if isinstance(value, np.generic) else value
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,239 @@
+"""Bad input gets one clear error: the value, the field's path and the remedy."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contact import (
+    Adhesion,
+    CoatedPair,
+    Cone,
+    ContactRadii,
+    DepthHistory,
+    Detachment,
+    FlatPunch,
+    ForceHistory,
+    Impact,
+    IndentationDepths,
+    InvalidInput,
+    KelvinVoigt,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    PowerLaw,
+    PronySeries,
+    Scene,
+    StandardSolid,
+    Tabulated,
+    TruncatedCone,
+)
+
+LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
+CONE = TruncatedCone(flat_radius=0.5e-3, slope=0.1)
+
+BAD = {
+    "negative thickness": (
+        lambda: Layer(thickness=-1e-3, youngs_modulus=1e6, poissons_ratio=0.3),
+        r"Layer\.thickness = -0\.001: must be positive; give the thickness in metres, or use Layer\.half_space",
+    ),
+    "zero thickness": (
+        lambda: Layer(thickness=0, youngs_modulus=1e6, poissons_ratio=0.3),
+        r"Layer\.thickness = 0: must be positive",
+    ),
+    "nu above a half": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.6),
+        r"Layer\.poissons_ratio = 0\.6: must lie in \[0, 0\.5\]",
+    ),
+    "negative nu": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=-0.1),
+        r"Layer\.poissons_ratio = -0\.1: must lie in \[0, 0\.5\]",
+    ),
+    "NaN modulus": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=math.nan, poissons_ratio=0.3),
+        r"Layer\.youngs_modulus = nan: must be positive and finite",
+    ),
+    "text for a number": (
+        lambda: Layer(thickness="1 mm", youngs_modulus=1e6, poissons_ratio=0.3),
+        r"Layer\.thickness = '1 mm': must be a number; give the thickness in metres",
+    ),
+    "a truth value for a number": (
+        lambda: Layer(thickness=True, youngs_modulus=1e6, poissons_ratio=0.3),
+        r"Layer\.thickness = True: must be a number",
+    ),
+    "unknown support": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3, support="glued"),
+        r"Layer\.support = 'glued': Input should be 'bonded' or 'unbonded'",
+    ),
+    "unknown field": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3, colour="red"),
+        r"Layer\.colour = 'red': no such field; remove it",
+    ),
+    "missing field": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=1e6),
+        r"Layer\.poissons_ratio is missing; add it",
+    ),
+    "fields without names": (
+        lambda: Layer(1e-3, 1e6, 0.3),
+        r"came without a name; write the fields as name=value",
+    ),
+    "infinite radius": (
+        lambda: ContactRadii([1e-3, math.inf]),
+        r"ContactRadii\.values = .*: must be finite, but entry 1 is inf",
+    ),
+    "NaN radius": (lambda: ContactRadii([math.nan]), r"ContactRadii\.values = .*entry 0 is nan"),
+    "decreasing radii": (
+        lambda: ContactRadii([2e-3, 1e-3]),
+        r"ContactRadii\.values = .*must increase strictly, but entry 1 is 0\.001",
+    ),
+    "zero radius": (lambda: ContactRadii([0.0, 1e-3]), r"must be above 0, but entry 0 is 0"),
+    "no radii": (lambda: ContactRadii([]), r"ContactRadii\.values = \[\]: must hold at least one number"),
+    "a number for a list": (lambda: NormalForces(1.0), r"NormalForces\.values = 1\.0: must be a list of numbers"),
+    "a text for a list": (lambda: NormalForces("12"), r"NormalForces\.values = '12': must be a list of numbers"),
+    "a matrix for a list": (lambda: IndentationDepths(np.ones((2, 2))), r"must be a one-dimensional array"),
+    "complex depths": (lambda: IndentationDepths(np.array([1j])), r"must be a one-dimensional array of real numbers"),
+    "ragged lists": (lambda: IndentationDepths([[1.0], [1.0, 2.0]]), r"must be a number"),
+    "an endless list": (lambda: IndentationDepths(np.zeros(1_000_001)), r"at most 1000000 numbers, got 1000001"),
+    "an integer beyond double precision": (lambda: Cone(slope=10**400), r"must fit into double precision"),
+    "a sharper tip than a cone": (
+        lambda: PowerLaw(exponent=0.5, reference_radius=1.0, reference_height=1.0),
+        r"PowerLaw\.exponent = 0\.5: must be finite and at least 1",
+    ),
+    "a table that goes back": (
+        lambda: Tabulated(radii=[0.0, 2e-3, 1e-3], heights=[0.0, 1e-6, 2e-6]),
+        r"Tabulated\.radii = .*must increase strictly, but entry 2 is 0\.001",
+    ),
+    "a table with a height too few": (
+        lambda: Tabulated(radii=[0.0, 1e-3, 2e-3], heights=[0.0, 1e-6]),
+        r"Tabulated: a table needs at least three radii and one height for each; got 3 radii and 2 heights",
+    ),
+    "a table that starts beside the tip": (
+        lambda: Tabulated(radii=[1e-3, 2e-3, 3e-3], heights=[0.0, 1e-6, 2e-6]),
+        r"a table starts at the tip \(0, 0\), got \(0\.001, 0\); shift it",
+    ),
+    "zero mass": (lambda: Impact(mass=0.0, velocity=1.0), r"Impact\.mass = 0\.0: must be positive and finite"),
+    "time that stands still": (
+        lambda: DepthHistory(time=[0.0, 1.0, 1.0], depth=[0.0, 1.0, 2.0]),
+        r"DepthHistory\.time = .*must increase strictly, but entry 2 is 1",
+    ),
+    "a history with a force too few": (
+        lambda: ForceHistory(time=[0.0, 1.0], force=[0.0]),
+        r"ForceHistory: a history needs at least two instants and one force for each; got 2 instants and 1 values",
+    ),
+    "unknown control": (lambda: Detachment(control="stress"), r"Detachment\.control = 'stress': Input should be"),
+    "negative work of adhesion": (
+        lambda: Adhesion(work_of_adhesion=-0.1),
+        r"Adhesion\.work_of_adhesion = -0\.1: must be finite and at least 0",
+    ),
+    "negative Prony modulus": (
+        lambda: PronySeries(long_term_shear_modulus=1.0, shear_moduli=[1.0, -1.0], relaxation_times=[1.0, 2.0]),
+        r"PronySeries\.shear_moduli = .*must be at least 0, but entry 1 is -1",
+    ),
+    "zero relaxation time": (
+        lambda: PronySeries(long_term_shear_modulus=1.0, shear_moduli=[1.0], relaxation_times=[0.0]),
+        r"PronySeries\.relaxation_times = .*must be above 0, but entry 0 is 0",
+    ),
+    "a Prony time too few": (
+        lambda: PronySeries(long_term_shear_modulus=1.0, shear_moduli=[1.0, 2.0], relaxation_times=[1.0]),
+        r"one relaxation time for each shear modulus; got 2 and 1",
+    ),
+    "a Prony series of nothing": (
+        lambda: PronySeries(long_term_shear_modulus=0.0, shear_moduli=[0.0], relaxation_times=[1.0]),
+        r"needs at least one positive shear modulus",
+    ),
+    "a flat punch with radii": (
+        lambda: Scene(layer=LAYER, indenter=FlatPunch(radius=1e-3), loading=ContactRadii([1e-3])),
+        r"Scene: loading = ContactRadii: a flat punch's contact radius is its own; give depths or forces",
+    ),
+    "a radius within the flat end": (
+        lambda: Scene(layer=LAYER, indenter=CONE, loading=ContactRadii([0.4e-3])),
+        r"Scene: loading\.values = 0\.0004: the indenter's flat end already touches out to 0\.0005 m; go beyond",
+    ),
+    "a radius beyond the table": (
+        lambda: Scene(
+            layer=LAYER,
+            indenter=Tabulated(radii=[0.0, 1e-3, 2e-3], heights=[0.0, 1e-6, 4e-6]),
+            loading=ContactRadii([3e-3]),
+        ),
+        r"loading\.values = 0\.003: the indenter ends at 0\.002 m; stay within",
+    ),
+    "pulling without adhesion": (
+        lambda: Scene(layer=LAYER, indenter=CONE, loading=NormalForces([1.0, -1.0])),
+        r"loading\.values = -1: without adhesion only positive values press; list Adhesion or press",
+    ),
+    "detachment without adhesion": (
+        lambda: Scene(layer=LAYER, indenter=CONE, loading=Detachment()),
+        r"loading = Detachment needs adhesion; add Adhesion",
+    ),
+    "the same effect twice": (
+        lambda: Scene(layer=LAYER, indenter=CONE, loading=Detachment(), effects=(Adhesion(work_of_adhesion=0.1),) * 2),
+        r"effects = Adhesion, Adhesion: each effect, and one viscoelastic model, may stand only once",
+    ),
+    "a viscoelastic model at odds with the layer": (
+        lambda: Scene(
+            layer=LAYER,
+            indenter=CONE,
+            loading=Impact(mass=1.0, velocity=1.0),
+            effects=(KelvinVoigt(shear_modulus=1e5, viscosity=1.0),),
+        ),
+        r"KelvinVoigt answers at once with 100000 Pa, but the layer's shear modulus .* is 344827\.5862 Pa",
+    ),
+    "no indenter": (
+        lambda: Scene(layer=LAYER, indenter="cone", loading=ContactRadii([1e-3])),
+        r"Scene\.indenter = 'cone': Input should be an instance of Profile",
+    ),
+    "two plane bodies": (
+        lambda: CoatedPair(
+            first_radius=math.inf,
+            second_radius=math.inf,
+            first_thickness=1e-3,
+            second_thickness=1e-3,
+            youngs_modulus=1e6,
+            poissons_ratio=0.5,
+            loading=NormalForces([1.0]),
+        ),
+        r"two plane bodies touch everywhere at once",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", BAD)
+def test_bad_input_is_refused_with_value_place_and_remedy(name):
+    make, message = BAD[name]
+    with pytest.raises(InvalidInput, match=message):
+        make()
+
+
+def test_all_problems_of_a_record_are_told_at_once():
+    with pytest.raises(InvalidInput) as caught:
+        Layer(thickness=-1, youngs_modulus=math.nan, poissons_ratio=2)
+    assert len(str(caught.value).splitlines()) == 3
+
+
+@given(st.floats().filter(lambda x: not 0.0 < x < math.inf))
+def test_no_float_slips_through_as_a_positive_number(value):
+    with pytest.raises(InvalidInput, match=r"Paraboloid\.radius_of_curvature"):
+        Paraboloid(radius_of_curvature=value)
+
+
+@given(
+    st.one_of(
+        st.none(), st.text(), st.booleans(), st.binary(), st.lists(st.integers()), st.dictionaries(st.text(), st.text())
+    )
+)
+def test_no_other_type_slips_through_as_a_number(value):
+    with pytest.raises(InvalidInput, match=re.escape("Cone.slope")):
+        Cone(slope=value)
+
+
+def test_moduli_that_agree_are_accepted():
+    layer = Layer.incompressible(thickness=1e-3, shear_modulus=3e5)
+    effect = StandardSolid(long_term_shear_modulus=1e5, maxwell_shear_modulus=2e5, viscosity=10.0)
+    scene = Scene(layer=layer, indenter=CONE, loading=Impact(mass=1.0, velocity=1.0), effects=(effect,))
+    assert scene.effect(StandardSolid) is effect
+    assert scene.effect(Adhesion) is None

@@ -1,0 +1,45 @@
+"""The stage log counts calls, gives nested time to the nested stage, and adds up to the whole."""
+
+from __future__ import annotations
+
+import time
+
+import pytest
+
+from contact import StageLog
+
+
+def test_nested_stages_are_timed_apart():
+    log = StageLog()
+    with log.stage("outer"):
+        time.sleep(0.002)
+        with log.stage("inner"):
+            time.sleep(0.02)
+            log.hold(100, 20)
+        with log.stage("inner"):
+            pass
+    outer, inner = log.records
+    assert (outer.name, outer.calls, inner.name, inner.calls) == ("outer", 1, "inner", 2)
+    assert inner.bytes == 120
+    assert inner.wall_seconds >= 0.02
+    assert outer.wall_seconds < inner.wall_seconds
+    assert outer.wall_seconds + inner.wall_seconds <= log.cost(unknowns=1).wall_seconds
+
+
+def test_a_stage_that_raises_is_closed():
+    log = StageLog()
+    with pytest.raises(ZeroDivisionError), log.stage("a"):
+        raise ZeroDivisionError
+    with log.stage("b"):
+        pass
+    assert [record.name for record in log.records] == ["a", "b"]
+
+
+def test_counters_add_up():
+    log = StageLog()
+    log.count("iterations", 3)
+    log.count("iterations")
+    cost = log.cost(unknowns=7)
+    assert cost.counters == {"iterations": 4}
+    assert cost.unknowns == 7
+    assert cost.peak_memory_bytes > 1_000_000
