@@ -80,7 +80,7 @@ def _floating(q: ArrayLike) -> Values:
     return values if values.dtype.kind in "fc" else values.astype(np.float64)
 
 
-def _same_precision(value: float, q: Values) -> Any:  # noqa: ANN401 - a numpy scalar of the real type of q
+def _same_precision(value: float, q: Values) -> Any:
     return q.real.dtype.type(value)
 
 
