@@ -1,0 +1,72 @@
+import math
+import time
+
+import numpy as np
+import pytest
+
+from cases.work.timing import is_ambiguous, is_slower, slowdown, summed_up, timed
+from contact import InvalidInput
+
+NULL_SPREAD = 0.02
+
+
+def times(factor, seed, pairs=15):
+    """Noise like that of a shared machine: a common drift and 5 % jitter, the odd interruption."""
+    noise = np.random.default_rng(seed)
+    jitter = np.exp(0.05 * noise.standard_normal(pairs)) * (1 + (noise.random(pairs) < 0.1))
+    return factor * jitter
+
+
+def test_all_samples_are_kept_and_summed_up():
+    timing = summed_up([0.3, 0.1, 0.2, 0.4, 0.5])
+    assert timing.samples == (0.3, 0.1, 0.2, 0.4, 0.5)
+    assert (timing.minimum, timing.lower_quartile, timing.median, timing.upper_quartile) == (0.1, 0.2, 0.3, 0.4)
+    assert timing.spread == pytest.approx(1 / 3)
+
+
+@pytest.mark.parametrize("bad", [[], [0.0], [math.nan], [-1.0]])
+def test_impossible_times_are_refused(bad):
+    with pytest.raises(InvalidInput, match="times"):
+        summed_up(bad)
+
+
+def test_a_fast_call_is_looped_and_a_warm_up_is_not_counted():
+    calls = []
+    timing = timed(lambda: calls.append(time.sleep(0.001)), samples=3, shortest=0.01)
+    assert len(timing.samples) == 3
+    assert len(calls) > 3 + 2
+    assert timing.minimum >= 0.001
+
+
+def test_identical_versions_pass_twenty_times():
+    for seed in range(20):
+        assert not is_slower(slowdown(times(1.0, seed), times(1.0, 100 + seed)), NULL_SPREAD)
+
+
+def test_a_slowdown_of_one_and_a_half_fails_at_least_nineteen_times_of_twenty():
+    failed = sum(is_slower(slowdown(times(1.0, s), times(1.5, 100 + s)), NULL_SPREAD) for s in range(20))
+    assert failed >= 19
+
+
+def test_the_interval_contains_the_ratio_of_a_noiseless_pair():
+    measured = slowdown([1.0] * 7, [1.25] * 7)
+    assert (measured.lower, measured.ratio, measured.upper) == pytest.approx((1.25, 1.25, 1.25))
+
+
+def test_a_wide_interval_is_ambiguous():
+    measured = slowdown([1.0] * 8, [1.0, 1.0, 1.0, 1.0, 1.3, 1.3, 1.3, 1.3])
+    assert is_ambiguous(measured, NULL_SPREAD)
+    assert not is_slower(measured, NULL_SPREAD)
+
+
+def test_a_noisy_machine_widens_the_limit():
+    measured = slowdown([1.0] * 7, [1.25] * 7)
+    assert is_slower(measured, 0.02)
+    assert not is_slower(measured, 0.10)
+
+
+def test_too_few_or_unpaired_times_are_refused():
+    with pytest.raises(InvalidInput, match="pairs"):
+        slowdown([1.0] * 6, [1.0] * 6)
+    with pytest.raises(InvalidInput, match="pairs"):
+        slowdown([1.0] * 7, [1.0] * 8)
