@@ -1,0 +1,174 @@
+"""One renderer for every figure of a case: lines, symbols and asymptotes of the methods, overlaid.
+
+The colour of a curve says which scene it belongs to (`Series.group`), its line or symbol says which method made it.
+A figure with a single group is coloured by method instead.
+"""
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure as Drawing
+from matplotlib.lines import Line2D
+
+from cases.results import Figure, Panel, Series
+from reports.plates import Plate
+from reports.style import BLACK, GREY, look_of, mark_decades
+
+PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 3.55, 0.2  # inches
+SYMBOLS_ON_A_CURVE = 24
+LINE_METHODS = ("mdr",)
+SYMBOL_METHODS = ("fem", "bem", "integral_equation", "literature", "paper")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stroke:
+    """Line and marker of a series in Matplotlib's words."""
+
+    line: str
+    marker: str
+    width: float = 1.5
+
+
+def plate_of(figure: Figure, *, case: str, command: str) -> Plate:
+    """The plate of a case's figure, its data one row a point."""
+    columns = ("panel", "series", "method", "group", "x", "y", "half_width")
+    return Plate(
+        name=f"{case}-{figure.name}",
+        title=figure.title,
+        caption=figure.caption,
+        paint=lambda: draw(figure),
+        columns=columns,
+        rows=tuple(_rows(figure)),
+        command=command,
+    )
+
+
+def _rows(figure: Figure) -> Iterable[tuple[str | float | None, ...]]:
+    for panel in figure.panels:
+        for series in panel.series:
+            widths = series.half_width or (None,) * len(series.x)
+            for x, y, half_width in zip(series.x, series.y, widths, strict=True):
+                yield panel.title, series.label, series.method, series.group, x, y, half_width
+
+
+def draw(figure: Figure) -> Drawing:
+    """The figure with its panels in rows of two or three and one legend below them."""
+    columns = _columns(len(figure.panels))
+    rows = math.ceil(len(figure.panels) / columns)
+    legend = _legend_entries(figure)
+    entries_a_row = 3 * columns
+    height = PANEL_HEIGHT * rows + LEGEND_ROW * math.ceil(len(legend) / entries_a_row) + 0.15
+    drawing = Drawing(figsize=(max(4.6, PANEL_WIDTH * columns), height), layout="constrained")
+    colours = _colours(figure)
+    all_axes = drawing.subplots(rows, columns, squeeze=False).flat
+    for axes, panel in zip(all_axes, figure.panels, strict=False):
+        draw_panel(axes, panel, colours)
+    for axes in list(all_axes)[len(figure.panels) :]:
+        axes.set_axis_off()
+    if legend:
+        drawing.legend(handles=legend, loc="outside lower center", ncols=min(entries_a_row, len(legend)))
+    return drawing
+
+
+def _columns(panels: int) -> int:
+    """Three panels a row for 3, 5, 6, 9, ..., two for 2 and 4."""
+    return min(panels, 2) if panels in (1, 2, 4) else 3
+
+
+def draw_panel(axes: Axes, panel: Panel, colours: dict[str, str]) -> None:
+    """The series of a panel; symbols lie above lines, asymptotes below both."""
+    axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label, xscale=panel.x_scale, yscale=panel.y_scale)
+    for series in panel.series:
+        _draw_series(axes, series, _colour(series, colours))
+    for axis, scale in ((axes.xaxis, panel.x_scale), (axes.yaxis, panel.y_scale)):
+        if scale == "log":
+            mark_decades(axis)
+
+
+def _draw_series(axes: Axes, series: Series, colour: str) -> None:
+    stroke = stroke_of(series.method)
+    layer = 1.5 if _is_asymptote(series.method) else 3.0 if stroke.marker else 2.0
+    every = max(1, len(series.x) // SYMBOLS_ON_A_CURVE) if stroke.marker else None
+    axes.plot(
+        series.x,
+        series.y,
+        color=colour,
+        linestyle=stroke.line,
+        linewidth=stroke.width,
+        marker=stroke.marker or None,
+        markevery=every,
+        markerfacecolor="white",
+        markeredgewidth=1.1,
+        zorder=layer,
+    )
+    if series.half_width:
+        _draw_uncertainty(axes, series, colour, symbols=bool(stroke.marker))
+
+
+def _draw_uncertainty(axes: Axes, series: Series, colour: str, *, symbols: bool) -> None:
+    """Bars at symbols, a band around a line."""
+    y, half_width = np.array(series.y), np.array(series.half_width)
+    if symbols:
+        axes.errorbar(series.x, y, yerr=half_width, fmt="none", ecolor=colour, elinewidth=1.0, capsize=2.0, zorder=2.5)
+    else:
+        axes.fill_between(series.x, y - half_width, y + half_width, color=colour, alpha=0.2, linewidth=0.0)
+
+
+def stroke_of(method: str) -> Stroke:
+    """MDR is a line, the other methods are symbols on it, closed forms and asymptotes thin dashes below."""
+    if _is_asymptote(method):
+        return Stroke(line=(0, (4, 2)) if "half" not in method else (0, (1, 1.5)), marker="", width=1.0)
+    base = method.partition("[")[0]
+    if base in SYMBOL_METHODS:
+        return Stroke(line="none", marker=look_of(method).marker)
+    return Stroke(line="-" if base in LINE_METHODS else look_of(method).dash, marker="")
+
+
+def _is_asymptote(method: str) -> bool:
+    return any(word in method for word in ("asymptot", "closed", "thin", "half"))
+
+
+def _colour(series: Series, colours: dict[str, str]) -> str:
+    if len(colours) > 1 and series.group:
+        return colours[series.group]
+    return BLACK if _is_asymptote(series.method) else look_of(series.method).colour
+
+
+def _colours(figure: Figure) -> dict[str, str]:
+    """A colour for each group, dark to light as the groups come: readable in grey and with any colour vision."""
+    groups = _distinct(series.group for panel in figure.panels for series in panel.series if series.group)
+    places = np.linspace(0.0, 0.84, max(2, len(groups)))
+    return {group: to_hex(colormaps["viridis"](place)) for group, place in zip(groups, places, strict=False)}
+
+
+def _legend_entries(figure: Figure) -> list[Line2D]:
+    """Groups by colour, then methods by line or symbol; nothing when there is only one thing to tell."""
+    colours = _colours(figure)
+    grouped = len(colours) > 1
+    entries = [Line2D([], [], color=colour, linewidth=3.0, label=group) for group, colour in colours.items() if grouped]
+    series = {s.method: s for panel in figure.panels for s in panel.series}
+    for method in series:
+        stroke = stroke_of(method)
+        colour = GREY if grouped else _colour(series[method], colours)
+        entries.append(
+            Line2D(
+                [],
+                [],
+                color=colour,
+                linestyle=stroke.line,
+                linewidth=stroke.width,
+                marker=stroke.marker or None,
+                markerfacecolor="white",
+                label=look_of(method).name,
+            )
+        )
+    return entries
+
+
+def _distinct(names: Iterable[str]) -> Sequence[str]:
+    return tuple(dict.fromkeys(names))

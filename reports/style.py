@@ -1,0 +1,147 @@
+"""How figures look, decided once: colours, lines, fonts, and files that come out the same byte for byte.
+
+Colours are those of Okabe and Ito (2008), told apart by readers with any colour vision; lines also differ in dash and
+marker, so that a grey print still reads. Text stays text (not outlines): it can be searched and copied, and files stay
+small. The font list starts with two families of equal letter widths, so nothing clips where one of them is missing.
+"""
+
+import io
+import math
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+import matplotlib as mpl
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+from matplotlib.figure import Figure
+from matplotlib.axis import Axis
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+BLACK, GREY, FAINT = "#1a1a1a", "#767676", "#c8c8c8"
+BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b0509a", "#e69f00", "#56b4e9"
+PNG_DOTS_PER_INCH = 150
+
+SETTINGS: Mapping[str, object] = {
+    "font.family": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.titlesize": 9.5,
+    "axes.titleweight": "bold",
+    "axes.titlelocation": "left",
+    "axes.labelsize": 9.0,
+    "axes.linewidth": 0.7,
+    "axes.edgecolor": "#444444",
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "axes.formatter.use_mathtext": True,
+    "grid.color": "#e2e2e2",
+    "grid.linewidth": 0.6,
+    "legend.fontsize": 8.0,
+    "legend.frameon": False,
+    "lines.linewidth": 1.5,
+    "lines.markersize": 4.5,
+    "mathtext.fontset": "dejavusans",
+    "path.simplify_threshold": 0.2,
+    "svg.fonttype": "none",
+    "xtick.labelsize": 8.0,
+    "ytick.labelsize": 8.0,
+}
+FONT_FAMILY = "'DejaVu Sans', Verdana, 'Liberation Sans', Arial, sans-serif"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Look:
+    """Colour, dash and marker of one method, the same in every figure and table."""
+
+    colour: str
+    dash: str
+    marker: str
+    name: str
+
+
+LOOKS: Mapping[str, Look] = {
+    "mdr": Look(colour=BLUE, dash="-", marker="o", name="MDR"),
+    "fem": Look(colour=VERMILLION, dash="--", marker="s", name="FEM"),
+    "bem": Look(colour=GREEN, dash="-.", marker="^", name="BEM"),
+    "integral_equation": Look(colour=PURPLE, dash=":", marker="D", name="integral equation"),
+}
+SPARE_LOOKS = tuple(
+    Look(colour=colour, dash=dash, marker=marker, name="")
+    for colour, dash, marker in ((ORANGE, "-", "v"), (SKY, "--", "P"), (GREY, "-.", "X"))
+)
+
+
+def look_of(method: str) -> Look:
+    """The look of a method; a method unknown here (someone else's solver) gets a spare one, always the same."""
+    base, _, variant = method.partition("[")
+    known = LOOKS.get(base)
+    if known is None:
+        spare = SPARE_LOOKS[sum(method.encode()) % len(SPARE_LOOKS)]
+        return Look(colour=spare.colour, dash=spare.dash, marker=spare.marker, name=method)
+    return known if not variant else Look(colour=known.colour, dash=":", marker=known.marker, name=f"{known.name} [{variant}")
+
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+FEW_DECADES, MANY_DECADES = 2, 4
+
+
+def power_of_ten(value: float, _position: int | None = None) -> str:
+    """Tick label 10⁻³ in plain letters, so that it stays one searchable word; 0.1, 1 and 10 as such."""
+    exponent = round(math.log10(value))
+    return f"{10.0**exponent:g}" if -1 <= exponent <= 1 else "10" + str(exponent).translate(SUPERSCRIPTS)
+
+
+def mark_decades(axis: Axis) -> None:
+    """Label a logarithmic axis: whole decades, ten labels at most; 1, 2 and 5 where there are fewer than two decades."""
+    low, high = sorted(axis.get_view_interval())
+    decades = math.log10(high / low)
+    axis.set_minor_formatter(NullFormatter())
+    if decades < FEW_DECADES:
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+        return
+    axis.set_major_locator(LogLocator(base=10.0 ** max(1, math.ceil(decades / 10)), numticks=12))
+    axis.set_major_formatter(FuncFormatter(power_of_ten))
+    if decades > MANY_DECADES:
+        axis.set_minor_locator(LogLocator(base=10.0, subs=(1.0,), numticks=99))
+
+
+@contextmanager
+def figure_style() -> Iterator[None]:
+    """Matplotlib settings of all figures, restored afterwards."""
+    with mpl.rc_context({**mpl.rcParamsDefault, **SETTINGS, "backend": mpl.rcParams["backend"]}):
+        yield
+
+
+def svg_text(figure: Figure, *, key: str) -> str:
+    """The figure as SVG that depends on nothing but its data: no date, no random ids, two decimals of a point.
+
+    Ids start with `key`, so that many figures live in one HTML page without meeting each other's clip paths.
+    """
+    buffer = io.StringIO()
+    with mpl.rc_context({"svg.hashsalt": key}):
+        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+    return _compact(buffer.getvalue(), key)
+
+
+def _compact(svg: str, key: str) -> str:
+    """What a page needs of Matplotlib's SVG: no prologue, no unused ids, each thing said once."""
+    svg = svg[svg.index("<svg") :]  # an inline figure has no XML declaration and no document type
+    svg = re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", svg)
+    referenced = set(re.findall(r"#([\w.-]+)", svg))
+    svg = re.sub(r' id="([^"]*)"', lambda name: f' id="{key}-{name[1]}"' if name[1] in referenced else "", svg)
+    svg = re.sub(r'(xlink:href="#|url\(#)', rf"\g<1>{key}-", svg)
+    svg = svg.replace("font-family: 'DejaVu Sans'; ", "").replace("; font-family: 'DejaVu Sans'", "")
+    svg = svg.replace("<svg ", f'<svg style="font-family: {FONT_FAMILY}" ', 1)
+    svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
+    return re.sub(r"\s+", " ", svg).replace("> <", ">\n<").strip() + "\n"
+
+
+def png_bytes(figure: Figure) -> bytes:
+    """The figure as PNG for slides and for viewers without SVG."""
+    buffer = io.BytesIO()
+    FigureCanvasAgg(figure).print_figure(buffer, format="png", dpi=PNG_DOTS_PER_INCH, metadata={"Software": None})
+    return buffer.getvalue()
