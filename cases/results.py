@@ -383,7 +383,7 @@ class WorkPrecision:
 class Series:
     """One line or set of symbols; ``group`` lines of one scene share a colour, ``method`` chooses line or symbol.
 
-    ``half_width`` is the uncertainty of y (shape as y) or empty.
+    ``half_width`` is the uncertainty of y (shape as y) or empty; ``style`` overrides the line the method would get.
     """
 
     label: str
@@ -392,17 +392,20 @@ class Series:
     x: Vector
     y: Vector
     half_width: Vector = ()
+    style: Literal["by method", "solid", "dashed", "dotted", "symbols"] = "by method"
 
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
 class Panel:
-    """One pair of axes; labels carry symbol and unit in mathtext."""
+    """One pair of axes; labels carry symbol and unit in mathtext, ranges (as printed in a paper) are optional."""
 
     title: str
     x_label: str
     y_label: str
     x_scale: Literal["linear", "log"] = "linear"
     y_scale: Literal["linear", "log"] = "linear"
+    x_range: tuple[Finite, Finite] | None = None
+    y_range: tuple[Finite, Finite] | None = None
     series: tuple[Series, ...]
 
 
