@@ -17,11 +17,12 @@ from matplotlib.lines import Line2D
 
 from cases.results import Figure, Panel, Series
 from reports.plates import Plate
-from reports.style import BLACK, GREY, look_of, mark_decades
+from reports.style import BLACK, GREY, Dash, look_of, mark_decades
 
 PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 3.55, 0.2  # inches
 SYMBOLS_ON_A_CURVE = 24
 LINE_METHODS = ("mdr",)
+FULL_WIDTH, THIN_WIDTH = 1.5, 1.0
 SYMBOL_METHODS = ("fem", "bem", "integral_equation", "literature", "paper")
 
 
@@ -29,9 +30,16 @@ SYMBOL_METHODS = ("fem", "bem", "integral_equation", "literature", "paper")
 class Stroke:
     """Line and marker of a series in Matplotlib's words."""
 
-    line: str
+    line: Dash
     marker: str
-    width: float = 1.5
+    width: float = FULL_WIDTH
+
+
+STYLES = {
+    "solid": Stroke(line="-", marker=""),
+    "dashed": Stroke(line=(0, (4, 2)), marker="", width=THIN_WIDTH),
+    "dotted": Stroke(line=(0, (1, 1.5)), marker="", width=THIN_WIDTH),
+}
 
 
 def plate_of(figure: Figure, *, case: str, command: str) -> Plate:
@@ -85,14 +93,23 @@ def draw_panel(axes: Axes, panel: Panel, colours: dict[str, str]) -> None:
     axes.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label, xscale=panel.x_scale, yscale=panel.y_scale)
     for series in panel.series:
         _draw_series(axes, series, _colour(series, colours))
+    _set_ranges(axes, panel)
     for axis, scale in ((axes.xaxis, panel.x_scale), (axes.yaxis, panel.y_scale)):
         if scale == "log":
             mark_decades(axis)
 
 
+def _set_ranges(axes: Axes, panel: Panel) -> None:
+    """Axes as printed where the panel fixes them."""
+    if panel.x_range is not None:
+        axes.set_xlim(panel.x_range)
+    if panel.y_range is not None:
+        axes.set_ylim(panel.y_range)
+
+
 def _draw_series(axes: Axes, series: Series, colour: str) -> None:
-    stroke = stroke_of(series.method)
-    layer = 1.5 if _is_asymptote(series.method) else 3.0 if stroke.marker else 2.0
+    stroke = stroke_of(series)
+    layer = 1.5 if stroke.width < FULL_WIDTH else 3.0 if stroke.marker else 2.0
     every = max(1, len(series.x) // SYMBOLS_ON_A_CURVE) if stroke.marker else None
     axes.plot(
         series.x,
@@ -119,14 +136,21 @@ def _draw_uncertainty(axes: Axes, series: Series, colour: str, *, symbols: bool)
         axes.fill_between(series.x, y - half_width, y + half_width, color=colour, alpha=0.2, linewidth=0.0)
 
 
-def stroke_of(method: str) -> Stroke:
-    """MDR is a line, the other methods are symbols on it, closed forms and asymptotes thin dashes below."""
-    if _is_asymptote(method):
-        return Stroke(line=(0, (4, 2)) if "half" not in method else (0, (1, 1.5)), marker="", width=1.0)
-    base = method.partition("[")[0]
-    if base in SYMBOL_METHODS:
-        return Stroke(line="none", marker=look_of(method).marker)
-    return Stroke(line="-" if base in LINE_METHODS else look_of(method).dash, marker="")
+def stroke_of(series: Series) -> Stroke:
+    """The style a series asks for, or that of its method.
+
+    MDR is a line, the other methods are symbols on it, closed forms and asymptotes thin dashes below.
+    """
+    marker = look_of(series.method).marker
+    if series.style in STYLES:
+        return STYLES[series.style]
+    if series.style == "symbols" or series.method.partition("[")[0] in SYMBOL_METHODS:
+        return Stroke(line="none", marker=marker)
+    if _is_asymptote(series.method):
+        return STYLES["dotted" if "half" in series.method else "dashed"]
+    return Stroke(
+        line="-" if series.method.partition("[")[0] in LINE_METHODS else look_of(series.method).dash, marker=""
+    )
 
 
 def _is_asymptote(method: str) -> bool:
@@ -151,23 +175,22 @@ def _legend_entries(figure: Figure) -> list[Line2D]:
     colours = _colours(figure)
     grouped = len(colours) > 1
     entries = [Line2D([], [], color=colour, linewidth=3.0, label=group) for group, colour in colours.items() if grouped]
-    series = {s.method: s for panel in figure.panels for s in panel.series}
-    for method in series:
-        stroke = stroke_of(method)
-        colour = GREY if grouped else _colour(series[method], colours)
-        entries.append(
-            Line2D(
-                [],
-                [],
-                color=colour,
-                linestyle=stroke.line,
-                linewidth=stroke.width,
-                marker=stroke.marker or None,
-                markerfacecolor="white",
-                label=look_of(method).name,
-            )
-        )
-    return entries
+    shown = {(s.method, s.style): s for panel in figure.panels for s in panel.series}
+    return entries + [_method_entry(series, GREY if grouped else _colour(series, colours)) for series in shown.values()]
+
+
+def _method_entry(series: Series, colour: str) -> Line2D:
+    stroke = stroke_of(series)
+    return Line2D(
+        [],
+        [],
+        color=colour,
+        linestyle=stroke.line,
+        linewidth=stroke.width,
+        marker=stroke.marker or None,
+        markerfacecolor="white",
+        label=look_of(series.method).name,
+    )
 
 
 def _distinct(names: Iterable[str]) -> Sequence[str]:

@@ -167,6 +167,9 @@ def observed_text(claim: Claim) -> str:
     unit = _unit(claim.unit)
     if claim.kind is Kind.ORDER and claim.expected is not None:
         return f"{claim.observed:.2f}{unit}, formal {claim.expected:g}"
+    if claim.kind is Kind.REGRESSION and claim.expected is not None:
+        new, accepted = (measured(value, claim.tolerance) for value in (claim.observed, claim.expected))
+        return f"{new}{unit}, accepted {accepted}{unit}"
     uncertain = ", ".join(f"{method} {small(u)}" for method, u in claim.uncertainty.items())
     return f"{small(claim.observed)}{unit}" + (f" (uncertainty {uncertain})" if uncertain else "")
 

@@ -1,4 +1,4 @@
-"""A plate is a figure of the report with everything that belongs to it: picture, data, caption, how to make it again."""
+"""A plate is a figure of the report with what belongs to it: picture, data, caption, how to make it again."""
 
 import csv
 import io

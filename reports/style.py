@@ -11,19 +11,18 @@ import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
+from typing import Any, Literal
 
 import matplotlib as mpl
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.backends.backend_svg import FigureCanvasSVG
-from matplotlib.figure import Figure
 from matplotlib.axis import Axis
+from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 BLACK, GREY, FAINT = "#1a1a1a", "#767676", "#c8c8c8"
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b0509a", "#e69f00", "#56b4e9"
 PNG_DOTS_PER_INCH = 150
 
-SETTINGS: Mapping[str, object] = {
+SETTINGS: dict[Any, Any] = {
     "font.family": ["DejaVu Sans"],
     "font.size": 9.0,
     "axes.titlesize": 9.5,
@@ -52,12 +51,16 @@ SETTINGS: Mapping[str, object] = {
 FONT_FAMILY = "'DejaVu Sans', Verdana, 'Liberation Sans', Arial, sans-serif"
 
 
+Dash = Literal["-", "--", "-.", ":", "none"] | tuple[float, tuple[float, ...]]
+SpareLook = tuple[str, Dash, str]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Look:
     """Colour, dash and marker of one method, the same in every figure and table."""
 
     colour: str
-    dash: str
+    dash: Dash
     marker: str
     name: str
 
@@ -68,10 +71,7 @@ LOOKS: Mapping[str, Look] = {
     "bem": Look(colour=GREEN, dash="-.", marker="^", name="BEM"),
     "integral_equation": Look(colour=PURPLE, dash=":", marker="D", name="integral equation"),
 }
-SPARE_LOOKS = tuple(
-    Look(colour=colour, dash=dash, marker=marker, name="")
-    for colour, dash, marker in ((ORANGE, "-", "v"), (SKY, "--", "P"), (GREY, "-.", "X"))
-)
+SPARE_LOOKS: tuple[SpareLook, ...] = ((ORANGE, "-", "v"), (SKY, "--", "P"), (GREY, "-.", "X"))
 
 
 def look_of(method: str) -> Look:
@@ -79,9 +79,13 @@ def look_of(method: str) -> Look:
     base, _, variant = method.partition("[")
     known = LOOKS.get(base)
     if known is None:
-        spare = SPARE_LOOKS[sum(method.encode()) % len(SPARE_LOOKS)]
-        return Look(colour=spare.colour, dash=spare.dash, marker=spare.marker, name=method)
-    return known if not variant else Look(colour=known.colour, dash=":", marker=known.marker, name=f"{known.name} [{variant}")
+        colour, dash, marker = SPARE_LOOKS[sum(method.encode()) % len(SPARE_LOOKS)]
+        return Look(colour=colour, dash=dash, marker=marker, name=method)
+    return (
+        known
+        if not variant
+        else Look(colour=known.colour, dash=":", marker=known.marker, name=f"{known.name} [{variant}")
+    )
 
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -95,7 +99,7 @@ def power_of_ten(value: float, _position: int | None = None) -> str:
 
 
 def mark_decades(axis: Axis) -> None:
-    """Label a logarithmic axis: whole decades, ten labels at most; 1, 2 and 5 where there are fewer than two decades."""
+    """Label a logarithmic axis: whole decades, ten at most; 1, 2 and 5 where there are few."""
     low, high = sorted(axis.get_view_interval())
     decades = math.log10(high / low)
     axis.set_minor_formatter(NullFormatter())
@@ -112,7 +116,8 @@ def mark_decades(axis: Axis) -> None:
 @contextmanager
 def figure_style() -> Iterator[None]:
     """Matplotlib settings of all figures, restored afterwards."""
-    with mpl.rc_context({**mpl.rcParamsDefault, **SETTINGS, "backend": mpl.rcParams["backend"]}):
+    defaults: dict[Any, Any] = {name: value for name, value in mpl.rcParamsDefault.items() if name != "backend"}
+    with mpl.rc_context(defaults | SETTINGS):
         yield
 
 
@@ -123,7 +128,7 @@ def svg_text(figure: Figure, *, key: str) -> str:
     """
     buffer = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):
-        FigureCanvasSVG(figure).print_svg(buffer, metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
     return _compact(buffer.getvalue(), key)
 
 
@@ -143,5 +148,5 @@ def _compact(svg: str, key: str) -> str:
 def png_bytes(figure: Figure) -> bytes:
     """The figure as PNG for slides and for viewers without SVG."""
     buffer = io.BytesIO()
-    FigureCanvasAgg(figure).print_figure(buffer, format="png", dpi=PNG_DOTS_PER_INCH, metadata={"Software": None})
+    figure.savefig(buffer, format="png", dpi=PNG_DOTS_PER_INCH, metadata={"Software": None})
     return buffer.getvalue()

@@ -30,7 +30,9 @@ def test_value_is_rounded_where_its_uncertainty_begins(value, uncertainty, text)
 
 @given(st.floats(-1e12, 1e12), st.floats(1e-12, 1e12))
 def test_shown_value_and_uncertainty_enclose_the_given_ones(value, uncertainty):
-    mantissa, bracket, power = re.fullmatch(r"(-?[\d.]+)\(([\d.]+)\)(?:e(-?\d+))?", measured(value, uncertainty)).groups()
+    mantissa, bracket, power = re.fullmatch(
+        r"(-?[\d.]+)\(([\d.]+)\)(?:e(-?\d+))?", measured(value, uncertainty)
+    ).groups()
     scale = 10.0 ** int(power or 0)
     last_digit = 10.0 ** -len(mantissa.partition(".")[2])
     shown = float(bracket) if "." in bracket or last_digit == 1.0 else float(bracket) * last_digit
@@ -40,7 +42,15 @@ def test_shown_value_and_uncertainty_enclose_the_given_ones(value, uncertainty):
 
 @pytest.mark.parametrize(
     ("value", "text"),
-    [(3.24e-6, "3.2e-6"), (0.0, "0"), (0.5, "0.5"), (42.0, "42"), (170.4, "170"), (-1e-12, "-1.0e-12"), (math.inf, NOT_FINITE)],
+    [
+        (3.24e-6, "3.2e-6"),
+        (0.0, "0"),
+        (0.5, "0.5"),
+        (42.0, "42"),
+        (170.4, "170"),
+        (-1e-12, "-1.0e-12"),
+        (math.inf, NOT_FINITE),
+    ],
 )
 def test_errors_and_tolerances_have_two_digits(value, text):
     assert small(value) == text

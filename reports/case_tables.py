@@ -1,0 +1,122 @@
+"""The tables of one case: answers of each method side by side, what an accuracy costs, where the time went."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
+from reports.numbers import duration, measured, memory, prefix_for, small
+from reports.style import look_of
+
+
+@dataclass(frozen=True, kw_only=True)
+class Table:
+    """A table ready to print; the first `words` columns are words, the others numbers."""
+
+    title: str
+    note: str
+    heads: tuple[str, ...]
+    rows: tuple[tuple[str, ...], ...]
+    words: int = 1
+
+
+def answers(case: CaseResult) -> Table | None:
+    """The last step of each scene by each method, every number with the uncertainty its method states."""
+    names = tuple(dict.fromkeys((q.name, q.unit) for run in case.runs for q in run.quantities))
+    scales = {name: _common_prefix(case, name) for name, _unit in names}
+    heads = ("scene", "method", *(_head(name, unit, scales[name][1]) for name, unit in names), "time")
+    rows = tuple(_answer_row(run, [name for name, _ in names], scales) for run in case.runs if run.solved)
+    if not rows:
+        return None
+    note = (
+        "Digits in brackets: uncertainty of the last digits, stated by the method itself. "
+        "Histories and load paths show their last step; all steps are in results.json."
+    )
+    return Table(title="Answers", note=note, heads=heads, rows=rows, words=2)
+
+
+def _common_prefix(case: CaseResult, name: str) -> tuple[float, str]:
+    found = [q for run in case.runs for q in run.quantities if q.name == name]
+    return prefix_for(q.values[-1] for q in found if q.values) if found[0].unit != "1" else (1.0, "")
+
+
+def _head(name: str, unit: str, prefix: str) -> str:
+    words = name.replace("_", " ")
+    return words if unit == "1" else f"{words} [{prefix}{unit}]"
+
+
+def _answer_row(run: SceneRun, names: Iterable[str], scales: dict[str, tuple[float, str]]) -> tuple[str, ...]:
+    own = {q.name: q for q in run.quantities}
+    numbers = (_last_value(own[name], scales[name][0]) if name in own else "" for name in names)
+    return run.scene, look_of(run.method).name, *numbers, duration(run.cost.wall_seconds) if run.cost else ""
+
+
+def _last_value(quantity: Quantity, factor: float) -> str:
+    if not quantity.values:
+        return ""
+    uncertainty = quantity.uncertainty[-1] / factor if quantity.uncertainty else float("inf")
+    return measured(quantity.values[-1] / factor, uncertainty)
+
+
+def cheapest(work: WorkPrecision) -> Table:
+    """T*(tau): what the next decade of accuracy costs with each method."""
+    rows = []
+    for entry in work.cheapest:
+        reached = entry.reached and entry.seconds is not None
+        time = duration(entry.seconds) if reached and entry.seconds is not None else "not reached"
+        bound = "" if entry.bound is None else small(entry.bound) if reached else f"best {small(entry.bound)}"
+        size = memory(entry.peak_memory_bytes) if entry.peak_memory_bytes else ""
+        gain = f"{entry.speed_up:.3g} x" if entry.speed_up else ""
+        rows.append((small(entry.tolerance), look_of(entry.method).name, entry.label, time, bound, size, gain))
+    baseline = look_of(work.baseline_method).name
+    return Table(
+        title="Shortest time to an accuracy",
+        note="T* is the shortest measured time with error bound U within τ; nothing is interpolated.",
+        heads=("τ", "method", "settings", "T*", "U", "memory", f"speed-up over {baseline}"),
+        rows=tuple(rows),
+        words=3,
+    )
+
+
+def digit_prices(work: WorkPrecision) -> Table | None:
+    """How many decades of time one more digit costs along the front."""
+    if not work.prices:
+        return None
+    rows = tuple(
+        (look_of(p.method).name, p.from_label, p.to_label, f"{10.0**p.decades_per_digit:.2f} x") for p in work.prices
+    )
+    note = "Factor of time for one more correct digit, between neighbours on the front."
+    heads = ("method", "from", "to", "time for a digit")
+    return Table(title="Price of a digit", note=note, heads=heads, rows=rows, words=3)
+
+
+def stages(case: CaseResult) -> Table | None:
+    """Where the time of each solution went: the ledger of stages."""
+    rows = []
+    for run in case.runs:
+        total = sum(stage.seconds for stage in run.stages)
+        for stage in run.stages:
+            share = f"{100.0 * stage.seconds / total:.0f} %" if total > 0.0 else ""
+            size = memory(stage.bytes) if stage.bytes else ""
+            who = (run.scene, look_of(run.method).name, stage.name)
+            rows.append((*who, f"{stage.calls}", duration(stage.seconds), share, size))
+    if not rows:
+        return None
+    return Table(
+        title="Where the time went",
+        note="Stages that ran, and no others: what a scene does not list has no row.",
+        heads=("scene", "method", "stage", "calls", "time", "share", "memory"),
+        rows=tuple(rows),
+        words=3,
+    )
+
+
+def effects(case: CaseResult) -> tuple[str, ...]:
+    """One sentence for each listed effect: what it costs and what it moves."""
+    return tuple(_effect_sentence(entry) for entry in case.effects)
+
+
+def _effect_sentence(entry: EffectEntry) -> str:
+    """As in: viscosity: 61 % of the time, moves peak force by 0.02 %."""
+    who = f"{entry.effect} ({entry.scene}, {look_of(entry.method).name})"
+    moved = f"{entry.quantity.replace('_', ' ')} by {small(100.0 * entry.change)} %"
+    return f"{who}: {100.0 * entry.share_of_time:.0f} % of the time, moves {moved}."

@@ -1,0 +1,8 @@
+"""The figures a report draws by itself, each from one kind of record; their data are those records, digit for digit.
+
+========================  ==========================================================
+`charts.agreement`        differences of two methods, with uncertainty, against the tolerance
+`charts.convergence`      error under refinement, formal slope, GCI bars
+`charts.work_precision`   error against seconds, Pareto front, crossover
+========================  ==========================================================
+"""

@@ -1,0 +1,120 @@
+"""Error under refinement: symbols for the measured error, bars for the estimated one, dashes for the formal order."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from cases.results import CaseResult, ConvergenceStudy
+from reports.plates import Cell, Plate
+from reports.style import GREY, look_of, mark_decades
+
+PANELS_A_PLATE = 6
+BAR_WIDTH = 0.16  # decades of length
+COLUMNS = (
+    "scene", "quantity", "method", "mesh_family", "length", "unknowns", "seconds", "value", "error", "gci", "unit",
+    "scale", "formal_order", "observed_order", "digits_per_refinement",
+)  # fmt: skip
+CAPTION = (
+    "Symbols: error against the reference, relative to the scale of the quantity. Bars: what the method itself "
+    "estimates from its own refinements (grid convergence index); a bar that reaches its symbol covers the error. "
+    "Dashes: formal order. In brackets: observed order, or digits gained per refinement where convergence is spectral."
+)
+
+
+def plates(case: CaseResult, command: str) -> list[Plate]:
+    """The convergence plates of a case, six panels each: one panel a scene and quantity, the methods overlaid."""
+    panels = list(_by_panel(case.convergence).values())
+    parts = [panels[i : i + PANELS_A_PLATE] for i in range(0, len(panels), PANELS_A_PLATE)]
+    return [_plate(case, part, number, command) for number, part in enumerate(parts, start=1)]
+
+
+def _by_panel(studies: Iterable[ConvergenceStudy]) -> dict[tuple[str, str], list[ConvergenceStudy]]:
+    grouped: dict[tuple[str, str], list[ConvergenceStudy]] = {}
+    for study in studies:
+        grouped.setdefault((study.scene, study.quantity), []).append(study)
+    return grouped
+
+
+def _plate(case: CaseResult, panels: Sequence[Sequence[ConvergenceStudy]], number: int, command: str) -> Plate:
+    return Plate(
+        name=f"{case.name}-convergence-{number}",
+        title="Convergence: error under refinement",
+        caption=CAPTION,
+        paint=lambda: draw(panels),
+        columns=COLUMNS,
+        rows=tuple(row for panel in panels for study in panel for row in _rows(study)),
+        command=command,
+    )
+
+
+def _rows(study: ConvergenceStudy) -> Iterable[tuple[Cell, ...]]:
+    for grid in study.grids:
+        measured = (grid.length, grid.unknowns, grid.seconds, grid.value, grid.error, grid.gci)
+        orders = (study.formal_order, study.observed_order, study.digits_per_refinement)
+        yield study.scene, study.quantity, study.method, study.mesh_family, *measured, study.unit, study.scale, *orders
+
+
+def draw(panels: Sequence[Sequence[ConvergenceStudy]]) -> Drawing:
+    """Panels in rows of two."""
+    columns = min(2, len(panels))
+    rows = math.ceil(len(panels) / columns)
+    drawing = Drawing(figsize=(5.0 * columns, 3.1 * rows), layout="constrained")
+    all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
+    for axes, studies in zip(all_axes, panels, strict=False):
+        _draw_panel(axes, studies)
+    for axes in all_axes[len(panels) :]:
+        axes.set_axis_off()
+    return drawing
+
+
+def _draw_panel(axes: Axes, studies: Sequence[ConvergenceStudy]) -> None:
+    first = studies[0]
+    quantity = first.quantity.replace("_", " ")
+    axes.set(xscale="log", yscale="log", xlabel="discretisation length", ylabel=f"relative error of {quantity}")
+    axes.set_title(first.scene)
+    for study in studies:
+        _draw_study(axes, study)
+    if not axes.lines:
+        axes.text(0.5, 0.5, "no error above round-off", transform=axes.transAxes, ha="center")
+        return
+    for study in studies:
+        _draw_bars(axes, study)
+    for axis in (axes.xaxis, axes.yaxis):
+        mark_decades(axis)
+    axes.legend(loc="best")
+
+
+def _draw_study(axes: Axes, study: ConvergenceStudy) -> None:
+    look = look_of(study.method)
+    label = f"{look.name}, {study.mesh_family} ({_speed(study)})"
+    shown = [(grid.length, grid.error / study.scale) for grid in study.grids if grid.error]
+    if not shown:
+        return
+    lengths, errors = zip(*shown, strict=True)
+    axes.plot(lengths, errors, color=look.colour, linestyle=":", linewidth=0.8, marker=look.marker, label=label)
+    if study.formal_order is not None:
+        line = [errors[0] * (length / lengths[0]) ** study.formal_order for length in lengths]
+        axes.plot(lengths, line, color=GREY, linestyle="--", linewidth=1.0, zorder=1.5)
+
+
+def _draw_bars(axes: Axes, study: ConvergenceStudy) -> None:
+    """Bars of the estimated error, from the bottom of the axes up."""
+    bottom = axes.get_ylim()[0]
+    colour = look_of(study.method).colour
+    half = 10.0 ** (BAR_WIDTH / 2)
+    for length, gci in ((grid.length, grid.gci) for grid in study.grids if grid.gci):
+        sides = [length / half, length * half]
+        axes.fill_between(sides, bottom, max(gci, bottom), facecolor=colour, alpha=0.18, edgecolor="none", zorder=1.2)
+        axes.plot(sides, [gci, gci], color=colour, linewidth=1.4)
+    axes.set_ylim(bottom=bottom)
+
+
+def _speed(study: ConvergenceStudy) -> str:
+    """How fast the errors fell, in a few words."""
+    if study.digits_per_refinement is not None:
+        return f"{study.digits_per_refinement:.1f} digits per refinement"
+    if study.observed_order is None or study.formal_order is None:
+        return str(study.kind)
+    return f"order {study.observed_order:.2f}, formal {study.formal_order:g}"

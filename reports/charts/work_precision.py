@@ -1,0 +1,115 @@
+"""What accuracy costs in time: error bound against seconds, the Pareto front solid, dominated settings faint."""
+
+from collections.abc import Iterable, Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from cases.results import CaseResult, WorkPoint, WorkPrecision
+from reports.names import file_name
+from reports.numbers import small
+from reports.plates import Cell, Plate
+from reports.style import BLACK, FAINT, GREY, look_of, mark_decades
+
+COLUMNS = (
+    "scene", "quantity", "method", "setting", "status", "error", "bound", "seconds", "lower_quartile", "upper_quartile",
+    "unknowns", "peak_memory_bytes", "on_front", "reason",
+)  # fmt: skip
+CAPTION = (
+    "Each symbol is one setting: median time of repeated runs (bars: quartiles) and bound U of the relative error "
+    "(error plus uncertainty of the reference, dotted line). Filled: on the Pareto front, nothing is both at least "
+    "as accurate and clearly faster. Faint: dominated. Crosses on the upper border: settings that failed."
+)
+
+
+def plates(case: CaseResult, command: str) -> list[Plate]:
+    """One plate for each scene and quantity that was timed."""
+    return [_plate(case, work, command) for work in case.work_precision]
+
+
+def _plate(case: CaseResult, work: WorkPrecision, command: str) -> Plate:
+    return Plate(
+        name=file_name(case.name, "work-precision", work.scene, work.quantity),
+        title=f"Error against seconds: {work.quantity.replace('_', ' ')}, {work.scene}",
+        caption=f"{CAPTION} Reference: {work.reference_source}.",
+        paint=lambda: draw(work),
+        columns=COLUMNS,
+        rows=tuple(_row(work, point) for point in work.points),
+        command=command,
+    )
+
+
+def _row(work: WorkPrecision, point: WorkPoint) -> tuple[Cell, ...]:
+    times = (point.seconds, point.lower_quartile, point.upper_quartile)
+    cost = (point.unknowns, point.peak_memory_bytes, point.on_front)
+    error = (str(point.status), point.error, point.bound)
+    return work.scene, work.quantity, point.method, point.label, *error, *times, *cost, point.reason
+
+
+def draw(work: WorkPrecision) -> Drawing:
+    """Error bound over median seconds, both logarithmic."""
+    drawing = Drawing(figsize=(6.4, 4.0), layout="constrained")
+    axes = drawing.subplots()
+    axes.set(xscale="log", yscale="log", xlabel="median time [s]")
+    axes.set_ylabel(f"bound of the relative error, {work.quantity.replace('_', ' ')}")
+    measured = [point for point in work.points if point.bound]
+    for method in dict.fromkeys(point.method for point in work.points):
+        _draw_method(axes, method, [point for point in measured if point.method == method])
+    _draw_front(axes, [point for point in measured if point.on_front])
+    _draw_references(axes, work)
+    _draw_failures(axes, [point for point in work.points if point.bound is None])
+    mark_decades(axes.xaxis)
+    mark_decades(axes.yaxis)
+    drawing.legend(loc="outside lower center", ncols=4)
+    return drawing
+
+
+def _draw_method(axes: Axes, method: str, points: Sequence[WorkPoint]) -> None:
+    look = look_of(method)
+    for chosen, word, face, alpha in ((True, "on the front", look.colour, 1.0), (False, "dominated", "white", 0.55)):
+        part = [point for point in points if point.on_front is chosen]
+        seconds, bounds = [p.seconds for p in part], [_bound(p) for p in part]
+        spread = [[p.seconds - p.lower_quartile for p in part], [p.upper_quartile - p.seconds for p in part]]
+        axes.errorbar(
+            seconds, bounds, xerr=spread, color=look.colour, linestyle="none", marker=look.marker, markerfacecolor=face,
+            alpha=alpha, elinewidth=0.9, label=f"{look.name}, {word}" if part else None,
+        )  # fmt: skip
+
+
+def _draw_front(axes: Axes, points: Iterable[WorkPoint]) -> None:
+    """Steps from point to point: nothing between two measured settings is promised."""
+    front = sorted(points, key=lambda point: point.seconds)
+    axes.plot(
+        [p.seconds for p in front], [_bound(p) for p in front], color=BLACK, linewidth=1.1, drawstyle="steps-post",
+        zorder=1.8, label="Pareto front",
+    )  # fmt: skip
+
+
+def _draw_references(axes: Axes, work: WorkPrecision) -> None:
+    if work.reference_uncertainty > 0.0:
+        axes.axhline(work.reference_uncertainty, color=GREY, linestyle=":", linewidth=1.0)
+    if work.crossover is not None:
+        name = look_of(work.fast_method).name
+        axes.axhline(work.crossover, color=FAINT, linestyle="-", linewidth=1.0, zorder=1.2)
+        note = f"{name} is faster down to {small(work.crossover)}"
+        axes.annotate(
+            note, (1.0, work.crossover), xycoords=("axes fraction", "data"), ha="right", va="bottom", fontsize=7.5
+        )
+
+
+def _draw_failures(axes: Axes, points: Sequence[WorkPoint]) -> None:
+    """Crosses on the upper border, where they took their time; one entry a method in the legend."""
+    for method in dict.fromkeys(point.method for point in points):
+        look = look_of(method)
+        seconds = [point.seconds for point in points if point.method == method]
+        axes.plot(
+            seconds, [1.0] * len(seconds), transform=axes.get_xaxis_transform(), color=look.colour, marker="x",
+            markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False, label=f"{look.name}, failed",
+        )  # fmt: skip
+
+
+def _bound(point: WorkPoint) -> float:
+    """The bound of a point that has one."""
+    if point.bound is None:
+        raise ValueError(f"setting {point.label!r} of {point.method} has no error bound: {point.reason}")
+    return point.bound

@@ -1,0 +1,198 @@
+"""report.html: one file that holds everything, needs no script and no network, and says the verdict first."""
+
+import shlex
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+import jinja2
+from markupsafe import Markup
+
+from cases.results import Acceptance, CaseResult, Kind, RunResult, WorkPrecision
+from cases.results_files import write_whole
+from cases.status import Status
+from reports import case_tables
+from reports.case_tables import Table
+from reports.charts import agreement, convergence, work_precision
+from reports.drawing import plate_of
+from reports.matrix import case_matrix, run_matrix
+from reports.names import file_name
+from reports.numbers import duration, small
+from reports.outcomes import EXPLANATIONS, case_outcomes, counts, headline, outcomes, severity, tone_of, value_text
+from reports.plates import Plate, write_plate
+
+FIGURE_FOLDER = "figures"
+ROWS_ON_FIRST_SCREEN = 5
+LARGEST_PAGE = 5_000_000
+"""Bytes of report.html; a larger page keeps its pictures beside it."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Drawn:
+    """A plate with its picture; `folder` is where its files lie, seen from the page."""
+
+    plate: Plate
+    svg: Markup
+    folder: str = FIGURE_FOLDER
+
+
+def write_report(run: RunResult, directory: Path) -> Path:
+    """Write report.html and the figures (SVG, PNG, CSV) of `run` into `directory`; return the page's path."""
+    figures = directory / FIGURE_FOLDER
+    figures.mkdir(parents=True, exist_ok=True)
+    cases = [_case_view(case, directory) for case in run.cases]
+    page = directory / "report.html"
+    write_whole(page, render(run, directory, cases))
+    return page
+
+
+def render(run: RunResult, directory: Path, cases: Sequence[dict[str, object]]) -> str:
+    """The page as text."""
+    rows = outcomes(run)
+    words, tone = headline(run, rows)
+    notable = [row for row in rows if row.tone != "good"]
+    worst = [row for row in notable if row.tone != "skip"][:ROWS_ON_FIRST_SCREEN]
+    return template("report.html").render(
+        run=run,
+        headline=words,
+        tone=tone,
+        baseline=baseline_sentence(run),
+        counts=counts(rows),
+        explanations=EXPLANATIONS,
+        worst=worst,
+        more_failures=sum(row.tone != "skip" for row in notable) - len(worst),
+        matrix=run_matrix(run),
+        cases=cases,
+        notable=notable,
+        tolerances=tolerance_history(run.acceptances),
+        stamp=stamp_lines(run),
+        directory=shlex.quote(str(directory)),
+        css=stylesheet(),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimedView:
+    """Error against seconds with its two tables beside it."""
+
+    drawn: Drawn
+    cheapest: Table
+    prices: Table | None
+
+
+def _case_view(case: CaseResult, directory: Path) -> dict[str, object]:
+    """Everything the page shows of a case, in the words of the template."""
+    command = f"contact-verify run {case.name} --out {shlex.quote(str(directory))}"
+
+    def drawn(plates: Iterable[Plate]) -> list[Drawn]:
+        return [_drawn(plate, directory) for plate in plates]
+
+    return {
+        "result": case,
+        "matrix": case_matrix(case),
+        "figures": drawn(plate_of(figure, case=case.name, command=command) for figure in case.figures),
+        "agreement": drawn(agreement.plates(case, command)),
+        "convergence": drawn(convergence.plates(case, command)),
+        "work": _timed_views(case.work_precision, drawn(work_precision.plates(case, command))),
+        "answers": case_tables.answers(case),
+        "stages": case_tables.stages(case),
+        "effects": case_tables.effects(case),
+        "outcomes": sorted(case_outcomes(case), key=severity),
+    }
+
+
+def _drawn(plate: Plate, directory: Path) -> Drawn:
+    svg = write_plate(plate, directory / FIGURE_FOLDER)
+    return Drawn(plate=plate, svg=Markup(svg))
+
+
+def _timed_views(works: Sequence[WorkPrecision], drawings: Sequence[Drawn]) -> list[TimedView]:
+    return [
+        TimedView(drawn=drawn, cheapest=case_tables.cheapest(work), prices=case_tables.digit_prices(work))
+        for work, drawn in zip(works, drawings, strict=True)
+    ]
+
+
+def baseline_sentence(run: RunResult) -> str:
+    """How far this run is from the accepted one."""
+    compared = [claim for case in run.cases for claim in case.claims if claim.kind is Kind.REGRESSION]
+    if not compared:
+        return "Not compared with a baseline."
+    changed = sum(claim.status is not Status.PASS for claim in compared)
+    return f"Since the baseline: {changed} of {len(compared)} numbers changed."
+
+
+def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:
+    """Every accepted change of a number or a tolerance, latest first; a loosened tolerance says so."""
+    if not acceptances:
+        return None
+    latest_first = sorted(acceptances, key=lambda entry: entry.date, reverse=True)
+    return Table(
+        title="Accepted changes",
+        note="Only `contact-verify accept` writes baselines; it loosens a tolerance only when told to.",
+        heads=(
+            "date",
+            "case",
+            "method",
+            "quantity",
+            "old",
+            "new",
+            "old tolerance",
+            "new tolerance",
+            "reason",
+            "revision",
+        ),
+        rows=tuple(_acceptance_row(entry) for entry in latest_first),
+        words=10,
+    )
+
+
+def _acceptance_row(entry: Acceptance) -> tuple[str, ...]:
+    old = "" if entry.old is None else value_text(entry.old, entry.old_tolerance)
+    new = "" if entry.new is None else value_text(entry.new, entry.new_tolerance)
+    tolerances = ["" if t is None else small(t) for t in (entry.old_tolerance, entry.new_tolerance)]
+    loosened = entry.old_tolerance is not None and (entry.new_tolerance or 0.0) > entry.old_tolerance
+    tolerances[1] += " LOOSENED" if loosened else ""
+    names = (entry.date, entry.case, entry.method, entry.quantity)
+    return *names, old, new, *tolerances, entry.reason, entry.revision[:12]
+
+
+def stamp_lines(run: RunResult) -> list[tuple[str, str]]:
+    """Where and with what the run was made, one line a fact."""
+    stamp = run.stamp
+    lines = [
+        ("started", f"{stamp.started}, took {duration(stamp.wall_seconds)}"),
+        ("revision", stamp.revision + (" with uncommitted changes" if stamp.dirty else "")),
+        ("machine", f"{stamp.processor}, {stamp.cores} cores, {stamp.platform}"),
+        ("Python", stamp.python),
+        ("numerical libraries", ", ".join(f"{name} on {n} thread{'s'[: n != 1]}" for name, n in stamp.threads.items())),
+        ("versions", ", ".join(f"{name} {version}" for name, version in stamp.versions.items())),
+    ]
+    meshes = ", ".join(f"{name}: {digest}" for name, digest in stamp.mesh_hashes.items())
+    return lines + ([("meshes", meshes)] if meshes else [])
+
+
+def template(name: str) -> jinja2.Template:
+    """A page template of this package, with our filters."""
+    return _environment().get_template(name)
+
+
+def stylesheet() -> str:
+    """The style sheet every page carries inside."""
+    return files("reports").joinpath("templates/report.css").read_text(encoding="utf-8")
+
+
+@cache
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("reports"), autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True
+    )
+    environment.filters.update(
+        anchor=file_name,
+        duration=duration,
+        tone=tone_of,
+        paragraphs=lambda text: [part.strip() for part in text.split("\n\n") if part.strip()],
+    )
+    return environment

@@ -1,0 +1,115 @@
+"""Every output sees the same rows, worst first, and a failure can hide in none of them."""
+
+import dataclasses
+import xml.etree.ElementTree as ET
+
+import pytest
+
+from cases.results import RunResult
+from cases.status import Status
+from reports.annotations import MOST, annotation_lines
+from reports.junit import junit_text
+from reports.outcomes import WORST_FIRST, counts, headline, outcomes
+from reports.summary import summary_text
+from tests.cases.example_run import example_run, failing_case, passing_case
+
+
+def only(*cases, complete=True) -> RunResult:
+    return dataclasses.replace(example_run(), cases=cases, complete=complete)
+
+
+def renamed(case, number):
+    return dataclasses.replace(case, name=f"{case.name}_{number}")
+
+
+def many_failures(number) -> RunResult:
+    return only(*(renamed(failing_case(), i) for i in range(number)))
+
+
+def test_reading_order_names_every_status_once():
+    assert sorted(WORST_FIRST) == sorted(Status)
+
+
+def test_failures_come_first_and_every_claim_and_solution_has_a_row():
+    run = example_run()
+    rows = outcomes(run)
+    assert len(rows) == len(run.statuses)
+    assert dict(counts(rows)) == {status: run.statuses.count(status) for status in set(run.statuses)}
+    tones = [row.tone for row in rows]
+    assert tones[: tones.count("bad")] == ["bad"] * tones.count("bad")
+    assert rows[-1].status is Status.PASS
+
+
+@pytest.mark.parametrize(
+    ("run", "words"),
+    [
+        (example_run(), "FAILED: 4 of 13 checks"),
+        (only(passing_case()), "PASSED: all 7 checks"),
+        (only(passing_case(), complete=False), "INCOMPLETE: 7 checks so far, none failed"),
+        (only(), "Nothing ran"),
+        (only(failing_case(), complete=False), "FAILED: 4 of 6 checks"),
+    ],
+)
+def test_headline(run, words):
+    assert headline(run, outcomes(run))[0] == words
+
+
+def test_summary_puts_failures_first_and_says_what_was_left_out():
+    text = summary_text(example_run())
+    verdicts = [line.split("|")[1].strip() for line in text.splitlines() if line.startswith("|")][2:]
+    assert verdicts[:4] == ["**INVALID**", "**INVALID**", "**FAIL**", "**DIFF**"]
+    assert "\n# " not in text[1:]
+    short = summary_text(many_failures(30), largest=8_000)
+    assert len(short.encode()) <= 8_000
+    assert "further rows" in short
+    assert "**INVALID**" in short
+    assert "PASS |" not in short
+
+
+def test_summary_of_a_hundred_thousand_rows_stays_below_the_limit_of_ci():
+    long_message = dataclasses.replace(failing_case().claims[0], message="µ" * 5000)
+    case = dataclasses.replace(failing_case(), claims=(long_message,) * 300)
+    assert len(summary_text(only(case)).encode()) < 900 * 1024
+
+
+def test_summary_cells_cannot_break_the_table():
+    claim = dataclasses.replace(failing_case().claims[0], message="a | b\nc")
+    text = summary_text(only(dataclasses.replace(failing_case(), claims=(claim,), runs=())))
+    assert "a \\| b c" in text
+
+
+def test_junit_has_one_testcase_per_claim_and_solution_and_agrees_with_the_statuses():
+    run = example_run()
+    root = ET.fromstring(junit_text(run))
+    assert len(root.findall(".//testcase")) == len(run.statuses)
+    assert len(root.findall(".//failure")) + len(root.findall(".//error")) == sum(s.is_failure for s in run.statuses)
+    suite = root.find("testsuite[@name='example_failures']")
+    assert suite.attrib | {"timestamp": "", "time": ""} == {
+        "name": "example_failures", "timestamp": "", "time": "",
+        "tests": "8", "failures": "2", "errors": "2", "skipped": "3",
+    }  # fmt: skip
+    names = [(element.get("classname"), element.get("name")) for element in root.findall(".//testcase")]
+    assert len(set(names)) == len(names)
+
+
+def test_junit_survives_letters_that_xml_forbids():
+    claim = dataclasses.replace(failing_case().claims[0], message="bell \x07 <&> \x1b[31m")
+    ET.fromstring(junit_text(only(dataclasses.replace(failing_case(), claims=(claim,)))))
+
+
+@pytest.mark.parametrize("cases", [1, 2, 3, 30])
+def test_there_are_never_more_than_nine_annotations_and_none_is_lost_silently(cases):
+    run = many_failures(cases)
+    failed = sum(status.is_failure for status in run.statuses)
+    lines = annotation_lines(run)
+    assert len(lines) == min(failed, MOST)
+    assert all(line.startswith("::error title=") and "\n" not in line for line in lines)
+    if failed > MOST:
+        assert f"{failed - MOST + 1} more failures" in lines[-1]
+
+
+def test_annotation_escapes_what_a_workflow_command_would_read():
+    claim = dataclasses.replace(failing_case().claims[0], message="50 % off\nsecond line")
+    (line,) = annotation_lines(only(dataclasses.replace(failing_case(), claims=(claim,), runs=())))
+    assert line.endswith("::50 %25 off%0Asecond line; measured 0.25, tolerance 1.0e-10")
+    assert "FAIL example_failures%3A" in line

@@ -1,0 +1,144 @@
+"""The page: complete, self-contained, the same on every run, and a failure cannot be overlooked in it."""
+
+import csv
+import dataclasses
+import io
+import re
+
+import pytest
+
+from reports.charts import agreement, convergence, work_precision
+from reports.drawing import plate_of
+from reports.pages import FIGURE_FOLDER, LARGEST_PAGE, write_report
+from reports.plates import write_plate
+from tests.cases.example_run import example_run, failing_case, passing_case
+
+
+@pytest.fixture(scope="module")
+def directory(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    write_report(example_run(), folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(directory):
+    return (directory / "report.html").read_text(encoding="utf-8")
+
+
+def words_of(page):
+    return re.sub(r"<style.*?</style>|<[^>]*>", " ", page, flags=re.DOTALL)
+
+
+def plates_of(case):
+    figures = [plate_of(figure, case=case.name, command="again") for figure in case.figures]
+    charts = (agreement, convergence, work_precision)
+    return figures + [plate for chart in charts for plate in chart.plates(case, "again")]
+
+
+def table_of(plate):
+    return list(csv.DictReader(io.StringIO(plate.csv_text())))
+
+
+def not_a_number(text):
+    return re.findall(r"\b(nan|inf|None)\b", text.replace("fill: none", "").replace("stroke: none", ""))
+
+
+def test_nothing_on_the_page_or_in_the_data_reads_nan_or_none(page, directory):
+    assert not not_a_number(page)
+    for data in (directory / FIGURE_FOLDER).glob("*.csv"):
+        assert not not_a_number(data.read_text(encoding="utf-8")), data.name
+
+
+def test_the_nan_check_sees_a_planted_one(tmp_path):
+    claim = dataclasses.replace(failing_case().claims[0], message="difference nan", expected=None)
+    case = dataclasses.replace(failing_case(), claims=(claim,))
+    write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path)
+    assert not_a_number((tmp_path / "report.html").read_text(encoding="utf-8"))
+
+
+def test_verdict_and_failures_come_before_anything_else(page):
+    words = words_of(page)
+    assert words.index("FAILED: 4 of 13 checks") < words.index("half-space force") < words.index("Cases and claims")
+    assert page.index('id="worst"') < page.index('id="matrix"')
+
+
+def test_all_six_parts_are_there_in_order(page):
+    places = [page.index(f'id="{anchor}"') for anchor in ("matrix", "example_cone", "failures", "tolerances", "stamp")]
+    assert places == sorted(places)
+
+
+def test_a_passing_run_has_no_word_of_failure(tmp_path):
+    write_report(dataclasses.replace(example_run(), cases=(passing_case(),)), tmp_path)
+    words = words_of((tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert "PASSED: all 7 checks" in words
+    assert not re.search(r"\b(FAIL|FAILED|INVALID|DIFF)\b", words)
+
+
+def test_an_interrupted_run_says_so(tmp_path):
+    write_report(dataclasses.replace(example_run(), cases=(passing_case(),), complete=False), tmp_path)
+    assert "INCOMPLETE" in words_of((tmp_path / "report.html").read_text(encoding="utf-8"))
+
+
+def test_page_loads_nothing_from_elsewhere_and_runs_no_script(page):
+    without_names = page.replace('xmlns="http://www.w3.org/2000/svg"', "").replace(
+        'xmlns:xlink="http://www.w3.org/1999/xlink"', ""
+    )
+    assert not re.search(r"https?://|//cdn|@import|<script|<link|<iframe|\bsrc=|javascript:", without_names)
+    assert all(link.startswith("#") for link in re.findall(r'href="([^"]*)"', without_names))
+
+
+def test_every_link_on_the_page_has_its_target_and_no_id_occurs_twice(page):
+    ids = re.findall(r'\bid="([^"]*)"', page)
+    assert len(ids) == len(set(ids))
+    targets = re.findall(r'href="#([^"]*)"', page) + re.findall(r"url\(#([^)]*)\)", page)
+    assert set(targets) <= set(ids)
+
+
+def test_page_is_far_below_its_size_limit(page):
+    assert len(page.encode()) < LARGEST_PAGE / 10
+
+
+@pytest.mark.parametrize("plate", plates_of(passing_case()) + plates_of(failing_case()), ids=lambda plate: plate.name)
+def test_svg_and_png_are_byte_identical_on_a_second_run(plate, tmp_path):
+    first = write_plate(plate, tmp_path)
+    picture = (tmp_path / f"{plate.name}.png").read_bytes()
+    assert write_plate(plate, tmp_path) == first
+    assert (tmp_path / f"{plate.name}.png").read_bytes() == picture
+    assert not re.search(r"\d{4}-\d\d-\d\d|nan", first)
+
+
+def test_figure_data_equal_the_records_digit_for_digit():
+    (figure,) = passing_case().figures
+    rows = table_of(plate_of(figure, case="case", command="again"))
+    expected = [(x, y) for panel in figure.panels for s in panel.series for x, y in zip(s.x, s.y, strict=True)]
+    assert [(float(row["x"]), float(row["y"])) for row in rows] == expected
+
+
+def test_convergence_data_equal_the_records_digit_for_digit():
+    (plate,) = convergence.plates(passing_case(), "again")
+    expected = [(grid.length, grid.value, grid.error) for study in passing_case().convergence for grid in study.grids]
+    assert [(float(row["length"]), float(row["value"]), float(row["error"])) for row in table_of(plate)] == expected
+
+
+def test_work_precision_data_equal_the_records_and_failures_keep_their_reason():
+    (plate,) = work_precision.plates(passing_case(), "again")
+    points = passing_case().work_precision[0].points
+    rows = table_of(plate)
+    assert [float(row["seconds"]) for row in rows] == [point.seconds for point in points]
+    assert [row["bound"] for row in rows] == ["" if point.bound is None else repr(point.bound) for point in points]
+    assert rows[-1]["reason"] == "NotConvergedError: locking"
+
+
+def test_agreement_data_equal_the_claims_worst_first():
+    case = dataclasses.replace(passing_case(), claims=passing_case().claims + failing_case().claims)
+    (plate,) = agreement.plates(case, "again")
+    rows = table_of(plate)
+    assert [row["status"] for row in rows] == ["INCONCLUSIVE", "PASS"]
+    assert [float(row["observed"]) for row in rows] == [2e-6, 4e-7]
+
+
+def test_a_text_with_angle_brackets_stays_a_text(tmp_path):
+    case = dataclasses.replace(passing_case(), question="Is a < b & <script>alert(1)</script>?")
+    write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path)
+    assert "<script>" not in (tmp_path / "report.html").read_text(encoding="utf-8")
