@@ -1,22 +1,11 @@
 """The tables of one case: answers of each method side by side, what an accuracy costs, where the time went."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
+from reports.method_names import display_name
 from reports.numbers import duration, measured, memory, prefix_for, small
-from reports.style import look_of
-
-
-@dataclass(frozen=True, kw_only=True)
-class Table:
-    """A table ready to print; the first `words` columns are words, the others numbers."""
-
-    title: str
-    note: str
-    heads: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-    words: int = 1
+from reports.tables import Table
 
 
 def answers(case: CaseResult) -> Table | None:
@@ -47,7 +36,7 @@ def _head(name: str, unit: str, prefix: str) -> str:
 def _answer_row(run: SceneRun, names: Iterable[str], scales: dict[str, tuple[float, str]]) -> tuple[str, ...]:
     own = {q.name: q for q in run.quantities}
     numbers = (_last_value(own[name], scales[name][0]) if name in own else "" for name in names)
-    return run.scene, look_of(run.method).name, *numbers, duration(run.cost.wall_seconds) if run.cost else ""
+    return run.scene, display_name(run.method), *numbers, duration(run.cost.wall_seconds) if run.cost else ""
 
 
 def _last_value(quantity: Quantity, factor: float) -> str:
@@ -66,8 +55,8 @@ def cheapest(work: WorkPrecision) -> Table:
         bound = "" if entry.bound is None else small(entry.bound) if reached else f"best {small(entry.bound)}"
         size = memory(entry.peak_memory_bytes) if entry.peak_memory_bytes else ""
         gain = f"{entry.speed_up:.3g} x" if entry.speed_up else ""
-        rows.append((small(entry.tolerance), look_of(entry.method).name, entry.label, time, bound, size, gain))
-    baseline = look_of(work.baseline_method).name
+        rows.append((small(entry.tolerance), display_name(entry.method), entry.label, time, bound, size, gain))
+    baseline = display_name(work.baseline_method)
     return Table(
         title="Shortest time to an accuracy",
         note="T* is the shortest measured time with error bound U within τ; nothing is interpolated.",
@@ -82,7 +71,7 @@ def digit_prices(work: WorkPrecision) -> Table | None:
     if not work.prices:
         return None
     rows = tuple(
-        (look_of(p.method).name, p.from_label, p.to_label, f"{10.0**p.decades_per_digit:.2f} x") for p in work.prices
+        (display_name(p.method), p.from_label, p.to_label, f"{10.0**p.decades_per_digit:.2f} x") for p in work.prices
     )
     note = "Factor of time for one more correct digit, between neighbours on the front."
     heads = ("method", "from", "to", "time for a digit")
@@ -97,7 +86,7 @@ def stages(case: CaseResult) -> Table | None:
         for stage in run.stages:
             share = f"{100.0 * stage.seconds / total:.0f} %" if total > 0.0 else ""
             size = memory(stage.bytes) if stage.bytes else ""
-            who = (run.scene, look_of(run.method).name, stage.name)
+            who = (run.scene, display_name(run.method), stage.name)
             rows.append((*who, f"{stage.calls}", duration(stage.seconds), share, size))
     if not rows:
         return None
@@ -117,6 +106,6 @@ def effects(case: CaseResult) -> tuple[str, ...]:
 
 def _effect_sentence(entry: EffectEntry) -> str:
     """As in: viscosity: 61 % of the time, moves peak force by 0.02 %."""
-    who = f"{entry.effect} ({entry.scene}, {look_of(entry.method).name})"
+    who = f"{entry.effect} ({entry.scene}, {display_name(entry.method)})"
     moved = f"{entry.quantity.replace('_', ' ')} by {small(100.0 * entry.change)} %"
     return f"{who}: {100.0 * entry.share_of_time:.0f} % of the time, moves {moved}."

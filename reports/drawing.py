@@ -16,8 +16,9 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
 from cases.results import Figure, Panel, Series
+from reports.method_names import base_of, display_name
 from reports.plates import Plate
-from reports.style import BLACK, GREY, Dash, look_of, mark_decades
+from reports.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
 
 PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 3.55, 0.2  # inches
 SYMBOLS_ON_A_CURVE = 24
@@ -54,6 +55,12 @@ def plate_of(figure: Figure, *, case: str, command: str) -> Plate:
         rows=tuple(_rows(figure)),
         command=command,
     )
+
+
+def figure_svg(figure: Figure) -> str:
+    """The figure as SVG of its own, without a page around it."""
+    with figure_style():
+        return svg_text(draw(figure), key=figure.name)
 
 
 def _rows(figure: Figure) -> Iterable[tuple[str | float | None, ...]]:
@@ -144,13 +151,11 @@ def stroke_of(series: Series) -> Stroke:
     marker = look_of(series.method).marker
     if series.style in STYLES:
         return STYLES[series.style]
-    if series.style == "symbols" or series.method.partition("[")[0] in SYMBOL_METHODS:
+    if series.style == "symbols" or base_of(series.method) in SYMBOL_METHODS:
         return Stroke(line="none", marker=marker)
     if _is_asymptote(series.method):
         return STYLES["dotted" if "half" in series.method else "dashed"]
-    return Stroke(
-        line="-" if series.method.partition("[")[0] in LINE_METHODS else look_of(series.method).dash, marker=""
-    )
+    return Stroke(line="-" if base_of(series.method) in LINE_METHODS else look_of(series.method).dash, marker="")
 
 
 def _is_asymptote(method: str) -> bool:
@@ -189,7 +194,7 @@ def _method_entry(series: Series, colour: str) -> Line2D:
         linewidth=stroke.width,
         marker=stroke.marker or None,
         markerfacecolor="white",
-        label=look_of(series.method).name,
+        label=display_name(series.method),
     )
 
 

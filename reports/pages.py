@@ -14,7 +14,6 @@ from cases.results import Acceptance, CaseResult, Kind, RunResult, WorkPrecision
 from cases.results_files import write_whole
 from cases.status import Status
 from reports import case_tables
-from reports.case_tables import Table
 from reports.charts import agreement, convergence, work_precision
 from reports.drawing import plate_of
 from reports.matrix import case_matrix, run_matrix
@@ -22,6 +21,7 @@ from reports.names import file_name
 from reports.numbers import duration, small
 from reports.outcomes import EXPLANATIONS, case_outcomes, counts, headline, outcomes, severity, tone_of, value_text
 from reports.plates import Plate, write_plate
+from reports.tables import Table
 
 FIGURE_FOLDER = "figures"
 ROWS_ON_FIRST_SCREEN = 5

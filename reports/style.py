@@ -10,15 +10,17 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import matplotlib as mpl
 from matplotlib.axis import Axis
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
-BLACK, GREY, FAINT = "#1a1a1a", "#767676", "#c8c8c8"
+from reports.method_names import base_of
+
+BLACK, GREY, FAINT, TINT = "#1a1a1a", "#767676", "#c8c8c8", "#eef4ee"
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b0509a", "#e69f00", "#56b4e9"
 PNG_DOTS_PER_INCH = 150
 
@@ -62,30 +64,24 @@ class Look:
     colour: str
     dash: Dash
     marker: str
-    name: str
 
 
 LOOKS: Mapping[str, Look] = {
-    "mdr": Look(colour=BLUE, dash="-", marker="o", name="MDR"),
-    "fem": Look(colour=VERMILLION, dash="--", marker="s", name="FEM"),
-    "bem": Look(colour=GREEN, dash="-.", marker="^", name="BEM"),
-    "integral_equation": Look(colour=PURPLE, dash=":", marker="D", name="integral equation"),
+    "mdr": Look(colour=BLUE, dash="-", marker="o"),
+    "fem": Look(colour=VERMILLION, dash="--", marker="s"),
+    "bem": Look(colour=GREEN, dash="-.", marker="^"),
+    "integral_equation": Look(colour=PURPLE, dash=":", marker="D"),
 }
 SPARE_LOOKS: tuple[SpareLook, ...] = ((ORANGE, "-", "v"), (SKY, "--", "P"), (GREY, "-.", "X"))
 
 
 def look_of(method: str) -> Look:
-    """The look of a method; a method unknown here (someone else's solver) gets a spare one, always the same."""
-    base, _, variant = method.partition("[")
-    known = LOOKS.get(base)
-    if known is None:
-        colour, dash, marker = SPARE_LOOKS[sum(method.encode()) % len(SPARE_LOOKS)]
-        return Look(colour=colour, dash=dash, marker=marker, name=method)
-    return (
-        known
-        if not variant
-        else Look(colour=known.colour, dash=":", marker=known.marker, name=f"{known.name} [{variant}")
-    )
+    """The look of a method; a variant has its method's colour, a method from elsewhere always the same spare look."""
+    base = base_of(method)
+    if base in LOOKS:
+        return LOOKS[base] if base == method else replace(LOOKS[base], dash=":", marker="P")
+    colour, dash, marker = SPARE_LOOKS[sum(method.encode()) % len(SPARE_LOOKS)]
+    return Look(colour=colour, dash=dash, marker=marker)
 
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -95,7 +91,7 @@ FEW_DECADES, MANY_DECADES = 2, 4
 def power_of_ten(value: float, _position: int | None = None) -> str:
     """Tick label 10⁻³ in plain letters, so that it stays one searchable word; 0.1, 1 and 10 as such."""
     exponent = round(math.log10(value))
-    return f"{10.0**exponent:g}" if -1 <= exponent <= 1 else "10" + str(exponent).translate(SUPERSCRIPTS)
+    return f"{10.0**exponent:g}" if -2 <= exponent <= 2 else "10" + str(exponent).translate(SUPERSCRIPTS)
 
 
 def mark_decades(axis: Axis) -> None:
@@ -111,6 +107,20 @@ def mark_decades(axis: Axis) -> None:
     axis.set_major_formatter(FuncFormatter(power_of_ten))
     if decades > MANY_DECADES:
         axis.set_minor_locator(LogLocator(base=10.0, subs=(1.0,), numticks=99))
+
+
+def mark_signed_decades(axis: Axis, *, smallest: float, largest: float) -> None:
+    """Label zero and the decades from `smallest` to `largest` on both sides of it, every second where they are many."""
+    powers = range(round(math.log10(smallest)), math.floor(math.log10(largest)) + 1)
+    step = 1 + len(powers) // 6
+    marked = [10.0**power for power in powers if power % step == 0]
+    axis.set_ticks([*(-value for value in reversed(marked)), 0.0, *marked])
+    axis.set_major_formatter(FuncFormatter(_signed_power_of_ten))
+    axis.set_minor_locator(NullLocator())
+
+
+def _signed_power_of_ten(value: float, _position: int | None = None) -> str:
+    return "0" if value == 0.0 else f"{'−' if value < 0.0 else ''}{power_of_ten(abs(value))}"
 
 
 @contextmanager

@@ -9,16 +9,17 @@ from matplotlib.figure import Figure as Drawing
 from cases.results import CaseResult, Claim, Kind
 from reports.outcomes import tone_of
 from reports.plates import Cell, Plate
-from reports.style import BLUE, FAINT, GREEN, ORANGE, VERMILLION, mark_decades
+from reports.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
 
 ROWS_A_PLATE = 40
 ROW_HEIGHT = 0.21  # inches
-LOWEST = 1e-6  # fractions below are drawn at the left border
+SMALLEST = 1e-4  # of a tolerance; below, the axis is linear
 TONES = {"good": (BLUE, "o"), "warn": (ORANGE, "D"), "bad": (VERMILLION, "X"), "skip": (GREEN, ".")}
 CAPTION = (
-    "Each row is one comparison: the difference of the two answers divided by its tolerance (symbol), with the "
-    "combined numerical uncertainty of both (bar). Left of the line at 1 the difference is within tolerance; a bar "
-    "across it would leave the verdict open. A difference inside its own bar is what the methods themselves expect."
+    "Each row is one comparison: the signed difference of the two answers, first minus second, divided by its "
+    "tolerance (symbol), with the combined numerical uncertainty of both (bar). Between the lines at -1 and 1 the "
+    "difference is within tolerance; a bar across them would leave the verdict open. A bar that covers 0 says that "
+    "the difference is one that the methods themselves expect. Logarithmic on both sides of a linear middle."
 )
 COLUMNS = (
     "claim", "scene", "quantity", "methods", "status", "verdict", "observed", "tolerance", "unit",
@@ -54,29 +55,44 @@ def _row(claim: Claim) -> tuple[Cell, ...]:
 
 
 def draw(claims: Sequence[Claim]) -> Drawing:
-    """One row a claim, fraction of the tolerance on a logarithmic axis."""
-    drawing = Drawing(figsize=(8.6, 0.9 + ROW_HEIGHT * len(claims)), layout="constrained")
+    """One row a claim, fraction of the tolerance on an axis that is logarithmic on both sides of zero."""
+    drawing = Drawing(figsize=(8.6, 1.0 + ROW_HEIGHT * len(claims)), layout="constrained")
     axes = drawing.subplots()
-    axes.set(xscale="log", xlabel="difference / tolerance")
-    axes.axvline(1.0, color=VERMILLION, linewidth=1.2)
+    extent = max(1.0, *(abs(_fraction(claim)) + _spread(claim) for claim in claims))
+    axes.set_xscale("symlog", linthresh=_linear_below(claims), linscale=0.5)
+    axes.set(xlabel="difference / tolerance", xlim=(-3.0 * extent, 3.0 * extent))
+    axes.axvspan(-1.0, 1.0, color=TINT, zorder=0.5)
+    for side in (-1.0, 1.0):
+        axes.axvline(side, color=VERMILLION, linewidth=1.2)
     for place, claim in enumerate(claims):
         _draw_row(axes, place, claim)
     axes.set_yticks(range(len(claims)), [_label(claim) for claim in claims])
     axes.set_ylim(len(claims) - 0.5, -0.5)
-    low, high = axes.get_xlim()
-    axes.set_xlim(max(LOWEST, low), max(3.0, high))
     axes.grid(visible=False, axis="y")
-    mark_decades(axes.xaxis)
+    mark_signed_decades(axes.xaxis, smallest=_linear_below(claims), largest=3.0 * extent)
     return drawing
+
+
+def _linear_below(claims: Sequence[Claim]) -> float:
+    """Half-width of the linear middle: the decade below the smallest difference, within reason."""
+    smallest = min((abs(_fraction(claim)) for claim in claims if claim.observed), default=1.0)
+    return 10.0 ** math.floor(math.log10(min(max(smallest, SMALLEST), 0.1)))
 
 
 def _draw_row(axes: Axes, place: int, claim: Claim) -> None:
     colour, marker = TONES[tone_of(claim.status)]
-    difference = abs(claim.observed or 0.0) / claim.tolerance
-    combined = math.hypot(*claim.uncertainty.values()) / claim.tolerance
-    left, right = max(LOWEST, difference - combined), max(LOWEST, difference + combined)
-    axes.plot([left, right], [place, place], color=FAINT, linewidth=5.0, solid_capstyle="butt", zorder=1.6)
-    axes.plot([max(LOWEST, difference)], [place], color=colour, marker=marker, linestyle="none")
+    middle, spread = _fraction(claim), _spread(claim)
+    axes.plot([middle - spread, middle + spread], [place, place], color=GREY, linewidth=1.6, zorder=1.8)
+    axes.plot([middle], [place], color=colour, marker=marker, linestyle="none")
+
+
+def _fraction(claim: Claim) -> float:
+    return (claim.observed or 0.0) / claim.tolerance
+
+
+def _spread(claim: Claim) -> float:
+    """Combined uncertainty in units of the tolerance."""
+    return math.hypot(*claim.uncertainty.values()) / claim.tolerance
 
 
 def _label(claim: Claim) -> str:

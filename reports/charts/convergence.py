@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from cases.results import CaseResult, ConvergenceStudy
+from reports.method_names import display_name
 from reports.plates import Cell, Plate
 from reports.style import GREY, look_of, mark_decades
 
@@ -88,7 +89,7 @@ def _draw_panel(axes: Axes, studies: Sequence[ConvergenceStudy]) -> None:
 
 def _draw_study(axes: Axes, study: ConvergenceStudy) -> None:
     look = look_of(study.method)
-    label = f"{look.name}, {study.mesh_family} ({_speed(study)})"
+    label = f"{display_name(study.method)}, {study.mesh_family} ({_speed(study)})"
     shown = [(grid.length, grid.error / study.scale) for grid in study.grids if grid.error]
     if not shown:
         return

@@ -6,6 +6,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from cases.results import CaseResult, WorkPoint, WorkPrecision
+from reports.method_names import display_name
 from reports.names import file_name
 from reports.numbers import small
 from reports.plates import Cell, Plate
@@ -72,7 +73,7 @@ def _draw_method(axes: Axes, method: str, points: Sequence[WorkPoint]) -> None:
         spread = [[p.seconds - p.lower_quartile for p in part], [p.upper_quartile - p.seconds for p in part]]
         axes.errorbar(
             seconds, bounds, xerr=spread, color=look.colour, linestyle="none", marker=look.marker, markerfacecolor=face,
-            alpha=alpha, elinewidth=0.9, label=f"{look.name}, {word}" if part else None,
+            alpha=alpha, elinewidth=0.9, label=f"{display_name(method)}, {word}" if part else None,
         )  # fmt: skip
 
 
@@ -89,7 +90,7 @@ def _draw_references(axes: Axes, work: WorkPrecision) -> None:
     if work.reference_uncertainty > 0.0:
         axes.axhline(work.reference_uncertainty, color=GREY, linestyle=":", linewidth=1.0)
     if work.crossover is not None:
-        name = look_of(work.fast_method).name
+        name = display_name(work.fast_method)
         axes.axhline(work.crossover, color=FAINT, linestyle="-", linewidth=1.0, zorder=1.2)
         note = f"{name} is faster down to {small(work.crossover)}"
         axes.annotate(
@@ -104,7 +105,7 @@ def _draw_failures(axes: Axes, points: Sequence[WorkPoint]) -> None:
         seconds = [point.seconds for point in points if point.method == method]
         axes.plot(
             seconds, [1.0] * len(seconds), transform=axes.get_xaxis_transform(), color=look.colour, marker="x",
-            markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False, label=f"{look.name}, failed",
+            markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False, label=f"{display_name(method)}, failed",
         )  # fmt: skip
 
 

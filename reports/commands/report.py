@@ -1,0 +1,44 @@
+"""`contact-verify report`: pages from stored results, nothing computed."""
+
+from pathlib import Path
+
+from cases.comparison import compare
+from cases.results import RunResult
+from cases.results_files import read_run, write_whole
+from reports import outcomes
+from reports.comparison import claim_table, headline, number_table, write_comparison
+from reports.junit import junit_text
+from reports.pages import write_report
+from reports.summary import summary_text
+from reports.terminal import STYLES, console, show_table
+
+
+def rebuild(directory: Path) -> None:
+    """Write the pages of the run in `directory` again."""
+    run = read_run(directory)
+    write_pages(run, directory)
+    words, tone = outcomes.headline(run, outcomes.outcomes(run))
+    console().print(words, style=STYLES[tone])
+    console().print(f"report: {directory / 'report.html'}")
+
+
+def write_pages(run: RunResult, directory: Path) -> None:
+    """report.html with its figures, summary.md and junit.xml."""
+    write_report(run, directory)
+    write_whole(directory / "summary.md", summary_text(run))
+    write_whole(directory / "junit.xml", junit_text(run))
+
+
+def compare_runs(first: Path, second: Path) -> None:
+    """Compare the run in `second` with that in `first`; the page lands beside the second."""
+    runs = read_run(first), read_run(second)
+    comparison = compare(*runs)
+    page = second / "comparison.html"
+    write_comparison(comparison, runs, page)
+    words, tone = headline(comparison)
+    terminal = console()
+    terminal.print(words, style=STYLES[tone])
+    for table in (claim_table(comparison.claims), number_table(comparison.numbers)):
+        if table is not None and table.rows:
+            show_table(table, on=terminal)
+    terminal.print(f"comparison: {page}")
