@@ -107,6 +107,7 @@ class Curve:
         x: shape (n,).
         unit: SI unit of y.
         y: shape (n,).
+        relative_uncertainty: the method's own, of y in the norm of its area or history; None when it states none.
     """
 
     name: str
@@ -115,6 +116,7 @@ class Curve:
     x: Vector
     unit: str
     y: Vector
+    relative_uncertainty: NotNegative | None = None
 
     @model_validator(mode="after")
     def _equal_lengths(self) -> Self:
@@ -158,6 +160,8 @@ class SceneRun:
         status: PASS when solved.
         reason: why not, when not solved; one sentence.
         shared_inputs: names of the inputs (a flat-punch table, a kernel) other methods may use as well.
+        samples: seconds of each repeated solve of a timing run; empty for any other.
+        cold_seconds: first solve of a timing run, with nothing kept from earlier ones; None for any other.
     """
 
     key: str
@@ -171,6 +175,8 @@ class SceneRun:
     cost: CostRecord | None
     stages: tuple[Stage, ...] = ()
     shared_inputs: tuple[str, ...] = ()
+    samples: tuple[NotNegative, ...] = ()
+    cold_seconds: NotNegative | None = None
     notes: tuple[str, ...] = ()
 
     @property

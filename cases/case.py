@@ -1,0 +1,140 @@
+"""A case: a short paper that is also a test.  Pure description; nothing here solves anything."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from cases.methods import MethodUse
+from cases.results import Figure, Scalar
+from cases.task import Answers, Sampling, Task
+from contact import InvalidInput, Scene
+
+if TYPE_CHECKING:
+    from cases.claims.declared import DeclaredClaim
+    from cases.work.study import WorkStudy
+
+SUITES = ("ci", "nightly")
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaseScene:
+    """A scene of a case.
+
+    Attributes:
+        name: unique within the case.
+        parameters: what sets it apart, for tables and figures.
+        scene: the problem.
+        sampling: what is kept of each answer.
+        methods: the methods that solve it; empty for those of the case.
+    """
+
+    name: str
+    parameters: dict[str, Scalar]
+    scene: Scene
+    sampling: Sampling = field(default_factory=Sampling)
+    methods: tuple[MethodUse, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A question, the scenes that answer it, the methods that solve them and what is claimed of the answers.
+
+    Attributes:
+        name: unique; letters, digits and underscores.
+        title: one line.
+        question: what a reader learns.
+        equations: of the source.
+        text: the paper's body: set-up, what to expect and why.
+        suites: "ci" (minutes) and "nightly".
+        scenes: solved by every method.
+        methods: compared methods.
+        claims: what must hold.
+        work: what accuracy costs.
+        figures: drawn from the finished answers.
+    """
+
+    name: str
+    title: str
+    question: str
+    equations: tuple[str, ...]
+    text: str
+    suites: tuple[str, ...]
+    scenes: tuple[CaseScene, ...]
+    methods: tuple[MethodUse, ...]
+    claims: "tuple[DeclaredClaim, ...]"
+    work: "tuple[WorkStudy, ...]" = ()
+    figures: tuple[Callable[["Case", Answers], Iterator[Figure]], ...] = field(default=())
+
+    def __post_init__(self) -> None:
+        """Refuse what would silently check less than it says."""
+        if not self.name.replace("_", "").isalnum():
+            raise InvalidInput(f"case name {self.name!r}: use letters, digits and underscores")
+        _refuse_empty(self.name, question=self.question, title=self.title, text=self.text)
+        _refuse_empty(self.name, scenes=self.scenes, methods=self.methods, claims=self.claims)
+        _refuse_duplicates(f"case {self.name}: scenes", [s.name for s in self.scenes])
+        _refuse_duplicates(f"case {self.name}: claims", [c.name for c in self.claims])
+        _refuse_duplicates(f"case {self.name}: methods", [m.label for m in self.methods])
+        for suite in self.suites:
+            if suite not in SUITES:
+                raise InvalidInput(f"case {self.name}: suite {suite!r} is none of {', '.join(SUITES)}")
+        for claim in self.claims:
+            claim.check(self)
+
+    def scene(self, name: str) -> CaseScene:
+        """Return the scene called ``name``.
+
+        Raises:
+            InvalidInput: if the case has none of that name.
+        """
+        for scene in self.scenes:
+            if scene.name == name:
+                return scene
+        raise InvalidInput(f"case {self.name} has no scene {name!r}; it has {', '.join(s.name for s in self.scenes)}")
+
+    def methods_of(self, scene: CaseScene) -> tuple[MethodUse, ...]:
+        """Return the methods that solve ``scene``."""
+        return scene.methods or self.methods
+
+    def task(self, scene: CaseScene, use: MethodUse) -> Task:
+        """Return the task of one method on one scene."""
+        return Task(
+            case=self.name,
+            scene=scene.name,
+            method=use.label,
+            problem=scene.scene,
+            solver=use.build(),
+            sampling=scene.sampling,
+        )
+
+    def use(self, scene: CaseScene, label: str) -> MethodUse:
+        """Return the method labelled ``label`` that solves ``scene``.
+
+        Raises:
+            InvalidInput: if no such method does.
+        """
+        for use in self.methods_of(scene):
+            if use.label == label:
+                return use
+        raise InvalidInput(f"case {self.name}: no method {label!r} solves {scene.name!r}")
+
+    def tasks(self) -> Iterator[Task]:
+        """All tasks: every scene by every method, then what claims and work studies need beside."""
+        for scene in self.scenes:
+            for use in self.methods_of(scene):
+                yield self.task(scene, use)
+        for claim in self.claims:
+            yield from claim.tasks(self)
+        for study in self.work:
+            yield from study.tasks(self)
+
+
+def _refuse_empty(case: str, **fields: object) -> None:
+    for name, value in fields.items():
+        if not value:
+            raise InvalidInput(f"case {case}: {name} is empty; a case without it checks nothing")
+
+
+def _refuse_duplicates(place: str, names: list[str]) -> None:
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise InvalidInput(f"{place}: {twice[0]!r} stands twice; names must be unique")

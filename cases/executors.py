@@ -1,0 +1,76 @@
+"""Where tasks run, behind ``concurrent.futures.Executor``: in this process, in a pool of processes, on a cluster."""
+
+import multiprocessing
+import signal
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from typing import ParamSpec, TypeVar
+
+from contact import InvalidInput
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+ExecutorFactory = Callable[[int], Executor]
+
+
+class SerialExecutor(Executor):
+    """Runs each call at once, in this process."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Run ``fn`` and return its finished future."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:  # a future carries its error
+            future.set_exception(error)
+        return future
+
+
+def serial(jobs: int = 1) -> Executor:
+    """Return an executor that runs in this process, whatever ``jobs``."""
+    return SerialExecutor()
+
+
+def process_pool(jobs: int) -> Executor:
+    """Return ``jobs`` fresh processes (spawned: no state of this one leaks in).
+
+    Raises:
+        InvalidInput: unless there is at least one job.
+    """
+    if jobs < 1:
+        raise InvalidInput(f"jobs must be at least 1, got {jobs}")
+    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_leave_interrupts)
+
+
+def dask_cluster(address: str) -> ExecutorFactory:
+    """Return a factory of executors on the Dask scheduler at ``address`` (optional extra ``cluster``)."""
+
+    def factory(jobs: int) -> Executor:
+        from distributed import Client  # noqa: PLC0415 - an optional extra
+
+        client = Client(address, set_as_default=False)  # type: ignore[no-untyped-call]  # distributed ships no types
+        executor: Executor = client.get_executor(pure=False, retries=2)  # type: ignore[no-untyped-call]
+        return executor
+
+    return factory
+
+
+def by_name(name: str) -> ExecutorFactory:
+    """Return the executor factory called ``processes``, ``serial`` or ``tcp://host:port`` (a Dask scheduler).
+
+    Raises:
+        InvalidInput: for any other name.
+    """
+    if name == "processes":
+        return process_pool
+    if name == "serial":
+        return serial
+    if "://" in name:
+        return dask_cluster(name)
+    raise InvalidInput(f"executor {name!r} is neither processes, serial nor the address of a Dask scheduler")
+
+
+def _leave_interrupts() -> None:
+    """Ctrl-C is for the parent: it decides what becomes of the run."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)

@@ -1,0 +1,107 @@
+"""Carry out one task.  Whatever happens becomes a row: a failed task never ends a run."""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from signal import ITIMER_REAL, SIGALRM, setitimer, signal
+from threading import current_thread, main_thread
+from types import FrameType
+
+from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
+
+from cases.measure import cost_record, curves, quantities, stage_records
+from cases.methods import shared_inputs
+from cases.results import Scalar, SceneRun
+from cases.status import Status
+from cases.task import Task
+from cases.work.timing import SAMPLES, timed
+from contact import NotConvergedError, Solution, UnsupportedSceneError
+
+
+class TimeLimitReached(BaseException):
+    """The task used up its time."""
+
+
+def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
+    """Return the row of ``task``: its numbers, or the status and the reason why there are none.
+
+    Args:
+        task: what to solve.
+        key: content key that the row carries.
+        time_limit: seconds; zero for no limit.
+    """
+    try:
+        with _alarm(time_limit), threadpool_limits(limits=1):  # one thread: times compare, sums repeat bit by bit
+            support = task.solver.supports(task.problem)
+            if not support:
+                return _without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
+            return _solved(task, key)
+    except TimeLimitReached:
+        return _without_numbers(task, key, Status.TIMEOUT, f"not finished after {time_limit:g} s")
+    except UnsupportedSceneError as error:
+        return _without_numbers(task, key, Status.SKIP, str(error))
+    except NotConvergedError as error:
+        return _without_numbers(task, key, Status.INVALID, f"NotConvergedError: {error}")
+    except Exception as error:  # a solver that breaks in its own way is a row, too
+        return _without_numbers(task, key, Status.INVALID, f"{type(error).__name__}: {error}")
+
+
+def _solved(task: Task, key: str) -> SceneRun:
+    start = time.perf_counter()
+    solution = task.solver.solve(task.problem)
+    cold = time.perf_counter() - start
+    samples = timed(lambda: task.solver.solve(task.problem), samples=SAMPLES).samples if task.timed else ()
+    if task.timed:
+        solution = task.solver.solve(task.problem)  # the row shows the stages of a warm solve
+    return SceneRun(
+        key=key,
+        scene=task.scene,
+        method=task.method,
+        settings=_settings(solution),
+        status=Status.PASS,
+        reason="",
+        quantities=quantities(solution, task.sampling),
+        curves=curves(solution, task.sampling),
+        cost=cost_record(solution.cost),
+        stages=stage_records(solution.stages),
+        shared_inputs=shared_inputs(task.solver),
+        samples=samples,
+        cold_seconds=cold if task.timed else None,
+        notes=tuple(solution.notes),
+    )
+
+
+def _settings(solution: Solution) -> dict[str, Scalar]:
+    plain = bool | int | float | str
+    return {name: value if isinstance(value, plain) else str(value) for name, value in solution.settings.items()}
+
+
+def _without_numbers(task: Task, key: str, status: Status, reason: str) -> SceneRun:
+    return SceneRun(
+        key=key,
+        scene=task.scene,
+        method=task.method,
+        settings={},
+        status=status,
+        reason=" ".join(reason.split()) or status.value,
+        cost=None,
+    )
+
+
+@contextmanager
+def _alarm(seconds: float) -> Iterator[None]:
+    """Raise ``TimeLimitReached`` after so many seconds; only a main thread can be interrupted this way."""
+    if seconds <= 0 or current_thread() is not main_thread():
+        yield
+        return
+    previous = signal(SIGALRM, _ring)
+    setitimer(ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        setitimer(ITIMER_REAL, 0.0)
+        signal(SIGALRM, previous)
+
+
+def _ring(number: int, frame: FrameType | None) -> None:
+    raise TimeLimitReached

@@ -1,0 +1,66 @@
+import pytest
+
+from cases.keys import content_key, differences, import_closure, key_parts
+from cases.results_files import write_whole
+from cases.store import TaskStore
+from contact import InvalidInput
+from tests.cases.fake_case import FAST, fake_case, spoiled
+
+
+def parts(case):
+    return key_parts(next(iter(case.tasks())))
+
+
+def test_equal_tasks_have_equal_keys():
+    assert content_key(parts(fake_case())) == content_key(parts(fake_case()))
+
+
+def test_settings_change_the_key_and_are_explained():
+    old, new = parts(fake_case()), parts(fake_case(fast=spoiled(FAST, cell=0.5)))
+    assert content_key(old) != content_key(new)
+    assert differences(old, new) == ["settings.cell: 0.0 -> 0.5"]
+
+
+def test_the_last_bit_of_a_scene_changes_the_key():
+    old = parts(fake_case())
+    new = {**old, "scene": {**old["scene"], "layer": {**old["scene"]["layer"], "poissons_ratio": 0.3 + 1e-16 * 2}}}
+    assert content_key(old) != content_key(new)
+    assert "scene.layer.poissons_ratio" in differences(old, new)[0]
+
+
+def test_the_closure_holds_what_a_method_can_import_and_nothing_else():
+    sources = dict(import_closure("tests.cases.fake_method").sources)
+    assert "contact.solution" in sources
+    assert "cases.norms" in sources  # what measures the answer is a part of it
+    assert not any(name.startswith(("fem_reference", "reports")) for name in sources)
+    assert {"numpy", "python"} <= set(dict(import_closure("tests.cases.fake_method").versions))
+
+
+def test_a_lazy_package_counts_with_all_its_modules(tmp_path, monkeypatch):
+    package = tmp_path / "lazy_package"
+    package.mkdir()
+    write_whole(package / "__init__.py", "def __getattr__(name):\n    return None\n")
+    write_whole(package / "hidden.py", "import json\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    assert "lazy_package.hidden" in dict(import_closure("lazy_package").sources)
+
+
+def test_a_changed_source_line_changes_the_hash(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(tmp_path)
+    write_whole(tmp_path / "solver_one.py", "x = 1\n")
+    write_whole(tmp_path / "solver_two.py", "x = 2\n")
+    hashes = [dict(import_closure(name).sources)[name] for name in ("solver_one", "solver_two")]
+    assert hashes[0] != hashes[1]
+
+
+def test_explain_says_what_changed(tmp_path):
+    from tests.cases.example_run import SCENE, fast_run
+
+    store = TaskStore(tmp_path)
+    old = parts(fake_case())
+    store.put("k", old, fast_run(SCENE))
+    assert store.explain("k", old) == []
+    new = {**old, "versions": {**old["versions"], "numpy": "99"}}
+    assert store.explain("k", new) == [f'versions.numpy: "{old["versions"]["numpy"]}" -> "99"']
+    with pytest.raises(InvalidInput, match="no finished task"):
+        store.explain("absent", old)

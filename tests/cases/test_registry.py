@@ -1,0 +1,95 @@
+import dataclasses
+
+import pytest
+
+from cases.case import Case
+from cases.claims.exact import Exact
+from cases.methods import MethodUse, build, method_names
+from cases.registry import by_name, load_cases, select
+from cases.results import Origin
+from contact import InvalidInput
+from tests.cases.fake_case import FAST, STATED, case_scene, fake_case, hertz_force
+
+
+def claim(**changes):
+    stated = {"name": "c", "quantity": "normal_force", "tolerance": 1e-10, "expected": hertz_force, **STATED}
+    return Exact(**{**stated, **changes})
+
+
+def case(**changes):
+    return dataclasses.replace(fake_case(), **{"figures": (), "claims": (claim(),), **changes})
+
+
+@pytest.mark.parametrize("what", ["because", "derived_from", "source", "name", "quantity"])
+def test_a_claim_without_a_reason_is_refused(what):
+    with pytest.raises(InvalidInput, match=f"{what} is empty"):
+        claim(**{what: "  "})
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1e-10, float("nan"), float("inf")])
+def test_a_claim_with_a_tolerance_of_the_wrong_sign_is_refused(tolerance):
+    with pytest.raises(InvalidInput, match="tolerance must be positive"):
+        claim(tolerance=tolerance)
+
+
+def test_a_claim_about_an_unknown_scene_or_method_is_refused():
+    with pytest.raises(InvalidInput, match="no scene 'nowhere'"):
+        case(claims=(claim(scenes=("nowhere",)),))
+    with pytest.raises(InvalidInput, match="no method 'abaqus'"):
+        case(claims=(claim(methods=("abaqus",)),))
+
+
+def test_duplicates_are_refused():
+    with pytest.raises(InvalidInput, match="claims: 'c' stands twice"):
+        case(claims=(claim(), claim()))
+    with pytest.raises(InvalidInput, match=r"scenes: .* stands twice"):
+        case(scenes=(case_scene(0.3), case_scene(0.3)))
+    with pytest.raises(InvalidInput, match="two cases are called 'fake_hertz'"):
+        by_name([case(), case()])
+
+
+@pytest.mark.parametrize("field", ["question", "title", "text", "scenes", "methods", "claims"])
+def test_a_case_that_checks_nothing_is_refused(field):
+    empty = "" if field in ("question", "title", "text") else ()
+    with pytest.raises(InvalidInput, match=f"{field} is empty"):
+        case(**{field: empty})
+
+
+def test_an_unknown_suite_and_a_bad_name_are_refused():
+    with pytest.raises(InvalidInput, match="suite 'weekly'"):
+        case(suites=("weekly",))
+    with pytest.raises(InvalidInput, match="case name"):
+        case(name="two words")
+
+
+def test_selection_by_name_and_suite():
+    cases = by_name([case(), case(name="other", suites=("nightly",))])
+    assert [c.name for c in select(cases)] == ["fake_hertz", "other"]
+    assert [c.name for c in select(cases, suite="ci")] == ["fake_hertz"]
+    assert [c.name for c in select(cases, names=["other"])] == ["other"]
+    with pytest.raises(InvalidInput, match="no case 'absent'"):
+        select(cases, names=["absent"])
+    with pytest.raises(InvalidInput, match="no suite 'weekly'"):
+        select(cases, suite="weekly")
+
+
+def test_the_library_loads_and_its_names_are_its_files():
+    for name, found in load_cases().items():
+        assert isinstance(found, Case)
+        assert name == found.name
+        assert found.suites
+
+
+def test_an_unknown_method_lists_the_known_ones():
+    with pytest.raises(InvalidInput, match=r"no method .abaqus.; there are .*fem"):
+        MethodUse(label="abaqus").build()
+    assert "fake" in method_names()
+
+
+def test_settings_reach_the_method():
+    assert build("fake", {"cell": 0.25}).cell == 0.25
+    assert FAST.build().stated == 1e-12
+
+
+def test_every_origin_is_one_of_four():
+    assert len(Origin) == 4
