@@ -1,1 +1,6 @@
-"""The method of dimensionality reduction."""
+"""The method of dimensionality reduction: layers and half-spaces as beds of independent springs."""
+
+from mdr.assembly import equivalent_system
+from mdr.equivalent_system import EquivalentSystem
+
+__all__ = ["EquivalentSystem", "equivalent_system"]

@@ -1,0 +1,139 @@
+"""Flat punch on a layer by its Fredholm equation: one factorisation for all radii (`volterra_factor`)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import Annotated, Final, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import Field
+
+from bem.fredholm_kernel import FredholmKernel
+from bem.kernels import Support, compliance_kernel
+from bem.panels import gauss_nodes, partial_panel_interpolation
+from bem.piecewise import EqualPanels
+from bem.volterra_factor import VolterraFactor
+from contact import InvalidInput, Layer
+from contact.record import Record, record
+from contact.validation import FloatArray, positive
+
+LARGEST_RATIO: Final = 160.0  # the dense factor for it takes 110 MB and a second
+RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_RATIO)  # sizes made: answers do not depend on history
+
+
+@record
+class IntegralEquation(Record):
+    """Settings of the flat punch by the integral equation.
+
+    Attributes:
+        nodes: Gauss nodes on each panel, m.
+        panel_width: H in units of the layer thickness; the kernel is analytic within 2 of the real axis.
+    """
+
+    nodes: int = Field(default=24, ge=4, le=64)
+    panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
+
+    def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution:
+        """The flat punch on this layer up to at least a/h = max_ratio, cached.
+
+        Raises:
+            InvalidInput: If the ratio is beyond `LARGEST_RATIO`.
+            NotConvergedError: If the equation is singular to double precision.
+        """
+        if not 0 < max_ratio <= LARGEST_RATIO:
+            raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
+        rung = next(rung for rung in RUNGS if rung >= max_ratio)
+        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0  # no influence on the unbonded layer
+        return _solution(self, layer.support, nu, rung)
+
+    def refined(self) -> Self:
+        """Panels half as wide."""
+        return self.replace(panel_width=self.panel_width / 2)
+
+
+@dataclass(frozen=True)
+class IntegralEquationSolution:
+    """The flat punch on one layer, every radius up to `max_ratio`.
+
+    Attributes:
+        support: "bonded" or "unbonded".
+        poissons_ratio: nu.
+        factor: Factor of the layer's equation.
+    """
+
+    support: Support
+    poissons_ratio: float
+    factor: VolterraFactor
+
+    @property
+    def max_ratio(self) -> float:
+        """Largest a/h that is covered."""
+        return self.factor.panels * self.factor.panel_width
+
+    @property
+    def unknowns(self) -> int:
+        """Size of the system that was factorised."""
+        return len(self.factor.lower)
+
+    def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """k_bar = (1/ratio) int_0^ratio c_bar dx, Eqs. (6) and (10)."""
+        return self._contact_stiffness(self._covered(ratio))
+
+    def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """c_bar = y1^2, y1 the edge value of the density under a unit displacement."""
+        return self.edge_density(ratio) ** 2
+
+    def edge_density(self, ratio: ArrayLike) -> FloatArray:
+        """y1(x) = phi(x; a = x) of a flat punch pressed in by 1."""
+        return self._edge_density(self._covered(ratio))
+
+    def relative_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of k_bar and c_bar: truncated polynomials, and rounding times condition.
+
+        The smallest eigenvalue of the equation on [0, a] belongs to the wavenumber of about 1/a and is chi(h/a);
+        rounding errors grow with its inverse.
+        """
+        ratio = self._covered(ratio)
+        panels, _ = self._edge_density.locate(ratio)
+        rounding = 1 + 1 / compliance_kernel(1 / np.maximum(ratio, 1.0), self.support, self.poissons_ratio)
+        return self._truncation[panels] + 4 * np.finfo(float).eps * rounding
+
+    def _covered(self, ratio: ArrayLike) -> FloatArray:
+        ratio = np.asarray(ratio, dtype=float)
+        if not np.all((ratio >= 0) & (ratio <= self.max_ratio)):
+            worst = ratio[~((ratio >= 0) & (ratio <= self.max_ratio))].flat[0]
+            raise InvalidInput(f"a/h = {worst:g}: this flat-punch solution covers [0, {self.max_ratio:g}]")
+        return ratio
+
+    @cached_property
+    def _edge_density(self) -> EqualPanels:
+        unit = np.ones((self.factor.panels, self.factor.count))
+        _, inherited = self.factor.eliminate(unit)
+        return EqualPanels.from_nodes(self.factor.panel_width, self.factor.edge_values(unit + inherited))
+
+    @cached_property
+    def _contact_stiffness(self) -> EqualPanels:
+        """k_bar at every node: full panels before it, and the part of its own panel by scaled Gauss nodes."""
+        tau, omega = gauss_nodes(self.factor.count)
+        width, panels = self.factor.panel_width, np.arange(self.factor.panels)[:, None]
+        y = self._edge_density(width * (panels + tau))
+        partial = width * tau * ((partial_panel_interpolation(tau.size) @ y[:, None, :, None])[..., 0] ** 2 @ omega)
+        full = np.concatenate([[0.0], np.cumsum(width * y**2 @ omega)[:-1]])
+        return EqualPanels.from_nodes(width, (full[:, None] + partial) / (width * (panels + tau)))  # Eqs. (6), (10)
+
+    @cached_property
+    def _truncation(self) -> FloatArray:
+        """Errors of the polynomials are handed on to all larger radii."""
+        size = np.maximum(self._edge_density.truncation(), self._contact_stiffness.truncation())
+        running: FloatArray = np.maximum.accumulate(size)
+        return running
+
+
+@lru_cache(maxsize=32)
+def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: float) -> IntegralEquationSolution:
+    kernel = FredholmKernel.of_layer(support, nu)
+    panels = int(np.ceil(ratio / settings.panel_width))
+    factor = VolterraFactor.of_kernel(kernel, panels, settings.panel_width, int(settings.nodes))
+    return IntegralEquationSolution(support, nu, factor)

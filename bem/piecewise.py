@@ -1,0 +1,53 @@
+"""A smooth function on equal panels by Chebyshev polynomials."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.panels import chebyshev_from_nodes
+from contact.validation import FloatArray
+
+
+@dataclass(frozen=True)
+class EqualPanels:
+    """Piecewise polynomial on [0, P H].
+
+    Attributes:
+        panel_width: H.
+        coefficients: Chebyshev coefficients of each panel, shape (P, m).
+    """
+
+    panel_width: float
+    coefficients: FloatArray
+
+    @classmethod
+    def from_nodes(cls, panel_width: float, values: FloatArray) -> EqualPanels:
+        """The interpolant of values at the panels' Gauss nodes, shape (P, m)."""
+        return cls(panel_width, values @ chebyshev_from_nodes(values.shape[1]).T)
+
+    def __call__(self, x: ArrayLike) -> FloatArray:
+        """Values at points of [0, P H], any shape."""
+        panels, s = self.locate(np.asarray(x, dtype=float))
+        return clenshaw(self.coefficients[panels], 2 * s - 1)
+
+    def locate(self, x: FloatArray) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
+        """Number of the panel and relative position in it; a point between two panels belongs to the left one."""
+        panels = np.clip(np.ceil(x / self.panel_width).astype(np.intp) - 1, 0, len(self.coefficients) - 1)
+        return panels, x / self.panel_width - panels
+
+    def truncation(self) -> FloatArray:
+        """Size of the last coefficients of each panel relative to its largest, shape (P,)."""
+        size = np.abs(self.coefficients)
+        tail: FloatArray = size[:, -2:].max(axis=1) / size.max(axis=1)
+        return tail
+
+
+def clenshaw(coefficients: FloatArray, s: FloatArray) -> FloatArray:
+    """Chebyshev sums: coefficients (*shape, m) at s in [-1, 1] of that shape."""
+    older, newer = np.zeros_like(s), np.zeros_like(s)
+    for c in np.moveaxis(coefficients, -1, 0)[:0:-1]:
+        older, newer = newer, 2 * s * newer - older + c
+    return s * newer - older + coefficients[..., 0]

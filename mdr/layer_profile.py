@@ -1,0 +1,84 @@
+"""MDR profile of a layer from the factor of its integral equation: ``g = yg/y1`` with ``yg = C^-1 g_hs``.
+
+Inside each panel of the factor the edge value at x is
+
+    yg(x) = g_hs(x) + S(x) + int_X^x G(x, t) [g_hs(t) + S(t)] dt,    X the panel's start,
+
+S being what the panel inherits from the earlier ones: a polynomial, while g_hs has a kink's square root. So S goes
+through the factor's own matrices, and the integral over g_hs is taken piece by piece of the mapped grid.
+All lengths in units of the layer thickness; the grid counts from the indenter's flat radius b.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.panels import gauss_nodes, lagrange_matrix
+from bem.volterra_factor import VolterraFactor
+from contact.validation import FloatArray
+from mdr.mapped_pieces import MappedFunction
+
+
+def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
+    """C^-1 of a load that is zero within the flat radius.
+
+    Args:
+        factor: Factor of the layer; its panels' ends inside the grid are piece ends.
+        load: W on a grid with as many nodes on a piece as the factor has on a panel.
+        flat_radius: b, in units of the thickness.
+
+    Returns:
+        Values at the nodes of the load's grid, shape (q, m).
+    """
+    H, grid = factor.panel_width, load.grid
+    panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
+    position = (grid.nodes + flat_radius) / H - panel[:, None]
+    averages = panel_averages(factor, load, panel, position)
+    _, inherited = factor.eliminate(averages)
+    values = factor.edge_values(averages + inherited)[panel]  # right as it stands where a piece fills its panel
+    polynomial = factor.edge_values(inherited)
+    whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=1e-12)
+    for piece in np.flatnonzero(~whole):
+        smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
+        values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece)
+    return values
+
+
+def panel_averages(
+    factor: VolterraFactor, load: MappedFunction, panel: NDArray[np.intp], position: FloatArray
+) -> FloatArray:
+    """int l_j W dt / w_j on the panels up to the grid's end, shape (panels, m).
+
+    Args:
+        factor: Factor of the layer.
+        load: W.
+        panel: Number of the panel that each piece lies in, shape (q,).
+        position: The grid's nodes relative to their panels, shape (q, m).
+    """
+    weighted = load.node_values * load.grid.weights
+    moments = (weighted[:, None, :] @ lagrange_matrix(factor.count, position))[:, 0]
+    averages = np.zeros((panel[-1] + 1, factor.count))
+    np.add.at(averages, panel, moments / factor.weights)
+    return averages
+
+
+def _own_integral(
+    factor: VolterraFactor, load: MappedFunction, panel: NDArray[np.intp], position: FloatArray, piece: np.intp
+) -> FloatArray:
+    """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x."""
+    grid, own = load.grid, panel[piece]
+    before = np.flatnonzero(panel[:piece] == own)
+    points = np.broadcast_to(position[before].ravel(), (grid.count, before.size * grid.count))
+    G = factor.resolvent_at(own, position[piece], points)
+    earlier = G @ (load.node_values * grid.weights)[before].ravel()
+
+    u, omega = gauss_nodes(grid.count)
+    inner = np.multiply.outer(u, u)
+    stretch = grid.width[piece] / factor.panel_width
+    origin = position[piece, 0] - stretch * u[0] ** grid.power[piece]
+    points = origin + stretch * inner ** grid.power[piece]
+    weights = grid.width[piece] * grid.power[piece] * inner ** (grid.power[piece] - 1) * np.multiply.outer(u, omega)
+    G = factor.resolvent_at(own, position[piece], np.maximum(points, 0.0))
+    values: FloatArray = earlier + np.sum(G * weights * load.at(np.full(inner.shape, piece), inner), axis=1)
+    return values

@@ -1,0 +1,161 @@
+"""Smooth functions with known algebraic singularities, by Chebyshev polynomials in a mapped variable.
+
+On a piece [l, l + w] the variable is ``u = ((d - l)/w)^(1/power)``: power 2 makes a square-root behaviour at the left
+end smooth. In the first piece a factor ``u^lead`` is split off, so that a function that vanishes at the start keeps its
+relative accuracy there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.panels import chebyshev_from_nodes, gauss_nodes
+from bem.piecewise import clenshaw
+from contact.validation import FloatArray
+
+MAX_SPLITS = 60
+
+
+@dataclass(frozen=True)
+class MappedGrid:
+    """Pieces of the line d >= 0.
+
+    Attributes:
+        left: l, shape (q,), the first is zero.
+        width: w, shape (q,).
+        power: Shape (q,).
+        count: Nodes on each piece, m.
+    """
+
+    left: FloatArray
+    width: FloatArray
+    power: FloatArray
+    count: int
+
+    @property
+    def nodes(self) -> FloatArray:
+        """Node positions d, shape (q, m)."""
+        return self.left[:, None] + self.width[:, None] * gauss_nodes(self.count)[0] ** self.power[:, None]
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights of integrals over d, shape (q, m)."""
+        u, omega = gauss_nodes(self.count)
+        return self.width[:, None] * self.power[:, None] * u ** (self.power[:, None] - 1) * omega
+
+    @property
+    def end(self) -> float:
+        """Right end of the last piece."""
+        return float(self.left[-1] + self.width[-1])
+
+    def locate(self, d: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+        """Number of the piece of each point, and u in it; a point between two pieces belongs to the left one."""
+        piece = np.clip(np.searchsorted(self.left, d, side="left") - 1, 0, len(self.left) - 1)
+        s = np.clip((d - self.left[piece]) / self.width[piece], 0.0, 1.0)
+        return piece, s ** (1 / self.power[piece])
+
+    def split(self, pieces: NDArray[np.bool_]) -> MappedGrid:
+        """A copy with some pieces cut: in the middle, or, where a singularity is mapped, at an eighth."""
+        cut = self.width * np.where(self.power > 1, 0.125, 0.5)
+        left = np.concatenate([self.left, (self.left + cut)[pieces]])
+        width = np.concatenate([np.where(pieces, cut, self.width), (self.width - cut)[pieces]])
+        power = np.concatenate([self.power, np.ones(np.count_nonzero(pieces))])
+        order = np.argsort(left, kind="stable")
+        return MappedGrid(left[order], width[order], power[order], self.count)
+
+
+@dataclass(frozen=True)
+class MappedFunction:
+    """A function on a `MappedGrid`.
+
+    Attributes:
+        grid: The pieces.
+        coefficients: Chebyshev coefficients in u, shape (q, m), in the first piece after division by u^lead.
+        lead: Exponent of u split off in the first piece.
+    """
+
+    grid: MappedGrid
+    coefficients: FloatArray
+    lead: float
+
+    @classmethod
+    def from_values(cls, grid: MappedGrid, values: FloatArray, lead: float) -> MappedFunction:
+        """The interpolant of values at the grid's nodes, shape (q, m)."""
+        regular = values.copy()
+        regular[0] /= gauss_nodes(grid.count)[0] ** lead
+        return cls(grid, regular @ chebyshev_from_nodes(grid.count).T, lead)
+
+    def __call__(self, d: FloatArray) -> FloatArray:
+        """Values at points of any shape."""
+        return self.at(*self.grid.locate(d))
+
+    def derivative(self, d: FloatArray) -> FloatArray:
+        """First derivative with respect to d."""
+        return self.derivative_at(*self.grid.locate(d))
+
+    def at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """Values at mapped positions."""
+        return clenshaw(self.coefficients[piece], 2 * u - 1) * self._factor(piece, u)
+
+    def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """Derivative with respect to u at mapped positions."""
+        lead = np.where(piece == 0, self.lead, 0.0)
+        regular = clenshaw(self.coefficients[piece], 2 * u - 1)
+        slope = clenshaw(self._slope_coefficients[piece], 2 * u - 1)
+        full: FloatArray = self._factor(piece, u) * slope + lead * u ** np.maximum(lead - 1, 0) * regular
+        return full
+
+    def derivative_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """Derivative with respect to d at mapped positions, infinite where it is."""
+        power, width = self.grid.power[piece], self.grid.width[piece]
+        with np.errstate(divide="ignore"):  # 1/0 at a square root's start is the infinite slope that is meant
+            stretch = u ** (1 - power)
+        derivative: FloatArray = self.slope_at(piece, u) * stretch / (power * width)
+        return derivative
+
+    @cached_property
+    def node_values(self) -> FloatArray:
+        """Values at the grid's nodes, shape (q, m)."""
+        piece = np.broadcast_to(np.arange(len(self.grid.left))[:, None], self.coefficients.shape)
+        return self.at(piece, np.broadcast_to(gauss_nodes(self.grid.count)[0], piece.shape))
+
+    def truncation(self) -> FloatArray:
+        """Size of the last coefficients of each piece relative to its largest, shape (q,)."""
+        size = np.abs(self.coefficients)
+        tail: FloatArray = size[:, -2:].max(axis=1) / np.maximum(size.max(axis=1), np.finfo(float).tiny)
+        return tail
+
+    def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        return np.where(piece == 0, u**self.lead, 1.0)
+
+    @cached_property
+    def _slope_coefficients(self) -> FloatArray:
+        slope = np.zeros_like(self.coefficients)
+        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(self.coefficients, axis=1)
+        return slope
+
+
+def resolve(
+    function: Callable[[FloatArray], FloatArray], grid: MappedGrid, lead: float, tolerance: float, scale: float
+) -> MappedFunction:
+    """Split pieces until the function's last coefficients fall below the tolerance.
+
+    Towards a mapped singularity pieces may become as small as they need; elsewhere a piece below a thousandth of its
+    distance from the start shows noise, not structure, and the tail that is left goes into the error estimate.
+    A mapped piece spends its polynomial degree in steps of its power: it is kept short against the given length scale,
+    on which other functions of the same grid vary.
+    """
+    for _ in range(MAX_SPLITS):
+        resolved = MappedFunction.from_values(grid, function(grid.nodes), lead)
+        smallest = np.where(grid.power > 1, 1e-13, 1e-3) * (grid.left + grid.width)
+        coarse = (resolved.truncation() > tolerance) & (grid.width > smallest)
+        coarse |= (grid.power > 1) & (grid.width > scale * 4.0 ** (1 - grid.power))
+        if not coarse.any():
+            break
+        grid = grid.split(coarse)
+    return resolved
