@@ -50,7 +50,7 @@ def tabulate(element: Element, points: Array) -> Tabulation:
 
 
 def _basis_count(element: Element) -> int:
-    return 3 * element.nodal_dofs + 3 * element.facet_dofs + element.interior_dofs
+    return int(3 * element.nodal_dofs + 3 * element.facet_dofs + element.interior_dofs)
 
 
 @cache
@@ -103,13 +103,14 @@ class Space:
         """r at the quadrature points, shape (triangle, point)."""
         points, _ = self.quadrature
         barycentric = np.array([1 - points.sum(axis=0), *points])
-        return self.mesh.p[0, self.mesh.t].T @ barycentric
+        return np.asarray(self.mesh.p[0, self.mesh.t].T @ barycentric)
 
     @cached_property
     def measure(self) -> Array:
         """``2 pi r dr dz`` at the quadrature points, shape (triangle, point)."""
         _, weights = self.quadrature
-        return 2 * np.pi * self.radius * np.abs(np.linalg.det(self.jacobians))[:, None] * weights
+        area = np.abs(np.linalg.det(self.jacobians))[:, None] * weights
+        return np.asarray(2 * np.pi * self.radius * area)
 
     @cached_property
     def gradients(self) -> Array:
@@ -151,14 +152,14 @@ class Space:
     @cached_property
     def element_pressures(self) -> Index:
         """Global pressure unknowns of each triangle, shape (triangle, basis)."""
-        return self.pressure_dofs.element_dofs.T.astype(np.int64) + self.displacement_count
+        return np.asarray(self.pressure_dofs.element_dofs.T.astype(np.int64) + self.displacement_count)
 
     @cached_property
     def element_unknowns(self) -> Index:
         """All unknowns of each triangle, displacements first."""
-        return np.hstack([self.element_displacements, self.element_pressures]) if self.pair.is_mixed else (
-            self.element_displacements
-        )
+        if not self.pair.is_mixed:
+            return self.element_displacements
+        return np.hstack([self.element_displacements, self.element_pressures])
 
 
 def shear_elements(space: Space, shear_modulus: float) -> Array:
@@ -170,7 +171,7 @@ def shear_elements(space: Space, shear_modulus: float) -> Array:
 
 def _divergences(space: Space) -> Array:
     """``div u`` of every basis function, shape (triangle, point, 2 x basis)."""
-    return space.strains[:, :, :3].sum(axis=2)
+    return np.asarray(space.strains[:, :, :3].sum(axis=2))
 
 
 def volume_elements(space: Space, bulk_modulus: float) -> Array:
@@ -213,3 +214,14 @@ def scatter(elements: Array, unknowns: Index, size: int) -> sparse.csc_array:
     rows = np.repeat(unknowns, count, axis=1).ravel()
     columns = np.tile(unknowns, (1, count)).ravel()
     return sparse.coo_array((elements.ravel(), (rows, columns)), shape=(size, size)).tocsc()
+
+
+def node_positions(space: Space) -> Array:
+    """(r, z) of the scalar displacement unknowns, shape (2, n)."""
+    reference = space.pair.displacement.doflocs.T
+    barycentric = np.array([1 - reference.sum(axis=0), *reference])
+    positions = np.empty((2, int(space.displacement_dofs.N)))
+    positions[:, space.displacement_dofs.element_dofs] = np.einsum(
+        "cvt,vb->cbt", space.mesh.p[:, space.mesh.t], barycentric
+    )
+    return positions

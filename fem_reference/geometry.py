@@ -113,13 +113,25 @@ def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> Layer
 
 
 def _draw_section(geo: Any, thickness: float, outer_radius: float, top_radii: list[float]) -> None:
-    """One rectangle whose top carries the marked radii as vertices."""
-    radii = sorted({0.0, *top_radii, outer_radius})
+    """One rectangle whose top carries the marked radii as vertices; long sides are split, for gmsh's line meshing."""
+    last = max([*top_radii, 0.0])
+    radii = sorted({0.0, *top_radii, *_far_stations(last, outer_radius), outer_radius})
+    depths = sorted(_far_stations(last, thickness), reverse=True)
     corners = [geo.addPoint(r, 0.0, 0.0) for r in radii]
     corners += [geo.addPoint(outer_radius, thickness, 0.0), geo.addPoint(0.0, thickness, 0.0)]
+    corners += [geo.addPoint(0.0, z, 0.0) for z in depths]
     edges = [geo.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
     geo.addPlaneSurface([geo.addCurveLoop(edges)])
     geo.synchronize()
+
+
+def _far_stations(start: float, end: float) -> list[float]:
+    """Every hundredfold of ``start`` well before ``end``."""
+    stations = []
+    while start > 0 and 100 * start < 0.1 * end:
+        start *= 100
+        stations.append(start)
+    return stations
 
 
 def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
@@ -128,7 +140,8 @@ def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
     _, nodes = gmsh_mesh.getElementsByType(2)
     position = np.empty(int(tags.max()) + 1, dtype=np.int64)
     position[tags] = np.arange(len(tags))
-    return np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2].T), np.ascontiguousarray(position[nodes].reshape(-1, 3).T)
+    points = np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2].T)
+    return points, np.ascontiguousarray(position[nodes].reshape(-1, 3).T)
 
 
 def named_layer_mesh(points: Array, triangles: NDArray[np.int64]) -> LayerMesh:

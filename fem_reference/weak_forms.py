@@ -10,11 +10,17 @@ With the deviator taken in three dimensions and the pressure p = -K div u as an 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 from skfem import BilinearForm
 from skfem.helpers import ddot, div, grad, sym_grad
+
+
+def bilinear(form: Callable[..., Any]) -> BilinearForm:
+    """scikit-fem's form of an integrand, typed."""
+    return BilinearForm(form)
 
 
 def measure(w: Any) -> Any:
@@ -32,37 +38,37 @@ def strain_product(u: Any, v: Any, w: Any) -> Any:
     return ddot(sym_grad(u), sym_grad(v)) + (u[0] / w.x[0]) * (v[0] / w.x[0])
 
 
-@BilinearForm
+@bilinear
 def shear(u: Any, v: Any, w: Any) -> Any:
     """``2 mu dev(u) : dev(v)``; keyword mu."""
     return 2 * w.mu * (strain_product(u, v, w) - divergence(u, w) * divergence(v, w) / 3) * measure(w)
 
 
-@BilinearForm
+@bilinear
 def volume(u: Any, v: Any, w: Any) -> Any:
     """``K div u div v``, of the displacement formulation; keyword bulk."""
     return w.bulk * divergence(u, w) * divergence(v, w) * measure(w)
 
 
-@BilinearForm
+@bilinear
 def constraint(u: Any, q: Any, w: Any) -> Any:
     """``- q div u``."""
     return -q * divergence(u, w) * measure(w)
 
 
-@BilinearForm
+@bilinear
 def pressure_mass(p: Any, q: Any, w: Any) -> Any:
     """``p q``: its multiple by -1/K closes the mixed form."""
     return p * q * measure(w)
 
 
-@BilinearForm
+@bilinear
 def displacement_gradient(u: Any, v: Any, w: Any) -> Any:
     """``grad u : grad v + u_r v_r / r^2``: the H1 product in which the inf-sup constant is measured."""
     return (ddot(grad(u), grad(v)) + (u[0] / w.x[0]) * (v[0] / w.x[0])) * measure(w)
 
 
-@BilinearForm
+@bilinear
 def outer_edge_spring(u: Any, v: Any, w: Any) -> Any:
     """``(2 mu / r) u_r v_r`` on the outer edge of an unbonded layer; keyword mu.
 
