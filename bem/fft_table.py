@@ -1,0 +1,128 @@
+"""The paper's own source of flat punches: FFT boundary elements on a grid of ratios, section 3.2 of Forsbach (2023)."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final, Self
+
+import numpy as np
+
+from bem.flat_punch_table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
+from bem.kernels import Support
+from bem.pixel_disc import GAP, THIN, PixelDisc, PunchSolution
+from contact import InvalidInput, Layer
+from contact.validation import FloatArray
+
+SMALLEST_RATIO: Final = 1e-3
+LARGEST_RATIO: Final = 1e3
+INTERPOLATION_ERROR: Final = 1e-8  # of the splines over 400 ratios
+SPREAD: Final = 12  # rows either side over which the error's largest value counts: a difference may cross zero
+
+
+@dataclass(frozen=True, kw_only=True)
+class FftTable:
+    """Flat-punch tables by the FFT boundary element method; a `FlatPunchSource`.
+
+    Attributes:
+        cells: Grid cells across the punch's box, a multiple of 4.
+        ratios: Number of log-spaced ratios a/h in [1e-3, 1e3]; only those up to the ratio asked for are solved.
+        radii: Number of radii r/a, dense towards the edge.
+
+    Each table is built on `cells` and on half as many; the difference, its largest value over neighbouring ratios, is
+    the stated error. The method is of second order in cell size over thickness, so the difference exceeds the error.
+
+    Raises:
+        InvalidInput: If `cells` is too small or no multiple of 4.
+    """
+
+    cells: int = 256
+    ratios: int = 400
+    radii: int = 500
+
+    def __post_init__(self) -> None:
+        """Refuse grids that cannot be halved."""
+        if self.cells < 64 or self.cells % 4:
+            raise InvalidInput(f"cells must be a multiple of 4 and at least 64, got {self.cells}")
+        if self.ratios < LEAST_ROWS or self.radii < LEAST_ROWS:
+            raise InvalidInput(f"ratios and radii must be at least {LEAST_ROWS}, got {self.ratios} and {self.radii}")
+
+    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchTable:
+        """The table of this layer's kernel up to at least a/h = `max_ratio`; built once, then remembered.
+
+        Raises:
+            InvalidInput: If the layer is a half-space or the ratio is beyond 1000.
+        """
+        if layer.is_half_space:
+            raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
+        grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
+        if not 0.0 < max_ratio <= LARGEST_RATIO:
+            raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
+        rows = max(LEAST_ROWS, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1)
+        poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0  # unbonded: nu plays no part
+        return _build(self, layer.support, poissons_ratio, min(rows, self.ratios))
+
+    def refined(self) -> Self:
+        """A copy with half the cell size."""
+        return dataclasses.replace(self, cells=2 * self.cells)
+
+
+@lru_cache(maxsize=32)
+def _build(settings: FftTable, support: Support, poissons_ratio: float, rows: int) -> FlatPunchTable:
+    ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
+    fine = _on_grid(settings.cells, ratios, settings.radii, support, poissons_ratio)
+    coarse = _on_grid(settings.cells // 2, ratios, settings.radii, support, poissons_ratio)
+    return dataclasses.replace(
+        fine, error=_difference(fine, coarse), provenance=_provenance(settings, support, poissons_ratio)
+    )
+
+
+def _on_grid(cells: int, ratios: FloatArray, radii: int, support: Support, poissons_ratio: float) -> FlatPunchTable:
+    """The table of one grid, its error still unknown."""
+    punches = _punches(cells, ratios, support, poissons_ratio)
+    rho = chebyshev_radii(radii)
+    q = np.array([np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, punch.shape) for punch in punches])
+    return FlatPunchTable(
+        support=support,
+        poissons_ratio=poissons_ratio,
+        ratios=ratios,
+        radii=rho,
+        stiffness=np.array([punch.stiffness for punch in punches]),
+        pressure=np.maximum(q, 0.0) / np.sqrt(1.0 - rho**2),
+        error=np.zeros(len(ratios)),
+    )
+
+
+def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: float) -> list[PunchSolution]:
+    """One solution a ratio, each starting from the one before."""
+    discs = {periodic: PixelDisc.measured(cells, periodic=periodic) for periodic in {False, ratios[-1] > THIN}}
+    punches: list[PunchSolution] = []
+    for ratio in ratios:
+        start = punches[-1].pressure if punches else None
+        punches.append(discs[bool(ratio > THIN)].solve(float(ratio), support, poissons_ratio, start))
+    return punches
+
+
+def _difference(fine: FlatPunchTable, coarse: FlatPunchTable) -> FloatArray:
+    """Largest difference of k_bar, c_bar and q between two tables, over each row's neighbourhood."""
+    xi = fine.ratios
+    k = np.abs(coarse.stiffness / fine.stiffness - 1.0)
+    c = np.abs(coarse.normalized_spring_stiffness(xi) / fine.normalized_spring_stiffness(xi) - 1.0)
+    root = np.sqrt(1.0 - fine.radii**2)
+    q = np.max(root * np.abs(coarse.pressure - fine.pressure), axis=1) / np.max(root * fine.pressure, axis=1)
+    worst = np.pad(np.maximum(np.maximum(k, c), q), SPREAD, mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(worst, 2 * SPREAD + 1)
+    return np.asarray(np.max(windows, axis=1) + INTERPOLATION_ERROR)
+
+
+def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> dict[str, str | int | float]:
+    equation = "(29)" if support == "unbonded" else "(31)"
+    return {
+        "method": "FFT boundary elements, grid discs measured by the half-space",
+        "kernel": f"{support}, Forsbach (2023) Eq. {equation}",
+        "poissons_ratio": poissons_ratio,
+        "cells": settings.cells,
+        "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images",
+        "error": f"difference to {settings.cells // 2} cells, its largest value over {2 * SPREAD + 1} ratios",
+    }

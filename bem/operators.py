@@ -1,0 +1,170 @@
+"""Surface displacement by surface pressure, Eq. (26), on a square grid: periodic or in free space.
+
+Both operators act on the pressure at cell centres, shape (m, m), in pascals, and answer in metres. On a whole grid
+m = `cells`; on a quadrant (mirror symmetry about x = 0 and y = 0, which every centred axisymmetric scene has)
+m = cells/2, and the first cell's centre lies half a cell from both axes.
+"""
+
+from __future__ import annotations
+
+from math import isinf, pi
+from typing import Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from bem.influence import band_limited_influence, layer_influence
+from bem.kernels import compliance_kernel, zero_mode
+from bem.transforms import (
+    FullTransform,
+    Planning,
+    QuarterTransform,
+    Transform,
+    convolution_symbol,
+    fast_period,
+)
+from contact import InvalidInput, Layer
+
+FloatArray = npt.NDArray[np.float64]
+
+
+class Operator(Protocol):
+    """A symmetric positive definite map from pressure to displacement with an approximate inverse."""
+
+    def displacement(self, pressure: FloatArray) -> FloatArray:
+        """u [m] by p [Pa], both of shape (m, m)."""
+        ...
+
+    def precondition(self, displacement: FloatArray) -> FloatArray:
+        """A pressure [Pa] that nearly causes this displacement [m]: the inverse kernel, cyclic and unpadded."""
+        ...
+
+
+class _Filters:
+    """Two filters on one grid: the operator, and its approximate inverse."""
+
+    def __init__(self, forward: Transform, symbol: FloatArray, inverse: Transform, inverse_symbol: FloatArray) -> None:
+        self._forward, self._symbol = forward, symbol
+        self._inverse, self._inverse_symbol = inverse, inverse_symbol
+        self.applications = 0
+
+    def displacement(self, pressure: FloatArray) -> FloatArray:
+        """u [m] by p [Pa], both of shape (m, m)."""
+        self.applications += 1
+        return self._forward.filter(pressure, self._symbol)
+
+    def precondition(self, displacement: FloatArray) -> FloatArray:
+        """A pressure [Pa] that nearly causes this displacement [m]."""
+        return self._inverse.filter(displacement, self._inverse_symbol)
+
+
+class PeriodicOperator(_Filters):
+    """Pressures repeated with the box: the symbol is Eq. (27) at the lattice's own wavenumbers.
+
+    A field is taken as the trigonometric polynomial through its values, so a sinusoidal load has its exact answer,
+    Eq. (32). Images decay exponentially for a layer. The mean mode k = 0 answers with the layer's finite compliance
+    `h chi(q)/q` at q = 0; a half-space has none, and there the mean displacement is taken as zero.
+
+    Args:
+        layer: The elastic layer or half-space.
+        cell_size: s [m].
+        cells: Cells across the box.
+        quarter: Whether fields hold the quadrant x, y > 0 of a mirror-symmetric grid.
+        threads: Threads of FFTW.
+        planning: FFTW planning rigour; results repeat bit by bit only with FFTW_ESTIMATE.
+    """
+
+    def __init__(
+        self,
+        layer: Layer,
+        *,
+        cell_size: float,
+        cells: int,
+        quarter: bool = False,
+        threads: int = 1,
+        planning: Planning = "FFTW_ESTIMATE",
+    ) -> None:
+        transform = _transform(cells, cells, quarter=quarter, threads=threads, planning=planning)
+        symbol = layer_symbol(_wavenumbers(transform, cell_size), layer)
+        super().__init__(transform, symbol, transform, _reciprocal(symbol))
+
+
+class FreeSpaceOperator(_Filters):
+    """Pressures alone on an infinite layer: a linear convolution with the influence of one cell, padded by zeros.
+
+    A field is taken as piecewise constant over the cells and the displacement is exact at their centres.
+
+    Args:
+        layer: The elastic layer or half-space.
+        cell_size: s [m].
+        cells: Cells across the grid; the padded lattice has at least twice as many.
+        quarter: Whether fields hold the quadrant x, y > 0 of a mirror-symmetric grid.
+        threads: Threads of FFTW.
+        planning: FFTW planning rigour; results repeat bit by bit only with FFTW_ESTIMATE.
+    """
+
+    def __init__(
+        self,
+        layer: Layer,
+        *,
+        cell_size: float,
+        cells: int,
+        quarter: bool = False,
+        threads: int = 1,
+        planning: Planning = "FFTW_ESTIMATE",
+    ) -> None:
+        period = fast_period(2 * cells)
+        padded = _transform(cells, period, quarter=quarter, threads=threads, planning=planning)
+        influence = layer_influence(period // 2, layer.thickness / cell_size, layer.support, layer.poissons_ratio)
+        symbol = convolution_symbol(padded, influence * (cell_size / layer.contact_modulus))
+        cyclic = _transform(cells, cells, quarter=quarter, threads=threads, planning=planning)
+        super().__init__(padded, symbol, cyclic, _reciprocal(layer_symbol(_wavenumbers(cyclic, cell_size), layer)))
+
+
+class BandLimitedHalfSpace(_Filters):
+    """A half-space in free space whose pressures are trigonometric interpolants, as those of `PeriodicOperator` are.
+
+    It answers what a periodic operator would if its images were removed, and so tells how a set of cells acts.
+
+    Args:
+        contact_modulus: E* [Pa].
+        cell_size: s [m].
+        cells: Cells across the grid (the quadrant holds half as many).
+    """
+
+    def __init__(self, contact_modulus: float, *, cell_size: float, cells: int) -> None:
+        period = fast_period(2 * cells)
+        padded = _transform(cells, period, quarter=True, threads=1, planning="FFTW_ESTIMATE")
+        scale = cell_size / contact_modulus
+        symbol = convolution_symbol(padded, band_limited_influence(period // 2) * scale)
+        cyclic = _transform(cells, cells, quarter=True, threads=1, planning="FFTW_ESTIMATE")
+        inverse = _wavenumbers(cyclic, cell_size) * (contact_modulus / 2.0)
+        super().__init__(padded, symbol, cyclic, inverse)
+
+
+def layer_symbol(wavenumber: FloatArray, layer: Layer) -> FloatArray:
+    """u^(k) / p^(k) = 2 chi(kh) / (k E*) [m/Pa], Eq. (27), with its finite value at k = 0."""
+    zero = wavenumber == 0.0
+    k = np.where(zero, 1.0, wavenumber)
+    chi = 1.0 if isinf(layer.thickness) else compliance_kernel(k * layer.thickness, layer.support, layer.poissons_ratio)
+    at_zero = 0.0 if layer.is_half_space else layer.thickness * zero_mode(layer.support, layer.poissons_ratio)
+    return np.asarray(2.0 / layer.contact_modulus * np.where(zero, at_zero, chi / k))
+
+
+def _wavenumbers(transform: Transform, cell_size: float) -> FloatArray:
+    """|k| [1/m] on the modes of a transform."""
+    rows, columns = transform.modes
+    return np.asarray(2.0 * pi / (transform.period * cell_size) * np.hypot(rows, columns))
+
+
+def _reciprocal(symbol: FloatArray) -> FloatArray:
+    """1/symbol, finite at modes that do not answer (k = 0 of a half-space or of a bonded incompressible layer)."""
+    return np.asarray(1.0 / np.where(symbol > 0.0, symbol, np.max(symbol)))
+
+
+def _transform(cells: int, period: int, *, quarter: bool, threads: int, planning: Planning) -> Transform:
+    if not quarter:
+        return FullTransform(cells, period, threads=threads, planning=planning)
+    if cells % 2:
+        raise InvalidInput(f"a mirror-symmetric grid needs an even number of cells, got {cells}")
+    return QuarterTransform(cells // 2, period, threads=threads, planning=planning)

@@ -1,0 +1,152 @@
+"""Spectral filters on square grids: the only file that knows FFTW.
+
+Convention, stated once. A field of `cells` x `cells` values is extended by zeros to a lattice of even period
+`period` in both directions. The forward transform carries no factor, the inverse carries 1/period^2, and mode j of a
+lattice with spacing s has the angular wavenumber 2 pi j / (period s). A filter multiplies every mode by a real, even
+`symbol`; the symbol is stored only on `modes`, the modes a transform of real data really has.
+
+`FullTransform` holds the whole grid (real to complex). `QuarterTransform` holds the quadrant x > 0, y > 0 of a grid
+that is mirror symmetric about the corner of its first cell (cosine transforms): a quarter of the work and memory.
+Both skip the row transforms of rows that are zero by padding, and of rows nobody reads on the way back.
+
+Planning happens in the constructor, never while filtering; with the default FFTW_ESTIMATE no plan depends on a
+timing, so that results repeat bit by bit.
+"""
+
+from __future__ import annotations
+
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+import pyfftw
+from scipy.fft import next_fast_len
+
+from contact import InvalidInput
+
+FloatArray = npt.NDArray[np.float64]
+Planning = Literal["FFTW_ESTIMATE", "FFTW_MEASURE"]
+
+
+class Transform(Protocol):
+    """What an operator needs from a transform: its sizes, its modes and one verb."""
+
+    cells: int
+    period: int
+
+    @property
+    def modes(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Absolute mode numbers along axis 0 (column) and axis 1 (row), broadcasting against each other."""
+        ...
+
+    def filter(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
+        """Inverse transform of symbol times transform of the zero-padded field, on the cells of the field."""
+        ...
+
+
+class FullTransform:
+    """Real-to-complex filter of a whole grid of `cells` x `cells` values on a lattice of `period` >= cells."""
+
+    def __init__(self, cells: int, period: int, *, threads: int = 1, planning: Planning = "FFTW_ESTIMATE") -> None:
+        self.cells, self.period = _checked_sizes(cells, period)
+        self._strip = pyfftw.zeros_aligned((cells, period), dtype="float64")
+        self._plane = pyfftw.zeros_aligned((period, period // 2 + 1), dtype="complex128")
+        occupied = self._plane[:cells]
+        plan = _planner(threads, planning)
+        self._rows = plan(self._strip, occupied, axes=(1,), direction="FFTW_FORWARD")
+        self._columns = plan(self._plane, self._plane, axes=(0,), direction="FFTW_FORWARD")
+        self._columns_back = plan(self._plane, self._plane, axes=(0,), direction="FFTW_BACKWARD")
+        self._rows_back = plan(occupied, self._strip, axes=(1,), direction="FFTW_BACKWARD")
+        self._strip[:] = 0.0
+
+    @property
+    def modes(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Mode numbers |j1| as a column of `period` rows and j2 as a row of period/2 + 1 columns."""
+        rows = np.arange(self.period)
+        return np.minimum(rows, self.period - rows)[:, None], np.arange(self.period // 2 + 1)[None, :]
+
+    def filter(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
+        """Filtered field, shape (cells, cells); `symbol` has the shape of the modes."""
+        n = self.cells
+        self._strip[:, :n], self._strip[:, n:] = field, 0.0
+        self._rows.execute()
+        self._plane[n:] = 0.0
+        self._columns.execute()
+        self._plane *= symbol
+        self._columns_back.execute()
+        self._rows_back.execute()
+        return np.asarray(self._strip[:, :n] / float(self.period**2))
+
+
+class QuarterTransform:
+    """Cosine filter of the quadrant of `cells` x `cells` values of a mirror-symmetric grid.
+
+    The quadrant stands for 2 cells x 2 cells values, and its lattice `period` counts those: period >= 2 cells.
+    The forward transform is the DCT-II, its inverse the DCT-III; together they carry the factor period^2 of the full
+    transform, and the eigenvalues of a symmetric convolution are the same numbers.
+    """
+
+    def __init__(self, cells: int, period: int, *, threads: int = 1, planning: Planning = "FFTW_ESTIMATE") -> None:
+        _checked_sizes(2 * cells, period)
+        self.cells, self.period = cells, period
+        half = period // 2
+        self._plane = pyfftw.zeros_aligned((half, half), dtype="float64")
+        occupied = self._plane[:cells]
+        plan = _planner(threads, planning)
+        self._rows = plan(occupied, occupied, axes=(1,), direction="FFTW_REDFT10")
+        self._columns = plan(self._plane, self._plane, axes=(0,), direction="FFTW_REDFT10")
+        self._columns_back = plan(self._plane, self._plane, axes=(0,), direction="FFTW_REDFT01")
+        self._rows_back = plan(occupied, occupied, axes=(1,), direction="FFTW_REDFT01")
+
+    @property
+    def modes(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
+        """Mode numbers 0 .. period/2 - 1 in both directions."""
+        numbers = np.arange(self.period // 2)
+        return numbers[:, None], numbers[None, :]
+
+    def filter(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
+        """Filtered field, shape (cells, cells); `symbol` has the shape of the modes."""
+        n = self.cells
+        self._plane[:n, :n], self._plane[:n, n:] = field, 0.0
+        self._rows.execute()
+        self._plane[n:] = 0.0
+        self._columns.execute()
+        self._plane *= symbol
+        self._columns_back.execute()
+        self._rows_back.execute()
+        return np.asarray(self._plane[:n, :n] / float(self.period**2))
+
+
+def convolution_symbol(transform: Transform, quadrant: FloatArray) -> FloatArray:
+    """Eigenvalues of the convolution with an even kernel, on the modes of `transform`.
+
+    `quadrant[i, j]` is the kernel at the lattice offset (i, j), 0 <= i, j <= period/2. Being even in both directions
+    the kernel has a cosine series, so one DCT-I of the quadrant serves both kinds of transform.
+    """
+    half = transform.period // 2
+    if quadrant.shape != (half + 1, half + 1):
+        raise InvalidInput(f"the kernel quadrant must have shape {(half + 1, half + 1)}, got {quadrant.shape}")
+    work = pyfftw.empty_aligned(quadrant.shape, dtype="float64")
+    plan = pyfftw.FFTW(work, work, axes=(0, 1), direction=["FFTW_REDFT00"] * 2, flags=("FFTW_ESTIMATE",))
+    work[:] = quadrant
+    plan.execute()
+    columns, rows = transform.modes
+    return np.asarray(work[columns, rows])
+
+
+def fast_period(least: int) -> int:
+    """Smallest even period of at least `least` cells whose prime factors FFTW handles fast."""
+    return 2 * int(next_fast_len(-(-least // 2), real=True))
+
+
+def _planner(threads: int, planning: Planning) -> Any:
+    def plan(source: Any, target: Any, axes: tuple[int, ...], direction: str) -> Any:
+        return pyfftw.FFTW(source, target, axes=axes, direction=direction, flags=(planning,), threads=threads)
+
+    return plan
+
+
+def _checked_sizes(cells: int, period: int) -> tuple[int, int]:
+    if cells < 2 or period < cells or period % 2:
+        raise InvalidInput(f"a grid needs at least 2 cells and an even period >= cells, got {cells} and {period}")
+    return cells, period

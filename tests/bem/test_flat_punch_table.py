@@ -1,0 +1,95 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+from bem.fft_table import FftTable
+from bem.flat_punch import FlatPunchSolution, FlatPunchSource
+from bem.flat_punch_table import FlatPunchTable, chebyshev_radii
+from bem.integral_equation import IntegralEquation
+from contact import InvalidInput, Layer
+
+KERNELS = [("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.0)]
+
+
+def layer(support, nu):
+    return Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=nu, support=support)
+
+
+@pytest.fixture(scope="module", params=KERNELS, ids=lambda k: f"{k[0]} {k[1]}")
+def pair(request):
+    material = layer(*request.param)
+    return FftTable(cells=64, ratios=80).solution(material, 5.0), IntegralEquation().solution(material, 5.0)
+
+
+RATIOS = np.geomspace(2e-4, 5.0, 41)
+
+
+def test_table_meets_the_protocols():
+    assert isinstance(FftTable(), FlatPunchSource)
+    assert isinstance(FftTable(cells=64, ratios=80).solution(layer("bonded", 0.3), 0.1), FlatPunchSolution)
+
+
+@pytest.mark.parametrize("name", ["normalized_contact_stiffness", "normalized_spring_stiffness"])
+def test_stated_error_covers_the_true_error_of_stiffness(pair, name):
+    table, exact = pair
+    error = np.abs(getattr(table, name)(RATIOS) / getattr(exact, name)(RATIOS) - 1.0)
+    assert np.all(error <= table.relative_error(RATIOS))
+
+
+def test_a_planted_error_escapes_the_stated_one(pair):
+    table, exact = pair
+    wrong = dataclasses.replace(table, stiffness=1.01 * table.stiffness)
+    k = wrong.normalized_contact_stiffness(RATIOS) / exact.normalized_contact_stiffness(RATIOS)
+    assert np.any(np.abs(k - 1.0) > wrong.relative_error(RATIOS))
+
+
+def test_out_of_range_is_refused(pair):
+    table, _ = pair
+    for bad in (table.max_ratio * 1.001, -0.1, np.nan):
+        with pytest.raises(InvalidInput, match="never extrapolated"):
+            table.normalized_contact_stiffness(bad)
+    with pytest.raises(InvalidInput, match="rho"):
+        table.smooth_pressure(1.1, 1.0)
+
+
+def test_half_space_is_the_limit(pair):
+    table, _ = pair
+    assert table.normalized_contact_stiffness(0.0) == 1.0
+    assert table.normalized_spring_stiffness(0.0) == 1.0
+    np.testing.assert_allclose(table.smooth_pressure([0.0, 0.5, 1.0], 0.0), 0.5, rtol=1e-12)
+
+
+@pytest.mark.parametrize("bad", [{"cells": 30}, {"cells": 66}, {"ratios": 3}, {"radii": 2}])
+def test_impossible_settings_are_refused(bad):
+    with pytest.raises(InvalidInput):
+        FftTable(**bad)
+
+
+def test_ratio_beyond_a_thousand_and_half_space_are_refused():
+    with pytest.raises(InvalidInput, match="range"):
+        FftTable().solution(layer("bonded", 0.3), 2000.0)
+    with pytest.raises(InvalidInput, match="closed form"):
+        FftTable().solution(Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3), 1.0)
+
+
+def test_tables_with_bad_arrays_are_refused():
+    good = {
+        "support": "unbonded",
+        "poissons_ratio": 0.0,
+        "ratios": np.geomspace(0.01, 1.0, 8),
+        "radii": chebyshev_radii(20),
+        "stiffness": np.ones(8),
+        "pressure": np.ones((8, 20)),
+        "error": np.zeros(8),
+    }
+    FlatPunchTable(**good)
+    for name, bad in [
+        ("ratios", good["ratios"][::-1]),
+        ("radii", np.linspace(0.0, 1.0, 20)),
+        ("stiffness", np.full(8, np.nan)),
+        ("pressure", np.ones((20, 8))),
+        ("pressure", -np.ones((8, 20))),
+    ]:
+        with pytest.raises(InvalidInput, match=name):
+            FlatPunchTable(**(good | {name: bad}))
