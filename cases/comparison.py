@@ -44,6 +44,7 @@ class ClaimChange:
 
     case: str
     claim: str
+    scene: str
     methods: tuple[str, ...]
     statuses: tuple[Status | None, Status | None]
     fractions: tuple[float | None, float | None]
@@ -153,9 +154,17 @@ def _change(difference: float, uncertainty: float | None) -> Change:
 
 
 def _claims(first: RunResult, second: RunResult) -> list[ClaimChange]:
-    before, after = ({(c.name, claim.name): claim for c in run.cases for claim in c.claims} for run in (first, second))
-    changes = [_claim(case, before.get((case, name)), after.get((case, name))) for case, name in after | before]
+    before, after = _claims_by_place(first), _claims_by_place(second)
+    changes = [_claim(place[0], before.get(place), after.get(place)) for place in after | before]
     return [change for change in changes if change.statuses[0] is not change.statuses[1]]
+
+
+Place = tuple[str, str, str, tuple[str, ...]]
+
+
+def _claims_by_place(run: RunResult) -> dict[Place, Claim]:
+    """Claims by case, name, scene and methods."""
+    return {(case.name, c.name, c.scene, c.methods): c for case in run.cases for c in case.claims}
 
 
 def _claim(case: str, before: Claim | None, after: Claim | None) -> ClaimChange:
@@ -163,6 +172,7 @@ def _claim(case: str, before: Claim | None, after: Claim | None) -> ClaimChange:
     return ClaimChange(
         case=case,
         claim=shown.name,
+        scene=shown.scene,
         methods=shown.methods,
         statuses=(before.status if before else None, after.status if after else None),
         fractions=(before.fraction if before else None, after.fraction if after else None),

@@ -21,7 +21,7 @@ def annotation_lines(run: RunResult) -> list[str]:
 
 
 def _line(row: Outcome) -> str:
-    title = f"{row.status} {row.case}: {row.name} ({row.who})"
+    title = f"{row.status} {row.case}: {row.place} ({row.who})"
     facts: Sequence[str] = [
         part for part in (row.message, f"measured {row.observed}, tolerance {row.tolerance}") if row.observed
     ]

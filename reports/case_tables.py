@@ -9,16 +9,19 @@ from reports.tables import Table
 
 
 def answers(case: CaseResult) -> Table | None:
-    """The last step of each scene by each method, every number with the uncertainty its method states."""
+    """The last step of each scene with a claim by each method, every number with the uncertainty its method states."""
+    judged = {claim.scene for claim in case.claims}
     names = tuple(dict.fromkeys((q.name, q.unit) for run in case.runs for q in run.quantities))
     scales = {name: _common_prefix(case, name) for name, _unit in names}
     heads = ("scene", "method", *(_head(name, unit, scales[name][1]) for name, unit in names), "time")
-    rows = tuple(_answer_row(run, [name for name, _ in names], scales) for run in case.runs if run.solved)
+    rows = tuple(
+        _answer_row(run, [name for name, _ in names], scales) for run in case.runs if run.solved and run.scene in judged
+    )
     if not rows:
         return None
     note = (
         "Digits in brackets: uncertainty of the last digits, stated by the method itself. "
-        "Histories and load paths show their last step; all steps are in results.json."
+        "Histories and load paths show their last step; all steps, and scenes without a claim, are in results.json."
     )
     return Table(title="Answers", note=note, heads=heads, rows=rows, words=2)
 

@@ -62,6 +62,7 @@ def claim_table(claims: tuple[ClaimChange, ...]) -> Table | None:
         heads=(
             "case",
             "check",
+            "scene",
             "methods",
             "first",
             "second",
@@ -70,14 +71,22 @@ def claim_table(claims: tuple[ClaimChange, ...]) -> Table | None:
             "seen in the second",
         ),
         rows=tuple(_claim_row(change) for change in ordered),
-        words=8,
+        words=9,
     )
 
 
 def _claim_row(change: ClaimChange) -> tuple[str, ...]:
     statuses = ["absent" if status is None else str(status) for status in change.statuses]
     fractions = ["" if fraction is None else small(fraction) for fraction in change.fractions]
-    return change.case, change.claim, " against ".join(change.methods), *statuses, *fractions, change.message
+    return (
+        change.case,
+        change.claim,
+        change.scene,
+        " against ".join(change.methods),
+        *statuses,
+        *fractions,
+        change.message,
+    )
 
 
 def number_table(numbers: tuple[NumberChange, ...]) -> Table:

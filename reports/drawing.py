@@ -7,6 +7,7 @@ A figure with a single group is coloured by method instead.
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 import numpy as np
 from matplotlib import colormaps
@@ -21,6 +22,7 @@ from reports.plates import Plate
 from reports.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
 
 PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 3.55, 0.2  # inches
+MOST_COLUMNS = 3
 SYMBOLS_ON_A_CURVE = 24
 LINE_METHODS = ("mdr",)
 FULL_WIDTH, THIN_WIDTH = 1.5, 1.0
@@ -73,7 +75,7 @@ def _rows(figure: Figure) -> Iterable[tuple[str | float | None, ...]]:
 
 def draw(figure: Figure) -> Drawing:
     """The figure with its panels in rows of two or three and one legend below them."""
-    columns = _columns(len(figure.panels))
+    columns = _columns(figure.panels)
     rows = math.ceil(len(figure.panels) / columns)
     legend = _legend_entries(figure)
     entries_a_row = 3 * columns
@@ -90,9 +92,12 @@ def draw(figure: Figure) -> Drawing:
     return drawing
 
 
-def _columns(panels: int) -> int:
-    """Three panels a row for 3, 5, 6, 9, ..., two for 2 and 4."""
-    return min(panels, 2) if panels in (1, 2, 4) else 3
+def _columns(panels: Sequence[Panel]) -> int:
+    """Panels that share a title stand in one row; others three a row, or two when there are two or four."""
+    runs = [len(list(run)) for _, run in groupby(panels, key=lambda panel: panel.title)]
+    if len(set(runs)) == 1 and 1 < runs[0] <= MOST_COLUMNS:
+        return runs[0]
+    return min(len(panels), 2) if len(panels) in (1, 2, 4) else MOST_COLUMNS
 
 
 def draw_panel(axes: Axes, panel: Panel, colours: dict[str, str]) -> None:

@@ -38,8 +38,7 @@ def _totals(rows: Sequence[Outcome]) -> dict[str, str]:
 
 def _testcase(row: Outcome) -> ET.Element:
     who = "+".join(row.methods)
-    place = f"{row.name} [{row.scene}]" if row.scene not in row.name else row.name
-    element = ET.Element("testcase", classname=f"{row.case}.{who}", name=place, time=f"{row.seconds:.3f}")
+    element = ET.Element("testcase", classname=f"{row.case}.{who}", name=row.place, time=f"{row.seconds:.3f}")
     if row.status.is_failure:
         kind = "error" if row.status in BROKEN else "failure"
         detail = ET.SubElement(element, kind, type=str(row.status), message=_printable(row.message))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from cases.results import CaseResult, Claim, Kind, RunResult
 from reports.names import file_name
-from reports.outcomes import Outcome, case_outcomes, severity
+from reports.outcomes import Outcome, case_outcomes, claim_outcome, severity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,10 +45,9 @@ def case_matrix(case: CaseResult) -> Matrix:
     """One row a scene (or group of scenes), one column a claim as it is worded for that scene."""
     columns = tuple(dict.fromkeys(_column(claim) for claim in case.claims))
     scenes = dict.fromkeys(claim.scene for claim in case.claims)
-    rows = {row.name: row for row in case_outcomes(case)}
     found: dict[tuple[str, str], list[Outcome]] = {}
     for claim in case.claims:
-        found.setdefault((claim.scene, _column(claim)), []).append(rows[claim.name])
+        found.setdefault((claim.scene, _column(claim)), []).append(claim_outcome(case.name, claim))
     cells = ((scene, "", tuple(_cell(found.get((scene, column), [])) for column in columns)) for scene in scenes)
     return Matrix(corner="scene", columns=columns, rows=tuple(cells))
 

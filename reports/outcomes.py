@@ -1,5 +1,6 @@
 """What each check ended with, in words: the rows that page, summary, JUnit file and terminal share, worst first."""
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -72,6 +73,11 @@ class Outcome:
         return "" if self.fraction < 0.0 else small(self.fraction)
 
     @property
+    def place(self) -> str:
+        """Name and scene of the check: "force agrees [bonded nu=0.3]"."""
+        return self.name if self.scene in self.name else f"{self.name} [{self.scene}]"
+
+    @property
     def who(self) -> str:
         """The methods that took part: "mdr against fem"."""
         return " against ".join(self.methods)
@@ -92,7 +98,7 @@ def outcomes(run: RunResult) -> tuple[Outcome, ...]:
 
 def case_outcomes(case: CaseResult) -> tuple[Outcome, ...]:
     """Every check of a case, in the order of the case."""
-    claims = (_claimed(case.name, claim) for claim in case.claims)
+    claims = (claim_outcome(case.name, claim) for claim in case.claims)
     return (*claims, *(_solved(case.name, run) for run in case.runs))
 
 
@@ -122,7 +128,8 @@ def headline(run: RunResult, rows: Iterable[Outcome]) -> tuple[str, str]:
     return f"PASSED: all {checks} checks", "good"
 
 
-def _claimed(case: str, claim: Claim) -> Outcome:
+def claim_outcome(case: str, claim: Claim) -> Outcome:
+    """A claim in words."""
     return Outcome(
         case=case,
         scene=claim.scene,
@@ -135,7 +142,7 @@ def _claimed(case: str, claim: Claim) -> Outcome:
         observed=observed_text(claim),
         tolerance=f"{small(claim.tolerance)}{_unit(claim.unit)}",
         origin=f"{claim.origin}: {claim.source}",
-        message=claim.message,
+        message=worded(claim.message),
         because=claim.because,
         seconds=0.0,
     )
@@ -154,10 +161,18 @@ def _solved(case: str, run: SceneRun) -> Outcome:
         observed="",
         tolerance="",
         origin="",
-        message=run.reason,
+        message=worded(run.reason),
         because="",
         seconds=run.cost.wall_seconds if run.cost else 0.0,
     )
+
+
+def worded(message: str) -> str:
+    """A message with its non-finite numbers in words, so that pages can be searched for stray ones."""
+    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda found: found[1] + NON_FINITE[found[2]], message)
+
+
+NON_FINITE = {"nan": "not-a-number", "inf": "infinity"}
 
 
 def observed_text(claim: Claim) -> str:

@@ -152,7 +152,8 @@ def _compact(svg: str, key: str) -> str:
     svg = svg.replace("font-family: 'DejaVu Sans'; ", "").replace("; font-family: 'DejaVu Sans'", "")
     svg = svg.replace("<svg ", f'<svg style="font-family: {FONT_FAMILY}" ', 1)
     svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
-    return re.sub(r"\s+", " ", svg).replace("> <", ">\n<").strip() + "\n"
+    svg = re.sub(r"\s+", " ", svg).replace("> <", "><")  # between the letters of a formula a line end would be a space
+    return re.sub(r"><(g|path|use|defs)\b", r">\n<\1", svg).strip() + "\n"
 
 
 def png_bytes(figure: Figure) -> bytes:

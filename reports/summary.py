@@ -47,8 +47,7 @@ def _fitting(lines: Iterable[str], room: int) -> int:
 
 def _line(row: Outcome) -> str:
     word = f"**{row.word}**" if row.tone == "bad" else row.word
-    check = row.name if row.scene in row.name else f"{row.name} ({row.scene})"
-    cells = (word, row.case, check, row.who, row.fraction_text, row.observed, row.tolerance, row.message)
+    cells = (word, row.case, row.place, row.who, row.fraction_text, row.observed, row.tolerance, row.message)
     return "| " + " | ".join(_escaped(cell) for cell in cells) + " |\n"
 
 

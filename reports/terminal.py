@@ -18,18 +18,20 @@ def console(*, stderr: bool = False) -> Console:
     """The terminal; a pipe or a log file gets wide plain lines that nothing wraps in the middle of a number."""
     stream = sys.stderr if stderr else sys.stdout
     width = None if stream.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
-    return Console(stderr=stderr, width=width, highlight=False)
+    return Console(stderr=stderr, width=width, highlight=False, markup=False)
 
 
 def show_table(table: Table, *, on: Console) -> None:
     """A table with its title above and its note below; numbers flush right."""
-    rich = RichTable(title=table.title, caption=table.note, title_justify="left", caption_justify="left", box=None)
+    rich = RichTable(box=None)
     for place, head in enumerate(table.heads):
         number = place >= table.words
-        rich.add_column(head, justify="right" if number else "left", no_wrap=number, overflow="fold")
+        rich.add_column(Text(head), justify="right" if number else "left", no_wrap=number, overflow="fold")
     for row in table.rows:
         rich.add_row(*(Text(cell) for cell in row))
-    on.print(rich)
+    for part in (Text(table.title, style="bold"), rich, Text(table.note, style="dim")):
+        if part:
+            on.print(part)
 
 
 def show_facts(facts: Iterable[tuple[str, str]], *, on: Console) -> None:

@@ -15,6 +15,29 @@ from contact import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True)
+class Reason:
+    """Why a claim should hold, where its expected number comes from, and how its tolerance was chosen.
+
+    Attributes:
+        because: why it should hold.
+        derived_from: theory, then the numerical uncertainty, then ten times a measured spread; never today's result.
+        origin: one of the four origins of an expected number.
+        source: closed form, page and table, or method.
+    """
+
+    because: str
+    derived_from: str
+    origin: Origin
+    source: str
+
+    def __post_init__(self) -> None:
+        """Refuse a reason that says nothing."""
+        for what in ("because", "derived_from", "source"):
+            if not getattr(self, what).strip():
+                raise InvalidInput(f"{what} is empty; a claim states its reason, its tolerance's origin and its source")
+
+
+@dataclass(frozen=True, kw_only=True)
 class DeclaredClaim(ABC):
     """A claim of a case.
 
@@ -22,10 +45,7 @@ class DeclaredClaim(ABC):
         name: unique within the case.
         quantity: what is compared.
         tolerance: largest permitted error, relative.
-        because: why it should hold.
-        derived_from: how the tolerance was chosen.
-        origin: where the expected number comes from.
-        source: closed form, page and table, or method.
+        reason: why it should hold, and where its numbers come from.
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
     """
@@ -35,19 +55,16 @@ class DeclaredClaim(ABC):
     name: str
     quantity: str
     tolerance: float
-    because: str
-    derived_from: str
-    origin: Origin
-    source: str
+    reason: Reason
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
 
     def __post_init__(self) -> None:
         """Refuse a claim without a reason, and a tolerance of the wrong sign."""
         positive_tolerance(self.tolerance)
-        for what in ("name", "quantity", "because", "derived_from", "source"):
+        for what in ("name", "quantity"):
             if not getattr(self, what).strip():
-                raise InvalidInput(f"claim {self.name!r}: {what} is empty; a claim states its reason and its source")
+                raise InvalidInput(f"claim {self.name!r}: {what} is empty; say what is claimed of what")
 
     def check(self, case: Case) -> None:
         """Refuse scenes or methods that the case does not have.
@@ -102,10 +119,10 @@ class DeclaredClaim(ABC):
             tolerance=tolerance or self.tolerance,
             fraction=judgement.fraction,
             uncertainty=dict(uncertainty or {}),
-            origin=self.origin,
-            source=self.source,
-            because=self.because,
-            derived_from=self.derived_from,
+            origin=self.reason.origin,
+            source=self.reason.source,
+            because=self.reason.because,
+            derived_from=self.reason.derived_from,
             shared_inputs=shared,
             message=message,
         )

@@ -94,7 +94,7 @@ class Order(DeclaredClaim):
             mesh_family=self.mesh_family,
             reference=self.reference(scene.scene) if self.reference else None,
             reference_uncertainty=self.reference_uncertainty,
-            reference_source=self.source,
+            reference_source=self.reason.source,
             floor=self.floor,
         )
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from cases.case import Case, CaseScene
 from cases.claims.agreement import Agreement
+from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
 from cases.claims.order import Order
@@ -17,7 +18,8 @@ from cases.work.study import WorkStudy
 from contact import ContactRadii, Layer, Paraboloid, Scene
 
 RADII = (0.5e-3, 1e-3)
-STATED = {"origin": Origin.CLOSED_FORM, "source": "Hertz", "because": "half-space", "derived_from": "round-off"}
+REASON = Reason(because="half-space", derived_from="round-off", origin=Origin.CLOSED_FORM, source="Hertz")
+STATED = {"reason": REASON}
 
 
 def hertz_force(scene):

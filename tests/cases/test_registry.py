@@ -8,7 +8,7 @@ from cases.methods import MethodUse, build, method_names
 from cases.registry import by_name, load_cases, select
 from cases.results import Origin
 from contact import InvalidInput
-from tests.cases.fake_case import FAST, STATED, case_scene, fake_case, hertz_force
+from tests.cases.fake_case import FAST, REASON, STATED, case_scene, fake_case, hertz_force
 
 
 def claim(**changes):
@@ -20,8 +20,14 @@ def case(**changes):
     return dataclasses.replace(fake_case(), **{"figures": (), "claims": (claim(),), **changes})
 
 
-@pytest.mark.parametrize("what", ["because", "derived_from", "source", "name", "quantity"])
+@pytest.mark.parametrize("what", ["because", "derived_from", "source"])
 def test_a_claim_without_a_reason_is_refused(what):
+    with pytest.raises(InvalidInput, match=f"{what} is empty"):
+        dataclasses.replace(REASON, **{what: "  "})
+
+
+@pytest.mark.parametrize("what", ["name", "quantity"])
+def test_a_claim_about_nothing_is_refused(what):
     with pytest.raises(InvalidInput, match=f"{what} is empty"):
         claim(**{what: "  "})
 

@@ -51,10 +51,18 @@ def test_nothing_on_the_page_or_in_the_data_reads_nan_or_none(page, directory):
 
 
 def test_the_nan_check_sees_a_planted_one(tmp_path):
-    claim = dataclasses.replace(failing_case().claims[0], message="difference nan", expected=None)
-    case = dataclasses.replace(failing_case(), claims=(claim,))
+    case = dataclasses.replace(failing_case(), text="a planted nan")
     write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path)
     assert not_a_number((tmp_path / "report.html").read_text(encoding="utf-8"))
+
+
+def test_a_reason_that_speaks_of_nan_says_it_in_words(tmp_path):
+    claim = dataclasses.replace(failing_case().claims[0], message="force is nan, error inf, -inf; finance")
+    case = dataclasses.replace(failing_case(), claims=(claim,))
+    write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path)
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "force is not-a-number, error infinity, -infinity; finance" in page
+    assert not not_a_number(page)
 
 
 def test_verdict_and_failures_come_before_anything_else(page):

@@ -1,0 +1,385 @@
+"""Section 4.1 of Forsbach (2023): a truncated cone indents bonded and unbonded layers of any thickness."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.case import Case, CaseScene
+from cases.claims.agreement import Agreement
+from cases.claims.declared import Reason
+from cases.claims.exact import Exact
+from cases.claims.field_agreement import FieldAgreement
+from cases.claims.twin import Twin
+from cases.library._layers import (
+    LAYERS,
+    THICKNESS,
+    doubled_modulus,
+    edges,
+    half_space,
+    in_millimetres,
+    layer,
+    other_poissons_ratio,
+    prescribed_radii,
+    scene_name,
+)
+from cases.methods import MethodUse
+from cases.results import Figure, Origin, Panel, SceneRun, Series
+from cases.task import Answers, Sampling
+from cases.work.study import WorkStudy
+from contact import ContactRadii, Scene, TruncatedCone
+
+SLOPE = 0.1
+FLAT_FRACTION = 0.5  # b/a
+RATIOS = (0.1, 1.0, 2.0, 5.0, 20.0)
+HALF_SPACE_FLATS = (0.25, 0.5, 0.75, 0.9)
+RINGS = (0.0, 0.4, FLAT_FRACTION, 0.6, 0.8, 1.0)
+
+MDR = MethodUse(label="mdr")
+FEM = MethodUse(label="fem", settings={"accuracy": 1e-6})
+QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
+
+TEXT = """
+A rigid cone with a flat end of radius b, f(r) = (r - b) tan(theta) for r >= b, Eq. (35), presses on a layer of
+thickness h. The contact radius a is prescribed with b/a = 0.5, for an unbonded layer and bonded layers with nu = 0.3,
+0.45 and 0.5, from almost a half-space (a/h = 0.1) to a thin layer (a/h = 20).
+
+On the half-space the answer is known in closed form,
+delta = a tan(theta) arccos(b/a),  F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)].
+
+MDR, Eqs. (4) and (8), starts from flat-punch data of the layer kernel, Eqs. (29)-(31). The finite element model meshes
+the section and never sees that kernel; the two share no input. Depth, force and contact stiffness must agree within
+1e-5. The pressure has a logarithmic singularity at r = b, so it is compared in the 2 pi r weighted L2 norm and by the
+loads of rings with an edge at r = b, never by its maximum.
+"""
+
+
+def cone_scene(label: str, ratio: float) -> CaseScene:
+    """Return the scene at a/h = ``ratio``."""
+    a = ratio * THICKNESS
+    cone = TruncatedCone(flat_radius=FLAT_FRACTION * a, slope=SLOPE)
+    return CaseScene(
+        name=scene_name(label, ratio),
+        parameters={"layer": label, "a_over_h": ratio, "b_over_a": FLAT_FRACTION},
+        scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii(values=np.array([a]))),
+        sampling=Sampling(ring_edges=edges(a, RINGS)),
+    )
+
+
+def half_space_scene(flat: float) -> CaseScene:
+    """Return the scene on the half-space with b/a = ``flat``."""
+    a = THICKNESS
+    cone = TruncatedCone(flat_radius=flat * a, slope=SLOPE)
+    return CaseScene(
+        name=f"half-space b/a={flat:g}",
+        parameters={"layer": "half-space", "a_over_h": 0.0, "b_over_a": flat},
+        scene=Scene(layer=half_space(), indenter=cone, loading=ContactRadii(values=np.array([a]))),
+    )
+
+
+LAYER_SCENES = tuple(cone_scene(label, ratio) for label in LAYERS for ratio in RATIOS)
+HALF_SPACE_SCENES = tuple(half_space_scene(flat) for flat in HALF_SPACE_FLATS)
+ON_LAYERS = tuple(scene.name for scene in LAYER_SCENES)
+ON_HALF_SPACE = tuple(scene.name for scene in HALF_SPACE_SCENES)
+
+# -- Fig. 7: g(x; h) is the relation of depth and contact radius, so every method can draw it --------------------------
+
+FIGURE_LAYERS = ("unbonded", "bonded nu=0.45", "bonded nu=0.5")
+LINE_RADII = 1 - (1 - FLAT_FRACTION) * np.linspace(0, 1, 40, endpoint=False)[::-1] ** 2
+SYMBOL_RADII = np.array([0.6, 0.75, 0.9])
+
+
+def profile_scene(label: str, ratio: float, role: str, use: MethodUse, radii: NDArray[np.float64]) -> CaseScene:
+    """Return a scene that walks the contact radius from b to a."""
+    base = cone_scene(label, ratio)
+    scene = base.scene.replace(loading=ContactRadii(values=ratio * THICKNESS * radii))
+    name = f"{base.name}, {role}"
+    return CaseScene(name=name, parameters=base.parameters, scene=scene, methods=(use,))
+
+
+FIGURE_SCENES = tuple(
+    profile_scene(label, ratio, role, use, radii)
+    for label in FIGURE_LAYERS
+    for ratio in RATIOS
+    for role, use, radii in (("line", MDR, LINE_RADII), ("symbols", QUICK_FEM, SYMBOL_RADII))
+)
+
+
+def figure_7(case: Case, answers: Answers) -> Iterator[Figure]:
+    """Fig. 7 from both methods: g/f(a) over x/a and p/p_mean over r/a, one row of panels a layer."""
+    panels = [panel(case, answers, label) for label in FIGURE_LAYERS for panel in (_profile_panel, _pressure_panel)]
+    yield Figure(
+        name="fig_7",
+        title="Fig. 7: MDR profile and contact pressure of a truncated cone, b/a = 0.5",
+        caption="Lines: MDR. Symbols: finite elements. Pressure over its mean.",
+        panels=tuple(panels),
+    )
+
+
+def _profile_panel(case: Case, answers: Answers, label: str) -> Panel:
+    series = []
+    for ratio in RATIOS:
+        for role, radii in (("line", LINE_RADII), ("symbols", SYMBOL_RADII)):
+            scene = case.scene(f"{scene_name(label, ratio)}, {role}")
+            run = answers.of(case.task(scene, scene.methods[0]))
+            series += [_profile(run, ratio, radii)] if run.solved else []
+    return Panel(title=label, x_label=r"$x/a$", y_label=r"$g(x)/f(a)$", series=tuple(series))
+
+
+def _profile(run: SceneRun, ratio: float, radii: NDArray[np.float64]) -> Series:
+    depth = np.array(run.quantity("indentation_depth").values)
+    height = SLOPE * (1 - FLAT_FRACTION) * ratio * THICKNESS  # f(a)
+    return Series(
+        label=f"{run.method} a/h={ratio:g}",
+        method=run.method,
+        group=f"a/h={ratio:g}",
+        x=tuple(radii.tolist()),
+        y=tuple((depth / height).tolist()),
+    )
+
+
+def _pressure_panel(case: Case, answers: Answers, label: str) -> Panel:
+    series = []
+    for ratio in RATIOS:
+        scene = case.scene(scene_name(label, ratio))
+        for use in case.methods_of(scene):
+            run = answers.of(case.task(scene, use))
+            series += [_pressure(run, ratio)] if run.solved and run.curves else []
+    return Panel(title=label, x_label=r"$r/a$", y_label=r"$p/p_\mathrm{m}$", series=tuple(series))
+
+
+def _pressure(run: SceneRun, ratio: float) -> Series:
+    a = ratio * THICKNESS
+    mean = run.quantity("normal_force").values[-1] / (np.pi * a**2)
+    curve = run.curve("pressure")
+    every = 1 if run.method == "mdr" else 3
+    return Series(
+        label=f"{run.method} a/h={ratio:g}",
+        method=run.method,
+        group=f"a/h={ratio:g}",
+        x=tuple(r / a for r in curve.x[::every]),
+        y=tuple(p / mean for p in curve.y[::every]),
+    )
+
+
+# -- claims ------------------------------------------------------------------------------------------------------------
+
+
+def half_space_depth(scene: Scene) -> list[float]:
+    """delta = a tan(theta) arccos(b/a)."""
+    a, b = _radii(scene)
+    return [a * SLOPE * float(np.arccos(b / a))]
+
+
+def half_space_force(scene: Scene) -> list[float]:
+    """F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)]."""
+    a, b = _radii(scene)
+    shape = np.arccos(b / a) + b / a * np.sqrt(1 - (b / a) ** 2)
+    return [scene.layer.contact_modulus * a**2 * SLOPE * float(shape)]
+
+
+def _radii(scene: Scene) -> tuple[float, float]:
+    return float(prescribed_radii(scene)[-1]), scene.indenter.flat_radius
+
+
+TABULATED: dict[tuple[str, float], tuple[float, float]] = {  # delta/(a tan), F/(E* a^2 tan)
+    ("bonded nu=0.5", 0.1): (0.964788, 1.481398),
+    ("bonded nu=0.5", 1.0): (0.556930, 2.096970),
+    ("bonded nu=0.5", 2.0): (0.440614, 3.911228),
+    ("bonded nu=0.5", 5.0): (0.333939, 15.328170),
+    ("bonded nu=0.45", 1.0): (0.596365, 2.007889),
+    ("bonded nu=0.45", 2.0): (0.502610, 3.420101),
+    ("bonded nu=0.45", 5.0): (0.454734, 9.592890),
+    ("unbonded", 1.0): (0.684694, 1.755223),
+    ("unbonded", 2.0): (0.592168, 2.498001),
+    ("unbonded", 5.0): (0.535528, 5.162418),
+}
+
+
+def tabulated_depths() -> dict[str, tuple[float, ...]]:
+    """Return the tabulated depths [m] by scene."""
+    return {scene_name(*key): (row[0] * key[1] * THICKNESS * SLOPE,) for key, row in TABULATED.items()}
+
+
+def tabulated_forces() -> dict[str, tuple[float, ...]]:
+    """Return the tabulated forces [N] by scene."""
+    return {
+        scene_name(label, ratio): (row[1] * layer(label).contact_modulus * (ratio * THICKNESS) ** 2 * SLOPE,)
+        for (label, ratio), row in TABULATED.items()
+    }
+
+
+SNEDDON = Reason(
+    because="linear elasticity on the half-space, solved by Sneddon",
+    derived_from="MDR: quadrature to 1e-12 with two digits to spare; FEM: ten times its accuracy of 1e-6",
+    origin=Origin.CLOSED_FORM,
+    source="Popov, Hess, Willert: Handbook of Contact Mechanics (2019), truncated cone",
+)
+DIRECT_SOLUTION = Reason(
+    because="the same Fredholm equation, solved radius by radius for the profile instead of factorised",
+    derived_from="half a unit of the sixth decimal over the smallest value, 0.33; FEM adds its 1e-6",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="direct Nystrom solution with the rule split at r = b, twelve digits stable over the node count",
+)
+FINITE_ELEMENTS = Reason(
+    because="both solve the same linear elastic layer; they share no input",
+    derived_from="ten times the finite element accuracy of 1e-6; MDR's own error is below 1e-9",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="axisymmetric mixed finite elements",
+)
+FINITE_ELEMENT_FIELDS = replace(
+    FINITE_ELEMENTS,
+    derived_from="the logarithmic singularity at r = b and the root at r = a limit finite elements to about 5e-4",
+)
+LINEARITY = Reason(
+    because="the layer is linear elastic and the indenter rigid",
+    derived_from="round-off; the modulus only scales the answer",
+    origin=Origin.CLOSED_FORM,
+    source="linearity",
+)
+DIMENSIONS = Reason(
+    because="mechanics knows no metre",
+    derived_from="round-off of a factor that is no power of two, magnified where meshes are made",
+    origin=Origin.CLOSED_FORM,
+    source="dimensional analysis",
+)
+UNBONDED_KERNEL = Reason(
+    because="at given E* the kernel of the unbonded layer has no nu",
+    derived_from="MDR: the same equation; FEM: another problem with another nu, ten times its accuracy of 1e-6",
+    origin=Origin.CLOSED_FORM,
+    source="Eq. (29)",
+)
+ONE_OF_EACH = tuple(scene_name(label, 1.0) for label in LAYERS)
+
+EXACT = (
+    Exact(
+        name="half-space depth",
+        quantity="indentation_depth",
+        scenes=ON_HALF_SPACE,
+        expected=half_space_depth,
+        tolerance=1e-10,
+        tolerances={"fem": 1e-5},
+        reason=SNEDDON,
+    ),
+    Exact(
+        name="half-space force",
+        quantity="normal_force",
+        scenes=ON_HALF_SPACE,
+        expected=half_space_force,
+        tolerance=1e-10,
+        tolerances={"fem": 1e-5},
+        reason=SNEDDON,
+    ),
+    Exact(
+        name="layer depth",
+        quantity="indentation_depth",
+        expected=tabulated_depths(),
+        tolerance=1.6e-6,
+        tolerances={"fem": 3e-6},
+        reason=DIRECT_SOLUTION,
+    ),
+    Exact(
+        name="layer force",
+        quantity="normal_force",
+        expected=tabulated_forces(),
+        tolerance=1.6e-6,
+        tolerances={"fem": 3e-6},
+        reason=DIRECT_SOLUTION,
+    ),
+)
+
+AGREEMENTS = (
+    *(
+        Agreement(
+            name=f"{quantity.replace('_', ' ')} agrees",
+            quantity=quantity,
+            scenes=ON_LAYERS,
+            fast="mdr",
+            reference="fem",
+            tolerance=1e-5,
+            reason=FINITE_ELEMENTS,
+        )
+        for quantity in ("indentation_depth", "normal_force", "contact_stiffness")
+    ),
+    FieldAgreement(
+        name="pressure agrees",
+        quantity="pressure",
+        norm="weighted L2",
+        scenes=ON_LAYERS,
+        fast="mdr",
+        reference="fem",
+        tolerance=2e-3,
+        reason=FINITE_ELEMENT_FIELDS,
+    ),
+    FieldAgreement(
+        name="ring loads agree",
+        quantity="pressure",
+        norm="ring loads",
+        scenes=ON_LAYERS,
+        fast="mdr",
+        reference="fem",
+        tolerance=2e-3,
+        reason=FINITE_ELEMENT_FIELDS,
+    ),
+)
+
+INVARIANTS = (
+    Twin(
+        name="doubling E doubles F",
+        quantity="normal_force",
+        scenes=ONE_OF_EACH,
+        change=doubled_modulus,
+        factors={"indentation_depth": 1.0, "normal_force": 2.0, "contact_stiffness": 2.0},
+        tolerance=1e-12,
+        reason=LINEARITY,
+    ),
+    Twin(
+        name="the unit system does not matter",
+        quantity="normal_force",
+        scenes=ONE_OF_EACH,
+        change=in_millimetres,
+        factors={"indentation_depth": 1e3, "normal_force": 1.0, "contact_stiffness": 1e-3},
+        tolerance=1e-9,
+        reason=DIMENSIONS,
+    ),
+    Twin(
+        name="unbonded layers do not see nu",
+        quantity="normal_force",
+        scenes=tuple(scene_name("unbonded", ratio) for ratio in (1.0, 5.0)),
+        change=other_poissons_ratio,
+        factors={"indentation_depth": 1.0, "normal_force": 1.0, "contact_stiffness": 1.0},
+        tolerance=1e-12,
+        tolerances={"fem": 1e-5},
+        reason=UNBONDED_KERNEL,
+    ),
+)
+
+COST = WorkStudy(
+    scene=scene_name("bonded nu=0.45", 2.0),
+    quantity="normal_force",
+    ladder=(
+        MethodUse(label="default", method="mdr"),
+        *(
+            MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
+            for accuracy in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7)
+        ),
+    ),
+    reference=MethodUse(label="default", method="mdr"),
+    fast_method="mdr",
+    baseline_method="fem",
+)
+
+CASE = Case(
+    name="truncated_cone",
+    title="Indentation by a truncated cone",
+    question="Do MDR and finite elements agree on a profile with a kink, from the half-space to the thin layer?",
+    equations=("Eq. (4)", "Eq. (8)", "Eq. (9)", "Eq. (35)", "Fig. 7"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*LAYER_SCENES, *HALF_SPACE_SCENES, *FIGURE_SCENES),
+    methods=(MDR, FEM),
+    claims=(*EXACT, *AGREEMENTS, *INVARIANTS),
+    work=(COST,),
+    figures=(figure_7,),
+)

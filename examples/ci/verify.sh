@@ -1,0 +1,20 @@
+#!/bin/sh
+# Verification in one line for any CI system:
+#
+#     sh examples/ci/verify.sh build/verification --suite ci --jobs 2
+#
+# First word: folder of the results. All others: options of `contact-verify run`.
+# Exit code: that of contact-verify (0 passed, 1 a check failed, 2 interrupted, 3 internal error, 4 usage, 5 nothing ran).
+# Keep these files of the folder as artefacts: report.html (open it in a browser), summary.md, junit.xml, results.json.
+set -u
+out=${1:?"usage: verify.sh FOLDER [options of contact-verify run]"}
+shift
+
+contact-verify run --quiet --out "$out" "$@"
+code=$?
+
+# On GitHub the summary appears on the page of the job.
+if [ -n "${GITHUB_STEP_SUMMARY:-}" ] && [ -f "$out/summary.md" ]; then
+    cat "$out/summary.md" >> "$GITHUB_STEP_SUMMARY"
+fi
+exit $code

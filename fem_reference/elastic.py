@@ -1,0 +1,122 @@
+"""Elastic frictionless contact at prescribed radius, or of a flat punch at prescribed depth or force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from fem_reference.certified import CertifiedContact
+from fem_reference.surface_fields import FemFields, SurfaceState
+
+Array = NDArray[np.float64]
+
+ContactSolver = Callable[[Scene, float, StageLog], CertifiedContact]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibrium:
+    """One state of a path, in units of its contact radius and of E*.
+
+    Attributes:
+        contact: the solved contact radius with its error bars.
+        depth: delta / a.
+        force: F / (E* a^2).
+        error: relative error of each reported quantity.
+    """
+
+    contact: CertifiedContact
+    depth: float
+    force: float
+    error: Mapping[str, float]
+
+
+def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
+    """The state in which the pressure vanishes at the contact edge."""
+    answer, error = contact.answer, contact.error
+    if answer.smooth_depth <= 0 or answer.smooth_force <= 0:
+        raise InvalidInput(
+            f"the profile presses nowhere at contact radius {contact.indenter.contact_radius:g} m: its slope is not "
+            "positive there; prescribe a radius beyond its flat end"
+        )
+    reported = {
+        "indentation_depth": error["smooth_depth"],
+        "normal_force": error["smooth_force"],
+        "contact_stiffness": error["stiffness"],
+        "pressure": contact.pressure_error,
+    }
+    return Equilibrium(contact=contact, depth=answer.smooth_depth, force=answer.smooth_force, error=reported)
+
+
+def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibrium:
+    """A flat punch at depth / a; its pressure error is measured with the weight (1 - r^2/a^2), which its edge needs."""
+    reported = {
+        "indentation_depth": 0.0,
+        "normal_force": contact.error["stiffness"],
+        "contact_stiffness": contact.error["stiffness"],
+        "pressure": contact.pressure_error,
+    }
+    return Equilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
+
+
+def elastic_equilibria(scene: Scene, solve: ContactSolver, log: StageLog) -> list[Equilibrium]:
+    """Equilibria of a scene with prescribed radii, or with a flat punch."""
+    loading = scene.loading
+    if isinstance(loading, ContactRadii):
+        return [smooth_equilibrium(solve(scene, float(a), log)) for a in loading.values]
+    assert_flat_punch = scene.indenter
+    if not isinstance(assert_flat_punch, FlatPunch):
+        raise InvalidInput(f"loading = {type(loading).__name__}: needs the unknown contact set")
+    return _flat_punch_path(scene, solve(scene, assert_flat_punch.radius, log))
+
+
+def _flat_punch_path(scene: Scene, contact: CertifiedContact) -> list[Equilibrium]:
+    a = contact.indenter.contact_radius
+    if isinstance(scene.loading, IndentationDepths):
+        return [flat_punch_equilibrium(contact, depth / a) for depth in scene.loading.values]
+    if isinstance(scene.loading, NormalForces):
+        unit = scene.layer.contact_modulus * a**2 * contact.answer.stiffness
+        return [_known_force(flat_punch_equilibrium(contact, force / unit)) for force in scene.loading.values]
+    raise InvalidInput(f"loading = {type(scene.loading).__name__}: a flat punch takes depths or forces")
+
+
+def _known_force(state: Equilibrium) -> Equilibrium:
+    """Depth carries the error when the force is prescribed."""
+    error = dict(state.error) | {"indentation_depth": state.error["normal_force"], "normal_force": 0.0}
+    return Equilibrium(contact=state.contact, depth=state.depth, force=state.force, error=error)
+
+
+def contact_path(
+    scene: Scene,
+    equilibria: Sequence[Equilibrium],
+    settings: Mapping[str, bool | int | float | str | None],
+    log: StageLog,
+    notes: tuple[str, ...] = (),
+) -> ContactPath:
+    """The path in SI units."""
+    modulus = scene.layer.contact_modulus
+    radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
+    stiffness = np.array([state.contact.answer.stiffness for state in equilibria])
+    states = tuple(
+        SurfaceState(state.contact.answer, state.contact.indenter.contact_radius, state.depth, modulus)
+        for state in equilibria
+    )
+    names = equilibria[0].error
+    meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))
+    return ContactPath(
+        scene=scene,
+        method="fem",
+        settings={**settings, "mesh": meshes},
+        error_estimate={name: np.array([state.error[name] for state in equilibria]) for name in names},
+        cost=log.cost(unknowns=max(state.contact.answer.unknowns for state in equilibria)),
+        stages=log.records,
+        notes=notes,
+        contact_radius=radius,
+        indentation_depth=radius * np.array([state.depth for state in equilibria]),
+        normal_force=modulus * radius**2 * np.array([state.force for state in equilibria]),
+        contact_stiffness=modulus * radius * stiffness,
+        fields=FemFields(states),
+    )

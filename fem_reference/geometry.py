@@ -1,0 +1,156 @@
+"""Graded triangle meshes of a layer's cross-section in (r, z), made by gmsh in memory.
+
+The section is 0 <= r <= outer radius, 0 <= z <= thickness with z into the layer.  Its boundaries have names:
+``axis`` (r = 0), ``top`` (z = 0), ``base`` (z = thickness), ``outer`` (r = outer radius).
+gmsh appears in this module only.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from skfem import MeshTri
+
+Array = NDArray[np.float64]
+
+MISSING_LIBRARIES = (
+    "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
+    "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1"
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Grading:
+    """Cell sizes: ``min(max_cell, cell_i + growth * distance_i)`` over the graded points (or the graded strip) i.
+
+    Attributes:
+        points: radii on the top that become mesh vertices, with the cell size wished there.
+        strip: (radius, cell): the top from the axis to ``radius`` is meshed with cells of that one size.
+        growth: increase of the cell size per distance.
+        max_cell: largest cell size.
+    """
+
+    points: tuple[tuple[float, float], ...] = ()
+    strip: tuple[float, float] | None = None
+    growth: float = 0.25
+    max_cell: float = np.inf
+
+    def size_expression(self) -> str:
+        """Cell size as a function of gmsh's x = r, y = z."""
+        sizes = [f"{cell:.17g}+{self.growth:.17g}*Sqrt((x-{r:.17g})^2+y^2)" for r, cell in self.points]
+        if self.strip is not None:
+            radius, cell = self.strip
+            beyond = f"(0.5*(x-{radius:.17g}+Abs(x-{radius:.17g})))"
+            sizes.append(f"{cell:.17g}+{self.growth:.17g}*Sqrt({beyond}^2+y^2)")
+        bounds = sizes if np.isinf(self.max_cell) else [f"{self.max_cell:.17g}", *sizes]
+        expression = bounds[-1]
+        for bound in reversed(bounds[:-1]):
+            expression = f"Min({bound},{expression})"
+        return expression
+
+
+@dataclass(frozen=True)
+class LayerMesh:
+    """A triangle mesh of the section; ``fingerprint`` identifies its points and triangles."""
+
+    mesh: MeshTri
+    thickness: float
+    outer_radius: float
+    fingerprint: str
+
+
+@cache
+def _gmsh() -> Any:
+    """The gmsh module, initialised once per process."""
+    try:
+        import gmsh  # noqa: PLC0415 - a missing system library shall give one clear message, at first use
+    except OSError as reason:
+        raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
+    gmsh.initialize([], interruptible=False)
+    for option, value in {
+        "General.Terminal": 0,
+        "General.NumThreads": 1,
+        "Mesh.Algorithm": 6,
+        "Mesh.RandomSeed": 1,
+        "Mesh.MeshSizeExtendFromBoundary": 0,
+        "Mesh.MeshSizeFromPoints": 0,
+        "Mesh.MeshSizeFromCurvature": 0,
+        "Mesh.MeshSizeMin": 0,
+    }.items():
+        gmsh.option.setNumber(option, value)
+    return gmsh
+
+
+def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> LayerMesh:
+    """Mesh the section of a layer, with vertices at the graded points of the top.
+
+    Args:
+        thickness: layer thickness, any unit of length.
+        outer_radius: radius of the section, same unit; beyond every graded point.
+        grading: cell sizes.
+
+    Returns:
+        The mesh with named boundaries.
+    """
+    gmsh = _gmsh()
+    gmsh.model.add("layer")
+    try:
+        _draw_section(gmsh.model.geo, thickness, outer_radius, [r for r, _ in grading.points])
+        field = gmsh.model.mesh.field
+        field.add("MathEval", 1)
+        field.setString(1, "F", grading.size_expression())
+        field.setAsBackgroundMesh(1)
+        gmsh.model.mesh.generate(2)
+        points, triangles = _mesh_arrays(gmsh.model.mesh)
+    finally:
+        gmsh.model.remove()
+    return named_layer_mesh(points, triangles)
+
+
+def _draw_section(geo: Any, thickness: float, outer_radius: float, top_radii: list[float]) -> None:
+    """One rectangle whose top carries the marked radii as vertices; long sides are split, for gmsh's line meshing."""
+    last = max([*top_radii, 0.0])
+    radii = sorted({0.0, *top_radii, *_far_stations(last, outer_radius), outer_radius})
+    depths = sorted(_far_stations(last, thickness), reverse=True)
+    corners = [geo.addPoint(r, 0.0, 0.0) for r in radii]
+    corners += [geo.addPoint(outer_radius, thickness, 0.0), geo.addPoint(0.0, thickness, 0.0)]
+    corners += [geo.addPoint(0.0, z, 0.0) for z in depths]
+    edges = [geo.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
+    geo.addPlaneSurface([geo.addCurveLoop(edges)])
+    geo.synchronize()
+
+
+def _far_stations(start: float, end: float) -> list[float]:
+    """Every hundredfold of ``start`` well before ``end``."""
+    stations = []
+    while start > 0 and 100 * start < 0.1 * end:
+        start *= 100
+        stations.append(start)
+    return stations
+
+
+def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
+    """Points (2, n) and triangles (3, m)."""
+    tags, coordinates, _ = gmsh_mesh.getNodes()
+    _, nodes = gmsh_mesh.getElementsByType(2)
+    position = np.empty(int(tags.max()) + 1, dtype=np.int64)
+    position[tags] = np.arange(len(tags))
+    points = np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2].T)
+    return points, np.ascontiguousarray(position[nodes].reshape(-1, 3).T)
+
+
+def named_layer_mesh(points: Array, triangles: NDArray[np.int64]) -> LayerMesh:
+    """Name the four boundaries of a rectangular section given by points (2, n) and triangles (3, m)."""
+    mesh = MeshTri(points, triangles)
+    outer_radius, thickness = points.max(axis=1)
+    r, z = mesh.p[:, mesh.facets]
+    on_boundary = np.isin(np.arange(mesh.facets.shape[1]), mesh.boundary_facets())
+    sides = {"axis": r == 0, "top": z == 0, "base": z == thickness, "outer": r == outer_radius}
+    boundaries = {name: np.flatnonzero(side.all(axis=0) & on_boundary) for name, side in sides.items()}
+    digest = hashlib.sha256(mesh.p.tobytes() + mesh.t.tobytes()).hexdigest()
+    return LayerMesh(mesh.with_boundaries(boundaries), float(thickness), float(outer_radius), digest[:16])

@@ -1,0 +1,115 @@
+"""`Fem`: the finite element method as one of the interchangeable methods."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, replace
+from typing import ClassVar, Self
+
+from contact import (
+    ContactPath,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    Scene,
+    StageLog,
+    Supported,
+    Unsupported,
+    UnsupportedSceneError,
+)
+from fem_reference.adaptive import settings_for, solve_to_accuracy
+from fem_reference.certified import CertifiedContact, solve_certified_contact
+from fem_reference.discretisation import Discretisation
+from fem_reference.elastic import contact_path, elastic_equilibria
+from fem_reference.indenter import ScaledIndenter
+from fem_reference.linear_solver import BACKENDS
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fem:
+    """Axisymmetric finite elements: mixed P_k-P_(k-1) on graded triangles, at every Poisson's ratio.
+
+    Attributes:
+        accuracy: relative accuracy wanted in depth, force, stiffness and its derivative; the other settings are then
+            chosen (and refined until the estimated errors hold), and the values given for them are not used.
+        order: degree k of the displacement, 2, 3 or 4.
+        edge_cell: cell at the contact edge, relative to the smallest length there.
+        growth: growth of cells per distance, and largest cell per thickness.
+        truncation: relative change of the stiffness allowed to the outer edge of the mesh.
+        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        solver: "superlu", "superlu-pivoting" or "mumps".
+    """
+
+    name: ClassVar[str] = "fem"
+
+    accuracy: float | None = None
+    order: int = 4
+    edge_cell: float = 1e-7
+    growth: float = 0.5
+    truncation: float = 1e-8
+    half_space_thickness: float = 1e8
+    solver: str = "superlu"
+
+    def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
+        if self.accuracy is not None and not 1e-9 <= self.accuracy <= 0.1:
+            raise InvalidInput(f"accuracy must lie in [1e-9, 0.1], got {self.accuracy}")
+        if self.solver not in BACKENDS:
+            raise InvalidInput(f"solver must be one of {', '.join(BACKENDS)}, got {self.solver!r}")
+        _ = self.discretisation
+
+    @property
+    def discretisation(self) -> Discretisation:
+        """The settings that make meshes."""
+        if self.accuracy is not None:
+            return settings_for(self.accuracy)
+        return Discretisation(
+            order=self.order,
+            edge_cell=self.edge_cell,
+            growth=self.growth,
+            truncation=self.truncation,
+            half_space_thickness=self.half_space_thickness,
+        )
+
+    def supports(self, scene: Scene) -> Supported | Unsupported:
+        """Whether this method models the scene."""
+        if scene.effects:
+            names = ", ".join(type(effect).__name__ for effect in scene.effects)
+            return Unsupported(f"fem does not model {names}")
+        if isinstance(scene.loading, ContactRadii) or (
+            isinstance(scene.indenter, FlatPunch) and isinstance(scene.loading, IndentationDepths | NormalForces)
+        ):
+            return Supported()
+        return Unsupported(f"fem does not model loading {type(scene.loading).__name__} of this indenter")
+
+    def solve(self, scene: Scene) -> ContactPath:
+        """Depth, force, stiffness and surface fields with their error estimates.
+
+        Raises:
+            UnsupportedSceneError: the scene asks for what `supports` denies.
+            NotConvergedError: a linear solve or the requested accuracy was missed.
+        """
+        support = self.supports(scene)
+        if isinstance(support, Unsupported):
+            raise UnsupportedSceneError(support.reason)
+        log = StageLog()
+        return contact_path(scene, elastic_equilibria(scene, self.solve_contact, log), asdict(self), log)
+
+    def refined(self) -> Self:
+        """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
+
+        With ``accuracy`` set, that is divided by 2^(2k).
+        """
+        if self.accuracy is not None:
+            return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
+        return replace(self, **asdict(self.discretisation.refined()))
+
+    def solve_contact(self, scene: Scene, contact_radius: float, log: StageLog) -> CertifiedContact:
+        """One contact radius [m] with error bars."""
+        indenter = ScaledIndenter(scene.indenter, contact_radius)
+
+        def attempt(settings: Discretisation) -> CertifiedContact:
+            return solve_certified_contact(scene.layer, indenter, settings, self.solver, log)
+
+        return attempt(self.discretisation) if self.accuracy is None else solve_to_accuracy(attempt, self.accuracy)

@@ -1,0 +1,87 @@
+"""Piecewise polynomials on the top surface: their mass matrix, values, and the pressure whose loads they carry."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import splu
+
+Array = NDArray[np.float64]
+
+
+@cache
+def _lagrange(degree: int) -> Array:
+    """Coefficients (power, node) of the Lagrange polynomials on equispaced nodes of [0, 1]."""
+    return np.asarray(np.linalg.inv(np.vander(np.linspace(0, 1, degree + 1), increasing=True)))
+
+
+@dataclass(frozen=True)
+class TraceSpace:
+    """Continuous piecewise polynomials of ``degree`` along the top.
+
+    Attributes:
+        radii: r of all nodes, increasing; each cell has ``degree + 1`` equispaced nodes and shares its end nodes.
+        degree: polynomial degree.
+    """
+
+    radii: Array
+    degree: int
+
+    @property
+    def vertices(self) -> Array:
+        """Cell ends."""
+        return self.radii[:: self.degree]
+
+    def basis(self, t: Array) -> Array:
+        """The degree + 1 basis functions at local coordinates t in [0, 1], shape (..., node)."""
+        return np.asarray(np.vander(t.ravel(), self.degree + 1, increasing=True) @ _lagrange(self.degree)).reshape(
+            *t.shape, -1
+        )
+
+    def evaluate(self, values: Array, radius: Array) -> Array:
+        """Function with nodal ``values`` at radii within the trace; zero beyond it."""
+        vertices = self.vertices
+        cell = np.clip(np.searchsorted(vertices, radius, side="right") - 1, 0, len(vertices) - 2)
+        t = (radius - vertices[cell]) / (vertices[cell + 1] - vertices[cell])
+        nodes = cell[:, None] * self.degree + np.arange(self.degree + 1)
+        inside = (radius >= vertices[0]) & (radius <= vertices[-1])
+        return np.where(inside, np.sum(self.basis(t) * values[nodes], axis=1), 0.0)
+
+    def gauss(self, points: int) -> tuple[Array, Array]:
+        """Radii (cell, point) and weights ``2 pi r dr`` of a Gauss rule on every cell."""
+        x, w = np.polynomial.legendre.leggauss(points)
+        length = np.diff(self.vertices)[:, None]
+        radius = self.vertices[:-1, None] + length * (x + 1) / 2
+        return radius, 2 * np.pi * radius * length * w / 2
+
+    def moments(self, function_values: Array, points: int) -> Array:
+        """``int f v 2 pi r dr`` for every basis function v, f given at ``gauss(points)``."""
+        _, weights = self.gauss(points)
+        x, _ = np.polynomial.legendre.leggauss(points)
+        local = (weights * function_values) @ self.basis((x + 1) / 2)
+        loads = np.bincount(self._cell_nodes.ravel(), local.ravel(), minlength=len(self.radii))
+        return np.asarray(loads, dtype=np.float64)
+
+    @property
+    def _cell_nodes(self) -> NDArray[np.int64]:
+        return np.arange(0, len(self.radii) - 1, self.degree)[:, None] + np.arange(self.degree + 1)
+
+    def mass_matrix(self) -> coo_array:
+        """``int u v 2 pi r dr``."""
+        points = self.degree + 2
+        x, _ = np.polynomial.legendre.leggauss(points)
+        basis = self.basis((x + 1) / 2)
+        local = np.einsum("cq,qi,qj->cij", self.gauss(points)[1], basis, basis)
+        nodes = self._cell_nodes
+        rows = np.broadcast_to(nodes[:, :, None], local.shape)
+        columns = np.broadcast_to(nodes[:, None, :], local.shape)
+        size = len(self.radii)
+        return coo_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+
+    def recover(self, nodal_forces: Array) -> Array:
+        """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery."""
+        return np.asarray(splu(self.mass_matrix().tocsc()).solve(nodal_forces))

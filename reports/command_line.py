@@ -1,0 +1,218 @@
+"""`contact-verify`: verification runs, reports, gates, and single answers with error bars, from the shell.
+
+Only declarations stand here; what a command needs is imported when it is called, so that help and errors come at once.
+"""
+
+import sys
+import traceback
+from enum import StrEnum
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+EPILOG = (
+    "Exit codes: 0 all checks passed; 1 a check failed; 2 interrupted; 3 internal error; 4 wrong usage, scene or file; "
+    "5 nothing ran."
+)
+INTERRUPTED, INTERNAL_ERROR, USAGE = 2, 3, 4
+USAGE_ERROR: Any = typer.BadParameter.__base__  # every complaint of the option parser
+
+app = typer.Typer(
+    name="contact-verify",
+    help="Contact of rigid indenters with elastic, adhesive and viscoelastic layers: a fast method (MDR), "
+    "an independent finite element model, and how far they agree.",
+    epilog=EPILOG,
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+)
+
+
+class Suite(StrEnum):
+    """Suites of cases."""
+
+    CI = "ci"
+    NIGHTLY = "nightly"
+
+
+Cases = Annotated[
+    list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases by name; all of the suite if none.")
+]
+Out = Annotated[Path, typer.Option(help="Folder of the run: results.json, results.h5, report.html, figures.")]
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
+
+
+EXAMPLE_SCENE = """\
+# A truncated cone pressed 2, 5 and 10 micrometres into a bonded layer, one millimetre thick; SI units.
+[layer]
+thickness = 1e-3
+youngs_modulus = 1e6
+poissons_ratio = 0.45
+support = "bonded"
+
+[indenter]
+kind = "truncated_cone"
+flat_radius = 0.5e-3
+slope = 0.1
+
+[loading]
+kind = "indentation_depths"
+values = [2e-6, 5e-6, 10e-6]
+"""
+
+
+def _print_example(wanted: bool) -> None:
+    if wanted:
+        typer.echo(EXAMPLE_SCENE, nl=False)
+        raise typer.Exit
+
+
+EXAMPLE = typer.Option("--example", is_eager=True, callback=_print_example, help="Print an example scene and stop.")
+
+
+@app.command("list")
+def list_cases(suite: Annotated[Suite | None, typer.Option(help="Only the cases of this suite.")] = None) -> None:
+    """List the cases with their question, suites, methods and number of claims."""
+    from reports.commands.registry import list_cases as run_command  # noqa: PLC0415
+
+    run_command(suite or "")
+
+
+@app.command()
+def show(case: Annotated[str, typer.Argument(help="Name of a case; see [bold]list[/bold].")]) -> None:
+    """Show a case as the short paper it is: question, equations, scenes, methods, claims with reason and origin."""
+    from reports.commands.registry import show_case  # noqa: PLC0415
+
+    show_case(case)
+
+
+@app.command()
+def validate() -> None:
+    """Load every case and say what is wrong: duplicate names, unknown effects, claims without a reason."""
+    from reports.commands.registry import validate_cases  # noqa: PLC0415
+
+    validate_cases()
+
+
+@app.command("run")
+def run_suite(
+    cases: Cases = None,
+    *,
+    suite: Annotated[Suite | None, typer.Option(help="Only cases of this suite.")] = None,
+    method: Annotated[
+        list[str] | None,
+        typer.Option(help="Only these methods; claims, timings and figures that need others are left out. Repeatable."),
+    ] = None,
+    jobs: Annotated[int, typer.Option(help="Solutions at a time; timings always run alone.")] = 2,
+    out: Out = Path("build/verification"),
+    resume: Annotated[bool, typer.Option("--resume", help="Keep finished solutions of an earlier run in OUT.")] = False,
+    executor: Annotated[
+        str, typer.Option(help="processes, serial, or the address of a Dask scheduler (tcp://host:port).")
+    ] = "processes",
+    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds a single solution may take; 0: no limit.")] = 0.0,
+    timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
+    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Run cases through every method, judge their claims, write the report.
+
+    Ctrl-C leaves a valid partial report; --resume goes on from there.
+    """
+    from cases.runner import RunOptions  # noqa: PLC0415
+    from reports.commands.run import run  # noqa: PLC0415
+
+    options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
+    return run(cases or [], methods=method or [], options=options, executor=executor, quiet=quiet, strict=strict)
+
+
+@app.command()
+def solve(
+    scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
+    *,
+    method: Annotated[str, typer.Option(help="mdr, fem, bem, integral_equation, or a registered method.")] = "mdr",
+    accuracy: Annotated[
+        float | None, typer.Option(help="Relative accuracy of the force; chooses the settings.")
+    ] = None,
+    write: Annotated[
+        list[Path] | None,
+        typer.Option("--write", "-w", help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. May be repeated."),
+    ] = None,
+    example: Annotated[bool, EXAMPLE] = False,
+) -> None:
+    """Solve one scene: force, depth, contact radius and stiffness, each with its uncertainty.
+
+    An example to start from: contact-verify solve --example > scene.toml
+    """
+    from reports.commands.solve import solve as run_command  # noqa: PLC0415
+
+    run_command(scene, method=method, accuracy=accuracy, outputs=write or [])
+
+
+@app.command()
+def explain(
+    key: Annotated[str, typer.Argument(help="Content key of a finished solution, from results.json or OUT/tasks.")],
+    out: Out = Path("build/verification"),
+) -> None:
+    """Say what has changed since a solution was stored: scene, settings, source files, versions."""
+    from reports.commands.explain import explain as run_command  # noqa: PLC0415
+
+    run_command(key, out)
+
+
+@app.command()
+def schema() -> None:
+    """Print the JSON Schema of results.json."""
+    import json  # noqa: PLC0415
+
+    from cases.results_files import json_schema  # noqa: PLC0415
+
+    typer.echo(json.dumps(json_schema(), indent=1, sort_keys=True))
+
+
+@app.command()
+def report(
+    run: Annotated[Path, typer.Argument(help="Folder of a finished or interrupted run.")],
+    other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
+) -> None:
+    """Build the pages of a run again without computing; with two runs, compare the second with the first."""
+    from reports.commands.report import compare_runs, rebuild  # noqa: PLC0415
+
+    if other is None:
+        rebuild(run)
+    else:
+        compare_runs(run, other)
+
+
+def main() -> None:
+    """Entry point of the console command; every way to end has its exit code."""
+    sys.exit(run(sys.argv[1:]))
+
+
+def run(arguments: list[str]) -> int:
+    """Carry out a command line and return its exit code; what a user can mend is one clear line, never a traceback."""
+    try:
+        code = app(arguments, standalone_mode=False)
+    except USAGE_ERROR as error:
+        return _complain(f"{error.format_message()} Try: contact-verify --help", USAGE)
+    except (KeyboardInterrupt, typer.Abort):
+        return _complain("interrupted", INTERRUPTED)
+    except Exception as error:
+        return _ended_by(error)
+    return code if isinstance(code, int) else 0
+
+
+def _ended_by(error: Exception) -> int:
+    from contact import InvalidInput, NotConvergedError, UnsupportedSceneError  # noqa: PLC0415
+
+    if isinstance(error, InvalidInput | UnsupportedSceneError):
+        return _complain(str(error), USAGE)
+    if isinstance(error, NotConvergedError):
+        return _complain(f"no answer: {error}", 1)
+    traceback.print_exc()
+    return _complain(f"internal error ({type(error).__name__}); please report the lines above", INTERNAL_ERROR)
+
+
+def _complain(message: str, code: int) -> int:
+    typer.secho(f"contact-verify: {message}", err=True, fg=typer.colors.RED)
+    return code

@@ -1,0 +1,76 @@
+"""The CI recipe is tested by running its commands, with one fabricated case in place of the library."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+RECIPE = ROOT / "examples" / "ci" / "verify.sh"
+WORKFLOW = ROOT / "examples" / "ci" / "github-actions.yml"
+
+COMMAND = """#!{python}
+import sys
+sys.path.insert(0, {root!r})
+from cases import methods
+methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
+from reports.commands import run
+from tests.cases.fake_case import SLOW, fake_case, spoiled
+case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
+run.load_cases = lambda: {{case.name: case}}
+from reports.command_line import main
+main()
+"""
+
+
+def verify(tmp_path, *arguments, plant="", **environment):
+    """Run the recipe with a `contact-verify` that knows one fabricated case."""
+    command = tmp_path / "bin" / "contact-verify"
+    command.parent.mkdir(exist_ok=True)
+    command.write_text(COMMAND.format(python=sys.executable, root=str(ROOT), plant=plant), encoding="utf-8")
+    command.chmod(0o755)
+    inherited = {name: value for name, value in os.environ.items() if not name.startswith("GITHUB_")}
+    path = {"PATH": f"{command.parent}:{os.environ['PATH']}"}
+    return subprocess.run(
+        ["sh", str(RECIPE), *arguments],
+        cwd=tmp_path,
+        env={**inherited, **path, **environment},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+@pytest.mark.parametrize(("plant", "code"), [("", 0), ("nan", 1)])
+def test_recipe_writes_the_report_and_hands_on_the_exit_code(tmp_path, plant, code):
+    done = verify(tmp_path, "out", "--executor", "serial", plant=plant)
+    assert done.returncode == code, done.stderr
+    assert {"report.html", "summary.md", "junit.xml", "results.json"} <= {p.name for p in (tmp_path / "out").iterdir()}
+
+
+def test_recipe_fills_the_summary_page_and_annotates_on_github(tmp_path):
+    summary = tmp_path / "step_summary.md"
+    github = {"GITHUB_ACTIONS": "true", "GITHUB_STEP_SUMMARY": str(summary)}
+    done = verify(tmp_path, "out", "--executor", "serial", plant="nan", **github)
+    assert done.returncode == 1
+    assert summary.read_text(encoding="utf-8").startswith("# FAILED")
+    assert 1 <= done.stdout.count("::error") <= 9
+
+
+def test_recipe_refuses_wrong_usage_with_exit_code_4(tmp_path):
+    assert verify(tmp_path, "out", "--suite", "weekly").returncode == 4
+    assert verify(tmp_path).returncode != 0
+
+
+def test_workflow_runs_the_recipe_and_keeps_what_it_writes(tmp_path):
+    workflow = WORKFLOW.read_text(encoding="utf-8")
+    (command,) = re.findall(r"run: .*(sh examples/ci/verify\.sh .*)", workflow)
+    assert command.split()[:3] == ["sh", "examples/ci/verify.sh", "build/verification"]
+    verify(tmp_path, *command.split()[2:], "--executor", "serial")
+    for kept in re.findall(r"^ +(build/verification/\S+)$", workflow, re.MULTILINE):
+        assert (tmp_path / kept).exists(), kept
+    assert "make setup" in workflow
+    assert re.search(r"^setup:", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)

@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from fem_reference.geometry import Grading, layer_mesh
+
+GRADING = Grading(points=((0.5, 1e-3), (1.0, 1e-5)), growth=0.5, max_cell=0.5)
+
+
+@pytest.fixture(scope="module")
+def mesh():
+    return layer_mesh(1.0, 4.0, GRADING)
+
+
+def test_boundaries_have_their_names_and_lengths(mesh):
+    p, facets, named = mesh.mesh.p, mesh.mesh.facets, mesh.mesh.boundaries
+    lengths = {name: np.linalg.norm(p[:, facets[0, f]] - p[:, facets[1, f]], axis=0).sum() for name, f in named.items()}
+    assert lengths == pytest.approx({"axis": 1, "top": 4, "base": 4, "outer": 1}, rel=1e-14)
+
+
+def test_graded_points_are_vertices_with_the_wished_cells(mesh):
+    p, t = mesh.mesh.p, mesh.mesh.t
+    for radius, cell in GRADING.points:
+        vertex = np.flatnonzero((p[0] == radius) & (p[1] == 0))
+        assert len(vertex) == 1
+        corners = p[:, t[:, (t == vertex[0]).any(axis=0)]]
+        edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=0)
+        assert 0.3 * cell < edges.min() < edges.max() < 3 * cell
+
+
+def test_section_is_filled_once(mesh):
+    corners = mesh.mesh.p[:, mesh.mesh.t]
+    (r1, z1), (r2, z2) = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    assert np.abs(r1 * z2 - r2 * z1).sum() / 2 == pytest.approx(4.0, rel=1e-13)
+
+
+def test_fingerprint_is_reproduced_and_tells_meshes_apart(mesh):
+    again = layer_mesh(1.0, 4.0, GRADING)
+    other = layer_mesh(1.0, 4.0, Grading(points=GRADING.points, growth=0.4, max_cell=0.5))
+    assert again.fingerprint == mesh.fingerprint != other.fingerprint
+
+
+def test_strip_has_cells_of_one_size():
+    strip = layer_mesh(1.0, 4.0, Grading(points=((2.0, 0.1),), strip=(2.0, 0.1), growth=0.5)).mesh
+    r, z = strip.p
+    top = np.sort(r[(z == 0) & (r <= 2)])
+    assert np.diff(top) == pytest.approx(0.1, rel=0.1)
+    assert strip.t.shape[1] < 1000
+
+
+def test_a_section_of_a_hundred_million_radii_is_meshed():
+    mesh = layer_mesh(1e8, 1e9, Grading(points=((1.0, 1e-7),), growth=0.5, max_cell=5e7)).mesh
+    assert mesh.t.shape[1] < 3000

@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy import sparse
+
+from contact import InvalidInput, NotConvergedError
+from fem_reference import linear_solver
+from fem_reference.assembly import Space, stiffness_matrix
+from fem_reference.elements import PAIRS, taylor_hood
+from fem_reference.geometry import Grading, layer_mesh
+from fem_reference.layer_problem import LayerProblem
+from fem_reference.linear_solver import CheckedSolver
+from fem_reference.material import moduli
+from fem_reference.ordering import bisect, bit_length, nested_dissection
+
+LAYER_MESH = layer_mesh(1.0, 6.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))
+
+
+def test_order_is_a_permutation_with_displacements_first_in_every_part():
+    space = Space(LAYER_MESH.mesh, taylor_hood(3))
+    order = nested_dissection(space)
+    assert np.array_equal(np.sort(order), np.arange(space.size))
+
+
+def test_bisection_halves_by_count():
+    points = np.random.default_rng(1).normal(size=(2, 64))
+    assert np.all(np.bincount(bisect(points, 4), minlength=16) == 4)
+
+
+def test_bit_length():
+    numbers = np.array([0, 1, 2, 3, 4, 255, 256, 2**40])
+    assert bit_length(numbers).tolist() == [int(n).bit_length() for n in numbers]
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.4999999, 0.5])
+@pytest.mark.parametrize("degree", [2, 3, 4])
+def test_nested_dissection_needs_no_pivoting_and_agrees_with_partial_pivoting(degree, nu):
+    solutions = []
+    for backend in ("superlu", "superlu-pivoting"):
+        problem = LayerProblem(LAYER_MESH, taylor_hood(degree), nu, "bonded", backend)
+        pressed = 2 * problem.top_nodes(1.0) + 1
+        solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
+        values = np.zeros((len(solver.held), 1))
+        values[-len(pressed) :] = 1
+        solution = solver.solve_displaced(values)
+        assert solver.checked.factorisations == 1
+        solutions.append(solver.reactions(solution, pressed).sum())
+    assert solutions[0] == pytest.approx(solutions[1], rel=1e-11)
+
+
+class Careless:
+    """Factors that are wrong by one part in a thousand."""
+
+    def __init__(self, matrix):
+        self.factors = linear_solver.with_pivoting(matrix)
+
+    def solve(self, rhs):
+        return 1.5 * self.factors.solve(rhs)
+
+
+def test_an_inaccurate_backend_is_replaced_or_refused(monkeypatch):
+    matrix = sparse.csc_array(sparse.diags_array([2.0, 3.0, 4.0]))
+    monkeypatch.setitem(linear_solver.BACKENDS, "careless", (Careless,))
+    monkeypatch.setitem(linear_solver.BACKENDS, "rescued", (Careless, linear_solver.with_pivoting))
+    with pytest.raises(NotConvergedError, match="backward_error"):
+        CheckedSolver(matrix, "careless").solve(np.ones((3, 1)))
+    rescued = CheckedSolver(matrix, "rescued")
+    assert rescued.solve(np.ones((3, 1)))[:, 0] == pytest.approx([1 / 2, 1 / 3, 1 / 4], rel=1e-15)
+    assert rescued.factorisations == 2
+
+
+def test_a_singular_matrix_is_refused():
+    with pytest.raises(NotConvergedError, match="singular"):
+        CheckedSolver(sparse.csc_array(np.array([[1.0, 1.0], [1.0, 1.0]])), "superlu-pivoting")
+
+
+def test_nan_is_refused():
+    solver = CheckedSolver(sparse.csc_array(sparse.eye_array(2)))
+    with pytest.raises(NotConvergedError):
+        solver.solve(np.array([[np.nan], [1.0]]))
+
+
+def test_unknown_or_missing_backends_are_named(monkeypatch):
+    matrix = sparse.csc_array(sparse.eye_array(2))
+    with pytest.raises(InvalidInput, match="'cholmod'"):
+        CheckedSolver(matrix, "cholmod")
+    monkeypatch.setattr(linear_solver, "find_spec", lambda name: None)
+    with pytest.raises(InvalidInput, match="python-mumps"):
+        CheckedSolver(matrix, "mumps")
+
+
+def test_displacement_formulation_refuses_incompressibility():
+    with pytest.raises(InvalidInput, match="mixed"):
+        stiffness_matrix(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))

@@ -1,0 +1,61 @@
+"""The pages in a real browser: verdict first, a failure without scrolling, no clipped label, nothing too wide."""
+
+import dataclasses
+
+import matplotlib.image
+import pytest
+
+from reports.pages import write_report
+from tests.cases.example_run import example_run, failing_case, passing_case
+from tests.reports.browser import HEIGHT, WIDTH, browser, measure, picture
+
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(not browser(), reason="no chromium or chrome on this machine; install one to look at pages"),
+]
+
+
+@pytest.fixture(scope="module")
+def failed_page(tmp_path_factory):
+    return write_report(example_run(), tmp_path_factory.mktemp("failed"))
+
+
+@pytest.fixture(scope="module")
+def measured(failed_page):
+    return measure(failed_page)
+
+
+def test_headline_and_first_failure_stand_on_the_first_screen(measured):
+    assert measured["headline"][3] < HEIGHT / 4
+    assert 0 < measured["worst"][3] < HEIGHT
+    assert "INVALID" in measured["worst_text"]
+
+
+def test_a_failure_stands_on_the_first_screen_of_a_long_report_too(tmp_path):
+    many = tuple(dataclasses.replace(failing_case(), name=f"failing_{i}") for i in range(12))
+    page = write_report(dataclasses.replace(example_run(), cases=many), tmp_path)
+    assert measure(page)["worst"][3] < HEIGHT
+
+
+def test_no_label_of_a_figure_is_clipped(measured):
+    assert measured["figures"] >= 5
+    assert measured["clipped"] == []
+
+
+def test_the_clipping_check_sees_a_planted_label(failed_page, tmp_path):
+    page = tmp_path / "planted.html"
+    text = failed_page.read_text(encoding="utf-8")
+    page.write_text(text.replace("</svg>", '<text x="-400" y="20">planted</text></svg>', 1), encoding="utf-8")
+    assert measure(page)["clipped"] == ["planted"]
+
+
+def test_page_is_not_wider_than_its_window(measured):
+    assert measured["page_width"] <= WIDTH
+
+
+@pytest.mark.parametrize(("case", "red"), [(failing_case(), True), (passing_case(), False)], ids=["failed", "passed"])
+def test_the_picture_shows_the_verdict_in_its_colour(case, red, tmp_path):
+    page = write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path)
+    picture(page, tmp_path / "page.png")
+    r, g, _ = matplotlib.image.imread(tmp_path / "page.png")[4, 4, :3]
+    assert bool(r > 2 * g) is red

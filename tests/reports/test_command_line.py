@@ -1,0 +1,228 @@
+"""The command line: every way to end has its exit code, errors are one clear line, help comes at once."""
+
+import csv
+import json
+import os
+import subprocess
+import sys
+
+import h5py
+import pytest
+
+from contact import load_scene
+from reports import command_line
+from reports.command_line import run
+from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+
+COMMANDS = ("list", "show", "validate", "run", "report", "solve", "schema", "explain")
+HERTZ = """
+[layer]
+half_space = true
+youngs_modulus = 1e6
+poissons_ratio = 0.3
+[indenter]
+kind = "paraboloid"
+radius_of_curvature = 0.01
+[loading]
+kind = "contact_radii"
+values = [0.5e-3, 1e-3]
+"""
+
+
+@pytest.fixture
+def hertz(tmp_path):
+    path = tmp_path / "scene.toml"
+    path.write_text(HERTZ, encoding="utf-8")
+    return str(path)
+
+
+def run_here(tmp_path, *more):
+    return run(["run", "--executor", "serial", "--quiet", "--out", str(tmp_path / "out"), *more])
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_has_a_help_text(command, capsys):
+    assert run([command, "--help"]) == 0
+    assert len(capsys.readouterr().out) > 200
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["solv"], "No such command 'solv'"),
+        (["solve"], "Missing argument"),
+        (["solve", "nowhere.toml"], "nowhere.toml: cannot be read"),
+        (["run", "--suite", "weekly"], "'weekly'"),
+        (["run", "--jobs", "0"], "jobs must be at least 1, got 0"),
+        (["report", "nowhere"], "no results.json in nowhere"),
+    ],
+)
+@pytest.mark.usefixtures("library")
+def test_wrong_usage_is_one_clear_line_and_exit_code_4(arguments, words, capsys):
+    assert run(arguments) == 4
+    captured = capsys.readouterr()
+    assert words in captured.err
+    assert "Traceback" not in captured.err
+    assert len(captured.err.strip().splitlines()) <= 2
+
+
+def test_a_wrong_scene_names_place_value_and_remedy(hertz, tmp_path, capsys):
+    path = tmp_path / "wrong.toml"
+    path.write_text(HERTZ.replace("0.3", "0.6"), encoding="utf-8")
+    assert run(["solve", str(path)]) == 4
+    error = capsys.readouterr().err
+    assert "poissons_ratio" in error
+    assert "0.6" in error
+    assert "Traceback" not in error
+
+
+def test_an_internal_error_is_exit_code_3_with_its_traceback(monkeypatch, capsys):
+    monkeypatch.setattr(command_line, "app", lambda *_, **__: 1 / 0)
+    assert run([]) == 3
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+def test_an_interrupt_is_exit_code_2(monkeypatch, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(command_line, "app", interrupted)
+    assert run([]) == 2
+    assert "interrupted" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("library")
+def test_a_sound_run_passes_and_writes_everything(tmp_path, capsys):
+    assert run_here(tmp_path) == 0
+    written = {path.name for path in (tmp_path / "out").iterdir()}
+    assert {"results.json", "results.h5", "report.html", "summary.md", "junit.xml", "figures"} <= written
+    output = capsys.readouterr().out
+    assert "PASSED" in output
+    assert "report.html" in output
+
+
+@pytest.mark.parametrize("plant", ["nan", "not converged", "raise"])
+def test_a_broken_solver_fails_the_run_by_name(plant, library, tmp_path, capsys):
+    library(fake_case(slow=spoiled(SLOW, plant=plant)))
+    assert run_here(tmp_path) == 1
+    output = capsys.readouterr().out
+    assert "FAILED" in output
+    assert "INVALID fake_hertz" in output
+
+
+def test_a_wrong_number_fails_the_run(library, tmp_path, capsys):
+    library(fake_case(fast=spoiled(FAST, cell=1.0, error=1e-3)))
+    assert run_here(tmp_path) == 1
+    assert "FAIL fake_hertz" in capsys.readouterr().out
+
+
+def test_an_open_verdict_fails_only_when_strict(library, tmp_path):
+    library(fake_case(slow=spoiled(SLOW, stated=1e-3)))
+    assert run_here(tmp_path) == 0
+    assert run_here(tmp_path, "--resume", "--strict") == 1
+
+
+@pytest.mark.usefixtures("library")
+def test_an_unknown_case_or_method_names_those_there_are(tmp_path, capsys):
+    assert run_here(tmp_path, "nothing") == 4
+    assert "fake_hertz" in capsys.readouterr().err
+    assert run_here(tmp_path, "--method", "magic") == 4
+    assert "fast, slow" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("library")
+def test_one_method_alone_answers_the_claims_it_can(tmp_path):
+    assert run_here(tmp_path, "--method", "fast") == 0
+    claims = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))["cases"][0]["claims"]
+    assert {claim["name"] for claim in claims} == {"closed form", "doubling E doubles F"}
+
+
+def test_nothing_to_run_is_exit_code_5(library, tmp_path):
+    library()
+    assert run_here(tmp_path) == 5
+
+
+def test_github_gets_annotations_and_nobody_else(library, tmp_path, capsys, monkeypatch):
+    library(fake_case(slow=spoiled(SLOW, plant="nan")))
+    run_here(tmp_path)
+    assert "::error" not in capsys.readouterr().out
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    run_here(tmp_path)
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("::error")]
+    assert 1 <= len(lines) <= 9
+
+
+@pytest.mark.usefixtures("library")
+def test_the_library_is_listed_shown_and_validated(capsys):
+    assert run(["list"]) == 0
+    assert "fake_hertz" in capsys.readouterr().out
+    assert run(["show", "fake_hertz"]) == 0
+    shown = capsys.readouterr().out
+    for words in ("Fabricated Hertz contact", "half-space nu=0.3", "closed form", "round-off"):
+        assert words in shown
+    assert run(["validate"]) == 0
+    assert "all valid" in capsys.readouterr().out
+    assert run(["show", "nothing"]) == 4
+
+
+@pytest.mark.usefixtures("library")
+def test_explain_says_what_changed(tmp_path, capsys, monkeypatch):
+    run_here(tmp_path)
+    results = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    key = results["cases"][0]["runs"][0]["key"]
+    capsys.readouterr()
+    assert run(["explain", key, "--out", str(tmp_path / "out")]) == 0
+    assert "nothing: it would be used again" in capsys.readouterr().out
+    from reports.commands import explain
+
+    changed = fake_case(fast=spoiled(FAST, cell=0.5))
+    monkeypatch.setattr(explain, "load_cases", lambda: {changed.name: changed})
+    assert run(["explain", key, "--out", str(tmp_path / "out")]) == 0
+    assert "settings.cell: 0.0 -> 0.5" in capsys.readouterr().out
+    assert run(["explain", "abc", "--out", str(tmp_path / "out")]) == 4
+
+
+def test_schema_describes_results(capsys):
+    assert run(["schema"]) == 0
+    assert json.loads(capsys.readouterr().out)["title"] == "RunResult"
+
+
+def test_solve_prints_numbers_with_error_bars_and_writes_files(hertz, tmp_path, capsys):
+    files = [str(tmp_path / f"answer{ending}") for ending in (".csv", ".h5", ".svg")]
+    writes = [word for file in files for word in ("--write", file)]
+    assert run(["solve", hertz, "--method", "fake", *writes]) == 0
+    output = capsys.readouterr().out
+    assert "F [mN]" in output
+    assert "18.315" in output  # Hertz: 4/3 E* a^3 / R at a = 0.5 mm, E* = 1e6/0.91 Pa
+    with open(files[0], encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    assert float(rows[1]["normal_force_N"]) == pytest.approx(4 / 3 * (1e6 / 0.91) * 1e-9 / 0.01, rel=1e-14)
+    assert float(rows[1]["normal_force_uncertainty_N"]) == 0.0
+    with h5py.File(files[1]) as stored:
+        assert stored["arrays/normal_force"][1] == float(rows[1]["normal_force_N"])
+    assert (tmp_path / "answer.svg").read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_solve_refuses_an_unknown_ending_before_it_solves(hertz, capsys):
+    assert run(["solve", hertz, "--write", "answer.xls"]) == 4
+    assert ".csv" in capsys.readouterr().err
+
+
+def test_the_example_scene_is_a_scene(tmp_path, capsys):
+    assert run(["solve", "--example"]) == 0
+    path = tmp_path / "example.toml"
+    path.write_text(capsys.readouterr().out, encoding="utf-8")
+    assert load_scene(path).indenter.flat_radius == 0.5e-3
+
+
+def test_help_loads_no_solver_and_comes_in_half_a_second():
+    code = (
+        "import sys; from reports.command_line import run; run(['--help']); "
+        "heavy = {'numpy', 'scipy', 'matplotlib', 'skfem', 'gmsh', 'pydantic', 'h5py'} & set(sys.modules); "
+        "sys.exit(f'loaded: {heavy}' if heavy else 0)"
+    )
+    start = os.times()
+    subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.DEVNULL)
+    end = os.times()
+    used = (end.children_user - start.children_user) + (end.children_system - start.children_system)
+    assert used < 0.5  # processor seconds: another job on the machine does not count
