@@ -1,0 +1,126 @@
+"""Normal impact of a rigid indenter on an elastic or incompressible viscoelastic layer, Eqs. (47)-(52).
+
+Quasi-static: waves in the layer are neglected. The way in and the way out are integrated by high-order collocation
+from event to event, in the impact's own units.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import groupby
+from typing import TypeAlias
+
+import numpy as np
+
+from bem.flat_punch import FlatPunchSource
+from contact import ImpactHistory, InvalidInput, Scene, StageLog
+from contact.solution import Setting
+from mdr.effects.impact_flat_punch import flat_punch_history, flat_punch_results
+from mdr.effects.impact_history import history
+from mdr.effects.impact_results import ImpactResults, joined, results
+from mdr.effects.impact_solver import impacts
+from mdr.effects.impact_units import is_flat, relaxation_of, scaled, table_of
+
+ACCURACY = 1e-9
+_LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
+_CHUNK = 256  # lanes advanced together: enough to hide the interpreter, few enough to stay in the cache
+
+Progress: TypeAlias = Callable[[int, int], None]
+_Solver: TypeAlias = Callable[[list[int]], ImpactResults]
+
+
+def step_tolerance(accuracy: float) -> float:
+    """Tolerance inside a collocation step for a wanted relative accuracy of its end, which is of twice the order.
+
+    The relation is fitted to impacts of known restitution, with a margin of ten.
+
+    Raises:
+        InvalidInput: If the accuracy is out of reach or worthless.
+    """
+    if not _BEST_ACCURACY <= accuracy <= _LEAST_ACCURACY:
+        raise InvalidInput(f"accuracy = {accuracy:g}: choose between {_BEST_ACCURACY:g} and {_LEAST_ACCURACY:g}")
+    return float(max(1e5 * accuracy ** (4.0 / 3.0), 1e-12))
+
+
+def impact_history(
+    scene: Scene,
+    flat_punch: FlatPunchSource,
+    log: StageLog,
+    *,
+    accuracy: float = ACCURACY,
+    settings: dict[str, Setting] | None = None,
+) -> ImpactHistory:
+    """One impact with its whole history.
+
+    Args:
+        scene: A scene whose loading is an impact.
+        flat_punch: Where the flat-punch data come from.
+        log: Collects stages and counters.
+        accuracy: Wanted relative accuracy of restitution and peaks.
+        settings: Of the method, kept in the answer.
+
+    Raises:
+        NotConvergedError: If the indenter never rebounds.
+        InvalidInput: If it is pressed in beyond its rim.
+    """
+    tolerance, known = step_tolerance(accuracy), {**(settings or {}), "accuracy": accuracy}
+    if is_flat(scene):
+        return flat_punch_history(scene, flat_punch, log, tolerance=tolerance, settings=known)
+    with log.stage("equivalent_system"):
+        shared, table = table_of(scene, flat_punch)
+    with log.stage("impact"):
+        problem = scaled([scene], [shared], table)
+        motion = impacts(problem.lanes, tolerance=tolerance, audit=True)
+    log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in motion.way_in + motion.way_out))
+    log.count("sweeps", sum(leg.trajectory.sweeps for leg in motion.way_in + motion.way_out))
+    return history(scene, problem, motion, log, settings=known)
+
+
+def impact_batch(
+    scenes: Sequence[Scene],
+    flat_punch: FlatPunchSource,
+    *,
+    accuracy: float = ACCURACY,
+    progress: Progress | None = None,
+) -> ImpactResults:
+    """Many impacts, those that share springs and the number of relaxation times together.
+
+    Args:
+        scenes: Scenes whose loading is an impact, in any order.
+        flat_punch: Where the flat-punch data come from.
+        accuracy: Wanted relative accuracy of restitution and peaks.
+        progress: Told how many of how many impacts are done.
+
+    Returns:
+        Arrays in the order of the scenes. Each entry is what the scene alone would give: lanes do not feel each other.
+    """
+    tolerance, found, order = step_tolerance(accuracy), [], []
+    for members, solve in _groups(scenes, flat_punch, tolerance):
+        for start in range(0, len(members), _CHUNK):
+            chunk = members[start : start + _CHUNK]
+            found.append(solve(chunk))
+            order += chunk
+            if progress is not None:
+                progress(len(order), len(scenes))
+    return joined(found, np.argsort(order))
+
+
+def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, tolerance: float) -> list[tuple[list[int], _Solver]]:
+    """Scenes that can be advanced together, with the function that does it."""
+    flat = [i for i, scene in enumerate(scenes) if is_flat(scene)]
+    shaped = {i: table_of(scene, flat_punch) for i, scene in enumerate(scenes) if not is_flat(scene)}
+
+    def kind(i: int) -> tuple[int, int]:
+        return id(shaped[i][1]) if i in shaped else 0, relaxation_of(scenes[i]).moduli.size
+
+    def shaped_results(chunk: list[int]) -> ImpactResults:
+        problem = scaled([scenes[i] for i in chunk], [shaped[i][0] for i in chunk], shaped[chunk[0]][1])
+        return results(problem, impacts(problem.lanes, tolerance=tolerance, audit=False))
+
+    def flat_results(chunk: list[int]) -> ImpactResults:
+        return flat_punch_results([scenes[i] for i in chunk], flat_punch, tolerance=tolerance)
+
+    found: list[tuple[list[int], _Solver]] = []
+    for members, solve in ((list(shaped), shaped_results), (flat, flat_results)):
+        found += [(list(group), solve) for _, group in groupby(sorted(members, key=kind), key=kind)]
+    return found

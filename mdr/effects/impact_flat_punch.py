@@ -1,0 +1,136 @@
+"""Impacts of flat punches, Eq. (48): from scenes to histories and results."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bem.flat_punch import FlatPunchSource
+from contact import ImpactHistory, Scene, StageLog
+from contact.solution import Setting
+from contact.validation import FloatArray
+from mdr.assembly import equivalent_system
+from mdr.effects import chebyshev
+from mdr.effects.collocation import STAGES, Event, Trajectory, integrate, states
+from mdr.effects.impact_fixed_radius import FlatPunchLanes
+from mdr.effects.impact_history import ESTIMATED
+from mdr.effects.impact_results import ImpactResults
+from mdr.effects.impact_units import impact_of, relaxation_of
+
+_FIRST_STEP = 0.5  # of the inverse of the elastic frequency
+_Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))  # samples on each step, both ends among them
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """Flat punches in the units of their elastic oscillation: depth v0/omega, time 1/omega."""
+
+    lanes: FlatPunchLanes
+    frequency: FloatArray
+    velocity: FloatArray
+    mass: FloatArray
+    radius: FloatArray
+    error: FloatArray
+
+
+def flat_punch_results(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, tolerance: float) -> ImpactResults:
+    """Many flat punches with the same number of relaxation times."""
+    problem = _problem(scenes, flat_punch)
+    return _results(problem, _motion(problem, tolerance))
+
+
+def flat_punch_history(
+    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, *, tolerance: float, settings: dict[str, Setting]
+) -> ImpactHistory:
+    """One flat punch with its whole history."""
+    with log.stage("equivalent_system"):
+        problem = _problem([scene], flat_punch)
+    with log.stage("impact"):
+        motion = _motion(problem, tolerance)
+    log.count("steps", int(motion.counts.sum()))
+    log.count("sweeps", motion.sweeps)
+    outcome = _results(problem, motion)
+    _, t, delta, v, *branches, lost = _samples(motion)
+    depth, force_unit = problem.velocity / problem.frequency, _force_unit(problem)
+    energy = problem.mass * problem.velocity**2
+    lanes = problem.lanes
+    strain = [s**2 / weight for s, weight in zip(branches, lanes.weights[:, 0, 0], strict=True)]
+    force = lanes.long_term * delta + lanes.viscosity * v + sum(branches)
+    return ImpactHistory(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate=dict.fromkeys(ESTIMATED, np.full(t.size, outcome.relative_error[0])),
+        cost=log.cost(unknowns=int(motion.final.shape[0])),
+        stages=log.records,
+        time=t / problem.frequency,
+        indentation_depth=delta * depth,
+        velocity=v * problem.velocity,
+        normal_force=force * force_unit,
+        contact_radius=np.full(t.size, problem.radius[0]),
+        kinetic_energy=0.5 * v**2 * energy,
+        stored_energy=0.5 * (lanes.long_term * delta**2 + sum(strain)) * energy,
+        dissipated_energy=lost * energy,
+        peak_force=float(outcome.peak_force[0]),
+        peak_depth=float(outcome.peak_depth[0]),
+        peak_contact_radius=float(outcome.peak_contact_radius[0]),
+    )
+
+
+def _problem(scenes: Sequence[Scene], flat_punch: FlatPunchSource) -> _Problem:
+    radius = np.array([scene.indenter.max_radius for scene in scenes])
+    systems = [equivalent_system(s.layer, s.indenter, s.indenter.max_radius, flat_punch) for s in scenes]
+    stiffness = np.array([float(system.contact_stiffness(a)) for system, a in zip(systems, radius, strict=True)])
+    mass = np.array([impact_of(scene).mass for scene in scenes])
+    frequency = np.sqrt(stiffness / mass)
+    relaxations = [relaxation_of(scene) for scene in scenes]
+    modulus = np.array([r.instantaneous_modulus for r in relaxations])
+    lanes = FlatPunchLanes(
+        long_term=np.array([r.long_term_modulus for r in relaxations]) / modulus,
+        viscosity=np.array([r.viscosity for r in relaxations]) / modulus * frequency,
+        weights=np.stack([r.moduli for r in relaxations], axis=1)[:, None] / modulus,
+        rates=1.0 / (frequency * np.stack([r.times for r in relaxations], axis=1)[:, None]),
+    )
+    velocity = np.array([impact_of(scene).velocity for scene in scenes])
+    error = np.array([system.relative_error["contact_stiffness"] for system in systems])
+    return _Problem(lanes, frequency, velocity, mass, radius, error)
+
+
+def _motion(problem: _Problem, tolerance: float) -> Trajectory:
+    """From first touch to the return of the force to zero."""
+    lanes, count = problem.lanes, problem.mass.size
+    released = Event(0, np.zeros(count), -1)
+    first_step = _FIRST_STEP / (1.0 + 2.0 * lanes.viscosity)
+    return integrate(lanes, lanes.start(), (released,), tolerance=tolerance, first_step=first_step)
+
+
+def _force_unit(problem: _Problem) -> FloatArray:
+    return problem.mass * problem.velocity * problem.frequency
+
+
+def _results(problem: _Problem, motion: Trajectory) -> ImpactResults:
+    depth = problem.velocity / problem.frequency
+    return ImpactResults(
+        coefficient_of_restitution=-motion.final[3],
+        contact_time=motion.final[1] / problem.frequency,
+        peak_force=_peak(motion, 0) * _force_unit(problem),
+        peak_depth=_peak(motion, 2) * depth,
+        peak_contact_radius=problem.radius.copy(),
+        relative_error=motion.error + problem.error,
+    )
+
+
+def _samples(motion: Trajectory) -> FloatArray:
+    """States of a single lane in order of time, shape (m, n)."""
+    state = np.swapaxes(states(motion, _Z), 1, 2)[..., 0].reshape(motion.final.shape[0], -1)
+    return state[:, np.append(True, np.diff(state[1]) > 0.0)]
+
+
+def _peak(motion: Trajectory, component: int) -> FloatArray:
+    """Largest value of one component of the state, between samples too."""
+    present = np.arange(motion.steps.shape[2])[:, None] < motion.counts
+    powers = motion.steps[:, component].copy()
+    powers[0] += motion.starts[component]
+    return chebyshev.largest(powers, present)

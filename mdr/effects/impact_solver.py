@@ -1,0 +1,143 @@
+"""Many impacts from first touch to the loss of contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact import NotConvergedError
+from contact.validation import FloatArray
+from mdr.effects.collocation import Event, Lanes, Problem, Trajectory, integrate
+from mdr.effects.impact_lanes import ImpactLanes, Pressing, Receding, outline
+from mdr.effects.impact_memory import Memory, memory_of
+
+TURN, SECTION_END = 0, 1  # the events that end a section of the way in
+
+
+_FIRST_STEP = 0.5  # of the way that an elastic impact of the same energy goes
+
+_AT_ONCE = 1e6  # back through an earlier step of the way in: try it in one step
+_AFTER_TURN = 0.4  # of the step before it; the front leaves its turn faster than it came
+_END_TO_STEP = 0.02  # a step's end is of twice the order of its inside; ten times what is seen
+_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
+
+
+class TableTooShort(NotConvergedError):
+    """The front ran beyond the largest radius of the spring table."""
+
+
+@dataclass(frozen=True)
+class Leg:
+    """One section of the way in, or the way back through one step of it, of the lanes that went there."""
+
+    lanes: Lanes
+    section: int
+    trajectory: Trajectory
+    memory: Memory | None
+    step: int = 0
+
+
+@dataclass(frozen=True)
+class Impacts:
+    """Dimensionless impacts.
+
+    Attributes:
+        way_in: Sections of the way in, in order.
+        way_out: Sections of the way out, in order.
+        turn: State at the turn, shape (m, lanes).
+        end: State at the loss of contact, shape (m', lanes).
+        error: Estimated relative error, shape (lanes,).
+    """
+
+    way_in: tuple[Leg, ...]
+    way_out: tuple[Leg, ...]
+    turn: FloatArray
+    end: FloatArray
+    error: FloatArray
+
+
+def impacts(lanes: ImpactLanes, *, tolerance: float, audit: bool) -> Impacts:
+    """Integrate all lanes.
+
+    Args:
+        lanes: The impacts.
+        tolerance: Local error per step, in the impact's units.
+        audit: Also integrate the energies; the motion does not change by a bit.
+
+    Raises:
+        TableTooShort: If a front runs beyond the spring table.
+        NotConvergedError: If an impact does not end.
+    """
+    run = _Run(lanes, tolerance, audit)
+    way_in, turn, turned_in = run.press()
+    way_out, end = run.recede(way_in, turn, turned_in)
+    error = np.full(lanes.count, _SPRINGS_TO_MOTION * lanes.table.error)
+    for leg in way_in + way_out:
+        error[leg.lanes] += _END_TO_STEP * leg.trajectory.error
+    return Impacts(way_in, way_out, turn, end, error)
+
+
+class _Run:
+    """Lanes under way; `size` is each lane's next trial step."""
+
+    def __init__(self, lanes: ImpactLanes, tolerance: float, audit: bool) -> None:
+        self.lanes, self.tolerance, self.audit = lanes, tolerance, audit
+        self.size = np.full(lanes.count, _FIRST_STEP)
+
+    def press(self) -> tuple[tuple[Leg, ...], FloatArray, Lanes]:
+        """The way in, section by section; the state at the turn and the section where each lane turned."""
+        lanes, ends = self.lanes, self.lanes.table.section_ends
+        state = np.zeros((3 + 2 * lanes.branches + (1 + lanes.branches) * self.audit, lanes.count))
+        state[2] = 1.0
+        turned_in, going, legs = np.full(lanes.count, ends.size - 1), np.arange(lanes.count), []
+        for section in range(ends.size - 1):
+            own = lanes.take(going)
+            events = Event(2, np.zeros(going.size), -1), Event(0, ends[section + 1] / own.units[6], +1)
+            trajectory = self._integrate(Pressing(own, section, self.audit), state, going, events)
+            legs.append(Leg(going, section, trajectory, self._memory(trajectory)))
+            turned_in[going[trajectory.ended_by == TURN]] = section
+            going = going[trajectory.ended_by != TURN]
+            if not going.size:
+                return tuple(legs), state, turned_in
+        raise TableTooShort(f"{going.size} impacts press beyond the radius up to which springs were tabulated")
+
+    def recede(self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: Lanes) -> tuple[tuple[Leg, ...], FloatArray]:
+        """The way out, back through the same sections, and the state at its end."""
+        lanes, legs = self.lanes, []
+        state = np.zeros((4 + lanes.branches + self.audit, lanes.count))
+        state[:2], state[4 : 4 + lanes.branches] = turn[:2], turn[outline(lanes.branches)[0]]
+        if self.audit:
+            state[-1] = turn[-1]
+        self.size *= _AFTER_TURN
+        for leg in reversed(way_in):
+            starting = np.flatnonzero(turned_in == leg.section)
+            state[2, starting] = lanes.take(starting).springs(turn[:1, starting], leg.section, 1)[0, 0]
+            steps = leg.memory.low.shape[0] if leg.memory else 1
+            legs += [self._back(leg, step, state) for step in reversed(range(steps))]
+        return tuple(legs), state
+
+    def _back(self, leg: Leg, step: int, state: FloatArray) -> Leg:
+        """Back through one step of the way in, where memory is one polynomial, or through a whole section without."""
+        there = np.flatnonzero(leg.trajectory.counts > step)
+        going = leg.lanes[there]
+        own = self.lanes.take(going)
+        memory = leg.memory.take(there) if leg.memory else None
+        target = memory.low[step] if memory else self.lanes.table.section_ends[leg.section] / own.units[6]
+        problem = Receding(own, leg.section, memory, step, self.audit)
+        trajectory = self._integrate(problem, state, going, (Event(0, target, -1),))
+        self.size[going] = _AT_ONCE
+        return Leg(going, leg.section, trajectory, memory, step)
+
+    def _integrate(self, problem: Problem, state: FloatArray, going: Lanes, events: tuple[Event, ...]) -> Trajectory:
+        """Advance some lanes to their events, in place."""
+        trajectory = integrate(problem, state[:, going], events, tolerance=self.tolerance, first_step=self.size[going])
+        state[:, going], self.size[going] = trajectory.final, trajectory.next_step
+        return trajectory
+
+    def _memory(self, trajectory: Trajectory) -> Memory | None:
+        """Rows t, S_j, M_j (and N_j): nothing to remember without branches."""
+        if not self.lanes.branches:
+            return None
+        last = outline(self.lanes.branches)[2 if self.audit else 1].stop
+        return memory_of(trajectory, [1, *range(3, last)], turning_event=TURN)

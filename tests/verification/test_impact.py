@@ -1,0 +1,268 @@
+"""Impacts against closed forms, published values and a second scheme."""
+
+import numpy as np
+import pytest
+from scipy.special import gamma
+
+from bem.integral_equation import IntegralEquation
+from contact import Cone, FlatPunch, Impact, Layer, Paraboloid, PronySeries, Scene, StageLog, TruncatedCone
+from mdr import equivalent_system
+from mdr.effects.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
+from mdr.effects.impact import impact_batch, impact_history
+from mdr.effects.impact_explicit import explicit_impact
+from mdr.effects.impact_groups import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
+from mdr.effects.impact_units import relaxation_of
+from tests.mdr.viscoelastic_scenes import (
+    GLASSY_BRANCH,
+    LONG_TERM,
+    MASS,
+    RADIUS_TIMES_VELOCITY,
+    RELAXATION_TIME,
+    figure_12,
+    incompressible,
+    kelvin_voigt_punch,
+    kelvin_voigt_sphere,
+)
+
+PUNCH = IntegralEquation()
+
+
+def history(scene, accuracy=1e-9):
+    return impact_history(scene, PUNCH, StageLog(), accuracy=accuracy)
+
+
+# Argatov 2013 and Willert 2020, closed form evaluated to six digits.
+CLOSED_FORM = {
+    0.05: 0.858758, 0.1: 0.744079, 0.2: 0.571740, 0.3: 0.450975, 0.5: 0.298436, 0.7: 0.210285,
+    0.9: 0.155283, 1.0: 0.135335, 1.5: 0.075588, 2.0: 0.047769, 3.0: 0.023770,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("damping", "expected"), CLOSED_FORM.items())
+def test_flat_punch_restitution_of_the_closed_form_and_of_the_integration(damping, expected):
+    assert round(float(kelvin_voigt_restitution(damping)), 6) == expected
+    assert history(kelvin_voigt_punch(damping)).coefficient_of_restitution == pytest.approx(
+        float(kelvin_voigt_restitution(damping)), rel=1e-9
+    )
+
+
+def test_flat_punch_restitution_is_smooth_through_critical_damping():
+    import mpmath
+
+    def exact(damping):
+        with mpmath.workdps(50):
+            d = mpmath.mpf(float(damping))
+            root = mpmath.sqrt(1 - d * d)
+            return float(mpmath.re(mpmath.exp(-2 * d / root * mpmath.atan(root / d))))
+
+    near = 1.0 + np.concatenate([-np.geomspace(1e-12, 0.5, 40), np.geomspace(1e-12, 0.5, 40)])
+    expected = [exact(d) for d in near]
+    np.testing.assert_allclose(kelvin_voigt_restitution(near), expected, rtol=1e-14)
+    assert kelvin_voigt_restitution(0.0) == 1.0
+    assert kelvin_voigt_restitution(1e3) == pytest.approx(exact(1e3), rel=1e-13)
+
+
+def test_damping_ratio_of_the_scene_is_the_one_asked_for():
+    scene = kelvin_voigt_punch(0.7)
+    stiffness = 8.0 * scene.layer.shear_modulus * scene.indenter.radius
+    assert damping_ratio(scene.effects[0].viscosity, scene.layer.shear_modulus, 1.0, stiffness) == pytest.approx(0.7)
+
+
+# Independent half-space integration, REFERENCES section 7 (units rho = m = v0 = 1), six printed digits.
+KELVIN_VOIGT_SPHERE = {0.01: 0.982940, 0.03: 0.950215, 0.1: 0.848611, 0.2: 0.731357, 0.5: 0.501410, 1.0: 0.309894}
+
+
+@pytest.mark.parametrize(("tau", "expected"), KELVIN_VOIGT_SPHERE.items())
+def test_kelvin_voigt_sphere_on_the_half_space(tau, expected):
+    assert history(kelvin_voigt_sphere(tau)).coefficient_of_restitution == pytest.approx(expected, abs=1e-6)
+
+
+# Fig. 12: independent integration quoted to six digits, two resolutions of which agreed to 3e-5.
+FIGURE_12 = {np.inf: (0.454573, 3.02797), 3e-3: (0.52344, None), 2e-3: (0.559244, 4.69143), 1e-3: (0.64341, None)}
+
+
+@pytest.mark.parametrize("thickness", FIGURE_12)
+def test_figure_12_restitution_peak_audit_and_self_convergence(thickness):
+    restitution, peak = FIGURE_12[thickness]
+    coarse, fine = history(figure_12(thickness), 1e-9), history(figure_12(thickness), 1e-11)
+    assert fine.coefficient_of_restitution == pytest.approx(restitution, abs=1e-5)
+    if peak is not None:
+        assert fine.peak_force == pytest.approx(peak, rel=1e-5)
+    assert coarse.coefficient_of_restitution == pytest.approx(fine.coefficient_of_restitution, rel=1e-9)
+    assert coarse.energy_residual < 1e-9
+
+
+@pytest.mark.parametrize("thickness", FIGURE_12)
+def test_only_the_product_of_radius_and_velocity_matters(thickness):
+    one, other = history(figure_12(thickness, 10e-3), 1e-10), history(figure_12(thickness, 20e-3), 1e-10)
+    assert one.coefficient_of_restitution == pytest.approx(other.coefficient_of_restitution, rel=1e-9)
+    assert one.contact_time == pytest.approx(other.contact_time, rel=1e-9)
+    assert one.peak_force == pytest.approx(2.0 * other.peak_force, rel=1e-9)  # momentum over the same time
+
+
+@pytest.mark.parametrize("thickness", [np.inf, 1e-3])
+def test_the_result_does_not_know_its_units(thickness):
+    si, lab = history(figure_12(thickness)), history(figure_12(thickness, scale=(1e3, 1e3, 1e3)))
+    assert si.coefficient_of_restitution == pytest.approx(lab.coefficient_of_restitution, rel=1e-12)
+    assert si.peak_force == pytest.approx(lab.peak_force, rel=1e-12)  # kg m/s^2 and g mm/ms^2 are the same unit
+    assert si.contact_time * 1e3 == pytest.approx(lab.contact_time, rel=1e-12)
+
+
+def test_an_elastic_impact_gives_everything_back_and_lasts_as_hertz_says():
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=2e9, poissons_ratio=0.3),
+        indenter=Paraboloid(radius_of_curvature=5e-3),
+        loading=Impact(mass=0.01, velocity=0.2),
+    )
+    answer = history(scene, 1e-11)
+    stiffness = 4.0 / 3.0 * scene.layer.contact_modulus * np.sqrt(5e-3)
+    depth = (1.25 * 0.01 * 0.2**2 / stiffness) ** 0.4
+    assert answer.coefficient_of_restitution == pytest.approx(1.0, abs=1e-11)
+    assert answer.peak_depth == pytest.approx(depth, rel=1e-11)
+    assert answer.peak_force == pytest.approx(stiffness * depth**1.5, rel=1e-11)
+    factor = 0.8 * np.sqrt(np.pi) * gamma(0.4) / gamma(0.9)  # Landau and Lifshitz, Theory of Elasticity, section 9
+    assert answer.contact_time == pytest.approx(factor * depth / 0.2, rel=1e-10)
+
+
+@pytest.mark.parametrize("thickness", [np.inf, 2e-3, 1e-3])
+def test_the_papers_explicit_springs_agree(thickness):
+    """First order: halving both steps halves the difference, and Richardson's value agrees far closer."""
+    scene, fine = figure_12(thickness), history(figure_12(thickness), 1e-10)
+    radius = 1.05 * fine.peak_contact_radius
+    springs = equivalent_system(scene.layer, scene.indenter, radius, PUNCH)
+
+    def explicit(count):
+        return explicit_impact(
+            springs,
+            relaxation_of(scene),
+            mass=MASS,
+            velocity=scene.loading.velocity,
+            radius=radius,
+            count=count,
+            time_step=fine.contact_time / (4.0 * count),
+        )
+
+    coarse, middle = explicit(250), explicit(500)
+    for name in ("coefficient_of_restitution", "peak_force"):
+        errors = [getattr(e, name) / getattr(fine, name) - 1.0 for e in (coarse, middle)]
+        assert abs(errors[1]) < 2e-3
+        assert abs(2.0 * errors[1] - errors[0]) < 2e-4
+
+
+def test_weak_damping_and_extreme_moduli_tend_to_the_right_limits():
+    weak = [1.0 - history(kelvin_voigt_sphere(tau), 1e-11).coefficient_of_restitution for tau in (1e-3, 1e-4)]
+    assert weak[0] / weak[1] == pytest.approx(10.0, rel=2e-2)  # 1 - e is linear in weak damping
+    assert weak[1] == pytest.approx(1.73e-4, rel=2e-2)  # 1 - e = 1.73 tau from the two smallest values of the table
+
+
+@pytest.mark.parametrize(("long_term", "expected"), [(1e6, 1.0), (1e4, 1.0)])
+def test_a_stiff_long_term_spring_makes_the_impact_elastic(long_term, expected):
+    scene = figure_12(2e-3)
+    total = LONG_TERM + GLASSY_BRANCH
+    branch = total / (1.0 + long_term)
+    model = PronySeries(
+        long_term_shear_modulus=total - branch, shear_moduli=[branch], relaxation_times=[RELAXATION_TIME]
+    )
+    answer = history(scene.replace(effects=(model,)))
+    assert answer.coefficient_of_restitution == pytest.approx(expected, abs=3.0 / long_term)
+
+
+def test_a_vanishing_long_term_spring_is_approached_continuously():
+    """G_inf/G_1 -> 0: the restitution tends to that of the Maxwell layer, linearly."""
+    values = []
+    for share in (1e-4, 1e-6, 0.0):
+        total = LONG_TERM + GLASSY_BRANCH
+        model = PronySeries(
+            long_term_shear_modulus=share * total,
+            shear_moduli=[(1.0 - share) * total],
+            relaxation_times=[RELAXATION_TIME],
+        )
+        values.append(history(figure_12(2e-3).replace(effects=(model,)), 1e-10).coefficient_of_restitution)
+    assert abs(values[1] - values[2]) < 2e-6
+    assert (values[0] - values[2]) / (values[1] - values[2]) == pytest.approx(100.0, rel=1e-2)
+
+
+def test_prony_branches_that_share_a_time_are_one_branch():
+    scene = figure_12(1e-3)
+    split = PronySeries(
+        long_term_shear_modulus=LONG_TERM,
+        shear_moduli=[0.3 * GLASSY_BRANCH, 0.0, 0.7 * GLASSY_BRANCH],
+        relaxation_times=[RELAXATION_TIME, 1.0, RELAXATION_TIME],
+    )
+    one, two = history(scene, 1e-11), history(scene.replace(effects=(split,)), 1e-11)
+    assert two.coefficient_of_restitution == pytest.approx(one.coefficient_of_restitution, rel=1e-10)
+    assert two.energy_residual < 1e-10
+
+
+def test_an_elastic_cone_and_a_truncated_cone():
+    layer = Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5)  # E* = 1
+    cone = history(Scene(layer=layer, indenter=Cone(slope=0.3), loading=Impact(mass=1.0, velocity=0.1)), 1e-11)
+    # Sneddon: F = 2 E* delta^2/(pi tan), so M v0^2/2 = 2 E* delta^3/(3 pi tan)
+    assert cone.peak_depth == pytest.approx((0.75 * np.pi * 0.3 * 0.01) ** (1.0 / 3.0), rel=1e-11)
+    worn = TruncatedCone(flat_radius=0.2, slope=0.3)
+    blunt = history(Scene(layer=layer, indenter=worn, loading=Impact(mass=1.0, velocity=0.1)), 1e-11)
+    assert blunt.coefficient_of_restitution == pytest.approx(1.0, abs=1e-10)
+    assert blunt.energy_residual < 1e-10
+    assert blunt.peak_contact_radius > 0.2
+    assert blunt.contact_radius.min() == pytest.approx(0.2, rel=1e-12)
+
+
+def test_a_blunt_cone_ends_as_a_flat_punch():
+    """The steeper the flank of a truncated cone, the closer its rebound to its flat end's: as 1/slope^2."""
+    model = kelvin_voigt_punch(0.4)
+    punch = history(model, 1e-11).coefficient_of_restitution
+    gaps = []
+    for slope in (50.0, 100.0):
+        steep = model.replace(indenter=TruncatedCone(flat_radius=1.0, slope=slope))
+        gaps.append(history(steep, 1e-11).coefficient_of_restitution - punch)
+    assert gaps[0] / gaps[1] == pytest.approx(4.0, rel=1e-2)
+    assert abs(gaps[1]) < 1e-5
+
+
+def test_dimensionless_groups():
+    data = {"viscosity": GLASSY_BRANCH * RELAXATION_TIME, "mass": MASS, "long_term_modulus": LONG_TERM}
+    one = {"radius": 0.01, "velocity": RADIUS_TIMES_VELOCITY / 0.01}
+    two = {"radius": 0.02, "velocity": RADIUS_TIMES_VELOCITY / 0.02}
+    assert half_space_number(**data, **one) == pytest.approx(2.65, abs=5e-6)  # the paper's value
+    for number in (unbonded_thin_layer_number, bonded_thin_layer_number):
+        assert number(**data, **one, thickness=1e-3) == pytest.approx(number(**data, **two, thickness=1e-3), rel=1e-14)
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+def test_thin_layers_obey_their_own_group(support):
+    """Two impacts on a thin layer with equal chi_TL and equal G_inf/G_1 rebound alike, Eq. (54)."""
+    values = []
+    for thickness, factor in ((1e-4, 1.0), (0.5e-4, 2.0 if support == "unbonded" else 2.0**1.5)):
+        scene = figure_12(thickness, radius=1.0)
+        layer = scene.layer.replace(support=support)
+        heavy = Impact(mass=2.0, velocity=scene.loading.velocity / factor)
+        values.append(history(scene.replace(layer=layer, loading=heavy)).coefficient_of_restitution)
+    assert values[0] == pytest.approx(values[1], rel=0.05)
+
+
+def test_batches_are_what_single_impacts_are():
+    scenes = [
+        figure_12(thickness, radius) for thickness in (np.inf, 3e-3, 1.7e-3, 1e-3) for radius in (5e-3, 10e-3, 0.1)
+    ]
+    scenes += [kelvin_voigt_sphere(0.1), kelvin_voigt_punch(0.2), kelvin_voigt_punch(2.0), figure_12(1e-3)]
+    seen = []
+    together = impact_batch(scenes, PUNCH, progress=lambda done, total: seen.append((done, total)))
+    for i, scene in enumerate(scenes):
+        alone = impact_batch([scene], PUNCH)
+        full = history(scene)
+        for name in ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius"):
+            assert getattr(together, name)[i] == pytest.approx(getattr(alone, name)[0], rel=1e-12)
+            assert getattr(together, name)[i] == pytest.approx(getattr(full, name), rel=1e-12)
+    assert seen[-1] == (len(scenes), len(scenes))
+
+
+def test_flat_punch_on_a_layer_follows_its_closed_form():
+    layer = incompressible(1e-3, 1e6)
+    punch = FlatPunch(radius=1.5e-3)
+    stiffness = float(equivalent_system(layer, punch, punch.radius, PUNCH).contact_stiffness(punch.radius))
+    scene = kelvin_voigt_punch(0.0).replace(
+        layer=layer, indenter=punch, effects=(kelvin_voigt_punch(0.0).effects[0].replace(
+            shear_modulus=layer.shear_modulus, viscosity=0.3 * 2.0 * layer.shear_modulus * np.sqrt(0.01 / stiffness)
+        ),), loading=Impact(mass=0.01, velocity=0.5),
+    )  # fmt: skip
+    assert history(scene).coefficient_of_restitution == pytest.approx(float(kelvin_voigt_restitution(0.3)), rel=1e-9)
