@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import Field
 
+from bem.contact_density import ContactDensity
 from bem.fredholm_kernel import FredholmKernel
 from bem.kernels import Support, compliance_kernel
 from bem.panels import gauss_nodes, partial_panel_interpolation
@@ -60,11 +61,13 @@ class IntegralEquationSolution:
     Attributes:
         support: "bonded" or "unbonded".
         poissons_ratio: nu.
-        factor: Factor of the layer's equation.
+        kernel: Kernel of the layer's equation.
+        factor: Its factor.
     """
 
     support: Support
     poissons_ratio: float
+    kernel: FredholmKernel
     factor: VolterraFactor
 
     @property
@@ -89,6 +92,31 @@ class IntegralEquationSolution:
         """y1(x) = phi(x; a = x) of a flat punch pressed in by 1."""
         return self._edge_density(self._covered(ratio))
 
+    def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
+        """q = p_bar sqrt(1 - rho^2) from the density, one solution for each different ratio."""
+        rho, ratio = np.broadcast_arrays(np.asarray(rho, dtype=float), self._covered(ratio))
+        q = np.empty(rho.shape)
+        for a in np.unique(ratio):
+            q[ratio == a] = self._smooth_pressure(rho[ratio == a], float(a))
+        return q
+
+    def density(self, ratio: float, load: FloatArray | None = None) -> ContactDensity:
+        """Density under a contact of radius a = ratio h.
+
+        Args:
+            ratio: a/h.
+            load: Averages of W as in `ContactDensity`; by default W = 1, the flat punch.
+        """
+        panels = int(np.ceil(ratio / self.factor.panel_width))
+        unit = np.ones((panels, self.factor.count))
+        return ContactDensity.of_load(self.kernel, self.factor, ratio, unit if load is None else load)
+
+    def _smooth_pressure(self, rho: FloatArray, ratio: float) -> FloatArray:
+        density = self.density(ratio)
+        edge = np.sqrt((1 - rho) * (1 + rho)) * ratio
+        inner = 1 + density.edge_value - edge * density.abel_integral(ratio * rho)
+        return inner / (2 * self.normalized_contact_stiffness(ratio))  # Eq. (10)
+
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar and c_bar: truncated polynomials, and rounding times condition.
 
@@ -98,7 +126,7 @@ class IntegralEquationSolution:
         ratio = self._covered(ratio)
         panels, _ = self._edge_density.locate(ratio)
         rounding = 1 + 1 / compliance_kernel(1 / np.maximum(ratio, 1.0), self.support, self.poissons_ratio)
-        return self._truncation[panels] + 4 * np.finfo(float).eps * rounding
+        return 2 * self._truncation[panels] + 4 * np.finfo(float).eps * rounding
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)
@@ -136,4 +164,4 @@ def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: fl
     kernel = FredholmKernel.of_layer(support, nu)
     panels = int(np.ceil(ratio / settings.panel_width))
     factor = VolterraFactor.of_kernel(kernel, panels, settings.panel_width, int(settings.nodes))
-    return IntegralEquationSolution(support, nu, factor)
+    return IntegralEquationSolution(support, nu, kernel, factor)

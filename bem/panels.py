@@ -28,7 +28,19 @@ def lagrange_matrix(count: int, points: FloatArray) -> FloatArray:
     Returns:
         Matrix of shape (*points.shape, m), each row adding up to 1.
     """
-    return chebyshev.chebvander(2 * points - 1, count - 1) @ chebyshev_from_nodes(count)
+    nodes, _ = gauss_nodes(count)
+    distance = points[..., None] - nodes
+    distance[distance == 0] = np.finfo(float).tiny  # a point that is a node: its own term dominates
+    terms = _barycentric_weights(count) / distance
+    matrix: FloatArray = terms / terms.sum(axis=-1, keepdims=True)
+    return matrix
+
+
+@cache
+def _barycentric_weights(count: int) -> FloatArray:
+    """(-1)^j sqrt(tau_j (1 - tau_j) w_j), Salzer's weights of the Gauss-Legendre nodes."""
+    nodes, weights = gauss_nodes(count)
+    return _frozen((-1.0) ** np.arange(count) * np.sqrt(nodes * (1 - nodes) * weights))
 
 
 @cache

@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike
 from bem.panels import chebyshev_from_nodes
 from contact.validation import FloatArray
 
+FEW_POINTS = 400
+
 
 @dataclass(frozen=True)
 class EqualPanels:
@@ -31,7 +33,7 @@ class EqualPanels:
     def __call__(self, x: ArrayLike) -> FloatArray:
         """Values at points of [0, P H], any shape."""
         panels, s = self.locate(np.asarray(x, dtype=float))
-        return clenshaw(self.coefficients[panels], 2 * s - 1)
+        return chebyshev_sum(self.coefficients[panels], 2 * s - 1)
 
     def locate(self, x: FloatArray) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
         """Number of the panel and relative position in it; a point between two panels belongs to the left one."""
@@ -45,9 +47,17 @@ class EqualPanels:
         return tail
 
 
-def clenshaw(coefficients: FloatArray, s: FloatArray) -> FloatArray:
-    """Chebyshev sums: coefficients (*shape, m) at s in [-1, 1] of that shape."""
+def chebyshev_sum(coefficients: FloatArray, s: FloatArray) -> FloatArray:
+    """Chebyshev sums: coefficients (*shape, m) at s in [-1, 1] of that shape.
+
+    A few points are summed as cosines in one step; for many, Clenshaw's recurrence needs less memory and time.
+    """
+    if s.size <= FEW_POINTS:
+        angles = np.arccos(np.clip(s, -1.0, 1.0))
+        cosines = np.cos(np.multiply.outer(angles, np.arange(coefficients.shape[-1])))
+        few: FloatArray = np.sum(coefficients * cosines, axis=-1)
+        return few
     older, newer = np.zeros_like(s), np.zeros_like(s)
-    for c in np.moveaxis(coefficients, -1, 0)[:0:-1]:
-        older, newer = newer, 2 * s * newer - older + c
+    for k in range(coefficients.shape[-1] - 1, 0, -1):
+        older, newer = newer, 2 * s * newer - older + coefficients[..., k]
     return s * newer - older + coefficients[..., 0]

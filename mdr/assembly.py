@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from bem.contact_density import ContactDensity
 from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
 from bem.integral_equation import IntegralEquationSolution
 from bem.panels import gauss_nodes, partial_panel_interpolation
-from contact import FlatPunch, Layer, Profile, UnsupportedSceneError
+from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.validation import FloatArray
 from mdr.equivalent_system import EquivalentSystem
 from mdr.half_space_profile import half_space_profile
-from mdr.layer_profile import edge_values
+from mdr.layer_profile import contact_averages, edge_values
 from mdr.mapped_pieces import MappedFunction, MappedGrid, resolve
+from mdr.surface_fields import ContactFields
 
 NODES = 24  # on each piece, where the flat-punch data do not prescribe their own
 RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half-space profile
@@ -33,8 +35,9 @@ def equivalent_system(
 
     Raises:
         InvalidInput: If the flat-punch data do not cover max_radius/h.
-        UnsupportedSceneError: If the contact would not be one circle.
+        SeveralContacts: If the contact would not be one circle.
     """
+    _refuse_endless_depth(indenter, max_radius)
     unit = max_radius if layer.is_half_space else layer.thickness
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
     profile = _profile(solution, indenter, unit, max_radius)
@@ -47,24 +50,91 @@ def equivalent_system(
         flat_punch=solution,
         profile=profile,
         moment=_moment(solution, profile, indenter.flat_radius / unit),
-        profile_error=float(np.max(profile.truncation(), initial=0.0)),
+        profile_error=0.0 if isinstance(indenter, FlatPunch) else profile.relative_error(),
     )
+
+
+def contact_fields(
+    layer: Layer, indenter: Profile, flat_punch: FlatPunchSolution, *, contact_radius: float, depth: float, edge: bool
+) -> ContactFields:
+    """Pressure and displacement of one contact of radius a [m] under a depth delta [m].
+
+    Args:
+        layer: Layer or half-space.
+        indenter: Profile of revolution.
+        flat_punch: The solution that the equivalent system was made of.
+        contact_radius: a [m].
+        depth: delta [m].
+        edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
+    """
+    unit = contact_radius if layer.is_half_space else layer.thickness
+    half_space = _half_space_function(flat_punch, indenter, unit, contact_radius)
+    density, ratio, delta = None, contact_radius / unit, depth / unit
+    if isinstance(flat_punch, IntegralEquationSolution):
+        averages = np.full((int(np.ceil(ratio / flat_punch.factor.panel_width)), half_space.grid.count), delta)
+        if not isinstance(indenter, FlatPunch):
+            averages -= contact_averages(flat_punch.factor, half_space, indenter.flat_radius / unit)
+        density = flat_punch.density(ratio, averages)
+    return ContactFields(
+        indenter=indenter,
+        contact_modulus=layer.contact_modulus,
+        unit=unit,
+        contact_radius=ratio,
+        indentation_depth=delta,
+        half_space=half_space,
+        density=density,
+        edge_density=_edge_density(half_space, density, delta) if edge else 0.0,
+    )
+
+
+def _edge_density(half_space: MappedFunction, density: ContactDensity | None, delta: float) -> float:
+    """phi(a) = delta - g_hs(a) + psi(a)."""
+    share = 0.0 if density is None else density.edge_value
+    return delta - float(half_space(np.asarray(half_space.grid.end))) + share
+
+
+class SeveralContacts(UnsupportedSceneError):
+    """The indenter would touch outside its circle of contact.
+
+    Args:
+        radius: Largest contact radius [m] that is one circle.
+    """
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+        message = f"the MDR profile stops rising at a contact radius of {radius:g} m: the contact is no single circle"
+        super().__init__(f"{message} beyond; keep radii, depths or forces below")
 
 
 def _profile(solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float) -> MappedFunction:
     """g in units of `unit`."""
-    count = solution.factor.count if isinstance(solution, IntegralEquationSolution) else NODES
-    if isinstance(indenter, FlatPunch):  # its profile is zero wherever it is asked
-        rest = MappedGrid(np.zeros(1), np.ones(1), np.ones(1), count)
-        return MappedFunction(rest, np.zeros((1, count)), 0.0)
+    g_hs = _half_space_function(solution, indenter, unit, max_radius)
+    if isinstance(indenter, FlatPunch) or not isinstance(solution, IntegralEquationSolution):
+        return g_hs
     flat = indenter.flat_radius / unit
+    edge = edge_values(solution.factor, g_hs, flat)
+    return MappedFunction.from_values(g_hs.grid, edge / solution.edge_density(flat + g_hs.grid.nodes), g_hs.lead)
+
+
+def _half_space_function(
+    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float
+) -> MappedFunction:
+    """g_hs in units of `unit`, on pieces that also suit the flat-punch data."""
+    count = solution.factor.count if isinstance(solution, IntegralEquationSolution) else NODES
+    if isinstance(indenter, FlatPunch):  # zero wherever it is asked
+        rest = MappedGrid(np.zeros(1), np.full(1, np.finfo(float).tiny), np.ones(1), count)
+        return MappedFunction(rest, np.zeros((1, count)), 0.0)
     grid, lead = _initial_grid(solution, indenter, unit, max_radius, count)
     scale = np.inf if isinstance(solution, HalfSpaceFlatPunch) else 1.0
-    g_hs = resolve(lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, RESOLVED, scale)
-    if not isinstance(solution, IntegralEquationSolution):
-        return g_hs
-    edge = edge_values(solution.factor, g_hs, flat)
-    return MappedFunction.from_values(g_hs.grid, edge / solution.edge_density(flat + g_hs.grid.nodes), lead)
+    return resolve(lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, RESOLVED, scale)
+
+
+def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:
+    """A contact up to a sphere's equator would need an infinite depth."""
+    with np.errstate(divide="ignore"):  # that infinity is what is looked for
+        depth = half_space_profile(indenter, np.asarray(max_radius - indenter.flat_radius))
+    if not np.isfinite(depth):
+        raise InvalidInput(f"contact radius = {max_radius:g} m: the indenter is upright there; stay a little below")
 
 
 def _initial_grid(
@@ -134,5 +204,4 @@ def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float) -> No
     slope = profile.slope_at(piece, np.broadcast_to(gauss_nodes(grid.count)[0], piece.shape))
     if np.any(slope <= 0):
         radius = indenter.flat_radius + unit * float(grid.nodes[slope <= 0].min())
-        message = f"the MDR profile stops rising at a contact radius of {radius:g} m: the contact is no single circle"
-        raise UnsupportedSceneError(f"{message} beyond; keep radii, depths or forces below")
+        raise SeveralContacts(radius)

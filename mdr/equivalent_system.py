@@ -17,7 +17,8 @@ from contact import InvalidInput, NotConvergedError
 from contact.validation import FloatArray
 from mdr.mapped_pieces import MappedFunction
 
-NEWTON_STEPS = 60
+NEWTON_STEPS = 100
+NEWTON_TOLERANCE = 1e-14
 ROUNDING = 16 * np.finfo(float).eps
 
 
@@ -89,12 +90,14 @@ class EquivalentSystem:
     def contact_radius_at_depth(self, indentation_depth: ArrayLike) -> FloatArray:
         """a [m] with g(a) = delta, Eq. (3); 0 <= delta <= g(max_radius)."""
         depth = np.asarray(indentation_depth, dtype=float) / self.length_unit
-        return self._invert(depth, self.profile.at, self.profile.slope_at, "indentation_depth", self.length_unit)
+        curve = _Curve(self.profile.at, self.profile.slope_at, self.profile.lead)
+        return self._invert(depth, curve, "indentation_depth", self.length_unit)
 
     def contact_radius_at_force(self, normal_force: ArrayLike) -> FloatArray:
         """a [m] whose elastic force is F_N; 0 <= F_N <= elastic_force(max_radius)."""
         force = np.asarray(normal_force, dtype=float) / self._force_unit
-        return self._invert(force, self._force_at, self._force_slope_at, "normal_force", self._force_unit)
+        lead = self.profile.lead + (0.0 if self.flat_radius else float(self.profile.grid.power[0]))
+        return self._invert(force, _Curve(self._force_at, self._force_slope_at, lead), "normal_force", self._force_unit)
 
     @property
     def relative_error(self) -> Mapping[str, float]:
@@ -151,44 +154,45 @@ class EquivalentSystem:
     def _last(self) -> float:
         return self.max_radius / self.length_unit
 
-    def _invert(
-        self,
-        target: FloatArray,
-        value: Callable[[NDArray[np.intp], FloatArray], FloatArray],
-        slope: Callable[[NDArray[np.intp], FloatArray], FloatArray],
-        name: str,
-        unit: float,
-    ) -> FloatArray:
-        """Radius [m] where an increasing function of the piece variable u takes the target value."""
+    def _invert(self, target: FloatArray, curve: _Curve, name: str, unit: float) -> FloatArray:
+        """Radius [m] where an increasing curve takes the target value."""
         grid = self.profile.grid
         pieces = np.arange(len(grid.left))
-        ends = value(pieces, np.ones(pieces.size))
+        ends = curve.value(pieces, np.ones(pieces.size))
         covered = (target >= 0) & (target <= ends[-1] * (1 + ROUNDING))
         if not np.all(covered):
             worst = target[~covered].flat[0] * unit
             raise InvalidInput(f"{name} = {worst:g}: this equivalent system covers [0, {ends[-1] * unit:g}]")
         piece = np.minimum(np.searchsorted(ends, target), pieces.size - 1)
-        u = _safeguarded_newton(
-            lambda v: value(piece, v) - target, lambda v: slope(piece, v), np.where(piece > 0, 1.0, 0.0)
-        )
+        before = np.append(0.0, ends)[piece]
+        share = np.clip((target - before) / (ends[piece] - before), 0.0, 1.0)
+        start = share ** np.where(piece == 0, 1 / max(curve.lead, 1.0), 1.0)
+        u = _safeguarded_newton(curve, piece, target, start)
         return self.flat_radius + self.length_unit * (grid.left[piece] + grid.width[piece] * u ** grid.power[piece])
 
 
-def _safeguarded_newton(
-    residual: Callable[[FloatArray], FloatArray], slope: Callable[[FloatArray], FloatArray], size: FloatArray
-) -> FloatArray:
-    """Roots in [0, 1] of increasing functions, elementwise; a Newton step that leaves its bracket is bisected.
+@dataclass(frozen=True)
+class _Curve:
+    """An increasing function of the position u in a piece, its slope by u, and the power of u it begins with."""
 
-    A root u is found to rounding relative to max(u, size).
+    value: Callable[[NDArray[np.intp], FloatArray], FloatArray]
+    slope: Callable[[NDArray[np.intp], FloatArray], FloatArray]
+    lead: float
+
+
+def _safeguarded_newton(curve: _Curve, piece: NDArray[np.intp], target: FloatArray, start: FloatArray) -> FloatArray:
+    """Positions u in [0, 1] where the curve takes its targets; a Newton step that leaves its bracket is bisected.
+
+    In the first piece u is found to rounding relative to itself, in the others relative to the piece.
     """
-    low, high = np.zeros_like(size), np.ones_like(size)
-    u = np.full_like(size, 0.5)
+    low, high, u = np.zeros_like(start), np.ones_like(start), start
+    size = np.where(piece > 0, 1.0, 0.0)
     for _ in range(NEWTON_STEPS):
-        r, s = residual(u), slope(u)
-        low, high = np.where(r <= 0, u, low), np.where(r >= 0, u, high)
-        step = u - np.divide(r, s, out=np.full_like(u, np.inf), where=s > 0)
-        new = np.where((step > low) & (step < high), step, (low + high) / 2)
-        if np.all(np.minimum(np.abs(new - u), high - low) <= ROUNDING * np.maximum(u, size)):
+        residual, slope = curve.value(piece, u) - target, curve.slope(piece, u)
+        low, high = np.where(residual <= 0, u, low), np.where(residual >= 0, u, high)
+        step = u - np.divide(residual, slope, out=np.full_like(u, np.inf), where=slope > 0)
+        new = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+        if np.all(np.minimum(np.abs(new - u), high - low) <= NEWTON_TOLERANCE * np.maximum(u, size)):
             return new
         u = new
     raise NotConvergedError("contact radius not found", {"bracket": float(np.max(high - low))})

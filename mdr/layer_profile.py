@@ -34,33 +34,47 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     H, grid = factor.panel_width, load.grid
     panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
     position = (grid.nodes + flat_radius) / H - panel[:, None]
-    averages = panel_averages(factor, load, panel, position)
+    averages = panel_averages(load, panel, position, np.full(panel[-1] + 1, H))
     _, inherited = factor.eliminate(averages)
     values = factor.edge_values(averages + inherited)[panel]  # right as it stands where a piece fills its panel
     polynomial = factor.edge_values(inherited)
     whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=1e-12)
+    whole[0] = (
+        False  # values near first touch are tiny and keep their relative accuracy only if integrated by themselves
+    )
     for piece in np.flatnonzero(~whole):
         smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
         values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece)
     return values
 
 
+def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
+    """Averages of a load on the panels that cover the contact [0, b + end of the grid], the last ending there."""
+    H, grid = factor.panel_width, load.grid
+    ratio = flat_radius + grid.end
+    panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
+    widths = np.full(panel[-1] + 1, H)
+    widths[-1] = ratio - panel[-1] * H
+    position = (grid.nodes + flat_radius - H * panel[:, None]) / widths[panel][:, None]
+    return panel_averages(load, panel, position, widths)
+
+
 def panel_averages(
-    factor: VolterraFactor, load: MappedFunction, panel: NDArray[np.intp], position: FloatArray
+    load: MappedFunction, panel: NDArray[np.intp], position: FloatArray, widths: FloatArray
 ) -> FloatArray:
-    """int l_j W dt / w_j on the panels up to the grid's end, shape (panels, m).
+    """int l_j W dt / w_j on each panel, shape (panels, m).
 
     Args:
-        factor: Factor of the layer.
         load: W.
         panel: Number of the panel that each piece lies in, shape (q,).
         position: The grid's nodes relative to their panels, shape (q, m).
+        widths: Of the panels, shape (panels,).
     """
     weighted = load.node_values * load.grid.weights
-    moments = (weighted[:, None, :] @ lagrange_matrix(factor.count, position))[:, 0]
-    averages = np.zeros((panel[-1] + 1, factor.count))
-    np.add.at(averages, panel, moments / factor.weights)
-    return averages
+    moments = (weighted[:, None, :] @ lagrange_matrix(load.grid.count, position))[:, 0]
+    averages = np.zeros((len(widths), load.grid.count))
+    np.add.at(averages, panel, moments)
+    return averages / (widths[:, None] * gauss_nodes(load.grid.count)[1])
 
 
 def _own_integral(

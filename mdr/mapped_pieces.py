@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.panels import chebyshev_from_nodes, gauss_nodes
-from bem.piecewise import clenshaw
+from bem.piecewise import chebyshev_sum
 from contact.validation import FloatArray
 
 MAX_SPLITS = 60
@@ -100,13 +100,13 @@ class MappedFunction:
 
     def at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Values at mapped positions."""
-        return clenshaw(self.coefficients[piece], 2 * u - 1) * self._factor(piece, u)
+        return chebyshev_sum(self.coefficients[piece], 2 * u - 1) * self._factor(piece, u)
 
     def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Derivative with respect to u at mapped positions."""
         lead = np.where(piece == 0, self.lead, 0.0)
-        regular = clenshaw(self.coefficients[piece], 2 * u - 1)
-        slope = clenshaw(self._slope_coefficients[piece], 2 * u - 1)
+        regular = chebyshev_sum(self.coefficients[piece], 2 * u - 1)
+        slope = chebyshev_sum(self._slope_coefficients[piece], 2 * u - 1)
         full: FloatArray = self._factor(piece, u) * slope + lead * u ** np.maximum(lead - 1, 0) * regular
         return full
 
@@ -129,6 +129,13 @@ class MappedFunction:
         size = np.abs(self.coefficients)
         tail: FloatArray = size[:, -2:].max(axis=1) / np.maximum(size.max(axis=1), np.finfo(float).tiny)
         return tail
+
+    def relative_error(self) -> float:
+        """Last coefficients and rounding, relative to the smallest value on each piece without u^lead: the worst."""
+        size = np.abs(self.coefficients)
+        error = size[:, -2:].max(axis=1) + 4 * np.finfo(float).eps * size.max(axis=1)
+        regular = chebyshev_sum(self.coefficients[:, None], 2 * gauss_nodes(self.grid.count)[0] - 1)
+        return float(np.max(error / np.maximum(np.abs(regular).min(axis=1), np.finfo(float).tiny)))
 
     def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         return np.where(piece == 0, u**self.lead, 1.0)

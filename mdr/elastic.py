@@ -1,0 +1,144 @@
+"""Elastic contact without effects: equilibria under prescribed radii, depths or forces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bem.flat_punch import FlatPunchSolution, FlatPunchSource
+from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
+from contact.solution import Setting
+from contact.validation import FloatArray
+from mdr.assembly import contact_fields
+from mdr.covering import covering_system
+from mdr.equivalent_system import EquivalentSystem
+from mdr.surface_fields import ContactFields
+
+
+def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: dict[str, Setting]) -> ContactPath:
+    """Contact radius, depth, force and stiffness, with pressure and displacement on demand.
+
+    Raises:
+        InvalidInput: If a prescribed value is out of reach of the indenter or the flat-punch data.
+        SeveralContacts: If the contact would not be one circle.
+    """
+    log = StageLog()
+    with log.stage("mdr_profile"):
+        system = covering_system(scene, LoggedSource(flat_punch, log))
+    with log.stage("force"):
+        radius, depth = _radius_and_depth(system, scene)
+        force = system.force(radius, depth)
+        stiffness = system.contact_stiffness(radius)
+    return ContactPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        contact_radius=radius,
+        indentation_depth=depth,
+        normal_force=force,
+        contact_stiffness=stiffness,
+        error_estimate=_errors(system, scene, radius, depth, force),
+        cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
+        stages=log.records,
+        fields=PathFields(scene, system.flat_punch, radius, depth),
+    )
+
+
+@dataclass(frozen=True)
+class LoggedSource:
+    """A flat-punch source whose work is written into a stage log."""
+
+    source: FlatPunchSource
+    log: StageLog
+
+    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchSolution:
+        """As the source's; counts the solutions asked for, whether made or found in its cache."""
+        with self.log.stage("flat_punch_data"):
+            self.log.count("flat_punch_solutions")
+            return self.source.solution(layer, max_ratio)
+
+    def refined(self) -> LoggedSource:
+        """The refined source with the same log."""
+        return LoggedSource(self.source.refined(), self.log)
+
+
+@dataclass(frozen=True, eq=False)
+class PathFields:
+    """Surface fields of every step of a path, each contact solved when it is first asked for.
+
+    Attributes:
+        scene: The problem.
+        flat_punch: The solution the path was made of.
+        contact_radius: a [m], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        singular_edge: Whether the pressure may be singular at the edge; by default only under a flat punch.
+    """
+
+    scene: Scene
+    flat_punch: FlatPunchSolution
+    contact_radius: FloatArray
+    indentation_depth: FloatArray
+    singular_edge: bool | None = None
+    _contacts: dict[int, ContactFields] = field(default_factory=dict)
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside the contact."""
+        return self.contact(step).pressure(radius)
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m]."""
+        return self.contact(step).surface_displacement(radius)
+
+    def contact(self, step: int) -> ContactFields:
+        """One step's contact."""
+        if step not in self._contacts:
+            is_punch = isinstance(self.scene.indenter, FlatPunch)
+            self._contacts[step] = contact_fields(
+                self.scene.layer,
+                self.scene.indenter,
+                self.flat_punch,
+                contact_radius=float(self.contact_radius[step]),
+                depth=float(self.indentation_depth[step]),
+                edge=is_punch if self.singular_edge is None else self.singular_edge,
+            )
+        return self._contacts[step]
+
+
+def _radius_and_depth(system: EquivalentSystem, scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """The two unknowns, Eq. (3); a flat punch keeps its radius."""
+    values = getattr(scene.loading, "values", np.empty(0))
+    punch = np.full_like(values, scene.indenter.radius) if isinstance(scene.indenter, FlatPunch) else None
+    if isinstance(scene.loading, ContactRadii):
+        return values, system.mdr_profile(values)
+    if isinstance(scene.loading, IndentationDepths):
+        return system.contact_radius_at_depth(values) if punch is None else punch, values
+    if punch is not None:
+        return punch, values / system.contact_stiffness(punch)
+    radius = system.contact_radius_at_force(values)
+    return radius, system.mdr_profile(radius)
+
+
+def _errors(
+    system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
+) -> dict[str, FloatArray]:
+    """Relative errors of what was not prescribed."""
+    errors = system.relative_errors(radius)
+    stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
+    exact = np.zeros_like(radius)
+    if isinstance(scene.indenter, FlatPunch):
+        linear = {"contact_radius": exact, "contact_stiffness": stiffness}
+        depth_given = given == "IndentationDepths"
+        return linear | {
+            "indentation_depth": exact if depth_given else stiffness,
+            "normal_force": stiffness if depth_given else exact,
+        }
+    # F = k_N delta - moment: the errors of both terms count against their difference
+    spread = system.contact_stiffness(radius) * depth / force
+    sensitivity = depth / (radius * system.mdr_profile_slope(radius))  # d(ln a)/d(ln delta)
+    return {
+        "contact_radius": exact if given == "ContactRadii" else errors["contact_radius"] * sensitivity,
+        "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
+        "normal_force": exact if given == "NormalForces" else errors["normal_force"] * spread,
+        "contact_stiffness": stiffness,
+    }

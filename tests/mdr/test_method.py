@@ -1,0 +1,187 @@
+"""The method record: prescribed radii, depths and forces; fields; error estimates; cost; refusals."""
+
+import subprocess
+import sys
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from bem.integral_equation import IntegralEquation
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Method,
+    NormalForces,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+    UnsupportedSceneError,
+)
+from mdr import Mdr
+
+LAYERS = {
+    "incompressible": Layer(thickness=1e-3, youngs_modulus=2e6, poissons_ratio=0.5),
+    "bonded": Layer(thickness=1e-3, youngs_modulus=2e6, poissons_ratio=0.3),
+    "unbonded": Layer(thickness=1e-3, youngs_modulus=2e6, poissons_ratio=0.3, support="unbonded"),
+    "half-space": Layer.half_space(youngs_modulus=2e6, poissons_ratio=0.45),
+}
+INDENTERS = [
+    Paraboloid(radius_of_curvature=0.02),
+    Sphere(radius=0.02),
+    Cone(slope=0.2),
+    TruncatedCone(flat_radius=0.4e-3, slope=0.2),
+    TruncatedParaboloid(flat_radius=0.4e-3, radius_of_curvature=0.02),
+    PowerLaw(exponent=3.3, reference_radius=1e-3, reference_height=1e-4),
+    Tabulated(radii=np.linspace(0, 6e-3, 13), heights=20 * np.linspace(0, 6e-3, 13) ** 2),
+]
+RADII = [0.5e-3, 1e-3, 3.7e-3]
+
+
+def solve(layer, indenter, loading, method=None):
+    return (method or Mdr()).solve(Scene(layer=layer, indenter=indenter, loading=loading))
+
+
+def smooth_rule(start, stop, count=200):
+    """Nodes and weights that crowd towards both ends, where pressures have roots and logarithms."""
+    x, w = np.polynomial.legendre.leggauss(count)
+    x, w = (1 + x) / 2, w / 2
+    return start + (stop - start) * x**3 * (10 - 15 * x + 6 * x**2), (stop - start) * 30 * x**2 * (1 - x) ** 2 * w
+
+
+def test_it_is_a_method():
+    assert isinstance(Mdr(), Method)
+    assert Mdr().refined().flat_punch == IntegralEquation(panel_width=0.5)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
+def test_radii_depths_and_forces_describe_the_same_path(layer, indenter):
+    path = solve(LAYERS[layer], indenter, ContactRadii(RADII))
+    by_depth = solve(LAYERS[layer], indenter, IndentationDepths(path.indentation_depth))
+    by_force = solve(LAYERS[layer], indenter, NormalForces(path.normal_force))
+    for other in (by_depth, by_force):
+        for name in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
+            np.testing.assert_allclose(getattr(other, name), getattr(path, name), rtol=3e-12, err_msg=name)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
+def test_the_pressure_carries_the_force(layer, indenter):
+    """2 pi int p r dr = F by quadrature between the singular radii; F comes from the springs, Eq. (4)."""
+    path = solve(LAYERS[layer], indenter, ContactRadii(RADII))
+    ends = [0.0, *(k for k in indenter.breakpoints if k < RADII[-1]), RADII[-1]]
+    force = 0.0
+    for start, stop in pairwise(ends):
+        r, w = smooth_rule(start, stop)
+        force += 2 * np.pi * np.sum(path.pressure(r, step=-1) * r * w)
+    assert force == pytest.approx(path.normal_force[-1], rel=1e-9)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
+def test_the_displacement_leaves_the_contact_continuously_and_without_a_corner(layer, indenter):
+    """Inside it is delta - f(r); without adhesion the surface leaves it tangentially, with a power 3/2."""
+    path = solve(LAYERS[layer], indenter, ContactRadii(RADII))
+    a, gaps = RADII[-1], np.array([1e-4, 1e-5])
+    outside = path.surface_displacement(a * (1 + gaps), step=-1)
+    gap = outside - (path.indentation_depth[-1] - indenter.height(a * (1 + gaps)))
+    assert path.surface_displacement([a], step=-1)[0] == pytest.approx(
+        path.indentation_depth[-1] - float(indenter.height(a)), rel=1e-12
+    )
+    assert np.all(gap > 0)  # the gap opens: the surface lies deeper than the indenter
+    assert np.log10(gap[0] / gap[1]) == pytest.approx(1.5, abs=0.02)
+
+
+def test_hertz():
+    """Closed forms of Hertz: F = 4/3 E* sqrt(R) delta^(3/2), p = (2 E*/(pi R)) sqrt(a^2 - r^2), and w outside."""
+    layer, R, a = LAYERS["half-space"], 0.02, 1.3e-3
+    E = layer.contact_modulus
+    path = solve(layer, Paraboloid(radius_of_curvature=R), ContactRadii([a]))
+    assert path.indentation_depth[0] == pytest.approx(a**2 / R, rel=1e-14)
+    assert path.normal_force[0] == pytest.approx(4 / 3 * E * np.sqrt(R) * (a**2 / R) ** 1.5, rel=1e-14)
+    r = np.array([0.0, 0.3e-3, 1.29e-3])
+    np.testing.assert_allclose(path.pressure(r), 2 * E / (np.pi * R) * np.sqrt((a - r) * (a + r)), rtol=1e-12)
+    r = np.array([1.31e-3, 2e-3, 1e-2])
+    outside = ((2 * a**2 - r**2) * np.arcsin(a / r) + a * np.sqrt(r**2 - a**2)) / (np.pi * R)
+    np.testing.assert_allclose(path.surface_displacement(r), outside, rtol=1e-11)
+
+
+def test_flat_punch_on_the_half_space():
+    """F = 2 E* a delta, p = E* delta/(pi sqrt(a^2 - r^2)), w = (2 delta/pi) arcsin(a/r)."""
+    layer, a = LAYERS["half-space"], 1e-3
+    path = solve(layer, FlatPunch(radius=a), IndentationDepths([1e-5, 2e-5]))
+    np.testing.assert_allclose(path.normal_force, 2 * layer.contact_modulus * a * np.array([1e-5, 2e-5]), rtol=1e-14)
+    r = np.array([0.0, 0.5e-3, 0.999e-3])
+    pressure = layer.contact_modulus * 2e-5 / np.pi / np.sqrt((a - r) * (a + r))
+    np.testing.assert_allclose(path.pressure(r, step=1), pressure, rtol=1e-13)
+    r = np.array([1.001e-3, 3e-3])
+    np.testing.assert_allclose(path.surface_displacement(r, step=1), 4e-5 / np.pi * np.arcsin(a / r), rtol=1e-13)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_stated_errors_cover_the_difference_to_a_refined_solution(layer):
+    coarse = Mdr(flat_punch=IntegralEquation(nodes=10))
+    for indenter in INDENTERS[:-1]:
+        exact = solve(LAYERS[layer], indenter, ContactRadii(RADII), Mdr(flat_punch=IntegralEquation(panel_width=0.5)))
+        path = solve(LAYERS[layer], indenter, ContactRadii(RADII), coarse)
+        for name in ("indentation_depth", "normal_force", "contact_stiffness"):
+            error = np.abs(getattr(path, name) / getattr(exact, name) - 1)
+            assert np.all(error <= path.error_estimate[name] + exact.error_estimate[name]), name
+
+
+def test_stages_and_counters_tell_what_ran():
+    path = solve(LAYERS["bonded"], Cone(slope=0.1), ContactRadii([1e-3]))
+    assert {stage.name for stage in path.stages} == {"flat_punch_data", "mdr_profile", "force"}
+    assert path.cost.unknowns == 24
+    assert path.cost.counters == {"flat_punch_solutions": 1}
+    assert {s.name for s in solve(LAYERS["half-space"], Cone(slope=0.1), ContactRadii([1e-3])).stages} == {
+        "mdr_profile",
+        "force",
+    }
+
+
+def test_effects_are_refused_by_name():
+    scene = Scene(
+        layer=LAYERS["bonded"],
+        indenter=Cone(slope=0.1),
+        loading=ContactRadii([1e-3]),
+        effects=(Adhesion(work_of_adhesion=0.1),),
+    )
+    if not Mdr().supports(scene):
+        with pytest.raises(UnsupportedSceneError, match="Adhesion"):
+            Mdr().solve(scene)
+
+
+def test_out_of_reach_is_refused_with_the_value():
+    short = Tabulated(radii=[0.0, 1e-3, 2e-3], heights=[0.0, 1e-5, 4e-5])
+    with pytest.raises(InvalidInput, match="the indenter ends"):
+        solve(LAYERS["bonded"], short, IndentationDepths([1e-3]))
+    with pytest.raises(InvalidInput, match="a/h = 1000"):
+        solve(LAYERS["bonded"], Cone(slope=0.1), ContactRadii([1.0]))
+    with pytest.raises(InvalidInput, match="upright"):
+        solve(LAYERS["bonded"], Sphere(radius=1e-3), ContactRadii([1e-3]))
+
+
+def test_infinite_pressure_is_refused_not_returned():
+    cone = solve(LAYERS["bonded"], TruncatedCone(flat_radius=0.5e-3, slope=0.1), ContactRadii([1e-3]))
+    with pytest.raises(InvalidInput, match=r"radius = 0\.0005 m"):
+        cone.pressure([0.5e-3])
+    punch = solve(LAYERS["bonded"], FlatPunch(radius=1e-3), NormalForces([1.0]))
+    with pytest.raises(InvalidInput, match="infinite"):
+        punch.pressure([1e-3])
+
+
+def test_import_is_light():
+    code = "import sys, mdr; print([m for m in ('pyfftw', 'skfem', 'gmsh', 'matplotlib') if m in sys.modules])"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert loaded.strip() == "[]"
