@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
 from fem_reference.certified import CertifiedContact
 from fem_reference.surface_fields import FemFields, SurfaceState
 
@@ -26,12 +26,20 @@ class Equilibrium:
         depth: delta / a.
         force: F / (E* a^2).
         error: relative error of each reported quantity.
+        radius_factor: contact radius over that of the mesh, one up to a last correction.
     """
 
     contact: CertifiedContact
     depth: float
     force: float
     error: Mapping[str, float]
+    radius_factor: float = 1.0
+
+    @property
+    def stiffness(self) -> float:
+        """k_N / (E* a) at the corrected radius."""
+        answer = self.contact.answer
+        return answer.stiffness + answer.stiffness_slope * (self.radius_factor - 1)
 
 
 def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
@@ -62,25 +70,21 @@ def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibri
     return Equilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
 
 
-def elastic_equilibria(scene: Scene, solve: ContactSolver, log: StageLog) -> list[Equilibrium]:
-    """Equilibria of a scene with prescribed radii, or with a flat punch."""
-    loading = scene.loading
-    if isinstance(loading, ContactRadii):
-        return [smooth_equilibrium(solve(scene, float(a), log)) for a in loading.values]
-    assert_flat_punch = scene.indenter
-    if not isinstance(assert_flat_punch, FlatPunch):
-        raise InvalidInput(f"loading = {type(loading).__name__}: needs the unknown contact set")
-    return _flat_punch_path(scene, solve(scene, assert_flat_punch.radius, log))
+def equilibria_at_radii(scene: Scene, radii: Array, solve: ContactSolver, log: StageLog) -> list[Equilibrium]:
+    """Smooth contact at prescribed radii [m]."""
+    return [smooth_equilibrium(solve(scene, float(a), log)) for a in radii]
 
 
-def _flat_punch_path(scene: Scene, contact: CertifiedContact) -> list[Equilibrium]:
-    a = contact.indenter.contact_radius
-    if isinstance(scene.loading, IndentationDepths):
-        return [flat_punch_equilibrium(contact, depth / a) for depth in scene.loading.values]
-    if isinstance(scene.loading, NormalForces):
+def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver, log: StageLog) -> list[Equilibrium]:
+    """A flat punch at prescribed depths or forces: one solution, scaled."""
+    contact = solve(scene, punch.radius, log)
+    loading, a = scene.loading, punch.radius
+    if isinstance(loading, IndentationDepths):
+        return [flat_punch_equilibrium(contact, depth / a) for depth in loading.values]
+    if isinstance(loading, NormalForces):
         unit = scene.layer.contact_modulus * a**2 * contact.answer.stiffness
-        return [_known_force(flat_punch_equilibrium(contact, force / unit)) for force in scene.loading.values]
-    raise InvalidInput(f"loading = {type(scene.loading).__name__}: a flat punch takes depths or forces")
+        return [_known_force(flat_punch_equilibrium(contact, force / unit)) for force in loading.values]
+    raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
 
 
 def _known_force(state: Equilibrium) -> Equilibrium:
@@ -99,7 +103,7 @@ def contact_path(
     """The path in SI units."""
     modulus = scene.layer.contact_modulus
     radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
-    stiffness = np.array([state.contact.answer.stiffness for state in equilibria])
+    stiffness = np.array([state.stiffness for state in equilibria])
     states = tuple(
         SurfaceState(state.contact.answer, state.contact.indenter.contact_radius, state.depth, modulus)
         for state in equilibria
@@ -114,7 +118,7 @@ def contact_path(
         cost=log.cost(unknowns=max(state.contact.answer.unknowns for state in equilibria)),
         stages=log.records,
         notes=notes,
-        contact_radius=radius,
+        contact_radius=radius * np.array([state.radius_factor for state in equilibria]),
         indentation_depth=radius * np.array([state.depth for state in equilibria]),
         normal_force=modulus * radius**2 * np.array([state.force for state in equilibria]),
         contact_stiffness=modulus * radius * stiffness,

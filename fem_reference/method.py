@@ -21,7 +21,7 @@ from contact import (
 from fem_reference.adaptive import settings_for, solve_to_accuracy
 from fem_reference.certified import CertifiedContact, solve_certified_contact
 from fem_reference.discretisation import Discretisation
-from fem_reference.elastic import contact_path, elastic_equilibria
+from fem_reference.elastic import Equilibrium, contact_path, equilibria_at_radii, flat_punch_equilibria
 from fem_reference.indenter import ScaledIndenter
 from fem_reference.linear_solver import BACKENDS
 
@@ -77,11 +77,9 @@ class Fem:
         if scene.effects:
             names = ", ".join(type(effect).__name__ for effect in scene.effects)
             return Unsupported(f"fem does not model {names}")
-        if isinstance(scene.loading, ContactRadii) or (
-            isinstance(scene.indenter, FlatPunch) and isinstance(scene.loading, IndentationDepths | NormalForces)
-        ):
+        if isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
             return Supported()
-        return Unsupported(f"fem does not model loading {type(scene.loading).__name__} of this indenter")
+        return Unsupported(f"fem does not model loading {type(scene.loading).__name__}")
 
     def solve(self, scene: Scene) -> ContactPath:
         """Depth, force, stiffness and surface fields with their error estimates.
@@ -94,7 +92,28 @@ class Fem:
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
         log = StageLog()
-        return contact_path(scene, elastic_equilibria(scene, self.solve_contact, log), asdict(self), log)
+        return contact_path(scene, self._equilibria(scene, log), asdict(self), log)
+
+    def _equilibria(self, scene: Scene, log: StageLog) -> list[Equilibrium]:
+        loading = scene.loading
+        if isinstance(loading, ContactRadii):
+            return equilibria_at_radii(scene, loading.values, self.solve_contact, log)
+        if isinstance(scene.indenter, FlatPunch):
+            return flat_punch_equilibria(scene, scene.indenter, self.solve_contact, log)
+        if isinstance(loading, IndentationDepths):
+            return [self._equilibrium_at_load(scene, float(depth), log) for depth in loading.values]
+        if isinstance(loading, NormalForces):
+            modulus = scene.layer.contact_modulus
+            return [self._equilibrium_at_load(scene, float(force) / modulus, log) for force in loading.values]
+        raise UnsupportedSceneError(f"fem has no elastic path for loading {type(loading).__name__}")
+
+    def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> Equilibrium:
+        """Unknown contact set, then polish; target is a depth [m] or a force / E* [m^2]."""
+        from fem_reference.polish import polished_equilibrium  # noqa: PLC0415 - only scenes that search pay for it
+        from fem_reference.unknown_contact import find_contact  # noqa: PLC0415
+
+        found = find_contact(scene, target, self.discretisation, self.solver, log)
+        return polished_equilibrium(scene, target, found.contact_radius * found.radius, self.solve_contact, log)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.

@@ -1,0 +1,93 @@
+"""The layer condensed to its top: one factorisation, then contact problems of a few hundred unknowns.
+
+Pressures are continuous and piecewise linear on a strip of equal cells.  ``C_ij = int phi_i u_z(phi_j) 2 pi r dr`` is
+the compliance, ``w_i = int phi_i 2 pi r dr`` the resultant of each pressure function.  Units: lengths by the strip's
+radius, stresses by E*.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import Layer, StageLog
+from fem_reference.discretisation import Discretisation
+from fem_reference.elements import taylor_hood
+from fem_reference.geometry import Grading, LayerMesh, layer_mesh
+from fem_reference.layer_problem import LayerProblem
+from fem_reference.trace import TraceSpace
+from fem_reference.truncation import outer_distance
+
+Array = NDArray[np.float64]
+
+STRIP_ORDER = 2
+
+
+@dataclass(frozen=True)
+class SurfaceCompliance:
+    """Compliance of the top within radius one.
+
+    Attributes:
+        layer_mesh: the mesh.
+        pressure_space: piecewise linear pressures; their vertices are the candidates for contact.
+        matrix: C, shape (n, n).
+        resultants: w, shape (n,).
+        unknowns: size of the condensed system.
+    """
+
+    layer_mesh: LayerMesh
+    pressure_space: TraceSpace
+    matrix: Array
+    resultants: Array
+    unknowns: int
+
+    @property
+    def radii(self) -> Array:
+        """Candidate vertices."""
+        return self.pressure_space.radii
+
+    def weighted(self, function: Array) -> Array:
+        """``int phi_i f 2 pi r dr`` for f given at ``pressure_space.gauss(4)``."""
+        return self.pressure_space.moments(function, 4)
+
+
+def strip_mesh(
+    layer: Layer, radius: float, cells: int, kinks: tuple[float, ...], settings: Discretisation
+) -> LayerMesh:
+    """A section with ``cells`` equal cells on the strip of ``radius`` [m], lengths by that radius."""
+    thickness = settings.thickness(layer, radius)
+    cell = 1 / cells
+    outer = 1 + thickness * outer_distance(layer.poissons_ratio, layer.support, settings.truncation)
+    points = (*((r / radius, cell) for r in kinks if r < radius), (1.0, cell))
+    growth = min(settings.growth, 0.3)
+    grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))
+    return layer_mesh(thickness, outer, grading)
+
+
+def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> SurfaceCompliance:
+    """Factorise the layer once and load it by every pressure function of the strip of radius one."""
+    problem = LayerProblem(mesh, taylor_hood(STRIP_ORDER), layer.poissons_ratio, layer.support, backend)
+    with log.stage("assemble"):
+        log.hold(problem.matrix.data.nbytes)
+    with log.stage("factor"):
+        solver = problem.solver(problem.supported_unknowns)
+    log.count("factorisations", solver.checked.factorisations)
+    with log.stage("condense"):
+        nodes = problem.top_nodes(1.0)
+        trace = TraceSpace(problem.positions[0, nodes], STRIP_ORDER)
+        pressures = TraceSpace(trace.vertices, 1)
+        hats = np.array([np.interp(trace.radii, trace.vertices, hat) for hat in np.eye(len(trace.vertices))]).T
+        nodal = trace.mass_matrix() @ hats
+        loads = np.zeros((problem.space.size, nodal.shape[1]))
+        loads[2 * nodes + 1] = nodal
+        compliance = nodal.T @ solver.solve_loaded(loads)[2 * nodes + 1]
+        log.hold(compliance.nbytes)
+    return SurfaceCompliance(
+        layer_mesh=mesh,
+        pressure_space=pressures,
+        matrix=(compliance + compliance.T) / 2,
+        resultants=nodal.sum(axis=0),
+        unknowns=problem.space.size,
+    )

@@ -1,0 +1,97 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact import (
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    NotConvergedError,
+    Paraboloid,
+    Scene,
+    Sphere,
+    StageLog,
+    Tabulated,
+    TruncatedCone,
+)
+from fem_reference import Fem
+from fem_reference.discretisation import Discretisation
+from fem_reference.polish import radius_of_load
+from fem_reference.unknown_contact import ContactSearch, find_contact
+from tests.fem_reference.integral_equation import solve_contact, truncated_cone
+
+LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5)
+QUICK = Fem(growth=0.7, edge_cell=1e-6, truncation=1e-7)
+
+
+def exact(ratio, kind):
+    """Profile, depth [m] and force [N] of contact radius ratio x h, by the integral equation."""
+    if kind == "paraboloid":
+        contact = solve_contact(ratio, "bonded", 0.5)
+        profile, scale = Paraboloid(radius_of_curvature=1e-2), 1e-4
+    else:
+        contact = solve_contact(ratio, "bonded", 0.5, truncated_cone(ratio / 2), ratio / 2)
+        profile, scale = TruncatedCone(flat_radius=ratio * 0.5e-3, slope=0.1), 1e-4
+    return profile, contact.depth * scale, contact.force * scale * LAYER.contact_modulus * 1e-3
+
+
+@pytest.mark.parametrize(("ratio", "kind"), [(1.0, "paraboloid"), (0.5, "cone")])
+def test_depth_and_force_control_find_the_same_state(ratio, kind):
+    profile, depth, force = exact(ratio, kind)
+    for loading in (IndentationDepths([depth]), NormalForces([force])):
+        path = QUICK.solve(Scene(layer=LAYER, indenter=profile, loading=loading))
+        true = {
+            "contact_radius": path.contact_radius[0] / (ratio * 1e-3) - 1,
+            "indentation_depth": path.indentation_depth[0] / depth - 1,
+            "normal_force": path.normal_force[0] / force - 1,
+        }
+        for name, error in true.items():
+            assert abs(error) <= path.error_estimate[name][0] + 1e-12 < 1e-4, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("ratio", [0.5, 1.0, 2.0])
+@pytest.mark.parametrize("kind", ["paraboloid", "cone"])
+def test_default_settings_reach_1e_5_in_force_and_1e_4_in_radius(ratio, kind):
+    profile, depth, force = exact(ratio, kind)
+    path = Fem().solve(Scene(layer=LAYER, indenter=profile, loading=IndentationDepths([depth])))
+    assert path.normal_force[0] == pytest.approx(force, rel=1e-5)
+    assert path.contact_radius[0] == pytest.approx(ratio * 1e-3, rel=1e-5)
+
+
+def test_the_strip_alone_is_within_a_thousandth():
+    profile, depth, force = exact(1.0, "paraboloid")
+    scene = Scene(layer=LAYER, indenter=profile, loading=IndentationDepths([depth]))
+    found = find_contact(scene, depth, Discretisation(), "superlu", StageLog())
+    assert found.force * found.radius**2 * LAYER.contact_modulus == pytest.approx(force, rel=1e-3)
+    assert found.contact_radius * found.radius == pytest.approx(1e-3, rel=1e-2)
+
+
+def test_a_curve_of_depths_needs_one_factorisation():
+    profile, depth, _ = exact(1.0, "paraboloid")
+    scene = Scene(layer=LAYER, indenter=profile, loading=IndentationDepths([depth]))
+    log = StageLog()
+    search = ContactSearch(scene, 1.5e-3, Discretisation(), "superlu", log)
+    forces = [search.at_depth(d).force for d in np.linspace(0.1, 1, 20) * depth]
+    assert log.cost(unknowns=0).counters["factorisations"] == 1
+    assert np.all(np.diff(forces, 2) > 0)
+
+
+def test_ring_contact_is_refused():
+    rings = Tabulated(radii=[0, 0.4e-3, 0.8e-3, 2e-3], heights=[0, -2e-5, 2e-5, 1e-3])
+    with pytest.raises(InvalidInput, match="one circle"):
+        QUICK.solve(Scene(layer=LAYER, indenter=rings, loading=IndentationDepths([1e-6])))
+
+
+def test_contact_at_the_end_of_the_profile_is_refused():
+    ball = Sphere(radius=0.2e-3)
+    with pytest.raises(InvalidInput, match="end of the profile"):
+        QUICK.solve(Scene(layer=LAYER, indenter=ball, loading=IndentationDepths([0.6e-3])))
+
+
+def test_a_secant_that_never_settles_is_refused():
+    flips = iter(np.tile([2.0, 0.5], 20))
+    with pytest.raises(NotConvergedError, match="settle"):
+        radius_of_load(lambda a: next(flips), 1.0, 0.0)
