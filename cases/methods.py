@@ -90,11 +90,20 @@ def shared_inputs(method: Method) -> tuple[str, ...]:
     return (*(entry.shared_inputs if entry else ()), *data)
 
 
-def _factory(name: str) -> Any:  # a class from another package: its type is not known here
+def location(name: str) -> tuple[str, str]:
+    """Return module and class of the method called ``name``.
+
+    Raises:
+        InvalidInput: if there is none.
+    """
     if name in BUILT_IN:
-        entry = BUILT_IN[name]
-        return getattr(importlib.import_module(entry.module), entry.attribute)
+        return BUILT_IN[name].module, BUILT_IN[name].attribute
     others = registered()
     if name not in others:
         raise InvalidInput(f"no method {name!r}; there are {', '.join([*BUILT_IN, *others])}")
-    return others[name].load()
+    return others[name].module, others[name].attr
+
+
+def _factory(name: str) -> Any:  # a class from another package: its type is not known here
+    module, attribute = location(name)
+    return getattr(importlib.import_module(module), attribute)

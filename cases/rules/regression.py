@@ -27,7 +27,7 @@ def judge_regression(value: float, baseline: float, *, scale: float, rtol: float
 
 def judge_counter(name: str, value: int, baseline: int) -> Judgement:
     """Judge a deterministic counter: unknowns exactly, iterations and the like within max(2, 10 %)."""
-    permitted = 0.0 if name == "unknowns" else max(2.0, 0.1 * baseline)
+    permitted = permitted_count_change(name, baseline)
     change = abs(value - baseline)
     good = change <= permitted
     message = f"{name} {value} against accepted {baseline}, permitted change {permitted:g}"
@@ -38,3 +38,8 @@ def judge_counter(name: str, value: int, baseline: int) -> Judgement:
         fraction=change / permitted if permitted > 0 else float(change),
         message=message,
     )
+
+
+def permitted_count_change(name: str, baseline: int) -> float:
+    """Return the largest change of a counter that counts as equal."""
+    return 0.0 if name == "unknowns" else max(2.0, 0.1 * baseline)

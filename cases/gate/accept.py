@@ -1,0 +1,120 @@
+"""The only writer of baselines, and everything it refuses."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+from cases.gate.baseline import write_baseline
+from cases.gate.circumstances import Circumstances
+from cases.gate.history import append_history
+from cases.gate.proposal import Change, Proposal
+from cases.results import Acceptance, CaseResult, Kind, RunResult
+from contact import InvalidInput
+
+
+def accept(folder: Path, proposal: Proposal, run: RunResult, now: Circumstances, *, loosen: bool = False) -> None:
+    """Write the proposed baselines into ``folder`` and append every change to its history.
+
+    Raises:
+        InvalidInput: naming every reason why this may not be accepted; nothing is written then.
+    """
+    refused = refusals(proposal, run, now, loosen=loosen)
+    if refused:
+        raise InvalidInput(f"{proposal.case} is not accepted: " + "; ".join(refused))
+    for baseline in proposal.baselines:
+        write_baseline(folder, baseline)
+    append_history(folder, _entries(proposal, now))
+
+
+def refusals(proposal: Proposal, run: RunResult, now: Circumstances, *, loosen: bool = False) -> tuple[str, ...]:
+    """Return every reason why ``proposal`` may not be accepted, each with its remedy."""
+    case = run.case(proposal.case)
+    return (
+        *_refused_circumstances(run, now),
+        *_refused_run(run, case),
+        *_refused_numbers(proposal),
+        *(() if loosen else _loosenings(proposal)),
+        *(() if proposal.reason.strip() else ("no reason is given; say why with --reason",)),
+    )
+
+
+def _refused_circumstances(run: RunResult, now: Circumstances) -> Iterator[str]:
+    if now.in_ci:
+        yield "continuous integration must not accept its own numbers; accept them by hand and commit the files"
+    if now.changed:
+        yield f"uncommitted changes ({', '.join(now.changed[:3])}); a baseline belongs to a commit, so commit first"
+    if run.stamp.dirty:
+        yield "the run was made with uncommitted changes; run again on a clean tree"
+    if run.stamp.revision != now.revision:
+        yield f"the run belongs to {run.stamp.revision[:12]}, the source is at {now.revision[:12]}; run again"
+
+
+def _refused_run(run: RunResult, case: CaseResult) -> Iterator[str]:
+    if not run.complete:
+        yield "the run was interrupted; resume it first"
+    for solution in case.runs:
+        if solution.status.is_failure:
+            yield f"{solution.method} on {solution.scene!r} ended with {solution.status}: {solution.reason}"
+    for claim in case.claims:
+        if claim.kind in (Kind.EXACT, Kind.ORDER) and claim.status.is_failure:
+            yield f"the {claim.kind} claim {claim.name!r} ended with {claim.status}: {claim.message}"
+
+
+def _refused_numbers(proposal: Proposal) -> Iterator[str]:
+    for baseline in proposal.baselines:
+        for record in baseline.records:
+            if not all(map(math.isfinite, (*record.values, *record.uncertainty, record.spread, record.scale))):
+                yield f"{record.quantity} of {record.scene!r} by {baseline.method} is not finite"
+
+
+def _loosenings(proposal: Proposal) -> Iterator[str]:
+    for change in proposal.changes:
+        if change.loosens:
+            yield f"{_loosening(change)}; find out why, then say --loosen"
+    for name in proposal.lost_counters:
+        yield f"the counter {name} would no longer be watched; say --loosen if that is meant"
+
+
+def _loosening(change: Change) -> str:
+    name = f"{change.record.quantity} of {change.record.scene!r} by {change.method}"
+    if change.old is None or change.new is None:
+        return f"{name} would no longer be watched"
+    return f"the tolerance of {name} would grow from {change.old.tolerance:.1e} to {change.new.tolerance:.1e}"
+
+
+def _entries(proposal: Proposal, now: Circumstances) -> Iterator[Acceptance]:
+    """Return one entry for all new records of a method, and one for each that changed, was loosened or withdrawn."""
+    blank = Acceptance(
+        date=now.date,
+        case=proposal.case,
+        method="",
+        quantity="",
+        old=None,
+        new=None,
+        old_tolerance=None,
+        new_tolerance=None,
+        reason=proposal.reason,
+        revision=now.revision,
+    )
+    for baseline in proposal.baselines:
+        changes = [change for change in proposal.changes if change.method == baseline.method]
+        new = sum(change.old is None for change in changes)
+        if new:
+            yield replace(blank, method=baseline.method, quantity=f"{new} new records")
+        yield from (_changed(blank, change) for change in changes if change.old is not None)
+    for name in proposal.lost_counters:
+        yield replace(blank, method=name.rpartition(" by ")[2], quantity=f"counter {name} withdrawn")
+
+
+def _changed(blank: Acceptance, change: Change) -> Acceptance:
+    old, new = change.values
+    return replace(
+        blank,
+        method=change.method,
+        quantity=f"{change.record.quantity} of {change.record.scene}{'' if change.new else ' withdrawn'}",
+        old=old,
+        new=new,
+        old_tolerance=change.old.tolerance if change.old else None,
+        new_tolerance=change.new.tolerance if change.new else None,
+    )

@@ -1,0 +1,61 @@
+"""A run against what was accepted: every number, every counter, nothing missing and nothing extra."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from cases.gate.baseline import Baseline
+from cases.gate.counts import count_checks
+from cases.gate.values import value_checks
+from cases.results import Acceptance, CaseResult, Claim, Kind, RunResult
+
+
+def gate(run: RunResult, baselines: Iterable[Baseline], history: Iterable[Acceptance] = ()) -> RunResult:
+    """Return ``run`` with a regression claim for every quantity and counter that was accepted or is new.
+
+    Args:
+        run: a run whose own claims are judged.
+        baselines: what was accepted; a case of the run's suite that the run does not have counts as missing.
+        history: acceptances, for the report.
+    """
+    accepted: dict[str, list[Baseline]] = {}
+    for baseline in baselines:
+        accepted.setdefault(baseline.case, []).append(baseline)
+    present = {case.name for case in run.cases}
+    lost = [_lost_case(name) for name in sorted(accepted) if name not in present and _belongs(accepted[name], run)]
+    cases = tuple(_gated(case, accepted.get(case.name, [])) for case in (*run.cases, *lost))
+    return replace(run, cases=cases, acceptances=tuple(history))
+
+
+def _belongs(baselines: list[Baseline], run: RunResult) -> bool:
+    return any(run.suite in baseline.suites for baseline in baselines)
+
+
+def _lost_case(name: str) -> CaseResult:
+    return CaseResult(
+        name=name,
+        title="accepted, but not in this run",
+        question="Where did this case go?",
+        equations=(),
+        text="Baselines of this case exist for the suite of this run, yet the run does not have it.",
+        scenes=(),
+        runs=(),
+        claims=(),
+    )
+
+
+def _gated(case: CaseResult, baselines: list[Baseline]) -> CaseResult:
+    """Return ``case`` with its regression claims; those of an earlier gate are replaced."""
+    own = (claim for claim in case.claims if claim.kind is not Kind.REGRESSION)
+    return replace(case, claims=(*own, *_regression_claims(case, baselines)))
+
+
+def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[Claim]:
+    accepted = {baseline.method: baseline for baseline in baselines}
+    for method in dict.fromkeys([*(run.method for run in case.runs), *accepted]):
+        rows = {run.scene: run for run in case.runs if run.method == method}
+        records = accepted[method].records if method in accepted else ()
+        counters = accepted[method].counters if method in accepted else ()
+        for check in value_checks(case, rows, {record.place: record for record in records}):
+            yield check.claim(case.name, method)
+        for check in count_checks(rows, {record.scene: record for record in counters}):
+            yield check.claim(case.name, method)

@@ -1,0 +1,47 @@
+"""Every acceptance, oldest first, in ``baselines/history.jsonl``: one line each, only ever appended to."""
+
+import json
+from collections.abc import Iterable
+from pathlib import Path
+
+from pydantic import TypeAdapter, ValidationError
+
+from cases.results import Acceptance
+from contact import InvalidInput
+
+_ACCEPTANCE: TypeAdapter[Acceptance] = TypeAdapter(Acceptance)
+
+
+def history_path(folder: Path) -> Path:
+    """Return where the history of the baselines in ``folder`` lies."""
+    return folder / "history.jsonl"
+
+
+def read_history(folder: Path) -> tuple[Acceptance, ...]:
+    """Return every acceptance so far.
+
+    Raises:
+        InvalidInput: if a line is no acceptance.
+    """
+    path = history_path(folder)
+    lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
+    return tuple(_entry(line, f"{path}, line {number}") for number, line in enumerate(lines, start=1))
+
+
+def append_history(folder: Path, entries: Iterable[Acceptance]) -> None:
+    """Append ``entries``; what stands there already is not touched."""
+    folder.mkdir(parents=True, exist_ok=True)
+    with history_path(folder).open("a", encoding="utf-8") as stream:
+        stream.writelines(_line(entry) for entry in entries)
+
+
+def _entry(line: str, place: str) -> Acceptance:
+    try:
+        return _ACCEPTANCE.validate_json(line)
+    except ValidationError as error:
+        raise InvalidInput(f"{place} is no acceptance: {error.errors()[0]['msg']}; restore the file") from error
+
+
+def _line(entry: Acceptance) -> str:
+    tree = _ACCEPTANCE.dump_python(entry, mode="json")
+    return json.dumps(tree, sort_keys=True, allow_nan=False) + "\n"

@@ -1,0 +1,110 @@
+"""How much an answer moves when nothing has changed: the spread that sets the tolerance of a baseline.
+
+Every accepted solution is repeated with all its inputs one unit in the last place larger, smaller, and with the plain
+kernels of another processor in OpenBLAS.  What differs then is rounding, and another machine may differ by as much.
+"""
+
+import math
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+
+import numpy as np
+
+from cases.case import Case
+from cases.executors import process_pool
+from cases.results import Quantity, SceneRun
+from cases.solve import solve
+from cases.task import Task
+from cases.tolerance import relative_spread
+from contact import ContactRadii, IndentationDepths, InvalidInput, NormalForces, Scene
+
+PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice
+
+Spreads = Mapping[tuple[str, str, str], float]  # by method, scene and quantity
+
+
+def measured_spreads(case: Case, runs: Mapping[tuple[str, str], SceneRun], *, jobs: int = 2) -> Spreads:
+    """Return the relative spread of every quantity of ``runs`` (by scene and method), measured by repeating them.
+
+    Raises:
+        InvalidInput: if a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
+    """
+    tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
+    solved = [task for task in tasks if (task.scene, task.method) in runs and runs[task.scene, task.method].solved]
+    answers = {task.identity: [runs[task.scene, task.method]] for task in solved}
+    for task, row in (*_repeated(_nudged_tasks(solved), jobs), *_repeated_with_plain_kernel(solved, jobs)):
+        answers[task.identity].append(row)
+    return {place: spread for task in solved for place, spread in _spreads(task, answers[task.identity])}
+
+
+def _nudged_tasks(tasks: list[Task]) -> list[tuple[Task, Task]]:
+    return [(task, task.changed(name, scene)) for task in tasks for name, scene in nudged_scenes(task.problem)]
+
+
+def _repeated_with_plain_kernel(tasks: list[Task], jobs: int) -> list[tuple[Task, SceneRun]]:
+    with _plain_kernel():
+        return _repeated([(task, task.changed("plain kernel")) for task in tasks], jobs)
+
+
+def _repeated(pairs: list[tuple[Task, Task]], jobs: int) -> list[tuple[Task, SceneRun]]:
+    """Solve the second of each pair; the first is what it repeats."""
+    with process_pool(jobs) as executor:
+        futures = [(task, repetition, executor.submit(solve, repetition, "")) for task, repetition in pairs]
+        return [(task, _numbers(repetition, future.result())) for task, repetition, future in futures]
+
+
+def _numbers(repetition: Task, row: SceneRun) -> SceneRun:
+    if row.solved:
+        return row
+    raise InvalidInput(f"{repetition.label}: this repetition should change nothing, but {row.status}: {row.reason}")
+
+
+def _spreads(task: Task, answers: list[SceneRun]) -> Iterator[tuple[tuple[str, str, str], float]]:
+    for quantity in answers[0].quantities:
+        place = task.method, task.scene, quantity.name
+        yield place, _spread(place, [answer.quantity(quantity.name) for answer in answers])
+
+
+def nudged_scenes(scene: Scene) -> Iterator[tuple[str, Scene]]:
+    """The scene with modulus, thickness and loading one unit in the last place larger, then smaller.
+
+    A direction in which the scene is none (a radius beyond the end of a table) is left out.
+    """
+    for name, towards in (("one ulp up", math.inf), ("one ulp down", 0.0)):
+        try:
+            yield name, _nudged(scene, towards)
+        except InvalidInput:
+            continue
+
+
+def _nudged(scene: Scene, towards: float) -> Scene:
+    layer, loading = scene.layer, scene.loading
+    layer = layer.replace(youngs_modulus=math.nextafter(layer.youngs_modulus, towards))
+    if not layer.is_half_space:
+        layer = layer.replace(thickness=math.nextafter(layer.thickness, towards))
+    if isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
+        loading = loading.replace(values=np.nextafter(loading.values, towards))
+    return scene.replace(layer=layer, loading=loading)
+
+
+def _spread(place: tuple[str, str, str], repeated: list[Quantity]) -> float:
+    lengths = {len(quantity.values) for quantity in repeated}
+    if len(lengths) > 1:
+        raise InvalidInput(f"{' / '.join(place)}: repetitions give {sorted(lengths)} steps; the steps must not vary")
+    steps = zip(*(quantity.values for quantity in repeated), strict=True)
+    return max((relative_spread(step, repeated[0].scale) for step in steps), default=0.0)
+
+
+@contextmanager
+def _plain_kernel() -> Iterator[None]:
+    """Processes started inside load OpenBLAS with its plain kernels."""
+    before = os.environ.get("OPENBLAS_CORETYPE")
+    os.environ["OPENBLAS_CORETYPE"] = PLAIN_KERNEL
+    try:
+        yield
+    finally:
+        if before is None:
+            del os.environ["OPENBLAS_CORETYPE"]
+        else:
+            os.environ["OPENBLAS_CORETYPE"] = before

@@ -1,0 +1,68 @@
+"""Computed quantities against the accepted ones."""
+
+from collections.abc import Iterator, Mapping
+
+from cases.gate.baseline import AcceptedQuantity
+from cases.gate.check import Check, extra, missing
+from cases.gate.specification import specification
+from cases.results import CaseResult, Quantity, SceneRun
+from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
+from cases.rules.regression import judge_regression
+from cases.status import Status
+from cases.tolerance import permitted_difference
+
+FROM_SPREAD = "max(10 x measured spread, 1e-12) of the accepted value or its scale"
+
+
+def value_checks(
+    case: CaseResult, rows: Mapping[str, SceneRun], accepted: Mapping[tuple[str, str], AcceptedQuantity]
+) -> Iterator[Check]:
+    """Compare every quantity of one method, accepted or new.
+
+    Args:
+        case: the case as run.
+        rows: solutions of the method by scene.
+        accepted: records by scene and quantity.
+    """
+    found = {(scene, q.name): q for scene, run in rows.items() if run.solved for q in run.quantities}
+    for scene, name in dict.fromkeys([*accepted, *found]):
+        record, quantity = accepted.get((scene, name)), found.get((scene, name))
+        if record is None:
+            yield _named(scene, name, found[scene, name].unit, extra(name, scene))
+        elif quantity is None:
+            yield _named(scene, name, record.unit, missing(name, scene, rows.get(scene)))
+        else:
+            yield _compared(quantity, record, specification(case, rows[scene]))
+
+
+def _compared(quantity: Quantity, record: AcceptedQuantity, specified: str) -> Check:
+    """Judge the worst step; another specification, unit or number of steps cannot be compared."""
+    for what, now, then in (
+        ("scene or settings", specified, record.specification),
+        ("unit", quantity.unit, record.unit),
+        ("number of steps", len(quantity.values), len(record.values)),
+    ):
+        if now != then:
+            message = f"{what} changed: {now}, accepted {then}; accept the case if that was meant"
+            return _named(record.scene, record.quantity, record.unit, nothing_compared(Status.INCOMPARABLE, message))
+    return _worst_step(quantity, record)
+
+
+def _worst_step(quantity: Quantity, record: AcceptedQuantity) -> Check:
+    rule = {"scale": record.scale, "rtol": record.tolerance}
+    steps = [judge_regression(x, b, **rule) for x, b in zip(quantity.values, record.values, strict=True)]
+    worst = worst_judgement(steps)
+    expected = record.values[steps.index(worst)]
+    return Check(
+        scene=record.scene,
+        what=record.quantity,
+        unit=record.unit,
+        judgement=worst,
+        derived_from=FROM_SPREAD,
+        tolerance=permitted_difference(expected, **rule),
+        expected=expected,
+    )
+
+
+def _named(scene: str, name: str, unit: str, judgement: Judgement) -> Check:
+    return Check(scene=scene, what=name, unit=unit, judgement=judgement, derived_from=FROM_SPREAD)

@@ -1,0 +1,222 @@
+"""Accepting: what it writes, what it shows, and everything it refuses."""
+
+import dataclasses
+import json
+import math
+
+import pytest
+
+from cases.gate.accept import accept, refusals
+from cases.gate.baseline import read_baselines
+from cases.gate.circumstances import circumstances
+from cases.gate.history import read_history
+from cases.results import Kind
+from cases.status import Status
+from contact import InvalidInput
+from reports.pages import write_report
+from tests.cases.example_run import SCENE, example_run, failed_claim, fast_run, order_claim, passing_case
+from tests.cases.gate.example_baselines import (
+    CASE,
+    NOW,
+    accepted,
+    clean_run,
+    gated,
+    proposal_of,
+    regressions,
+    scaled,
+    with_force,
+    with_rows,
+)
+
+
+def refused(folder, run=None, now=NOW, **how):
+    run = run or clean_run()
+    return refusals(proposal_of(run, folder, **how), run, now)
+
+
+def test_one_file_for_each_method_with_sorted_keys_and_every_digit(tmp_path):
+    third = with_force("mdr", scaled(1 / 3))
+    accepted(tmp_path, third)
+    assert sorted(path.name for path in (tmp_path / CASE).iterdir()) == ["fem.json", "mdr.json"]
+    text = (tmp_path / CASE / "mdr.json").read_text(encoding="utf-8")
+    tree = json.loads(text)
+    assert text == json.dumps(tree, sort_keys=True, indent=1) + "\n"
+    (mdr,) = [baseline for baseline in read_baselines(tmp_path) if baseline.method == "mdr"]
+    kept = {record.place: record for record in mdr.records}
+    assert kept[SCENE, "normal_force"].values == (0.5,)
+    assert kept[SCENE, "indentation_depth"].values == fast_run(SCENE).quantity("indentation_depth").values
+
+
+def test_a_record_says_what_it_is_and_why(tmp_path):
+    accepted(tmp_path, reason="checked against Sneddon")
+    record = read_baselines(tmp_path)[1].records[1]
+    assert (record.quantity, record.unit, record.scale, record.reason) == (
+        "normal_force",
+        "N",
+        1.5,
+        "checked against Sneddon",
+    )
+    assert (record.spread, record.tolerance) == (1e-10, 1e-9)  # ten times the spread
+    assert record.uncertainty == (1.5e-12,)
+    assert len(record.specification) == 16
+
+
+def test_a_spread_of_zero_still_allows_1e_12(tmp_path):
+    accepted(tmp_path, spread=0.0)
+    assert {record.tolerance for baseline in read_baselines(tmp_path) for record in baseline.records} == {1e-12}
+
+
+def test_a_change_is_shown_in_tolerances_and_in_uncertainty(tmp_path):
+    accepted(tmp_path)
+    run = with_force("mdr", scaled(1 + 1e-7))
+    changes = proposal_of(run, tmp_path).changes
+    assert {(c.method, c.record.quantity) for c in changes} == {("mdr", "normal_force")}
+    change = changes[0]
+    assert change.values == (1.5, 1.5 * (1 + 1e-7))
+    assert change.in_tolerances == pytest.approx(100, rel=1e-3)
+    assert change.in_uncertainty == pytest.approx(1e5, rel=1e-3)  # U is 1e-12 of the force
+
+
+def test_accepting_the_same_again_changes_no_byte(tmp_path):
+    accepted(tmp_path)
+    before = {path: path.read_bytes() for path in tmp_path.rglob("*.json*")}
+    accepted(tmp_path, reason="another reason")
+    assert {path: path.read_bytes() for path in tmp_path.rglob("*.json*")} == before
+
+
+def test_a_new_number_is_accepted_with_its_history(tmp_path):
+    accepted(tmp_path)
+    run = with_force("mdr", scaled(1 + 1e-7))
+    assert any(claim.status is Status.DIFF for claim in regressions(gated(run, tmp_path)))
+    accepted(tmp_path, run, reason="the quadrature was corrected")
+    assert {claim.status for claim in regressions(gated(run, tmp_path))} == {Status.PASS}
+    first, *_, last = read_history(tmp_path)
+    assert first.quantity == "4 new records"
+    assert (last.quantity, last.old, last.new) == (f"normal_force of {last.quantity[16:]}", 1.5, 1.5 * (1 + 1e-7))
+    assert (last.reason, last.revision, last.date) == ("the quadrature was corrected", NOW.revision, NOW.date)
+
+
+def test_loosening_is_refused_without_the_flag_and_visible_after_it(tmp_path):
+    accepted(tmp_path)
+    assert any("would grow from 1.0e-09 to 1.0e-06" in line for line in refused(tmp_path, spread=1e-7))
+    with pytest.raises(InvalidInput, match="--loosen"):
+        accepted(tmp_path, spread=1e-7)
+    accepted(tmp_path, spread=1e-7, loosen=True, reason="another compiler")
+    last = read_history(tmp_path)[-1]
+    assert (last.old_tolerance, last.new_tolerance) == (1e-9, 1e-6)
+    write_report(gated(clean_run(), tmp_path), tmp_path / "report")
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    assert "LOOSENED" in page
+    assert "another compiler" in page
+
+
+def test_a_larger_declared_scale_is_a_loosening_too(tmp_path):
+    accepted(tmp_path)
+    run = with_force("mdr", lambda quantity: dataclasses.replace(quantity, scale=15.0))
+    assert any("tolerance of normal_force" in line for line in refused(tmp_path, run))
+
+
+def test_withdrawing_a_record_or_a_counter_is_a_loosening(tmp_path):
+    accepted(tmp_path)
+    assert any("no longer be watched" in line for line in refused(tmp_path, with_force("mdr", lambda _: None)))
+    uncounted = with_rows(lambda row: dataclasses.replace(row, cost=dataclasses.replace(row.cost, counters={})))
+    assert any("counter solves" in line for line in refused(tmp_path, uncounted))
+
+
+def test_a_smaller_spread_leaves_the_tolerance_as_it_is(tmp_path):
+    accepted(tmp_path)
+    assert not proposal_of(clean_run(), tmp_path, spread=1e-14).changes
+
+
+def test_a_solver_that_broke_down_is_refused(tmp_path):
+    broken = dataclasses.replace(
+        fast_run(SCENE), status=Status.INVALID, reason="value is nan", quantities=(), cost=None
+    )
+    run = with_rows(lambda row: broken if (row.method, row.scene) == ("mdr", SCENE) else row)
+    assert any("value is nan" in line for line in refused(tmp_path, run))
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf])
+def test_non_finite_numbers_are_refused_even_if_they_passed_every_record(tmp_path, bad):
+    run = clean_run()
+    proposal = proposal_of(run, tmp_path)
+    object.__setattr__(proposal.baselines[0].records[0], "values", (bad,))
+    assert any("is not finite" in line for line in refusals(proposal, run, NOW))
+    with pytest.raises(InvalidInput, match="not finite"):
+        accept(tmp_path, proposal, run, NOW)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -1e-9])
+def test_an_impossible_spread_is_refused(tmp_path, bad):
+    with pytest.raises(InvalidInput, match="spread"):
+        proposal_of(clean_run(), tmp_path, spread=bad)
+
+
+@pytest.mark.parametrize("kind", [Kind.EXACT, Kind.ORDER])
+@pytest.mark.parametrize("status", [Status.FAIL, Status.INVALID, Status.TIMEOUT, Status.XPASS])
+def test_a_failing_exact_or_order_claim_is_refused(tmp_path, kind, status):
+    claim = dataclasses.replace(failed_claim(), kind=kind, status=status)
+    run = clean_run(dataclasses.replace(passing_case(), claims=(claim,)))
+    assert any("half-space force" in line for line in refused(tmp_path, run))
+
+
+def test_a_passing_claim_and_a_regression_are_no_obstacle(tmp_path):
+    accepted(tmp_path)
+    run = gated(with_force("mdr", scaled(1 + 1e-7)), tmp_path)
+    assert order_claim() in run.case(CASE).claims
+    assert not refused(tmp_path, run)
+
+
+@pytest.mark.parametrize(
+    ("now", "message"),
+    [
+        (dataclasses.replace(NOW, in_ci=True), "continuous integration"),
+        (dataclasses.replace(NOW, changed=("mdr/core.py",)), "mdr/core.py"),
+        (dataclasses.replace(NOW, revision="1" * 40), "run again"),
+    ],
+)
+def test_the_wrong_place_or_time_is_refused(tmp_path, now, message):
+    assert any(message in line for line in refused(tmp_path, now=now))
+
+
+def test_a_run_of_uncommitted_code_and_an_unfinished_one_are_refused(tmp_path):
+    dirty = dataclasses.replace(clean_run(), stamp=dataclasses.replace(example_run().stamp, dirty=True))
+    assert any("uncommitted" in line for line in refused(tmp_path, dirty))
+    assert any("interrupted" in line for line in refused(tmp_path, dataclasses.replace(clean_run(), complete=False)))
+
+
+def test_no_reason_is_refused(tmp_path):
+    assert any("reason" in line for line in refused(tmp_path, reason="  "))
+
+
+@pytest.mark.parametrize(("value", "in_ci"), [("true", True), ("1", True), ("", False), ("false", False)])
+def test_continuous_integration_is_known_by_its_variable(tmp_path, value, in_ci):
+    repository(tmp_path)
+    assert circumstances(tmp_path, tmp_path / "baselines", {"CI": value}).in_ci is in_ci
+
+
+def test_changed_and_new_files_are_seen_but_not_the_baselines_being_written(tmp_path):
+    repository(tmp_path)
+    folder = tmp_path / "baselines"
+    assert circumstances(tmp_path, folder, {}).changed == ()
+    (folder / CASE).mkdir(parents=True)
+    (folder / CASE / "mdr.json").write_text("{}", encoding="utf-8")
+    assert circumstances(tmp_path, folder, {}).changed == ()
+    (tmp_path / "new.py").write_text("x = 1\n", encoding="utf-8")
+    (tmp_path / "tracked.py").write_text("x = 2\n", encoding="utf-8")
+    assert set(circumstances(tmp_path, folder, {}).changed) == {"new.py", "tracked.py"}
+
+
+def test_outside_a_repository_nothing_can_be_accepted(tmp_path):
+    with pytest.raises(InvalidInput, match="git"):
+        circumstances(tmp_path, tmp_path / "baselines", {})
+
+
+def repository(folder):
+    from cases.gate.circumstances import git
+
+    (folder / "tracked.py").write_text("x = 1\n", encoding="utf-8")
+    git(folder, "init", "--quiet")
+    git(folder, "add", "tracked.py")
+    git(folder, "-c", "user.name=t", "-c", "user.email=t@t", "commit", "--quiet", "-m", "first")

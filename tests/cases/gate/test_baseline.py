@@ -1,0 +1,87 @@
+"""Baselines on disk: nothing is lost, and a file that `accept` did not write is refused."""
+
+import json
+
+import pytest
+
+from cases.gate.baseline import baseline_path, read_baselines
+from cases.gate.history import append_history, history_path, read_history
+from cases.gate.specification import specification_hash
+from contact import InvalidInput
+from tests.cases.example_run import acceptance
+from tests.cases.gate.example_baselines import CASE, accepted
+
+
+@pytest.fixture
+def file(tmp_path):
+    return baseline_path(accepted(tmp_path), CASE, "mdr")
+
+
+def edited(file, old, new):
+    text = file.read_text(encoding="utf-8")
+    assert old in text
+    file.write_text(text.replace(old, new), encoding="utf-8")
+    return file.parent.parent
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('"tolerance": 1e-09', '"tolerance": 1e-03', "changed by something else than accept"),
+        ("1.5\n", "1.6\n", "changed by something else than accept"),
+        ("1.5\n", "NaN\n", "non-finite number NaN"),
+        ('"version": 1', '"version": 2', "version 2"),
+        ('"baseline"', '"something"', "is no baseline"),
+    ],
+)
+def test_a_file_edited_by_hand_is_refused(file, old, new, message):
+    with pytest.raises(InvalidInput, match=message):
+        read_baselines(edited(file, old, new))
+
+
+def test_a_wide_tolerance_is_refused_even_with_a_right_digest(file):
+    from cases.gate import baseline
+
+    tree = json.loads(file.read_text(encoding="utf-8"))["baseline"]
+    tree["records"][0]["tolerance"] = 1e-3
+    file.write_text(json.dumps({"digest": baseline._digest(tree), "baseline": tree}), encoding="utf-8")
+    with pytest.raises(InvalidInput, match="is not max"):
+        read_baselines(file.parent.parent)
+
+
+def test_a_file_in_the_wrong_place_is_refused(file):
+    file.rename(file.with_name("fem.json"))
+    with pytest.raises(InvalidInput, match="holds mdr on example_cone"):
+        read_baselines(file.parent.parent)
+
+
+def test_no_folder_has_no_baselines_and_no_history(tmp_path):
+    assert read_baselines(tmp_path / "nowhere") == ()
+    assert read_history(tmp_path / "nowhere") == ()
+
+
+def test_the_history_is_only_appended_to(tmp_path):
+    append_history(tmp_path, [acceptance()])
+    first = history_path(tmp_path).read_text(encoding="utf-8")
+    append_history(tmp_path, [acceptance(), acceptance()])
+    assert history_path(tmp_path).read_text(encoding="utf-8").startswith(first)
+    assert read_history(tmp_path) == (acceptance(),) * 3
+
+
+def test_a_damaged_history_names_its_line(tmp_path):
+    append_history(tmp_path, [acceptance()])
+    with history_path(tmp_path).open("a", encoding="utf-8") as stream:
+        stream.write("{}\n")
+    with pytest.raises(InvalidInput, match="line 2"):
+        read_history(tmp_path)
+
+
+def test_the_specification_is_the_same_where_only_the_last_bit_differs():
+    assert specification_hash('{"a": 0.1}', {"n": 3}) == specification_hash('{"a": 0.10000000000000002}', {"n": 3})
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings"), [('{"a": 0.1000001}', {"n": 3}), ('{"a": 0.1}', {"n": 4}), ('{"b": 0.1}', {"n": 3})]
+)
+def test_another_scene_or_setting_has_another_specification(scene, settings):
+    assert specification_hash(scene, settings) != specification_hash('{"a": 0.1}', {"n": 3})

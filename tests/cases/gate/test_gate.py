@@ -1,0 +1,171 @@
+"""The gate passes what was accepted, and nothing else: each way to differ is planted once."""
+
+import dataclasses
+
+import pytest
+
+from cases.results import Kind
+from cases.status import ExitCode, Status, exit_code
+from reports.annotations import MOST, annotation_lines
+from tests.cases.example_run import SCENE, fast_run, passing_case
+from tests.cases.gate.example_baselines import accepted, clean_run, gated, regressions, scaled, with_force, with_rows
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    return accepted(tmp_path_factory.mktemp("baselines"))
+
+
+def failures(run, folder):
+    return [claim for claim in regressions(gated(run, folder)) if claim.status.is_failure]
+
+
+def test_the_accepted_run_passes(folder):
+    claims = regressions(gated(clean_run(), folder))
+    assert len(claims) == 4 * (2 + 2)  # solutions times two quantities, unknowns and one counter
+    assert {claim.status for claim in claims} == {Status.PASS}
+    assert exit_code(gated(clean_run(), folder).statuses) is ExitCode.PASSED
+
+
+def test_gating_twice_claims_nothing_twice(folder):
+    once = gated(clean_run(), folder)
+    assert gated(once, folder) == once
+
+
+@pytest.mark.parametrize("method", ["mdr", "fem"])
+@pytest.mark.parametrize("factor", [1 + 1e-7, 1 - 1e-7])
+def test_a_change_of_1e_7_with_tolerance_1e_9_always_fails(folder, method, factor):
+    found = failures(with_force(method, scaled(factor)), folder)
+    assert {(claim.status, claim.quantity, claim.methods) for claim in found} == {
+        (Status.DIFF, "normal_force", (method,))
+    }
+    assert all(claim.fraction == pytest.approx(100, rel=1e-3) for claim in found)
+
+
+def test_a_change_of_half_a_tolerance_passes(folder):
+    assert not failures(with_force("mdr", scaled(1 + 5e-10)), folder)
+
+
+def test_only_the_worst_step_is_shown_with_its_accepted_value(tmp_path):
+    def three_steps(last):
+        return lambda q: dataclasses.replace(q, values=(1.0, 2.0, last), uncertainty=())
+
+    folder = accepted(tmp_path, with_force("mdr", three_steps(4.0)))
+    (claim, *_) = failures(with_force("mdr", three_steps(4.1)), folder)
+    assert (claim.observed, claim.expected) == (4.1, 4.0)
+    assert claim.tolerance == pytest.approx(4e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda q: dataclasses.replace(q, unit="kN"), "unit changed: kN, accepted N"),
+        (lambda q: dataclasses.replace(q, values=(*q.values, 1.0), uncertainty=()), "number of steps changed: 2"),
+    ],
+)
+def test_another_unit_or_shape_is_incomparable(folder, change, message):
+    (claim, *_) = failures(with_force("mdr", change), folder)
+    assert claim.status is Status.INCOMPARABLE
+    assert message in claim.message
+
+
+def test_another_scene_or_other_settings_are_incomparable_and_not_a_change_of_number(folder):
+    changed = with_rows(lambda row: dataclasses.replace(row, settings={**row.settings, "extra": 1}))
+    assert {claim.status for claim in failures(changed, folder)} == {Status.INCOMPARABLE}
+    scenes = [dataclasses.replace(scene, canonical='{"layer":1}') for scene in passing_case().scenes]
+    moved = clean_run(dataclasses.replace(passing_case(), scenes=tuple(scenes)))
+    assert {claim.status for claim in failures(moved, folder)} == {Status.INCOMPARABLE}
+
+
+def test_a_missing_quantity_fails_by_its_name(folder):
+    found = failures(with_force("fem", lambda _: None), folder)
+    assert len(found) == 2
+    assert all("missing: normal_force" in claim.message for claim in found)
+
+
+def test_a_missing_solution_and_a_missing_method_fail_by_name(folder):
+    lost_scene = with_rows(lambda row: None if (row.method, row.scene) == ("fem", SCENE) else row)
+    assert {(c.scene, c.methods, c.status) for c in failures(lost_scene, folder)} == {
+        (SCENE, ("fem",), Status.INCOMPARABLE)
+    }
+    lost_method = with_rows(lambda row: None if row.method == "fem" else row)
+    assert {claim.quantity for claim in failures(lost_method, folder)} == {
+        "indentation_depth",
+        "normal_force",
+        "unknowns",
+        "solves",
+    }
+
+
+def test_a_solver_that_broke_down_is_invalid_with_its_reason(folder):
+    broken = dataclasses.replace(
+        fast_run(SCENE), status=Status.INVALID, reason="value is nan", quantities=(), cost=None
+    )
+    run = with_rows(lambda row: broken if (row.method, row.scene) == ("mdr", SCENE) else row)
+    found = failures(run, folder)
+    assert {claim.status for claim in found} == {Status.INVALID}
+    assert all("value is nan" in claim.message for claim in found)
+
+
+def test_what_nobody_accepted_fails_by_its_name(folder):
+    stranger = dataclasses.replace(fast_run(SCENE), method="newcomer")
+    case = dataclasses.replace(passing_case(), runs=(*passing_case().runs, stranger))
+    found = failures(clean_run(case), folder)
+    assert {(claim.methods, claim.status) for claim in found} == {(("newcomer",), Status.INCOMPARABLE)}
+    assert all("extra:" in claim.message for claim in found)
+
+
+def test_a_case_that_left_the_suite_fails_by_its_name(folder):
+    other = dataclasses.replace(passing_case(), name="another_case")
+    result = gated(clean_run(other), folder)
+    lost = result.case("example_cone")
+    assert {claim.status for claim in lost.claims} == {Status.INCOMPARABLE}
+    single = dataclasses.replace(clean_run(other), suite="")
+    assert "example_cone" not in {case.name for case in gated(single, folder).cases}
+
+
+@pytest.mark.parametrize(
+    ("unknowns", "solves", "status"),
+    [(21000, 5, Status.PASS), (21001, 3, Status.DIFF), (20999, 3, Status.DIFF), (21000, 6, Status.DIFF)],
+)
+def test_unknowns_repeat_exactly_and_other_counters_nearly(folder, unknowns, solves, status):
+    def counted(row):
+        if row.method != "fem":
+            return row
+        return dataclasses.replace(
+            row, cost=dataclasses.replace(row.cost, unknowns=unknowns, counters={"solves": solves})
+        )
+
+    statuses = {claim.status for claim in regressions(gated(with_rows(counted), folder))}
+    assert statuses == {Status.PASS, status}
+
+
+def test_a_counter_that_vanishes_or_appears_fails(folder):
+    def counting(counters):
+        return lambda row: dataclasses.replace(row, cost=dataclasses.replace(row.cost, counters=counters))
+
+    assert all("missing" in claim.message for claim in failures(with_rows(counting({})), folder))
+    extra = failures(with_rows(counting({"factorisations": 1, "solves": 3, "restarts": 7})), folder)
+    assert "restarts" in {claim.quantity for claim in extra}
+
+
+def test_regression_is_never_called_verification(folder):
+    for claim in regressions(gated(clean_run(), folder)):
+        assert claim.kind is Kind.REGRESSION
+        assert claim.origin == "own earlier output"
+
+
+def test_without_any_baseline_everything_is_extra(tmp_path):
+    result = gated(clean_run(), tmp_path)
+    assert {claim.status for claim in regressions(result)} == {Status.INCOMPARABLE}
+    assert exit_code(result.statuses) is ExitCode.GATE_FAILED
+
+
+def test_sixteen_failures_make_at_most_nine_annotations(tmp_path):
+    lines = annotation_lines(gated(clean_run(), tmp_path))
+    assert len(lines) <= MOST == 9
+
+
+def test_an_empty_run_ran_nothing(folder):
+    empty = dataclasses.replace(clean_run(), cases=(), suite="")
+    assert exit_code(gated(empty, folder).statuses) is ExitCode.NOTHING_RAN

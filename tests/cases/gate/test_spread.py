@@ -1,0 +1,90 @@
+"""The spread between solutions that should be equal."""
+
+import os
+
+import numpy as np
+import pytest
+
+from cases import methods
+from cases.gate import spread
+from cases.gate.spread import measured_spreads, nudged_scenes
+from cases.solve import solve
+from contact import ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene, Tabulated
+from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+
+
+@pytest.fixture
+def in_this_process(monkeypatch):
+    """The fabricated method is registered in this process only."""
+    monkeypatch.setattr(spread, "process_pool", methods_executor)
+
+
+def methods_executor(jobs):
+    from cases.executors import serial
+
+    assert "fake" in methods.BUILT_IN
+    return serial(jobs)
+
+
+def spreads_of(case):
+    tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods]
+    return measured_spreads(case, {(task.scene, task.method): solve(task, "") for task in tasks})
+
+
+def test_nudged_scenes_are_one_unit_in_the_last_place_away():
+    layer = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=1e-3), loading=IndentationDepths([1e-5, 2e-5]))
+    for (_, nudged), sign in zip(nudged_scenes(scene), (1, -1), strict=True):
+        assert nudged.layer.youngs_modulus - 1e6 == sign * np.spacing(1e6) * (1 if sign > 0 else 0.5) or sign < 0
+        assert np.sign(nudged.layer.thickness - layer.thickness) == sign
+        assert nudged.layer.thickness == pytest.approx(layer.thickness, rel=3e-16)
+        assert nudged.loading.values == pytest.approx(scene.loading.values, rel=3e-16)
+        assert np.all(np.sign(nudged.loading.values - scene.loading.values) == sign)
+        assert nudged.indenter == scene.indenter
+
+
+def test_a_nudge_out_of_the_scene_is_left_out():
+    table = Tabulated(radii=[0.0, 0.5e-3, 1e-3], heights=[0.0, 1e-6, 4e-6])
+    layer = Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=table, loading=ContactRadii([1e-3]))
+    assert [name for name, _ in nudged_scenes(scene)] == ["one ulp down"]
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_the_spread_of_a_closed_form_is_round_off():
+    found = spreads_of(fake_case())
+    assert len(found) == 2 * 2 * 4
+    assert 0 < max(found.values()) < 1e-15
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_the_spread_of_an_unstable_method_is_seen():
+    """A method that feeds the last bits of its input into its answer at 1e-6."""
+    found = spreads_of(fake_case(fast=spoiled(FAST, plant="last bits")))
+    assert max(found["fast", s, "normal_force"] for s in ("half-space nu=0.3", "half-space nu=0.5")) > 1e-7
+    assert max(spread for (method, _, _), spread in found.items() if method == "slow") < 1e-15
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_a_repetition_that_breaks_down_is_refused():
+    case = fake_case()
+    rows = {(task.scene, task.method): solve(task, "") for task in case.tasks() if not task.variant}
+    with pytest.raises(InvalidInput, match="should change nothing, but INVALID"):
+        measured_spreads(fake_case(slow=spoiled(SLOW, plant="raise")), rows)
+
+
+def test_the_plain_kernel_is_asked_for_only_inside(monkeypatch):
+    monkeypatch.delenv("OPENBLAS_CORETYPE", raising=False)
+    with spread._plain_kernel():
+        assert os.environ["OPENBLAS_CORETYPE"] == spread.PLAIN_KERNEL
+    assert "OPENBLAS_CORETYPE" not in os.environ
+
+
+def test_different_numbers_of_steps_are_refused():
+    case = fake_case()
+    quantity = solve(next(iter(case.tasks())), "").quantities[0]
+    from dataclasses import replace
+
+    shorter = replace(quantity, values=quantity.values[:1], uncertainty=())
+    with pytest.raises(InvalidInput, match="steps"):
+        spread._spread(("fast", "scene", "q"), [quantity, shorter])
