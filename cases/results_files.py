@@ -10,6 +10,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from cases.results import SCHEMA_VERSION, CaseResult, RunResult
 from contact import InvalidInput
+from contact.record import shown
 from contact.storage import write_tree
 
 _RUN: TypeAdapter[RunResult] = TypeAdapter(RunResult)
@@ -29,16 +30,16 @@ def from_json(text: str) -> RunResult:
     try:
         tree = json.loads(text, parse_constant=_refuse_constant)
     except ValueError as error:
-        raise InvalidInput(f"results.json is not readable: {error}; run the cases again") from error
+        raise InvalidInput(f"results.json is not readable: {error!s:.200}; run the cases again") from error
     version = tree.get("schema_version") if isinstance(tree, dict) else None
     if version != SCHEMA_VERSION:
-        raise InvalidInput(f"results.json has schema version {version!r}, this program reads {SCHEMA_VERSION}")
+        raise InvalidInput(f"results.json has schema version {shown(version)}, this program reads {SCHEMA_VERSION}")
     try:
         return _RUN.validate_python(tree)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise InvalidInput(f"results.json: {where}: {first['msg']}, got {first['input']!r:.80}") from error
+        raise InvalidInput(f"results.json: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}") from error
 
 
 def json_schema() -> dict[str, Any]:

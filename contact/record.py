@@ -14,6 +14,7 @@ from contact.errors import InvalidInput
 
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True)
 _SHOWN = 80  # characters of an offending value that an error shows
+_MOST_LINES = 8  # problems that one error tells
 
 
 class Record:
@@ -61,7 +62,9 @@ def record(cls: type[R]) -> type[R]:
 
 def describe(error: pydantic.ValidationError, cls: type[Any]) -> str:
     """One line for each problem: path of the field, its value, what is required, how to mend it."""
-    return "\n".join(_line(dict(detail), cls) for detail in error.errors())
+    lines = [_line(dict(detail), cls) for detail in error.errors()[:_MOST_LINES]]
+    more = error.error_count() - len(lines)
+    return "\n".join([*lines, f"{cls.__name__}: {more} more problems"] if more else lines)
 
 
 def _line(detail: dict[str, Any], cls: type[Any]) -> str:
@@ -69,20 +72,27 @@ def _line(detail: dict[str, Any], cls: type[Any]) -> str:
     if kind.startswith("missing"):
         return f"{place} is missing; add it"
     if kind == "unexpected_keyword_argument":
-        return f"{place} = {_shown(detail['input'])}: no such field; remove it or correct its spelling"
+        return f"{place} = {shown(detail['input'])}: no such field; remove it or correct its spelling"
     if kind == "unexpected_positional_argument":
-        return f"{cls.__name__}: {_shown(detail['input'])} came without a name; write the fields as name=value"
+        return f"{cls.__name__}: {shown(detail['input'])} came without a name; write the fields as name=value"
     message = detail["msg"].removeprefix("Value error, ")
-    return f"{place} = {_shown(detail['input'])}: {message}" if detail["loc"] else f"{place}: {message}"
+    return f"{place} = {shown(detail['input'])}: {message}" if detail["loc"] else f"{place}: {message}"
 
 
 def _place(path: tuple[str | int, ...], cls: type[Any]) -> str:
     """The path of a field; an argument that came by position is called by its field's name."""
     names = [field.name for field in dataclasses.fields(cls)]
-    steps = [names[s] if isinstance(s, int) and s < len(names) and i == 0 else str(s) for i, s in enumerate(path)]
+    steps = [
+        names[s] if isinstance(s, int) and s < len(names) and i == 0 else str(s)[:_SHOWN] for i, s in enumerate(path)
+    ]
     return ".".join([cls.__name__, *steps])
 
 
-def _shown(value: object) -> str:
-    text = np.array2string(value, threshold=8) if isinstance(value, np.ndarray) else repr(value)
+def shown(value: object) -> str:
+    """The value as an error message shows it: at most 80 characters, however large it is."""
+    head = value[: _SHOWN + 1] if isinstance(value, str | bytes) else value
+    try:
+        text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
+    except ValueError:  # an integer of more digits than Python prints
+        text = f"a huge {type(value).__name__}"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

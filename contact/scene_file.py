@@ -17,7 +17,7 @@ from contact.errors import InvalidInput
 from contact.layer import Layer
 from contact.loading import LOADINGS, Loading
 from contact.profiles import PROFILES, Profile
-from contact.record import Record
+from contact.record import Record, shown
 from contact.scene import Scene
 
 MAX_BYTES = 32_000_000  # a scene file beyond this size is not a scene
@@ -49,8 +49,8 @@ def load_scene(path: str | Path) -> Scene:
         raise InvalidInput(f"{file}: the file is empty; a scene needs [layer], [indenter] and [loading]")
     try:
         mapping = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise InvalidInput(f"{file}: not valid TOML: {error}") from None
+    except ValueError as error:  # of the syntax, or of an integer of more digits than Python reads
+        raise InvalidInput(f"{file}: not valid TOML: {error!s:.200}") from None
     except RecursionError:
         raise InvalidInput(f"{file}: nested too deeply for a scene") from None
     try:
@@ -65,12 +65,16 @@ def scene_from_mapping(mapping: Mapping[str, Any]) -> Scene:
     Raises:
         InvalidInput: With the path of the offending entry, its value and the remedy.
     """
-    unknown = sorted(set(mapping) - {"layer", "indenter", "loading", "effects"})
+    if not isinstance(mapping, Mapping):
+        raise InvalidInput(f"{shown(mapping)}: a scene is a table of layer, indenter, loading and effects")
+    unknown = [name for name in mapping if name not in ("layer", "indenter", "loading", "effects")]
     if unknown:
-        raise InvalidInput(f"{unknown[0]}: no such table; a scene has layer, indenter, loading and effects")
+        raise InvalidInput(f"{_key(unknown[0])}: no such table; a scene has layer, indenter, loading and effects")
     effects = mapping.get("effects", [])
-    if isinstance(effects, str | Mapping) or not isinstance(effects, Sequence):
-        raise InvalidInput(f"effects = {effects!r}: must be a list of tables; write [[effects]]")
+    if isinstance(effects, str | bytes | Mapping) or not isinstance(effects, Sequence):
+        raise InvalidInput(f"effects = {shown(effects)}: must be a list of tables; write [[effects]]")
+    if len(effects) > len(EFFECTS):
+        raise InvalidInput(f"effects: {len(effects)} are listed, but each of the {len(EFFECTS)} kinds stands only once")
     return _build(
         Scene,
         "scene",
@@ -97,6 +101,10 @@ def scene_to_mapping(scene: Scene) -> dict[str, Any]:
     }
 
 
+def _key(key: object) -> str:
+    return key[:80] if isinstance(key, str) else shown(key)
+
+
 def _table(mapping: Mapping[str, Any], name: str) -> Mapping[str, Any]:
     if name not in mapping:
         raise InvalidInput(f"{name} is missing; add a table [{name}]")
@@ -105,7 +113,7 @@ def _table(mapping: Mapping[str, Any], name: str) -> Mapping[str, Any]:
 
 def _mapping(value: object, place: str) -> Mapping[str, Any]:
     if not isinstance(value, Mapping):
-        raise InvalidInput(f"{place} = {str(value)[:80]!r}: must be a table of named values; write [{place}]")
+        raise InvalidInput(f"{place} = {shown(value)}: must be a table of named values; write [{place}]")
     return value
 
 
@@ -113,10 +121,12 @@ def _layer(table: Mapping[str, Any]) -> Layer:
     fields = dict(table)
     flag = fields.pop("half_space", False)
     if not isinstance(flag, bool):
-        raise InvalidInput(f"layer.half_space = {flag!r}: must be true or false")
+        raise InvalidInput(f"layer.half_space = {shown(flag)}: must be true or false")
     if flag:
         if "thickness" in fields:
-            raise InvalidInput(f"layer.thickness = {fields['thickness']!r}: a half-space has none; drop one of the two")
+            raise InvalidInput(
+                f"layer.thickness = {shown(fields['thickness'])}: a half-space has none; drop one of the two"
+            )
         fields["thickness"] = math.inf
     return _build(Layer, "layer", fields)
 
@@ -127,7 +137,7 @@ def _tagged(kinds: Sequence[type[R]], value: object, place: str) -> R:
     names = {kind_of(cls): cls for cls in kinds}
     kind = fields.pop("kind", None)
     if not isinstance(kind, str) or kind not in names:
-        raise InvalidInput(f"{place}.kind = {kind!r}: must be one of {', '.join(sorted(names))}")
+        raise InvalidInput(f"{place}.kind = {shown(kind)}: must be one of {', '.join(sorted(names))}")
     return _build(names[kind], place, fields)
 
 
@@ -135,7 +145,7 @@ def _build(cls: type[R], place: str, fields: Mapping[str, Any]) -> R:
     """Construct a record; errors name the place in the file instead of the class."""
     for key in fields:
         if not isinstance(key, str):
-            raise InvalidInput(f"{place}: the key {key!r} is no name")
+            raise InvalidInput(f"{place}: the key {shown(key)} is no name")
     try:
         return cls(**fields)
     except InvalidInput as error:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 import json
 import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
+from io import BufferedRandom, BufferedReader
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -16,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact.errors import InvalidInput
+from contact.record import shown
 from contact.scene_file import scene_from_mapping, scene_to_mapping
 from contact.solution import ContactPath, CriticalPoint, DetachmentPath, HistoryPath, ImpactHistory, Solution
 from contact.stages import Cost, StageRecord
@@ -24,7 +27,11 @@ from contact.validation import FloatArray
 Tree: TypeAlias = Mapping[str, Any]  # values: arrays, numbers, strings, None, or mappings of the same
 
 SCHEMA = "contact-verification/solution/1"
-MAX_BYTES = 2_000_000_000  # of one array; a larger one is refused before memory is taken
+SEAL = b"contact-verification sha256 "  # what a file begins with, before the digest of its content
+MAX_BYTES = 2_000_000_000  # of a file; a larger one is refused before memory is taken
+MAX_DEPTH = 32
+MAX_NAME = 200
+_BLOCK = 512  # bytes that HDF5 leaves to its user, before its own
 
 _KINDS: dict[str, type[Solution]] = {
     cls.__name__: cls for cls in (ContactPath, DetachmentPath, HistoryPath, ImpactHistory)
@@ -33,6 +40,9 @@ _KINDS: dict[str, type[Solution]] = {
 
 def write_tree(path: str | Path, tree: Tree) -> None:
     """Write nested mappings of arrays and scalars; the file appears complete or not at all.
+
+    The file begins with a digest of its content (in the block that HDF5 leaves to its user), so that a damaged file is
+    refused before one number is read from it.
 
     Raises:
         InvalidInput: If the folder cannot be written or an entry is of another type.
@@ -44,65 +54,116 @@ def write_tree(path: str | Path, tree: Tree) -> None:
         raise InvalidInput(f"{file}: cannot be written ({error.strerror}); check that the folder exists") from None
     os.close(handle)
     try:
-        with h5py.File(temporary, "w", track_order=True) as root:
-            _write(root, tree)
-        _flush(temporary)
+        with h5py.File(temporary, "w", track_order=True, userblock_size=_BLOCK) as root:
+            _write(root, tree, depth=0)
+        _seal(temporary)
         os.replace(temporary, file)
     finally:
         Path(temporary).unlink(missing_ok=True)
 
 
-def _flush(path: str) -> None:
-    descriptor = os.open(path, os.O_RDONLY)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
+def _seal(path: str) -> None:
+    """Write the digest of what follows it, and wait until the disk has all."""
+    with open(path, "r+b") as stream:
+        digest = _digest(stream)
+        stream.seek(0)
+        stream.write(digest)
+        stream.flush()
+        os.fsync(stream.fileno())
 
 
-def _write(group: h5py.Group, tree: Tree) -> None:
+def _digest(stream: BufferedReader | BufferedRandom) -> bytes:
+    """What the first bytes of a whole file say."""
+    stream.seek(_BLOCK)
+    return SEAL + hashlib.file_digest(stream, "sha256").hexdigest().encode()
+
+
+def _write(group: h5py.Group, tree: Tree, depth: int) -> None:
+    if not isinstance(tree, Mapping) or depth > MAX_DEPTH:
+        raise InvalidInput(f"{shown(tree)}: give mappings of arrays and numbers, at most {MAX_DEPTH} deep")
     for name, value in tree.items():
+        if not isinstance(name, str) or not 0 < len(name) <= MAX_NAME or name == "." or set(name) & set("/\0"):
+            raise InvalidInput(f"{group.name}: {shown(name)} cannot name an entry; give a short text without a slash")
         if isinstance(value, Mapping):
-            _write(group.create_group(name, track_order=True), value)
-        elif isinstance(value, np.ndarray):
-            group.create_dataset(name, data=value, track_times=False)
-        elif value is None:
-            group.attrs[name] = h5py.Empty("f8")  # HDF5 knows no None
-        elif isinstance(value, bool | int | float | str | np.generic):
-            group.attrs[name] = value
+            _write(group.create_group(name, track_order=True), value, depth + 1)
+        elif not _is_storable(value):
+            kind = f"{type(value).__name__} of {value.dtype}" if isinstance(value, np.ndarray) else type(value).__name__
+            raise InvalidInput(f"{group.name}/{name}: a {kind} cannot be stored; give an array or number")
         else:
-            raise InvalidInput(
-                f"{group.name}/{name}: a {type(value).__name__} cannot be stored; give an array or number"
-            )
+            _write_leaf(group, name, value)
+
+
+def _is_storable(value: object) -> bool:
+    if isinstance(value, np.ndarray):
+        return value.dtype.kind in "biufc" and not isinstance(value, np.ma.MaskedArray)
+    return value is None or isinstance(value, bool | int | float | str | np.bool_ | np.number)
+
+
+def _write_leaf(group: h5py.Group, name: str, value: Any) -> None:
+    try:
+        if isinstance(value, np.ndarray):
+            group.create_dataset(name, data=value, track_times=False)
+        else:
+            group.attrs[name] = h5py.Empty("f8") if value is None else value  # HDF5 knows no None
+    except (
+        ValueError,
+        TypeError,
+        OverflowError,
+        KeyError,
+    ) as error:  # an integer beyond 64 bits, a text with a zero byte
+        raise InvalidInput(f"{group.name}/{name} = {shown(value)}: cannot be stored ({error!s:.160})") from None
 
 
 def read_tree(path: str | Path) -> dict[str, Any]:
     """Read what `write_tree` wrote.
 
     Raises:
-        InvalidInput: If the file is missing, is no HDF5 file, is damaged, or is beyond `MAX_BYTES`.
+        InvalidInput: If the file is missing, was not written by `write_tree`, or is damaged or beyond `MAX_BYTES`.
     """
     file = Path(path)
-    if not file.is_file():
-        raise InvalidInput(f"{file}: no such file")
     try:
+        with file.open("rb") as stream:
+            _check_seal(file, stream)
         with h5py.File(file, "r") as root:
-            return _read(root)
-    except (OSError, RuntimeError, KeyError) as error:
-        reason = str(error).splitlines()[0][:160]
-        raise InvalidInput(f"{file}: not a readable HDF5 file ({reason}); it may be truncated") from None
+            return _read(root, set())
+    except InvalidInput:
+        raise
+    except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
+        raise InvalidInput(f"{file}: not a readable HDF5 file ({error!s:.160})") from None
 
 
-def _read(group: h5py.Group) -> dict[str, Any]:
+def _check_seal(file: Path, stream: BufferedReader) -> None:
+    if (size := os.fstat(stream.fileno()).st_size) > MAX_BYTES:
+        raise InvalidInput(f"{file}: {size} bytes are more than a file here can have ({MAX_BYTES})")
+    start = stream.read(_BLOCK)
+    if not start.startswith(SEAL):
+        raise InvalidInput(f"{file}: not written by this program, or its beginning is lost; write it again")
+    if start.rstrip(b"\0") != _digest(stream):
+        raise InvalidInput(f"{file}: the content does not match its digest; the file is damaged or truncated")
+
+
+def _read(group: h5py.Group, seen: set[int]) -> dict[str, Any]:
     tree = {name: _scalar(value) for name, value in group.attrs.items()}
-    for name, item in group.items():
-        if isinstance(item, h5py.Group):
-            tree[name] = _read(item)
-            continue
-        if item.nbytes > MAX_BYTES:
-            raise InvalidInput(f"{item.name}: {item.nbytes} bytes are more than an array here can have ({MAX_BYTES})")
-        tree[name] = item[()]
+    for name in group:
+        item = _owned(group, name, seen)
+        tree[name] = _read(item, seen) if isinstance(item, h5py.Group) else _array(item)
     return tree
+
+
+def _owned(group: h5py.Group, name: str, seen: set[int]) -> h5py.Group | h5py.Dataset:
+    """The entry of this name; links that lead away, or to what was already read, are refused."""
+    item = group[name] if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
+    address = None if item is None else h5py.h5o.get_info(item.id).addr
+    if address is None or address in seen:
+        raise InvalidInput(f"{group.name}/{name:.80}: a link to another place; a stored tree has none")
+    seen.add(address)
+    return item
+
+
+def _array(item: h5py.Dataset) -> NDArray[Any]:
+    if item.nbytes != item.id.get_storage_size() or item.external is not None or item.dtype.kind not in "biufc":
+        raise InvalidInput(f"{item.name:.80}: {item.nbytes} bytes of {item.dtype} are not all in this file")
+    return np.asarray(item[()])
 
 
 def _scalar(value: Any) -> Any:

@@ -72,6 +72,8 @@ def _as_vector(value: object, remedy: str) -> FloatArray:
         raise ValueError(f"must be a list of numbers; {remedy}")  # pydantic collects ValueError only
     if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
         raise ValueError(f"must be a one-dimensional array of real numbers; {remedy}")
+    if isinstance(value, np.ma.MaskedArray):
+        raise ValueError(f"must not be masked: what hides under the mask is no number; {remedy}")
     if len(value) == 0:
         raise ValueError(f"must hold at least one number; {remedy}")
     if len(value) > MAX_ENTRIES:
