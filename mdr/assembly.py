@@ -8,16 +8,19 @@ from bem.contact_density import ContactDensity
 from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
 from bem.integral_equation import IntegralEquationSolution
-from bem.panels import gauss_nodes, partial_panel_interpolation
+from bem.panels import gauss_nodes
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.validation import FloatArray
 from mdr.equivalent_system import EquivalentSystem
 from mdr.half_space_profile import half_space_profile
 from mdr.layer_profile import contact_averages, edge_values
 from mdr.mapped_pieces import MappedFunction, MappedGrid, resolve
+from mdr.published_transform import published_profile
 from mdr.surface_fields import ContactFields
 
 NODES = 24  # on each piece, where the flat-punch data do not prescribe their own
+TABLE_NODES = 12  # with a table, whose functions are no smoother than its splines
+FIRST_OCTAVE = -5  # below a/h = 1/32 a table's functions are linear to its accuracy
 RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half-space profile
 GAP = 1e-12  # relative distance below which two piece ends are one
 
@@ -68,12 +71,15 @@ def contact_fields(
         edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
     """
     unit = contact_radius if layer.is_half_space else layer.thickness
-    half_space = _half_space_function(flat_punch, indenter, unit, contact_radius)
-    density, ratio, delta = None, contact_radius / unit, depth / unit
+    density, table, ratio, delta = None, None, contact_radius / unit, depth / unit
+    if isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution):
+        profile = _half_space_function(flat_punch, indenter, unit, contact_radius)
+    else:
+        profile, table = _profile(flat_punch, indenter, unit, contact_radius), flat_punch
     if isinstance(flat_punch, IntegralEquationSolution):
-        averages = np.full((int(np.ceil(ratio / flat_punch.factor.panel_width)), half_space.grid.count), delta)
+        averages = np.full((int(np.ceil(ratio / flat_punch.factor.panel_width)), profile.grid.count), delta)
         if not isinstance(indenter, FlatPunch):
-            averages -= contact_averages(flat_punch.factor, half_space, indenter.flat_radius / unit)
+            averages -= contact_averages(flat_punch.factor, profile, indenter.flat_radius / unit)
         density = flat_punch.density(ratio, averages)
     return ContactFields(
         indenter=indenter,
@@ -81,16 +87,17 @@ def contact_fields(
         unit=unit,
         contact_radius=ratio,
         indentation_depth=delta,
-        half_space=half_space,
+        profile=profile,
         density=density,
-        edge_density=_edge_density(half_space, density, delta) if edge else 0.0,
+        table=table,
+        edge_density=_edge_density(profile, density, delta) if edge else 0.0,
     )
 
 
-def _edge_density(half_space: MappedFunction, density: ContactDensity | None, delta: float) -> float:
-    """phi(a) = delta - g_hs(a) + psi(a)."""
+def _edge_density(profile: MappedFunction, density: ContactDensity | None, delta: float) -> float:
+    """phi(a) = delta - g_hs(a) + psi(a); with a table the spring displacement delta - g(a)."""
     share = 0.0 if density is None else density.edge_value
-    return delta - float(half_space(np.asarray(half_space.grid.end))) + share
+    return delta - float(profile(np.asarray(profile.grid.end))) + share
 
 
 class SeveralContacts(UnsupportedSceneError):
@@ -109,8 +116,10 @@ class SeveralContacts(UnsupportedSceneError):
 def _profile(solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float) -> MappedFunction:
     """g in units of `unit`."""
     g_hs = _half_space_function(solution, indenter, unit, max_radius)
-    if isinstance(indenter, FlatPunch) or not isinstance(solution, IntegralEquationSolution):
+    if isinstance(indenter, FlatPunch) or isinstance(solution, HalfSpaceFlatPunch):
         return g_hs
+    if not isinstance(solution, IntegralEquationSolution):
+        return published_profile(solution, indenter, unit, g_hs)
     flat = indenter.flat_radius / unit
     edge = edge_values(solution.factor, g_hs, flat)
     return MappedFunction.from_values(g_hs.grid, edge / solution.edge_density(flat + g_hs.grid.nodes), g_hs.lead)
@@ -120,7 +129,7 @@ def _half_space_function(
     solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float
 ) -> MappedFunction:
     """g_hs in units of `unit`, on pieces that also suit the flat-punch data."""
-    count = solution.factor.count if isinstance(solution, IntegralEquationSolution) else NODES
+    count = _nodes_for(solution)
     if isinstance(indenter, FlatPunch):  # zero wherever it is asked
         rest = MappedGrid(np.zeros(1), np.full(1, np.finfo(float).tiny), np.ones(1), count)
         return MappedFunction(rest, np.zeros((1, count)), 0.0)
@@ -143,10 +152,7 @@ def _initial_grid(
     """Pieces between panel ends and breakpoints, and the exponent of u with which g_hs begins in the first."""
     flat, end = indenter.flat_radius / unit, (max_radius - indenter.flat_radius) / unit
     breakpoints = np.array([k - indenter.flat_radius for k in indenter.breakpoints]) / unit
-    panels = np.empty(0)
-    if isinstance(solution, IntegralEquationSolution):
-        width = solution.factor.panel_width
-        panels = width * np.arange(1, np.ceil(flat + end) / width) - flat
+    panels = _panel_ends(solution, flat + end) - flat
     inner = _separate(breakpoints, end)
     left = np.concatenate([[0.0], inner, _apart(_separate(panels, end), inner)])
     power = np.concatenate([[1.0], np.full(inner.size, 2.0), np.ones(left.size - inner.size - 1)])
@@ -155,6 +161,21 @@ def _initial_grid(
     exponent = _leading_exponent(indenter, unit * min(left[1] if left.size > 1 else end, flat or np.inf))
     power[0] = 1 if exponent % 1 == 0 else 2 if exponent % 0.5 == 0 else 4
     return MappedGrid(left, np.diff(left, append=end), power, count), exponent * power[0]
+
+
+def _nodes_for(solution: FlatPunchSolution) -> int:
+    if isinstance(solution, IntegralEquationSolution):
+        return solution.factor.count
+    return NODES if isinstance(solution, HalfSpaceFlatPunch) else TABLE_NODES
+
+
+def _panel_ends(solution: FlatPunchSolution, ratio: float) -> FloatArray:
+    """Where a grid for these data should have piece ends: the factor's panels, or octaves of a table's ratios."""
+    if isinstance(solution, IntegralEquationSolution):
+        return solution.factor.panel_width * np.arange(1.0, np.ceil(ratio / solution.factor.panel_width))
+    if isinstance(solution, HalfSpaceFlatPunch):
+        return np.empty(0)
+    return np.exp2(np.arange(FIRST_OCTAVE, np.ceil(np.log2(ratio)), dtype=np.float64))
 
 
 def _separate(points: FloatArray, end: float) -> FloatArray:
@@ -180,19 +201,10 @@ def _leading_exponent(indenter: Profile, scale: float) -> float:
 
 
 def _moment(solution: FlatPunchSolution, profile: MappedFunction, flat: float) -> MappedFunction:
-    """2 int c_bar g dx over the excess: full pieces before each node, and its own piece by scaled Gauss nodes."""
+    """2 int c_bar g dx over the excess, Eq. (4)."""
     grid = profile.grid
-    u, omega = gauss_nodes(grid.count)
     springs = solution.normalized_spring_stiffness(np.minimum(flat + grid.nodes, solution.max_ratio))
-    density = 2 * springs * profile.node_values  # Eq. (4)
-    full = np.concatenate([[0.0], np.cumsum(np.sum(density * grid.weights, axis=1))[:-1]])
-    lead = np.where(np.arange(len(grid.left)) == 0, profile.lead, 0.0)[:, None, None]
-    inner = np.multiply.outer(u, u)
-    regular = (partial_panel_interpolation(grid.count) @ (density / u ** lead[:, 0])[:, None, :, None])[..., 0]
-    exponent = lead + grid.power[:, None, None] - 1
-    stretch = (grid.width * grid.power)[:, None]
-    partial = stretch * np.sum(regular * inner**exponent * np.multiply.outer(u, omega), axis=2)
-    return MappedFunction.from_values(grid, full[:, None] + partial, profile.lead + float(grid.power[0]))
+    return MappedFunction.from_values(grid, 2 * springs * profile.node_values, profile.lead).integral()
 
 
 def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float) -> None:

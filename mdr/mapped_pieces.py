@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.panels import chebyshev_from_nodes, gauss_nodes
+from bem.panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
 from bem.piecewise import chebyshev_sum
 from contact.validation import FloatArray
 
@@ -123,6 +123,20 @@ class MappedFunction:
         """Values at the grid's nodes, shape (q, m)."""
         piece = np.broadcast_to(np.arange(len(self.grid.left))[:, None], self.coefficients.shape)
         return self.at(piece, np.broadcast_to(gauss_nodes(self.grid.count)[0], piece.shape))
+
+    def integral(self) -> MappedFunction:
+        """int_0^d of the function: whole pieces before each node, and its own piece by Gauss nodes scaled into it."""
+        grid = self.grid
+        u, omega = gauss_nodes(grid.count)
+        full = np.concatenate([[0.0], np.cumsum(np.sum(self.node_values * grid.weights, axis=1))[:-1]])
+        lead = np.where(np.arange(len(grid.left)) == 0, self.lead, 0.0)[:, None, None]
+        inner = np.multiply.outer(u, u)
+        regular = (self.node_values / u ** lead[:, 0])[:, None, :, None]
+        inside = (partial_panel_interpolation(grid.count) @ regular)[..., 0]
+        exponent = lead + grid.power[:, None, None] - 1
+        stretch = (grid.width * grid.power)[:, None]
+        partial = stretch * np.sum(inside * inner**exponent * np.multiply.outer(u, omega), axis=2)
+        return MappedFunction.from_values(grid, full[:, None] + partial, self.lead + float(grid.power[0]))
 
     def truncation(self) -> FloatArray:
         """Size of the last coefficients of each piece relative to its largest, shape (q,)."""

@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.contact_density import ContactDensity
+from bem.flat_punch import FlatPunchSolution
 from bem.panels import gauss_nodes
 from contact import InvalidInput, Profile
 from contact.validation import FloatArray
@@ -39,8 +40,9 @@ class ContactFields:
         unit: Length unit [m] of all that follows.
         contact_radius: a.
         indentation_depth: delta.
-        half_space: g_hs over the excess x - b up to a.
-        density: Layer's share psi of the density; None on the half-space.
+        profile: g_hs over the excess x - b up to a; with a table, the layer's own MDR profile g.
+        density: Layer's share psi of the density; None on the half-space and with a table.
+        table: Tabulated flat punches, whose pressures are superposed in place of the half-space's.
         edge_density: phi(a), zero without adhesion unless the indenter is a flat punch.
     """
 
@@ -49,8 +51,9 @@ class ContactFields:
     unit: float
     contact_radius: float
     indentation_depth: float
-    half_space: MappedFunction
+    profile: MappedFunction
     density: ContactDensity | None
+    table: FlatPunchSolution | None
     edge_density: float
 
     def pressure(self, radius: FloatArray) -> FloatArray:
@@ -83,7 +86,7 @@ class ContactFields:
         a = self.contact_radius
         bracket = self._profile_integral(r)
         if self.edge_density != 0:
-            bracket += self.edge_density / np.sqrt((a - r) * (a + r))
+            bracket += self._weight(r, a) * self.edge_density / np.sqrt((a - r) * (a + r))
         if self.density is not None:
             bracket -= self.density.abel_integral(r)
         return self.contact_modulus / np.pi * bracket  # Eq. (9)
@@ -108,20 +111,30 @@ class ContactFields:
         eta = ((np.arange(panels)[:, None] + nodes) / panels).ravel() * reach[:, None]
         beyond = gap[:, None] * np.sinh(eta) ** 2  # t - hi
         t = high[:, None] + beyond
-        piece, u = self.half_space.grid.locate(np.minimum((high - self._flat)[:, None] + beyond, self._reach))
+        piece, u = self.profile.grid.locate(np.minimum((high - self._flat)[:, None] + beyond, self._reach))
         from_start = (high - start)[:, None] + beyond  # not t - start, which would cancel beside a kink
         rest = np.sqrt(from_start / (t + r[:, None])) if start > 0 else 1.0
-        values = 2 * self.half_space.derivative_at(piece, u) * rest
+        values = 2 * self.profile.derivative_at(piece, u) * rest * self._weight(r[:, None], t)
         integral: FloatArray = reach / panels * (values @ np.tile(weights, panels))
         return np.where(r < stop, integral, 0.0)
 
+    def _weight(self, r: FloatArray, x: FloatArray | float) -> FloatArray | float:
+        """Pressure of a flat punch of radius x relative to the half-space's: 1, or 2 k_bar q of a table, Eq. (12)."""
+        if self.table is None:
+            return 1.0
+        x = np.minimum(x, self.contact_radius)
+        stiffness = self.table.normalized_contact_stiffness(x)
+        return 2 * stiffness * self.table.smooth_pressure(np.minimum(r / x, 1.0), x)
+
     def _displacement_outside(self, r: FloatArray) -> FloatArray:
         """(2/pi) int_0^r Phi(s)/sqrt(r^2 - s^2) ds, Phi = W inside the contact and what K phi leaves outside."""
-        a, grid = self.contact_radius, self.half_space.grid
+        if self.table is not None and r.size:
+            raise InvalidInput("flat-punch tables hold no displacement outside the contact; use the integral equation")
+        a, grid = self.contact_radius, self.profile.grid
         integral = self.indentation_depth * np.arctan2(a, np.sqrt((r - a) * (r + a)))
         pieces = np.broadcast_to(self._flat + np.append(grid.left, grid.end), (r.size, len(grid.left) + 1))
         integral -= _arc_integral(
-            r, pieces, grid.power, lambda s: self.half_space(np.clip(s - self._flat, 0, self._reach))
+            r, pieces, grid.power, lambda s: self.profile(np.clip(s - self._flat, 0, self._reach))
         )
         if self.density is not None and r.size:
             remainder = _remainder(self.density, float(r.max()) - a)
