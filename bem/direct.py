@@ -1,0 +1,221 @@
+"""The direct boundary element method: any profile pressed into a layer on a square grid, without MDR."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import ClassVar, Final, Self
+
+import numpy as np
+
+from bem.pixel_disc import THIN, PixelDisc, PunchSolution
+from bem.pressed_state import LEAST_CELLS, Boundary, Grid, Prescribed, Press, PressedState
+from bem.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
+from contact import (
+    Adhesion,
+    ContactPath,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    Scene,
+    StageLog,
+    Supported,
+    Unsupported,
+    UnsupportedSceneError,
+)
+from contact.validation import FloatArray
+
+STIFFNESS_CELLS: Final = 256  # grid of the flat punch behind k_N: its own error is below 1e-5
+PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
+LARGEST_EXPONENTS: Final = {"indentation_depth": 2.0, "normal_force": 6.0, "contact_stiffness": 4.0}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Bem:
+    """Direct contact by FFT boundary elements.
+
+    Attributes:
+        points: Cells across the box, a multiple of 4.
+        boundary: "free" space, or "periodic" with 16 thicknesses between images (thin layers; no half-space).
+        tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
+        threads: Threads of FFTW.
+
+    Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
+    what the contact radius may be off. The method converges with second order in the cell size.
+
+    Raises:
+        InvalidInput: If `points` is too small or no multiple of 4, or the tolerance is not in (0, 1e-2].
+    """
+
+    name: ClassVar[str] = "bem"
+
+    points: int = 512
+    boundary: Boundary = "free"
+    tolerance: float = 1e-7
+    threads: int = 1
+
+    def __post_init__(self) -> None:
+        """Refuse settings that cannot be solved."""
+        if self.points < 2 * LEAST_CELLS or self.points % 4:
+            raise InvalidInput(f"points must be a multiple of 4 and at least {2 * LEAST_CELLS}, got {self.points}")
+        if self.boundary not in ("free", "periodic"):
+            raise InvalidInput(f'boundary must be "free" or "periodic", got {self.boundary!r}')
+        if not 0.0 < self.tolerance <= 1e-2:
+            raise InvalidInput(f"tolerance must lie in (0, 0.01], got {self.tolerance:g}")
+
+    def supports(self, scene: Scene) -> Supported | Unsupported:
+        """Elastic contact under prescribed radii, depths or forces, and detachment with adhesion."""
+        others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
+        if others:
+            return Unsupported(reason=f"bem models adhesion only, not {others[0]}; ask mdr or fem")
+        if self.boundary == "periodic" and scene.layer.is_half_space:
+            return Unsupported(reason='a half-space has no periodic answer; use boundary="free"')
+        if isinstance(scene.loading, Detachment):
+            return Supported()
+        if scene.effects or type(scene.loading) not in PRESCRIBED:
+            what = "with adhesion, a Detachment" if scene.effects else "radii, depths or forces"
+            return Unsupported(reason=f"bem follows {what}, not {type(scene.loading).__name__}; ask mdr")
+        return Supported()
+
+    def refined(self) -> Self:
+        """A copy with half the cell size."""
+        return dataclasses.replace(self, points=2 * self.points)
+
+    def solve(self, scene: Scene) -> ContactPath:
+        """The equilibria of the scene.
+
+        Raises:
+            UnsupportedSceneError: If `supports` says no.
+            NotConvergedError: If a tolerance was missed.
+        """
+        answer = self.supports(scene)
+        if isinstance(answer, Unsupported):
+            raise UnsupportedSceneError(answer.reason)
+        log = StageLog()
+        step = self._punch_step if isinstance(scene.indenter, FlatPunch) else self._smooth_step
+        kind, values = _prescription(scene)
+        steps = [step(scene, kind, float(value), log) for value in values]
+        arrays = {name: np.array([s.values[name] for s in steps]) for name in ContactPath.ARRAYS}
+        return ContactPath(
+            scene=scene,
+            method=self.name,
+            settings=dataclasses.asdict(self),
+            cost=log.cost(unknowns=self.points**2 // 4),
+            stages=log.records,
+            fields=FieldSequence(tuple(step.fields for step in steps)),
+            error_estimate={name: np.array([s.errors[name] for s in steps]) for name in steps[0].errors},
+            contact_radius=arrays["contact_radius"],
+            indentation_depth=arrays["indentation_depth"],
+            normal_force=arrays["normal_force"],
+            contact_stiffness=arrays["contact_stiffness"],
+        )
+
+    def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
+        press = Press(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
+        fine, coarse = press.reach(kind, value, self.points)
+        with log.stage("contact_stiffness"):
+            stiffness = contact_stiffness(scene, fine.contact_radius, min(self.points, STIFFNESS_CELLS))
+        fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
+        other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
+        values = _values(fine) | {"contact_stiffness": stiffness}
+        return Step(
+            values, _errors(kind, fine, coarse) | {"pressure": _pressure_difference(fields, other, fine)}, fields
+        )
+
+    def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
+        """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""
+        a = scene.indenter.max_radius
+        with log.stage("contact"):
+            punch, disc = grid_punch(scene, a, self.points)
+            coarse, _ = grid_punch(scene, a, self.points // 2)
+        stiffness = 2.0 * scene.layer.contact_modulus * a * punch.stiffness  # Eq. (10)
+        depth = value if kind == "depth" else value / stiffness
+        scale = depth * stiffness / (np.pi * a**2)  # p = k_N delta / (pi a^2) p_bar, Eq. (10)
+        cell_size = a / disc.radius
+        fields = FlatPunchFields(
+            layer=scene.layer,
+            radius=a,
+            indentation_depth=depth,
+            pressure_scale=scale,
+            shape=punch.shape,
+            grid=Grid(2 * len(punch.pressure), cell_size),
+            cell_pressure=punch.pressure * (scene.layer.contact_modulus * depth / cell_size),
+        )
+        error = abs(coarse.stiffness / punch.stiffness - 1.0)
+        values = {"contact_radius": a, "indentation_depth": depth, "normal_force": stiffness * depth}
+        errors = {"contact_radius": 0.0, "indentation_depth": 0.0 if kind == "depth" else error}
+        errors |= {"normal_force": 0.0 if kind == "force" else error, "contact_stiffness": error}
+        shorter = np.zeros(len(punch.shape))
+        shorter[: len(coarse.shape)] = coarse.shape
+        errors["pressure"] = float(np.sum(np.abs(punch.shape - shorter)) / np.max(np.abs(punch.shape)))
+        return Step(values | {"contact_stiffness": stiffness}, errors, fields)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One equilibrium as a path keeps it."""
+
+    values: dict[str, float]
+    errors: dict[str, float]
+    fields: AxisymmetricFields
+
+
+def contact_stiffness(scene: Scene, radius: float, cells: int) -> float:
+    """k_N(a) [N/m] of the flat punch with the contact's radius: what dF/d(delta) at fixed contact is, Eq. (5)."""
+    punch, _ = grid_punch(scene, radius, cells)
+    return 2.0 * scene.layer.contact_modulus * radius * punch.stiffness
+
+
+def grid_punch(scene: Scene, radius: float, cells: int) -> tuple[PunchSolution, PixelDisc]:
+    """The flat punch of this radius on the scene's layer, and the grid disc it was computed with."""
+    layer = scene.layer
+    ratio = radius / layer.thickness  # zero on a half-space
+    disc = _measured_disc(cells, bool(ratio > THIN))
+    if layer.is_half_space:
+        return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
+    return disc.solve(ratio, layer.support, layer.poissons_ratio, None), disc
+
+
+@lru_cache(maxsize=8)
+def _measured_disc(cells: int, periodic: bool) -> PixelDisc:
+    return PixelDisc.measured(cells, periodic=periodic)
+
+
+def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
+    """What is prescribed, and its values."""
+    loading = scene.loading
+    if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
+        raise UnsupportedSceneError(f"{type(loading).__name__} prescribes no sequence of contacts")
+    return PRESCRIBED[type(loading)], loading.values
+
+
+def _values(state: PressedState) -> dict[str, float]:
+    return {
+        "contact_radius": state.contact_radius,
+        "indentation_depth": state.indentation_depth,
+        "normal_force": state.normal_force,
+    }
+
+
+def _errors(kind: str, fine: PressedState, coarse: PressedState) -> dict[str, float]:
+    """Relative errors: the difference to the coarser grid, and the contact radius's scatter where it enters."""
+    radius = (fine.radius_scatter + abs(fine.contact_radius - coarse.contact_radius)) / fine.contact_radius
+    errors = {"contact_radius": radius, "contact_stiffness": LARGEST_EXPONENTS["contact_stiffness"] * radius + 1e-5}
+    for name in ("indentation_depth", "normal_force"):
+        value = getattr(fine, name)
+        difference = abs(value - getattr(coarse, name)) / abs(value)
+        scatter = LARGEST_EXPONENTS[name] * fine.radius_scatter / fine.contact_radius if kind == "radius" else 0.0
+        errors[name] = difference + scatter + 1e-9
+    prescribed = {"depth": "indentation_depth", "force": "normal_force"}.get(kind)
+    return errors | ({prescribed: 0.0} if prescribed else {})
+
+
+def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: PressedState) -> float:
+    """2 pi r-weighted L2 norm of the difference of two grids' pressures, relative to that of the pressure."""
+    r: FloatArray = state.contact_radius * (np.arange(200) + 0.5) / 200
+    p, q = fine.pressure(r), coarse.pressure(r)
+    return float(np.sqrt(np.sum(r * (p - q) ** 2) / np.sum(r * p**2)))
