@@ -21,6 +21,9 @@ Prescribed = Literal["radius", "depth", "force"]
 
 COARSE_CELLS: Final = 64
 LEAST_CELLS: Final = 48  # of the coarsest grid of a sequence
+FIRST_BOX: Final = (
+    1.0973  # over the radius where f equals the depth; no round number: no cell centre lies on that radius
+)
 FILL: Final = 0.88  # contact radius over half the box
 IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
 RADIUS_TOLERANCE: Final = 1e-6  # relative, of a prescribed contact radius, besides its scatter
@@ -164,12 +167,12 @@ class Press:
 
     def _coarse(self, depth: float) -> PressedState:
         """Equilibrium on a coarse grid whose box grows until the contact lies inside."""
-        radius = 1.1 * self._geometric_radius(depth)
+        radius = FIRST_BOX * self._geometric_radius(depth)
         for _ in range(40):
             grid = self._grid(radius, COARSE_CELLS, "free")
             thin = self.layer.thickness < 2.0 * grid.cell_size
             operator = self._operator(grid, "periodic" if thin else "free")
-            equilibrium = solve_contact(operator, self._height(grid), depth=depth, tolerance=1e-3)
+            equilibrium = solve_contact(operator, self._height(grid), depth=depth, tolerance=1e-4)
             reached = area_radius(equilibrium.pressure, grid.cell_size)
             if reached < 0.97 * grid.cell_size * COARSE_CELLS / 2:
                 return self._state(grid, equilibrium, ContactRadius(reached, grid.cell_size))

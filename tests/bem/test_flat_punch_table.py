@@ -37,6 +37,14 @@ def test_stated_error_covers_the_true_error_of_stiffness(pair, name):
     assert np.all(error <= table.relative_error(RATIOS))
 
 
+def test_stated_error_covers_the_true_error_of_pressure(pair):
+    table, exact = pair
+    rho = np.linspace(0.0, 1.0, 60)
+    q, expected = table.smooth_pressure(rho, RATIOS[:, None]), exact.smooth_pressure(rho, RATIOS[:, None])
+    error = np.max(np.abs(q - expected), axis=1) / np.max(expected, axis=1)
+    assert np.all(error <= table.relative_error(RATIOS))
+
+
 def test_a_planted_error_escapes_the_stated_one(pair):
     table, exact = pair
     wrong = dataclasses.replace(table, stiffness=1.01 * table.stiffness)

@@ -46,6 +46,14 @@ def test_shape_is_normalised(disc):
     assert np.sum(q * np.sin(theta)) * np.pi / 4000 == pytest.approx(0.5, rel=1e-6)
 
 
+def test_shape_is_near_the_exact_pressure(disc):
+    shape = disc.solve(5.0, "bonded", 0.3, None).shape
+    rho = np.sin((np.arange(200) + 0.5) * np.pi / 400)
+    expected = exact("bonded", 0.3, 5.0).smooth_pressure(rho, 5.0)
+    q = np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, shape)
+    assert np.max(np.abs(q - expected)) < 0.01 * np.max(expected)
+
+
 def test_unit_shape_of_the_half_space_is_recovered_for_a_thick_layer(disc):
     # Eq. (14): q = 1/2 everywhere
     if not disc.periodic:

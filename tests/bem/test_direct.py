@@ -1,0 +1,170 @@
+import numpy as np
+import pytest
+
+from bem.direct import Bem
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    Impact,
+    IndentationDepths,
+    InvalidInput,
+    KelvinVoigt,
+    Layer,
+    Method,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    Sphere,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from mdr import Mdr
+
+HALF_SPACE = Layer.half_space(youngs_modulus=3e6, poissons_ratio=0.5)  # E* = 4 MPa
+LAYER = Layer(thickness=1e-3, youngs_modulus=0.75e6, poissons_ratio=0.5, support="bonded")  # E* = 1 MPa
+PARABOLOID = Paraboloid(radius_of_curvature=0.1)
+CONE = TruncatedCone(flat_radius=0.5e-3, slope=0.1)
+
+
+def solve(indenter, loading, layer=LAYER, points=128, **settings):
+    return Bem(points=points, **settings).solve(Scene(layer=layer, indenter=indenter, loading=loading))
+
+
+def test_it_is_a_method():
+    assert isinstance(Bem(), Method)
+    assert Bem(points=128).refined() == Bem(points=256)
+
+
+@pytest.mark.parametrize(
+    ("indenter", "loading"),
+    [
+        (PARABOLOID, ContactRadii([1e-3, 2e-3])),
+        (PARABOLOID, IndentationDepths([5e-6])),
+        (PARABOLOID, NormalForces([0.02])),
+        (CONE, ContactRadii([1e-3])),
+        (CONE, IndentationDepths([5e-5])),
+        (FlatPunch(radius=1e-3), IndentationDepths([1e-5])),
+        (Cone(slope=0.05), NormalForces([0.1])),
+    ],
+)
+def test_stated_error_covers_the_difference_to_the_integral_equation(indenter, loading):
+    path, exact = solve(indenter, loading), Mdr().solve(Scene(layer=LAYER, indenter=indenter, loading=loading))
+    for name in path.ARRAYS:
+        error = np.abs(getattr(path, name) / getattr(exact, name) - 1.0)
+        assert np.all(error <= path.error_estimate[name] + 1e-6), name
+        assert np.all(error < 0.01), name
+
+
+def test_pressure_and_displacement_are_those_of_mdr():
+    loading = ContactRadii([2e-3])
+    path, exact = (
+        solve(PARABOLOID, loading, points=256),
+        Mdr().solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=loading)),
+    )
+    r = 2e-3 * (np.arange(100) + 0.5) / 100
+    p, expected = path.pressure(r), exact.pressure(r)
+    assert np.sqrt(np.sum(r * (p - expected) ** 2) / np.sum(r * expected**2)) < 2e-3
+    outside = np.array([2.2e-3, 3e-3, 4e-3, 6e-3])
+    depth = path.indentation_depth[0]
+    np.testing.assert_allclose(
+        path.surface_displacement(outside) / depth, exact.surface_displacement(outside) / depth, atol=2e-3
+    )
+
+
+def test_hertz_contact_from_depth_force_and_radius():
+    # closed form: delta = a^2/R, F = (4/3) E* a^3/R
+    a, R, modulus = 1e-3, 0.1, 4e6
+    depth, force = a**2 / R, 4.0 / 3.0 * modulus * a**3 / R
+    for loading in (ContactRadii([a]), IndentationDepths([depth]), NormalForces([force])):
+        path = solve(PARABOLOID, loading, HALF_SPACE)
+        assert path.contact_radius[0] == pytest.approx(a, rel=2e-4)
+        assert path.indentation_depth[0] == pytest.approx(depth, rel=3e-4)
+        assert path.normal_force[0] == pytest.approx(force, rel=6e-4)
+
+
+def test_displacement_beside_hertz_is_the_closed_form():
+    # Johnson (1985) Eq. (3.42a)
+    a = 1e-3
+    path = solve(PARABOLOID, ContactRadii([a]), HALF_SPACE, points=256)
+    r = np.array([1.1, 1.5, 3.0, 10.0]) * a
+    exact = ((2 * a**2 - r**2) * np.arcsin(a / r) + a * np.sqrt(r**2 - a**2)) / (np.pi * 0.1)
+    np.testing.assert_allclose(path.surface_displacement(r), exact, rtol=2e-3)
+
+
+def test_flat_punch_on_the_half_space_is_boussinesqs():
+    a = 2e-3
+    path = solve(FlatPunch(radius=a), NormalForces([1.0]), HALF_SPACE)
+    assert path.indentation_depth[0] == pytest.approx(1.0 / (2.0 * 4e6 * a), rel=1e-12)
+    r = np.array([0.0, 0.5, 0.9]) * a
+    np.testing.assert_allclose(path.pressure(r), 1.0 / (2 * np.pi * a**2 * np.sqrt(1 - (r / a) ** 2)), rtol=1e-6)
+    outside = np.array([1.2, 2.0, 5.0]) * a
+    exact = 2.0 / np.pi * path.indentation_depth[0] * np.arcsin(a / outside)
+    np.testing.assert_allclose(path.surface_displacement(outside), exact, rtol=2e-3)
+
+
+def test_force_converges_with_at_least_order_three_halves():
+    loading = IndentationDepths([5.59415e-6])
+    exact = Mdr().solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=loading)).normal_force[0]
+    coarse, fine = (abs(solve(PARABOLOID, loading, points=n).normal_force[0] / exact - 1.0) for n in (128, 512))
+    assert fine < coarse / 8.0
+    assert fine < 1e-5
+
+
+def test_periodic_boundary_agrees_for_a_thin_layer():
+    loading = IndentationDepths([2e-4])  # a/h about 6
+    free, periodic = (solve(PARABOLOID, loading, points=256, boundary=b) for b in ("free", "periodic"))
+    assert periodic.normal_force[0] == pytest.approx(free.normal_force[0], rel=3e-3)
+
+
+def test_other_units_give_the_same_digits():
+    scene = Scene(layer=LAYER, indenter=PARABOLOID, loading=IndentationDepths([5e-6]))
+    millimetres = Scene(
+        layer=LAYER.replace(thickness=1.0, youngs_modulus=0.75),  # mm, MPa: force in N
+        indenter=Paraboloid(radius_of_curvature=100.0),
+        loading=IndentationDepths([5e-3]),
+    )
+    first, second = Bem(points=128).solve(scene), Bem(points=128).solve(millimetres)
+    assert first.normal_force[0] == pytest.approx(second.normal_force[0], rel=1e-6)
+
+
+def test_twice_the_modulus_gives_twice_the_force():
+    loading = IndentationDepths([5e-6])
+    soft = solve(PARABOLOID, loading).normal_force
+    hard = solve(PARABOLOID, loading, LAYER.replace(youngs_modulus=1.5e6)).normal_force
+    np.testing.assert_allclose(hard, 2.0 * soft, rtol=1e-7)
+
+
+def test_repeated_solutions_are_bit_identical():
+    first, second = (solve(CONE, IndentationDepths([5e-5])) for _ in range(2))
+    np.testing.assert_array_equal(first.normal_force, second.normal_force)
+
+
+def test_a_contact_beyond_the_indenter_is_refused():
+    with pytest.raises(InvalidInput, match="end of the indenter"):
+        solve(Sphere(radius=1e-3), IndentationDepths([3e-3]))
+
+
+@pytest.mark.parametrize("bad", [{"points": 90}, {"points": 130}, {"boundary": "open"}, {"tolerance": 0.0}])
+def test_bad_settings_are_refused(bad):
+    with pytest.raises(InvalidInput):
+        Bem(**bad)
+
+
+def test_scenes_it_does_not_model_are_refused_with_a_reason():
+    viscous = Scene(
+        layer=Layer.incompressible(thickness=1e-3, shear_modulus=1e6),
+        indenter=PARABOLOID,
+        loading=IndentationDepths([1e-6]),
+        effects=(KelvinVoigt(shear_modulus=1e6, viscosity=1.0),),
+    )
+    impact = Scene(layer=LAYER, indenter=PARABOLOID, loading=Impact(mass=1.0, velocity=0.1))
+    sticky = Scene(
+        layer=LAYER, indenter=PARABOLOID, loading=NormalForces([1.0]), effects=(Adhesion(work_of_adhesion=0.1),)
+    )
+    periodic = Scene(layer=HALF_SPACE, indenter=PARABOLOID, loading=NormalForces([1.0]))
+    for scene, method in ((viscous, Bem()), (impact, Bem()), (sticky, Bem()), (periodic, Bem(boundary="periodic"))):
+        assert not method.supports(scene)
+        with pytest.raises(UnsupportedSceneError):
+            method.solve(scene)
