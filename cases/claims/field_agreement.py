@@ -1,6 +1,6 @@
 """A sampled pressure of one method against that of another, in a norm that converges at a sharp rim."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
@@ -15,7 +15,7 @@ from cases.results import Claim, Curve, Kind, SceneRun
 from cases.rules.agreement import judge_agreement
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.status import Status
-from cases.task import Answers
+from cases.task import Answers, Task
 
 Array = NDArray[np.float64]
 Norm = Literal["weighted L2", "ring loads"]
@@ -28,50 +28,70 @@ _NORMS: dict[str, Callable[[Array, Array, RingQuadrature], float]] = {
 
 @dataclass(frozen=True, kw_only=True)
 class FieldAgreement(DeclaredClaim):
-    """Two methods give the same pressure in the 2 pi r weighted L2 norm, or the same loads of rings."""
+    """Two methods give the same pressure in the 2 pi r weighted L2 norm, or the same loads of rings.
+
+    Attributes:
+        fast: label of the method under test.
+        reference: label of the method it is compared with.
+        norm: how fields are compared.
+        refined: labels of methods that state no uncertainty of the field; the change on halving their discretisation
+            length takes its place.
+    """
 
     kind: ClassVar[Kind] = Kind.AGREEMENT
 
     fast: str
     reference: str
     norm: Norm
+    refined: tuple[str, ...] = ()
 
     def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
         """Return both labels."""
         return self.fast, self.reference
 
+    def tasks(self, case: Case) -> Iterable[Task]:
+        """Return the refined solutions that stand for a missing uncertainty."""
+        for scene in self.scenes_of(case):
+            yield from (self._finer(case, scene, label) for label in self.refined)
+
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene."""
         for scene in self.scenes_of(case):
             labels = self.labels(case, scene)
-            fast, reference = (answers.of(case.task(scene, case.use(scene, m))) for m in labels)
-            judged = first_missing(fast, reference)
-            uncertainty: dict[str, float] = {}
+            runs = [answers.of(case.task(scene, case.use(scene, label))) for label in labels]
+            judged, uncertainty = first_missing(*runs), dict[str, float]()
             if judged is None:
-                judged, uncertainty = self._compared(fast, reference, scene.sampling.rings)
-            yield self.record(
-                judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared(fast, reference)
-            )
+                judged, uncertainty = self._compared(case, scene, answers, runs)
+            yield self.record(judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared(*runs))
 
     def _compared(
-        self, fast: SceneRun, reference: SceneRun, rings: RingQuadrature
+        self, case: Case, scene: CaseScene, answers: Answers, runs: list[SceneRun]
     ) -> tuple[Judgement, dict[str, float]]:
-        found = [_curve(run, self.quantity) for run in (fast, reference)]
-        if found[0] is None or found[1] is None:
-            without = (fast if found[0] is None else reference).method
-            return nothing_compared(Status.SKIP, f"{without} gives no {self.quantity}"), {}
-        a, b = found[0], found[1]
-        uncertainty = {
-            run.method: curve.relative_uncertainty
-            for run, curve in ((fast, a), (reference, b))
-            if curve.relative_uncertainty is not None
-        }
-        if len(uncertainty) < 2:
-            without = next(run.method for run in (fast, reference) if run.method not in uncertainty)
-            message = f"{without} states no uncertainty of {self.quantity}: no verdict is possible"
-            return nothing_compared(Status.INCONCLUSIVE, message), uncertainty
-        difference = _NORMS[self.norm](np.array(a.y), np.array(b.y), rings)
+        uncertainty: dict[str, float] = {}
+        for run in runs:
+            if _curve(run, self.quantity) is None:
+                return nothing_compared(Status.SKIP, f"{run.method} gives no {self.quantity}"), uncertainty
+            own = self._uncertainty(case, scene, answers, run)
+            if own is None:
+                message = f"{run.method} states no uncertainty of {self.quantity}: no verdict is possible"
+                return nothing_compared(Status.INCONCLUSIVE, message), uncertainty
+            uncertainty[run.method] = own
+        difference = self._difference(scene, *runs)
         return judge_agreement(difference, uncertainty, tolerance=self.tolerance), uncertainty
+
+    def _difference(self, scene: CaseScene, first: SceneRun, second: SceneRun) -> float:
+        a, b = first.curve(self.quantity), second.curve(self.quantity)
+        return _NORMS[self.norm](np.array(a.y), np.array(b.y), scene.sampling.rings)
+
+    def _uncertainty(self, case: Case, scene: CaseScene, answers: Answers, run: SceneRun) -> float | None:
+        if run.method not in self.refined:
+            return run.curve(self.quantity).relative_uncertainty
+        finer = answers.of(self._finer(case, scene, run.method))
+        return self._difference(scene, run, finer) if finer.solved else None
+
+    def _finer(self, case: Case, scene: CaseScene, label: str) -> Task:
+        task = case.task(scene, case.use(scene, label))
+        return task.changed("refined", solver=task.solver.refined())
 
 
 def _curve(run: SceneRun, name: str) -> Curve | None:

@@ -81,7 +81,8 @@ class WorkStudy:
     def _task(self, case: "Case", use: MethodUse, *, timed: bool) -> Task:
         scene = case.scene(self.scene)
         task = case.task(scene, use)
-        return replace(task, method=use.method, variant=f"cost: {use.label}", timed=timed)
+        role = "cost" if timed else "reference"
+        return replace(task, method=use.method, variant=f"{role}: {use.label}", timed=timed)
 
     def _point(self, use: MethodUse, run: SceneRun, expected: float, u_ref: float) -> WorkPoint:
         base = WorkPoint(
