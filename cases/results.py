@@ -474,7 +474,7 @@ class CaseResult:
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
 class Acceptance:
-    """An entry of the baseline history: who accepted which change, and why."""
+    """An entry of the baseline history: who accepted which change, and why; tolerances are relative."""
 
     date: str
     case: str

@@ -40,6 +40,7 @@ Cases = Annotated[
     list[str] | None, typer.Argument(metavar="[CASE]...", help="Cases by name; all of the suite if none.")
 ]
 Out = Annotated[Path, typer.Option(help="Folder of the run: results.json, results.h5, report.html, figures.")]
+Baselines = Annotated[Path, typer.Option(help="Folder of the accepted numbers.")]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
 
 
@@ -124,6 +125,48 @@ def run_suite(
 
     options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
     return run(cases or [], methods=method or [], options=options, executor=executor, quiet=quiet, strict=strict)
+
+
+@app.command()
+def gate(
+    run: Annotated[Path, typer.Argument(help="Folder of a finished run.")] = Path("build/verification"),
+    *,
+    baseline: Baselines = Path("baselines"),
+    against: Annotated[
+        str, typer.Option(metavar="REVISION", help="Also time every method alternately with this git revision.")
+    ] = "",
+    pairs: Annotated[int, typer.Option(min=7, help="How often each is timed.")] = 15,
+    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
+    quiet: Quiet = False,
+) -> int:
+    """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
+
+    The regression claims join the others in the report, together with the history of accepted changes.
+    """
+    from reports.commands.gate import run_gate  # noqa: PLC0415
+
+    return run_gate(run, baseline, against=against, pairs=pairs, strict=strict, quiet=quiet)
+
+
+@app.command()
+def accept(
+    cases: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases whose numbers become the baseline.")],
+    *,
+    reason: Annotated[str, typer.Option(help="Why these numbers are right; the report shows it.")],
+    run: Annotated[Path, typer.Option(help="Folder of the finished run they come from.")] = Path("build/verification"),
+    baseline: Baselines = Path("baselines"),
+    write: Annotated[bool, typer.Option("--write", help="Write; without it only show what would change.")] = False,
+    loosen: Annotated[bool, typer.Option("--loosen", help="Let tolerances grow or records be withdrawn.")] = False,
+    jobs: Annotated[int, typer.Option(help="Repetitions at a time.")] = 2,
+) -> None:
+    """Show what accepting a run's numbers would change, in units of tolerance and of uncertainty; write it if told to.
+
+    Refused: numbers that are not finite, uncommitted changes, a failing exact or order claim, continuous integration.
+    """
+    from reports.commands.accept import Wish, accept_cases  # noqa: PLC0415
+
+    wish = Wish(reason=reason, run=run, baselines=baseline, loosen=loosen, write=write, jobs=jobs)
+    accept_cases(cases, wish)
 
 
 @app.command()

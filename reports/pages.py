@@ -149,9 +149,13 @@ def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:
     )
 
 
+def _accepted(value: float | None, tolerance: float | None) -> str:
+    """An accepted value with no more digits than its relative tolerance watches."""
+    return "" if value is None else value_text(value, None if tolerance is None else tolerance * abs(value))
+
+
 def _acceptance_row(entry: Acceptance) -> tuple[str, ...]:
-    old = "" if entry.old is None else value_text(entry.old, entry.old_tolerance)
-    new = "" if entry.new is None else value_text(entry.new, entry.new_tolerance)
+    old, new = _accepted(entry.old, entry.old_tolerance), _accepted(entry.new, entry.new_tolerance)
     tolerances = ["" if t is None else small(t) for t in (entry.old_tolerance, entry.new_tolerance)]
     loosened = entry.old_tolerance is not None and (entry.new_tolerance or 0.0) > entry.old_tolerance
     tolerances[1] += " LOOSENED" if loosened else ""

@@ -29,14 +29,17 @@ def accept(folder: Path, proposal: Proposal, run: RunResult, now: Circumstances,
 
 def refusals(proposal: Proposal, run: RunResult, now: Circumstances, *, loosen: bool = False) -> tuple[str, ...]:
     """Return every reason why ``proposal`` may not be accepted, each with its remedy."""
-    case = run.case(proposal.case)
     return (
-        *_refused_circumstances(run, now),
-        *_refused_run(run, case),
+        *refusals_beforehand(proposal.case, run, now),
         *_refused_numbers(proposal),
         *(() if loosen else _loosenings(proposal)),
         *(() if proposal.reason.strip() else ("no reason is given; say why with --reason",)),
     )
+
+
+def refusals_beforehand(case: str, run: RunResult, now: Circumstances) -> tuple[str, ...]:
+    """Return every reason that is known before the spread is measured."""
+    return *_refused_circumstances(run, now), *_refused_run(run, run.case(case))
 
 
 def _refused_circumstances(run: RunResult, now: Circumstances) -> Iterator[str]:

@@ -14,7 +14,7 @@ from reports import command_line
 from reports.command_line import run
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 
-COMMANDS = ("list", "show", "validate", "run", "report", "solve", "schema", "explain")
+COMMANDS = ("list", "show", "validate", "run", "report", "solve", "schema", "explain", "gate", "accept")
 HERTZ = """
 [layer]
 half_space = true

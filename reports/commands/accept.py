@@ -1,0 +1,107 @@
+"""`contact-verify accept`: show what accepting a case changes, and write it when told to."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from cases.case import Case
+from cases.gate.accept import accept, refusals, refusals_beforehand
+from cases.gate.against import SOURCE
+from cases.gate.baseline import read_baselines
+from cases.gate.circumstances import circumstances
+from cases.gate.proposal import Change, Proposal, propose
+from cases.gate.spread import measured_spreads
+from cases.registry import load_cases, select
+from cases.results import RunResult
+from cases.results_files import read_run
+from contact import InvalidInput
+from reports.numbers import small
+from reports.tables import Table
+from reports.terminal import STYLES, console, show_table
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wish:
+    """What the user asks for.
+
+    Attributes:
+        reason: why these numbers are right.
+        run: folder of the run they come from.
+        baselines: folder they are written to.
+        loosen: whether a tolerance may grow or a record be withdrawn.
+        write: whether to write at all.
+        jobs: repetitions at a time.
+    """
+
+    reason: str
+    run: Path
+    baselines: Path
+    loosen: bool
+    write: bool
+    jobs: int
+
+
+def accept_cases(names: list[str], wish: Wish) -> None:
+    """Show for each case what would change; write it when told to.
+
+    Raises:
+        InvalidInput: naming every reason why a case may not be accepted; cases before it are written then.
+    """
+    result = read_run(wish.run)
+    for case in select(load_cases(), names=names):
+        if case.name not in {ran.name for ran in result.cases}:
+            raise InvalidInput(f"the run in {wish.run} does not have {case.name}; run it first")
+        _accept_case(case, result, wish)
+
+
+def _accept_case(case: Case, result: RunResult, wish: Wish) -> None:
+    ran, now, terminal = result.case(case.name), circumstances(SOURCE, wish.baselines), console()
+    hopeless = refusals_beforehand(case.name, result, now)
+    if hopeless:
+        raise InvalidInput(f"{case.name} is not accepted: {'; '.join(hopeless)}")
+    terminal.print(f"{case.name}: repeating every solution with inputs one unit in the last place away ...")
+    spreads = measured_spreads(case, {(row.scene, row.method): row for row in ran.runs}, jobs=wish.jobs)
+    proposal = propose(
+        ran, suites=case.suites, accepted=read_baselines(wish.baselines), spreads=spreads, reason=wish.reason
+    )
+    show_table(change_table(proposal), on=terminal)
+    refused = refusals(proposal, result, now, loosen=wish.loosen)
+    for reason in refused:
+        terminal.print(f"refused: {reason}", style=STYLES["bad"])
+    if wish.write:
+        accept(wish.baselines, proposal, result, now, loosen=wish.loosen)
+        terminal.print(f"{case.name}: written to {wish.baselines / case.name}", style=STYLES["good"])
+    else:
+        terminal.print(f"{case.name}: nothing written; say --write to write it", style=STYLES["warn"])
+
+
+def change_table(proposal: Proposal) -> Table:
+    """Old, new, the change in units of the tolerance and of U; new records are only counted."""
+    changed = [change for change in proposal.changes if change.old is not None]
+    new = len(proposal.changes) - len(changed)
+    return Table(
+        title=f"{proposal.case}: {len(changed)} changed, {new} new records",
+        note="A tolerance is relative: max(10 x measured spread, 1e-12). U is the method's own numerical uncertainty.",
+        heads=("method", "scene", "quantity", "old", "new", "unit", "in tolerances", "in U", "tolerance", "was"),
+        rows=tuple(_row(change) for change in changed),
+        words=3,
+    )
+
+
+def _row(change: Change) -> tuple[str, ...]:
+    record, (old, new) = change.record, change.values
+    return (
+        change.method,
+        record.scene,
+        record.quantity,
+        "" if old is None else f"{old:.17g}",
+        "withdrawn" if change.new is None else "" if new is None else f"{new:.17g}",
+        record.unit,
+        _ratio(change.in_tolerances),
+        _ratio(change.in_uncertainty),
+        f"{small(change.new.tolerance)}{' LOOSENED' if change.loosens else ''}" if change.new else "",
+        small(change.old.tolerance) if change.old else "",
+    )
+
+
+def _ratio(value: float | None) -> str:
+    return "" if value is None else f"{value:+.3g}"

@@ -1,0 +1,158 @@
+"""`gate` and `accept` from the shell: a number accepted, moved, refused, accepted again."""
+
+import dataclasses
+import json
+from pathlib import Path
+
+import pytest
+
+from cases import executors, runner
+from cases.gate import spread
+from cases.gate.circumstances import Circumstances
+from cases.gate.history import read_history
+from cases.runner import RunOptions
+from cases.stamp import revision
+from reports.command_line import run
+from reports.commands import accept as accept_command
+from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+
+CLEAN = Circumstances(revision=revision(), changed=(), in_ci=False, date="2026-01-01")
+
+
+@pytest.fixture
+def here(tmp_path, library, monkeypatch):
+    """A folder of a run, a library, and a clean working tree."""
+    from reports.commands import gate as gate_command
+
+    def set_library(case):
+        library(case)
+        for module in (accept_command, gate_command):
+            monkeypatch.setattr(module, "load_cases", lambda: {case.name: case})
+
+    set_library(fake_case())
+    monkeypatch.setattr(gate_command, "write_pages", lambda *_: None)  # `report` writes them where a test looks
+    monkeypatch.setattr(spread, "process_pool", executors.serial)
+    monkeypatch.setattr(accept_command, "circumstances", lambda *_: CLEAN)
+    monkeypatch.chdir(tmp_path)
+    return set_library
+
+
+def run_cases(case=None):
+    """What `run` stores, without its pages."""
+    options = RunOptions(out=Path("out"), suite="ci", executor=executors.serial, timing=False)
+    runner.run_cases([case or fake_case()], options)
+    clean_stamp()
+
+
+def clean_stamp():
+    """As if the run had been made on a clean tree."""
+    edit_results(lambda tree: tree["stamp"].update(dirty=False))
+
+
+def edit_results(edit):
+    path = Path("out/results.json")
+    tree = json.loads(path.read_text(encoding="utf-8"))
+    edit(tree)
+    path.write_text(json.dumps(tree), encoding="utf-8")
+
+
+def accept_case(*more, reason="first numbers"):
+    return run(["accept", "fake_hertz", "--reason", reason, "--run", "out", *more])
+
+
+def gate_run(*more):
+    return run(["gate", "out", "--quiet", *more])
+
+
+@pytest.mark.usefixtures("here")
+def test_without_baselines_the_gate_is_not_configured(capsys):
+    run_cases()
+    assert gate_run() == 4
+    assert "accept a case first" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("here")
+def test_a_dry_run_writes_nothing(tmp_path, capsys):
+    run_cases()
+    assert accept_case() == 0
+    assert "nothing written" in capsys.readouterr().out
+    assert not (tmp_path / "baselines").exists()
+
+
+def test_an_accepted_number_is_gated_from_then_on(here, tmp_path, capsys):
+    run_cases()
+    assert accept_case("--write") == 0
+    assert gate_run() == 0
+    assert "PASSED" in capsys.readouterr().out
+    better = fake_case(slow=spoiled(SLOW, error=1.1))
+    here(better)
+    run_cases(better)
+    assert gate_run() == 1
+    output = capsys.readouterr().out
+    assert "DIFF fake_hertz" in output
+    assert "against accepted" in output
+    assert accept_case("--write", reason="a better quadrature") == 0
+    shown = capsys.readouterr().out
+    assert "in tolerances" in shown
+    assert "normal_force" in shown
+    assert gate_run() == 0
+    run(["report", "out"])
+    assert "a better quadrature" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+def test_loosening_needs_its_flag_and_is_seen_in_the_report(here, tmp_path, capsys):
+    run_cases()
+    accept_case("--write")
+    unstable = fake_case(slow=spoiled(SLOW, plant="last bits"))
+    here(unstable)
+    run_cases(unstable)
+    assert accept_case("--write") == 4
+    assert "--loosen" in capsys.readouterr().err
+    assert accept_case("--write", "--loosen", reason="an unstable version on purpose") == 0
+    loosened = [e for e in read_history(tmp_path / "baselines") if (e.old_tolerance or 1) < (e.new_tolerance or 0)]
+    assert {entry.method for entry in loosened} == {"slow"}
+    gate_run()
+    run(["report", "out"])
+    assert "LOOSENED" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"in_ci": True}, "continuous integration"),
+        ({"changed": ("mdr/core.py",)}, "mdr/core.py"),
+        ({"revision": "1" * 40}, "run again"),
+    ],
+)
+@pytest.mark.usefixtures("here")
+def test_accepting_in_the_wrong_place_is_refused_before_anything_is_repeated(change, words, monkeypatch, capsys):
+    run_cases()
+    monkeypatch.setattr(accept_command, "circumstances", lambda *_: dataclasses.replace(CLEAN, **change))
+    monkeypatch.setattr(accept_command, "measured_spreads", None)
+    assert accept_case("--write") == 4
+    assert words in capsys.readouterr().err
+
+
+def test_a_failing_exact_claim_cannot_be_accepted(here, tmp_path, capsys):
+    wrong = fake_case(fast=spoiled(FAST, cell=1.0, error=1e-3))
+    here(wrong)
+    run_cases(wrong)
+    assert accept_case("--write") == 4
+    assert "closed form" in capsys.readouterr().err
+    assert not (tmp_path / "baselines").exists()
+
+
+@pytest.mark.usefixtures("here")
+def test_a_case_that_did_not_run_cannot_be_accepted(capsys):
+    run_cases()
+    edit_results(lambda tree: tree.update(cases=[]))
+    assert accept_case() == 4
+    assert "run it first" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("here")
+def test_an_unknown_revision_is_one_clear_line(capsys):
+    run_cases()
+    accept_case("--write")
+    assert gate_run("--against", "no-such-revision") == 4
+    assert "rev-parse" in capsys.readouterr().err
