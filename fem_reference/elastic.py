@@ -14,7 +14,7 @@ from fem_reference.surface_fields import FemFields, SurfaceState
 
 Array = NDArray[np.float64]
 
-ContactSolver = Callable[[Scene, float, StageLog], CertifiedContact]
+ContactSolver = Callable[[float], CertifiedContact]  # of a contact radius [m]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,14 +70,14 @@ def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibri
     return Equilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
 
 
-def equilibria_at_radii(scene: Scene, radii: Array, solve: ContactSolver, log: StageLog) -> list[Equilibrium]:
+def equilibria_at_radii(radii: Array, solve: ContactSolver) -> list[Equilibrium]:
     """Smooth contact at prescribed radii [m]."""
-    return [smooth_equilibrium(solve(scene, float(a), log)) for a in radii]
+    return [smooth_equilibrium(solve(float(a))) for a in radii]
 
 
-def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver, log: StageLog) -> list[Equilibrium]:
+def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver) -> list[Equilibrium]:
     """A flat punch at prescribed depths or forces: one solution, scaled."""
-    contact = solve(scene, punch.radius, log)
+    contact = solve(punch.radius)
     loading, a = scene.loading, punch.radius
     if isinstance(loading, IndentationDepths):
         return [flat_punch_equilibrium(contact, depth / a) for depth in loading.values]
@@ -108,19 +108,24 @@ def contact_path(
         SurfaceState(state.contact.answer, state.contact.indenter.contact_radius, state.depth, modulus)
         for state in equilibria
     )
-    names = equilibria[0].error
+    force = modulus * radius**2 * np.array([state.force for state in equilibria])
+    depth = radius * np.array([state.depth for state in equilibria])
+    errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
+    if scene.effects:  # depth and force may cross zero: their errors refer to the largest along the path
+        errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
+        errors["normal_force"] *= np.abs(force) / np.abs(force).max()
     meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))
     return ContactPath(
         scene=scene,
         method="fem",
         settings={**settings, "mesh": meshes},
-        error_estimate={name: np.array([state.error[name] for state in equilibria]) for name in names},
+        error_estimate=errors,
         cost=log.cost(unknowns=max(state.contact.answer.unknowns for state in equilibria)),
         stages=log.records,
         notes=notes,
         contact_radius=radius * np.array([state.radius_factor for state in equilibria]),
-        indentation_depth=radius * np.array([state.depth for state in equilibria]),
-        normal_force=modulus * radius**2 * np.array([state.force for state in equilibria]),
+        indentation_depth=depth,
+        normal_force=force,
         contact_stiffness=modulus * radius * stiffness,
         fields=FemFields(states),
     )

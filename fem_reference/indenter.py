@@ -30,8 +30,8 @@ class ScaledIndenter:
         return np.asarray(self.profile.height(self._inside(radius)) / self.contact_radius)
 
     def slope(self, radius: Array) -> Array:
-        """f' at r / a."""
-        return np.asarray(self.profile.slope_at(self._inside(radius)))
+        """f' at r / a, at the contact edge the value from inside."""
+        return np.asarray(self.profile.slope_at((1 - 1e-10) * self._inside(radius)))
 
     def _inside(self, radius: Array) -> Array:
         return np.minimum(radius * self.contact_radius, min(self.contact_radius, self.profile.max_radius))

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from typing import ClassVar, Self
 
 from contact import (
     ContactPath,
     ContactRadii,
+    Detachment,
+    DetachmentPath,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -21,7 +24,7 @@ from contact import (
 from fem_reference.adaptive import settings_for, solve_to_accuracy
 from fem_reference.certified import CertifiedContact, solve_certified_contact
 from fem_reference.discretisation import Discretisation
-from fem_reference.elastic import Equilibrium, contact_path, equilibria_at_radii, flat_punch_equilibria
+from fem_reference.elastic import ContactSolver, Equilibrium, contact_path, equilibria_at_radii, flat_punch_equilibria
 from fem_reference.indenter import ScaledIndenter
 from fem_reference.linear_solver import BACKENDS
 
@@ -74,14 +77,15 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
-        if scene.effects:
-            names = ", ".join(type(effect).__name__ for effect in scene.effects)
-            return Unsupported(f"fem does not model {names}")
-        if isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
+        kinds = {type(effect).__name__ for effect in scene.effects}
+        if isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces | Detachment) and (
+            kinds <= {"Adhesion"}
+        ):
             return Supported()
-        return Unsupported(f"fem does not model loading {type(scene.loading).__name__}")
+        listed = f" with {', '.join(sorted(kinds))}" if kinds else ""
+        return Unsupported(f"fem does not model loading {type(scene.loading).__name__}{listed}")
 
-    def solve(self, scene: Scene) -> ContactPath:
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """Depth, force, stiffness and surface fields with their error estimates.
 
         Raises:
@@ -92,14 +96,22 @@ class Fem:
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
         log = StageLog()
+        if isinstance(scene.loading, Detachment):
+            from fem_reference.effects.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
+
+            return detachment_path(scene, scene.loading, self._solver(scene, log), asdict(self), log)
         return contact_path(scene, self._equilibria(scene, log), asdict(self), log)
 
     def _equilibria(self, scene: Scene, log: StageLog) -> list[Equilibrium]:
-        loading = scene.loading
+        loading, solve = scene.loading, self._solver(scene, log)
+        if scene.effects:
+            from fem_reference.effects.adhesion import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
+
+            return adhesive_equilibria(scene, solve)
         if isinstance(loading, ContactRadii):
-            return equilibria_at_radii(scene, loading.values, self.solve_contact, log)
+            return equilibria_at_radii(loading.values, solve)
         if isinstance(scene.indenter, FlatPunch):
-            return flat_punch_equilibria(scene, scene.indenter, self.solve_contact, log)
+            return flat_punch_equilibria(scene, scene.indenter, solve)
         if isinstance(loading, IndentationDepths):
             return [self._equilibrium_at_load(scene, float(depth), log) for depth in loading.values]
         if isinstance(loading, NormalForces):
@@ -113,7 +125,7 @@ class Fem:
         from fem_reference.unknown_contact import find_contact  # noqa: PLC0415
 
         found = find_contact(scene, target, self.discretisation, self.solver, log)
-        return polished_equilibrium(scene, target, found.contact_radius * found.radius, self.solve_contact, log)
+        return polished_equilibrium(scene, target, found.contact_radius * found.radius, self._solver(scene, log), log)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
@@ -123,6 +135,9 @@ class Fem:
         if self.accuracy is not None:
             return replace(self, accuracy=max(self.accuracy / 4**self.order, 1e-9))
         return replace(self, **asdict(self.discretisation.refined()))
+
+    def _solver(self, scene: Scene, log: StageLog) -> ContactSolver:
+        return partial(self.solve_contact, scene, log=log)
 
     def solve_contact(self, scene: Scene, contact_radius: float, log: StageLog) -> CertifiedContact:
         """One contact radius [m] with error bars."""

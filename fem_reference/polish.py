@@ -40,7 +40,7 @@ def polished_equilibrium(scene: Scene, target: float, start: float, solve: Conta
 
     radius, exponent = radius_of_load(lambda a: ratio(_quick_solution(scene, a, log), a), start, flat)
     for _ in range(3):
-        contact = solve(scene, radius, log)
+        contact = solve(radius)
         defect = ratio(contact.answer, radius)
         corrected = flat + (radius - flat) * defect ** (-1 / exponent)
         if abs(defect - 1) <= LEFT_OVER:

@@ -34,6 +34,7 @@ class SurfaceCompliance:
         pressure_space: piecewise linear pressures; their vertices are the candidates for contact.
         matrix: C, shape (n, n).
         resultants: w, shape (n,).
+        vertex_displacements: u_z at the vertices under each pressure function, shape (n, n).
         unknowns: size of the condensed system.
     """
 
@@ -41,6 +42,7 @@ class SurfaceCompliance:
     pressure_space: TraceSpace
     matrix: Array
     resultants: Array
+    vertex_displacements: Array
     unknowns: int
 
     @property
@@ -82,12 +84,14 @@ def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> Surf
         nodal = trace.mass_matrix() @ hats
         loads = np.zeros((problem.space.size, nodal.shape[1]))
         loads[2 * nodes + 1] = nodal
-        compliance = nodal.T @ solver.solve_loaded(loads)[2 * nodes + 1]
+        displacements = solver.solve_loaded(loads)[2 * nodes + 1]
+        compliance = nodal.T @ displacements
         log.hold(compliance.nbytes)
     return SurfaceCompliance(
         layer_mesh=mesh,
         pressure_space=pressures,
         matrix=(compliance + compliance.T) / 2,
         resultants=nodal.sum(axis=0),
+        vertex_displacements=displacements[::STRIP_ORDER],
         unknowns=problem.space.size,
     )

@@ -1,0 +1,166 @@
+"""The equilibrium branch of an adhering indenter, parametrised by its contact radius.
+
+The energy release rate ``G = k_N' (delta - delta_0)^2 / (4 pi a)`` equals the work of adhesion where
+
+    delta(a) = delta_0(a) - dl(a),   dl(a) = sqrt(4 pi a dgamma / k_N'(a)),      F(a) = k_N delta + F_2.
+
+k_N, k_N', delta_0 and F_2 are solved at Chebyshev points and interpolated; between the kinks of the profile they are
+smooth, next to a flat end in the square root of a - b.  Units: SI for lengths, stresses by E*.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+from numpy.typing import NDArray
+
+from fem_reference.certified import CertifiedContact
+
+Array = NDArray[np.float64]
+
+QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "profile_force")
+
+
+@dataclass(frozen=True)
+class BranchPiece:
+    """The branch between two neighbouring kinks.
+
+    Attributes:
+        low: smallest contact radius [m].
+        high: largest contact radius [m].
+        graded: whether radii are ``low + (high - low) s^2`` (next to a kink) or ``low (high / low)^s``.
+        contacts: solved contacts at the Chebyshev points of s in [0, 1], in increasing s.
+    """
+
+    low: float
+    high: float
+    graded: bool
+    contacts: tuple[CertifiedContact, ...]
+
+    def parameter(self, radius: Array) -> Array:
+        """s of radii [m]."""
+        if self.graded:
+            return np.sqrt((radius - self.low) / (self.high - self.low))
+        return np.asarray(np.log(radius / self.low) / np.log(self.high / self.low))
+
+    @cached_property
+    def _interpolants(self) -> dict[str, Chebyshev]:
+        s = chebyshev_points(len(self.contacts))
+        return {name: Chebyshev.fit(s, self._values(name), len(s) - 1, domain=[0, 1]) for name in QUANTITIES}
+
+    def _values(self, name: str) -> Array:
+        """Quantity at the nodes, in SI lengths; stiffness and its slope over the power of a that half-spaces have."""
+        radii = np.array([contact.indenter.contact_radius for contact in self.contacts])
+        values = np.array([getattr(contact.answer, name) for contact in self.contacts])
+        scaled = np.log(values) if name.startswith("stiffness") else values * radii ** POWERS[name]
+        return np.asarray(scaled)
+
+    def evaluate(self, name: str, radius: Array) -> Array:
+        """A quantity [powers of m, E* = 1] at radii within the piece."""
+        value = self._interpolants[name](self.parameter(radius))
+        return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
+
+    @cached_property
+    def interpolation_error(self) -> float:
+        """Relative size of the last Chebyshev coefficients of ln k_N', which has the least smoothness."""
+        return float(np.abs(self._interpolants["stiffness_slope"].coef[-2:]).sum())
+
+
+POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
+
+
+def chebyshev_points(count: int) -> Array:
+    """Chebyshev points of the second kind on [0, 1], increasing."""
+    return np.asarray((1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2)
+
+
+@dataclass(frozen=True)
+class AdhesiveBranch:
+    """States in adhesive equilibrium.
+
+    Attributes:
+        pieces: between kinks, in increasing radius.
+        work: dgamma / E* [m].
+    """
+
+    pieces: Sequence[BranchPiece]
+    work: float
+
+    def _evaluate(self, name: str, radius: Array) -> Array:
+        values = np.empty_like(radius)
+        for piece in self.pieces:
+            inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
+            values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
+        return values
+
+    def stiffness(self, radius: Array) -> Array:
+        """k_N / E* [m]."""
+        return self._evaluate("stiffness", radius)
+
+    def elongation(self, radius: Array) -> Array:
+        """dl = sqrt(4 pi a dgamma / k_N') [m], Eq. (40)."""
+        return np.asarray(np.sqrt(4 * np.pi * radius * self.work / self._evaluate("stiffness_slope", radius)))
+
+    def depth(self, radius: Array) -> Array:
+        """delta [m]."""
+        return self._evaluate("smooth_depth", radius) - self.elongation(radius)
+
+    def force(self, radius: Array) -> Array:
+        """F / E* [m^2]."""
+        return self.stiffness(radius) * self.depth(radius) + self._evaluate("profile_force", radius)
+
+    def slope(self, function: Callable[[Array], Array], radius: Array) -> Array:
+        """d function / d a by central differences inside the piece of each radius (the interpolants are smooth)."""
+        slopes = np.empty_like(radius)
+        for piece in self.pieces:
+            inside = (radius >= piece.low) & (radius <= piece.high)
+            step = 1e-5 * (piece.high - piece.low)
+            up = np.minimum(radius[inside] + step, piece.high)
+            down = np.maximum(radius[inside] - step, piece.low)
+            slopes[inside] = (function(up) - function(down)) / (up - down)
+        return slopes
+
+    @property
+    def contacts(self) -> list[CertifiedContact]:
+        """All solved contacts."""
+        return [contact for piece in self.pieces for contact in piece.contacts]
+
+    @property
+    def error(self) -> dict[str, float]:
+        """Relative errors of depth and force along the branch: that of dl is half that of k_N'."""
+        interpolation = max(piece.interpolation_error for piece in self.pieces)
+        worst = {name: max(c.error[name] for c in self.contacts) for name in self.contacts[0].error}
+        elongation = 0.5 * worst["stiffness_slope"] + interpolation
+        depth = elongation + worst["smooth_depth"]
+        return {"indentation_depth": depth, "normal_force": depth + worst["stiffness"] + worst["smooth_force"]}
+
+
+def solve_branch(
+    breaks: Sequence[float],
+    kinks: Sequence[float],
+    work: float,
+    solve: Callable[[float], CertifiedContact],
+    nodes: int,
+) -> AdhesiveBranch:
+    """Solve the branch on [breaks[0], breaks[-1]], in pieces that end at ``breaks``.
+
+    Args:
+        breaks: increasing radii [m], kinks inside the range among them.
+        kinks: radii where the profile's slope jumps; pieces beginning there are graded.
+        work: dgamma / E* [m].
+        solve: contact of a given radius [m].
+        nodes: Chebyshev points in each piece.
+    """
+    pieces = []
+    for low, high in pairwise(breaks):
+        s = chebyshev_points(nodes)
+        graded = low in kinks
+        radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
+        radii[0], radii[-1] = low, high
+        pieces.append(BranchPiece(low, high, graded, tuple(solve(float(a)) for a in radii)))
+    return AdhesiveBranch(tuple(pieces), work)

@@ -1,0 +1,135 @@
+"""Slow separation of an adhering indenter: the whole branch, its stability and the pull-off."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from contact import CriticalPoint, Detachment, DetachmentPath, FlatPunch, NotConvergedError, Scene, StageLog
+from fem_reference.effects.adhesion import branch_of, branch_samples
+from fem_reference.effects.adhesive_branch import AdhesiveBranch
+from fem_reference.elastic import ContactSolver
+from fem_reference.prescribed_radius import PrescribedContact
+
+Array = NDArray[np.float64]
+Control = Literal["displacement", "force"]
+
+CAVITATION = (
+    "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
+    "its axial symmetry (cavitation, fingering), and this branch may be unphysical there"
+)
+
+
+def detachment_path(
+    scene: Scene,
+    loading: Detachment,
+    solve: ContactSolver,
+    settings: Mapping[str, bool | int | float | str | None],
+    log: StageLog,
+) -> DetachmentPath:
+    """The branch in the order of decreasing contact radius.
+
+    Raises:
+        NotConvergedError: the branch ends before it becomes unstable.
+    """
+    branch = branch_of(scene, loading.initial_contact_radius, solve)
+    radius = branch_samples(branch)[::-1]
+    depth, force = branch.depth(radius), branch.force(radius)
+    critical = [*_start(scene, branch), *_turning_points(branch, radius)]
+    pull_off = _pull_off(branch, radius, loading.control, critical)
+    modulus = scene.layer.contact_modulus
+    passed = radius >= pull_off.contact_radius
+    scale = {"indentation_depth": np.abs(depth).max(), "normal_force": np.abs(force).max()}
+    answers = {
+        "indentation_depth": np.abs(depth) + branch.elongation(radius),
+        "normal_force": np.abs(force) + branch.stiffness(radius) * branch.elongation(radius),
+    }
+    error = {name: branch.error[name] * answers[name] / scale[name] for name in scale}
+    cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c.answer)]
+    return DetachmentPath(
+        scene=scene,
+        method="fem",
+        settings=settings,
+        error_estimate=error,
+        cost=log.cost(unknowns=max(c.answer.unknowns for c in branch.contacts)),
+        stages=log.records,
+        notes=tuple(
+            CAVITATION.format(radius=min(c.indenter.contact_radius for c in cavitating)) for _ in cavitating[:1]
+        ),
+        contact_radius=radius,
+        indentation_depth=depth,
+        normal_force=modulus * force,
+        stable_displacement_control=branch.slope(branch.depth, radius) > 0,
+        stable_force_control=branch.slope(branch.force, radius) > 0,
+        pull_off_force=float(modulus * min(force[passed].min(), pull_off.normal_force)),
+        pull_off_depth=pull_off.indentation_depth,
+        pull_off_contact_radius=pull_off.contact_radius,
+        critical_points=tuple(_in_newtons(point, modulus) for point in critical),
+    )
+
+
+def presses_most_in_the_centre(contact: PrescribedContact) -> bool:
+    """Whether a flat punch of this radius has a second pressure maximum at r = 0."""
+    centre, beside = contact.contact_trace.evaluate(contact.pressures[:, 0], np.array([0.0, 0.3]))
+    return bool(centre > beside)
+
+
+def _point(branch: AdhesiveBranch, radius: float, control: str, kind: str) -> CriticalPoint:
+    """A critical point with its force still in units of E*."""
+    a = np.array([radius])
+    depth, force = float(branch.depth(a)[0]), float(branch.force(a)[0])
+    return CriticalPoint(control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force)
+
+
+def _start(scene: Scene, branch: AdhesiveBranch) -> list[CriticalPoint]:
+    """A flat punch holds its radius until detachment begins at its rim."""
+    if not isinstance(scene.indenter, FlatPunch):
+        return []
+    return [_point(branch, scene.indenter.radius, control, "start") for control in ("displacement", "force")]
+
+
+def _turning_points(branch: AdhesiveBranch, radius: Array) -> list[CriticalPoint]:
+    """Every change of sign of d(depth)/da and dF/da, in the order of decreasing radius."""
+    points = []
+    for control, load in (("displacement", branch.depth), ("force", branch.force)):
+        slope = branch.slope(load, radius)
+        for i in np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1])):
+            kind = "pull-off" if slope[i] > 0 else "snap-in"
+            points.append(_point(branch, _root(branch, load, radius[i + 1], radius[i]), control, kind))
+    return points
+
+
+def _root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: float, high: float) -> float:
+    def slope(a: float) -> float:
+        return float(branch.slope(load, np.array([a]))[0])
+
+    if slope(low) * slope(high) >= 0:  # the slope jumps at a kink
+        return high
+    return float(brentq(slope, low, high, xtol=1e-12 * high))
+
+
+def _pull_off(branch: AdhesiveBranch, radius: Array, control: Control, critical: list[CriticalPoint]) -> CriticalPoint:
+    """Where contact is lost: at once if the first state is unstable, else at the first turning point."""
+    load = branch.depth if control == "displacement" else branch.force
+    if branch.slope(load, radius[:1])[0] <= 0:
+        return _point(branch, float(radius[0]), control, "pull-off")
+    lost = [p for p in critical if p.control == control and p.kind == "pull-off"]
+    if not lost:
+        raise NotConvergedError(
+            f"the branch down to a = {radius[-1]:g} m stays stable under {control} control", {"radius": radius[-1]}
+        )
+    return lost[0]
+
+
+def _in_newtons(point: CriticalPoint, modulus: float) -> CriticalPoint:
+    return CriticalPoint(
+        control=point.control,
+        kind=point.kind,
+        contact_radius=point.contact_radius,
+        indentation_depth=point.indentation_depth,
+        normal_force=modulus * point.normal_force,
+    )
