@@ -59,24 +59,33 @@ def only_methods(case: Case, wanted: Collection[str]) -> Case:
     if not methods:
         known = ", ".join(use.label for use in case.methods)
         raise InvalidInput(f"case {case.name} has no method {' or '.join(wanted)}; it has {known}")
-    scenes = tuple(_narrowed_scene(scene, wanted) for scene in case.scenes)
-    claims = tuple(kept for claim in case.claims for kept in _narrowed_claim(case, claim, wanted))
+    scenes = tuple(kept for scene in case.scenes for kept in _narrowed_scene(scene, wanted))
+    names = {scene.name for scene in scenes}
+    claims = tuple(kept for claim in case.claims for kept in _narrowed_claim(case, claim, wanted, names))
     return dataclasses.replace(case, methods=methods, scenes=scenes, claims=claims, work=(), figures=())
 
 
-def _narrowed_scene(scene: CaseScene, wanted: Collection[str]) -> CaseScene:
-    return dataclasses.replace(scene, methods=tuple(use for use in scene.methods if use.label in wanted))
+def _narrowed_scene(scene: CaseScene, wanted: Collection[str]) -> list[CaseScene]:
+    """The scene with its own methods narrowed; nothing if they are all others."""
+    own = tuple(use for use in scene.methods if use.label in wanted)
+    return [dataclasses.replace(scene, methods=own)] if own or not scene.methods else []
 
 
-def _narrowed_claim(case: Case, claim: DeclaredClaim, wanted: Collection[str]) -> list[DeclaredClaim]:
-    """The claim itself if it needs no other method, narrowed if it speaks of single methods, else nothing."""
+def _narrowed_claim(
+    case: Case, claim: DeclaredClaim, wanted: Collection[str], scenes: Collection[str]
+) -> list[DeclaredClaim]:
+    """The claim on the scenes left, if it needs no other method or can be narrowed to single ones; else nothing."""
+    left = tuple(name for name in claim.scenes if name in scenes)
+    if claim.scenes and not left:
+        return []
+    claim = dataclasses.replace(claim, scenes=left)
     needed = {label for scene in claim.scenes_of(case) for label in claim.labels(case, scene)}
     if needed <= set(wanted):
         return [claim]
     if not isinstance(claim, PerMethod):
         return []
-    left = tuple(label for label in claim.methods if label in wanted)
-    return [dataclasses.replace(claim, methods=left)] if left or not claim.methods else []
+    methods = tuple(label for label in claim.methods if label in wanted)
+    return [dataclasses.replace(claim, methods=methods)] if methods or not claim.methods else []
 
 
 def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
