@@ -3,10 +3,11 @@
 from pathlib import Path
 
 from cases.case import Case
-from cases.gate.against import PAIRS, with_times_against
+from cases.gate.against import with_times_against
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
 from cases.gate.history import read_history
+from cases.gate.race import PAIRS
 from cases.registry import load_cases, select
 from cases.results import RunResult
 from cases.results_files import read_run, write_run
