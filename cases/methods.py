@@ -72,8 +72,7 @@ def build(name: str, settings: Mapping[str, Any]) -> Method:
     Raises:
         InvalidInput: if there is none, or if what is registered is no method.
     """
-    factory = _factory(name)
-    method = factory(**settings)
+    method = load(name)(**settings)
     if not isinstance(method, Method):
         raise InvalidInput(f"{name!r} has no name, supports, solve and refined; follow contact.Method")
     return method
@@ -104,6 +103,14 @@ def location(name: str) -> tuple[str, str]:
     return others[name].module, others[name].attr
 
 
-def _factory(name: str) -> Any:  # a class from another package: its type is not known here
+def load(name: str) -> Any:  # a class from another package: its type is not known here
+    """Return the class of the method called ``name``.
+
+    Raises:
+        InvalidInput: if there is none, or if it cannot be imported.
+    """
     module, attribute = location(name)
-    return getattr(importlib.import_module(module), attribute)
+    try:
+        return getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError) as error:
+        raise InvalidInput(f"method {name!r} cannot be imported from {module}: {error}; install it again") from error

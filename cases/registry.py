@@ -6,17 +6,18 @@ from collections.abc import Iterable
 
 from cases import library
 from cases.case import SUITES, Case
+from cases.newcomer import with_registered
 from contact import InvalidInput
 
 
 def load_cases() -> dict[str, Case]:
-    """Return every case of the library by name, in alphabetic order.
+    """Return every case of the library by name, in alphabetic order, open to the methods of installed packages.
 
     Raises:
-        InvalidInput: if a module has no ``CASE``, or two cases have one name.
+        InvalidInput: if a module has no ``CASE``, two cases have one name, or a registered method cannot be imported.
     """
     modules = sorted(info.name for info in pkgutil.iter_modules(library.__path__) if not info.name.startswith("_"))
-    return by_name(_case_of(name) for name in modules)
+    return by_name(with_registered(_case_of(name)) for name in modules)
 
 
 def by_name(cases: Iterable[Case]) -> dict[str, Case]:

@@ -1,0 +1,97 @@
+"""A registered method joins every case: which claims are put to it, and with which tolerance."""
+
+from importlib.metadata import EntryPoint
+
+import pytest
+
+from cases import methods
+from cases.claims.agreement import Agreement
+from cases.claims.exact import Exact
+from cases.claims.order import Order
+from cases.claims.residual import Residual
+from cases.claims.twin import Twin
+from cases.newcomer import with_newcomer, with_registered
+from cases.registry import load_cases
+from contact import InvalidInput
+from tests.cases.fake_case import fake_case
+
+
+def claims_of(case, kind):
+    return [claim for claim in case.claims if isinstance(claim, kind)]
+
+
+@pytest.fixture
+def register(monkeypatch):
+    def register(*entries):
+        points = [EntryPoint(name=n, value=v, group=methods.ENTRY_POINT_GROUP) for n, v in entries]
+        monkeypatch.setattr(methods, "entry_points", lambda group: points)
+
+    return register
+
+
+def test_claims_about_single_methods_extend_to_the_newcomer():
+    case = with_newcomer(fake_case(), "newcomer")
+    (exact,), (twin,) = claims_of(case, Exact), claims_of(case, Twin)
+    assert exact.methods == ("fast", "newcomer")
+    assert twin.labels(case, case.scenes[0]) == ("fast", "slow", "newcomer")
+
+
+def test_it_is_compared_with_both_methods_of_the_case():
+    case = with_newcomer(fake_case(), "newcomer")
+    compared = {(claim.fast, claim.reference) for claim in claims_of(case, Agreement)}
+    assert compared == {("fast", "slow"), ("newcomer", "fast"), ("newcomer", "slow")}
+
+
+def test_no_claim_asks_more_than_it_claims_and_nobody_else_gains():
+    case = with_newcomer(fake_case(), "newcomer", claimed_accuracy=1e-3)
+    (exact,) = claims_of(case, Exact)
+    assert (exact.tolerance_of("newcomer"), exact.tolerance_of("fast")) == (1e-3, 1e-10)
+    assert {claim.tolerance for claim in claims_of(case, Agreement) if claim.fast == "newcomer"} == {1e-3}
+    assert {claim.tolerance for claim in claims_of(case, Agreement) if claim.fast == "fast"} == {1e-5}
+
+
+def test_without_a_claimed_accuracy_it_meets_the_widest_tolerance_of_the_others():
+    case = fake_case()
+    (exact,) = claims_of(case, Exact)
+    from dataclasses import replace
+
+    wide = replace(exact, tolerances={"fast": 1e-5})
+    case = with_newcomer(replace(case, claims=(wide,)), "newcomer")
+    assert claims_of(case, Exact)[0].tolerance_of("newcomer") == 1e-5
+
+
+def test_orders_and_residuals_stay_with_the_methods_they_belong_to():
+    from dataclasses import replace
+
+    case = fake_case()
+    (twin,) = claims_of(case, Twin)
+    residual = Residual(name="energy", quantity="energy_residual", tolerance=1e-8, reason=twin.reason)
+    case = with_newcomer(replace(case, claims=(*case.claims, residual)), "newcomer")
+    assert claims_of(case, Residual)[0].methods == ("fast", "slow")
+    assert [order.method for order in claims_of(case, Order)] == ["slow"]
+
+
+def test_a_registered_method_is_in_every_case_of_the_library(register):
+    register(("stranger", "tests.cases.fake_method:FakeHertz"))
+    for case in load_cases().values():
+        assert "stranger" in {use.label for use in case.methods}
+
+
+def test_without_registered_methods_a_case_is_unchanged(register):
+    register()
+    case = fake_case()
+    assert with_registered(case) is case
+
+
+@pytest.mark.parametrize(
+    ("entries", "message"),
+    [
+        ([("stranger", "no_such_package:Solver")], "cannot be imported from no_such_package"),
+        ([("stranger", "tests.cases.fake_method:Nothing")], "Nothing"),
+        ([("mdr", "tests.cases.fake_method:FakeHertz")], "two methods are called 'mdr'"),
+    ],
+)
+def test_a_method_that_cannot_join_says_why(register, entries, message):
+    register(*entries)
+    with pytest.raises(InvalidInput, match=message):
+        with_registered(fake_case())
