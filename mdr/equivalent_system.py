@@ -65,7 +65,7 @@ class EquivalentSystem:
     def mdr_profile(self, x: ArrayLike) -> FloatArray:
         """g(x; h) [m], zero within the flat radius."""
         excess = self._excess(x)
-        return np.where(excess > 0, self.length_unit * self.profile(excess), 0.0)
+        return np.where(excess > 0, self.length_unit * self.profile(np.maximum(excess, 0.0)), 0.0)
 
     def mdr_profile_slope(self, x: ArrayLike) -> FloatArray:
         """dg/dx [-], infinite at a flat end with a sharp rim."""
@@ -75,7 +75,7 @@ class EquivalentSystem:
     def profile_moment(self, contact_radius: ArrayLike) -> FloatArray:
         """2 int_0^a c_N g dx [N]: what the profile takes away from the force of a flat punch, Eq. (4)."""
         excess = self._excess(contact_radius)
-        return np.where(excess > 0, self._force_unit * self.moment(excess), 0.0)
+        return np.where(excess > 0, self._force_unit * self.moment(np.maximum(excess, 0.0)), 0.0)
 
     def force(self, contact_radius: ArrayLike, indentation_depth: ArrayLike) -> FloatArray:
         """F_N [N] of springs within a under a depth delta that need not belong to a (adhesion), Eq. (4)."""
