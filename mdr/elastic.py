@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,7 +17,7 @@ from mdr.equivalent_system import EquivalentSystem
 from mdr.surface_fields import ContactFields
 
 
-def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: dict[str, Setting]) -> ContactPath:
+def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
     """Contact radius, depth, force and stiffness, with pressure and displacement on demand.
 
     Raises:

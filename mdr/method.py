@@ -3,25 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
 from pydantic import Field
 
 from bem.flat_punch import FlatPunchSource
 from bem.integral_equation import IntegralEquation
-from contact import (
-    ContactPath,
-    ContactRadii,
-    IndentationDepths,
-    NormalForces,
-    Scene,
-    Supported,
-    Unsupported,
-    UnsupportedSceneError,
-)
+from contact import Scene, Solution, Supported, Unsupported, UnsupportedSceneError
 from contact.record import Record, record
 from contact.solution import Setting
-from mdr.elastic import solve_elastic
+from contact.validation import in_range
+from mdr.solvers import solver_of
 
 
 @record
@@ -30,40 +22,39 @@ class Mdr(Record):
 
     Attributes:
         flat_punch: Where the flat punch's stiffness and pressure come from.
+        accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories).
     """
 
     name: ClassVar[str] = "mdr"
 
     flat_punch: FlatPunchSource = Field(default_factory=IntegralEquation)
+    accuracy: Annotated[float, *in_range(1e-13, 1e-4, "1e-9 costs twice as much as 1e-6")] = 1e-9
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Elastic contact of any profile with layers and half-spaces."""
-        if scene.effects:
-            names = ", ".join(type(effect).__name__ for effect in scene.effects)
-            return Unsupported(f"mdr does not model {names}")
-        if not isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
-            return Unsupported(f"mdr does not model the loading {type(scene.loading).__name__} without effects")
-        return Supported()
+        """Contact of any profile with layers and half-spaces: elastic, adhesive, or incompressible and viscoelastic."""
+        solver = solver_of(scene)
+        return solver if isinstance(solver, Unsupported) else Supported()
 
-    def solve(self, scene: Scene) -> ContactPath:
-        """Equilibria of the scene.
+    def solve(self, scene: Scene) -> Solution:
+        """The answer to the scene: a contact path, a detachment path, an impact or a history.
 
         Raises:
             UnsupportedSceneError: If the scene is not modelled, or the contact would not be one circle.
             InvalidInput: If the loading is out of reach of the indenter or the flat-punch data.
+            NotConvergedError: If a motion does not end.
         """
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
-        return solve_elastic(scene, self.flat_punch, self._settings())
+        solver = solver_of(scene)
+        if isinstance(solver, Unsupported):
+            raise UnsupportedSceneError(solver.reason)
+        return solver.load()(scene, self.flat_punch, self._settings())
 
     def refined(self) -> Self:
-        """Flat-punch data with half the discretisation length."""
-        return self.replace(flat_punch=self.flat_punch.refined())
+        """Flat-punch data with half the discretisation length, one more digit in time."""
+        return self.replace(flat_punch=self.flat_punch.refined(), accuracy=max(0.1 * self.accuracy, 1e-13))
 
     def _settings(self) -> dict[str, Setting]:
         source = self.flat_punch
-        settings: dict[str, Setting] = {"flat_punch": type(source).__name__}
+        settings: dict[str, Setting] = {"accuracy": self.accuracy, "flat_punch": type(source).__name__}
         if dataclasses.is_dataclass(source):
             values = {f.name: getattr(source, f.name) for f in dataclasses.fields(source)}
             settings |= {name: v for name, v in values.items() if isinstance(v, bool | int | float | str | None)}

@@ -6,7 +6,7 @@ from event to event, in the impact's own units.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import groupby
 from typing import TypeAlias
 
@@ -42,28 +42,20 @@ def step_tolerance(accuracy: float) -> float:
     return float(max(1e5 * accuracy ** (4.0 / 3.0), 1e-12))
 
 
-def impact_history(
-    scene: Scene,
-    flat_punch: FlatPunchSource,
-    log: StageLog,
-    *,
-    accuracy: float = ACCURACY,
-    settings: dict[str, Setting] | None = None,
-) -> ImpactHistory:
+def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
     """One impact with its whole history.
 
     Args:
         scene: A scene whose loading is an impact.
         flat_punch: Where the flat-punch data come from.
-        log: Collects stages and counters.
-        accuracy: Wanted relative accuracy of restitution and peaks.
-        settings: Of the method, kept in the answer.
+        settings: Of the method; "accuracy" is the wanted relative accuracy of restitution and peaks.
 
     Raises:
         NotConvergedError: If the indenter never rebounds.
         InvalidInput: If it is pressed in beyond its rim.
     """
-    tolerance, known = step_tolerance(accuracy), {**(settings or {}), "accuracy": accuracy}
+    known = {"accuracy": ACCURACY, **settings}
+    log, tolerance = StageLog(), step_tolerance(float(known["accuracy"] or ACCURACY))
     if is_flat(scene):
         return flat_punch_history(scene, flat_punch, log, tolerance=tolerance, settings=known)
     with log.stage("equivalent_system"):
@@ -71,8 +63,9 @@ def impact_history(
     with log.stage("impact"):
         problem = scaled([scene], [shared], table)
         motion = impacts(problem.lanes, tolerance=tolerance, audit=True)
-    log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in motion.way_in + motion.way_out))
-    log.count("sweeps", sum(leg.trajectory.sweeps for leg in motion.way_in + motion.way_out))
+    legs = motion.way_in + motion.way_out
+    log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in legs))
+    log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
     return history(scene, problem, motion, log, settings=known)
 
 

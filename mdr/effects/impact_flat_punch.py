@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,7 +42,7 @@ def flat_punch_results(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, 
 
 
 def flat_punch_history(
-    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, *, tolerance: float, settings: dict[str, Setting]
+    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, *, tolerance: float, settings: Mapping[str, Setting]
 ) -> ImpactHistory:
     """One flat punch with its whole history."""
     with log.stage("equivalent_system"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from contact import ImpactHistory, Scene, StageLog
@@ -31,7 +33,7 @@ ESTIMATED = (
 
 
 def history(
-    scene: Scene, problem: ScaledImpacts, motion: Impacts, log: StageLog, *, settings: dict[str, Setting]
+    scene: Scene, problem: ScaledImpacts, motion: Impacts, log: StageLog, *, settings: Mapping[str, Setting]
 ) -> ImpactHistory:
     """Samples of a single lane in SI units."""
     lanes = problem.lanes

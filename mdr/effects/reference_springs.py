@@ -7,7 +7,7 @@ C h^n one table serves all thicknesses, radii and moduli. Other profiles get a t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -20,6 +20,8 @@ from mdr.assembly import equivalent_system
 from mdr.effects.spring_table import MOMENT, PROFILE, SECOND_MOMENT, STIFFNESS, SpringTable, spring_table
 
 _KEPT = 64  # tables
+_NEAR_RIM = 0.7  # of the rim's radius: beyond, trial radii no longer double
+_UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)  # of the rim's radius that trial radii stay away from it
 _SURVEY = np.geomspace(1e-7, 1.0, 281)  # of a table's range: where its energies are looked up
 
 
@@ -86,17 +88,17 @@ def contact_scale(layer: Layer, indenter: Profile, energy: float) -> float:
         high = float((volume / coefficient**2) ** (1.0 / (2.0 * exponent + 1.0)))
         if layer.is_half_space:
             return high
-        return _bisected(
+        return bisected(
             lambda r: r * (coefficient * r**exponent) ** 2 * (1.0 + r / layer.thickness) - volume, 0.0, high
         )
 
     def excess(r: float) -> float:
         return r * float(indenter.height(r)) ** 2 * (1.0 + r / layer.thickness) - volume
 
-    return _bisected(excess, indenter.flat_radius, _upper(excess, indenter))
+    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
 
 
-def _upper(excess: Callable[[float], float], indenter: Profile) -> float:
+def upper(excess: Callable[[float], float], indenter: Profile) -> float:
     """A radius beyond the root, or the rim."""
     if math.isfinite(indenter.max_radius):
         return indenter.max_radius
@@ -106,7 +108,7 @@ def _upper(excess: Callable[[float], float], indenter: Profile) -> float:
     return high
 
 
-def _bisected(excess: Callable[[float], float], low: float, high: float) -> float:
+def bisected(excess: Callable[[float], float], low: float, high: float) -> float:
     """The root of an increasing function to one per cent of its distance from `low`."""
     origin = low
     while high - low > 0.01 * (high - origin) and high > origin * (1.0 + 1e-13):
@@ -133,24 +135,36 @@ def table_for_energy(
 ) -> SpringTable:
     """A table whose springs hold at least this energy before the front leaves it.
 
-    Ways of the front go in octaves, so that scenes of similar size share one table.
+    The front's ways go in octaves, so that scenes of similar size share one table.
 
     Raises:
         InvalidInput: If the indenter ends before.
     """
     flat = indenter.flat_radius
-    way = 2.0 ** math.ceil(math.log2(start - flat))
-    while True:
-        end = min(flat + way, indenter.max_radius)
+    for end in growing_radii(indenter, flat + 2.0 ** math.ceil(math.log2(start - flat))):
         table = _table(layer, indenter, end, flat_punch)  # type: ignore[arg-type]  # sources are frozen records
         if elastic_energy(table, table.section_ends[-1:])[0] >= energy:
             return table
-        if end == indenter.max_radius:
-            raise InvalidInput(
-                f"indenter: the impact presses it in beyond its rim at {indenter.max_radius:g} m; "
-                "reduce mass or velocity, or extend the profile"
-            )
+    raise InvalidInput(
+        f"indenter: the impact presses it in beyond its rim at {indenter.max_radius:g} m; "
+        "reduce mass or velocity, or extend the profile"
+    )
+
+
+def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
+    """Trial radii [m], each way from the flat end twice the one before, up to the rim.
+
+    A rim where the flank is upright is approached, not reached.
+    """
+    flat, rim = indenter.flat_radius, indenter.max_radius
+    way = first - flat
+    while math.isinf(rim) or flat + way < _NEAR_RIM * rim:
+        yield flat + way
         way *= 2.0
+    upright = not np.isfinite(indenter.slope_at(rim))
+    yield from (rim * (1.0 - share) for share in _UPRIGHT_SHARES if upright)
+    if not upright:
+        yield rim
 
 
 def elastic_energy(table: SpringTable, y: FloatArray) -> FloatArray:

@@ -5,10 +5,10 @@ import pytest
 from scipy.special import gamma
 
 from bem.integral_equation import IntegralEquation
-from contact import Cone, FlatPunch, Impact, Layer, Paraboloid, PronySeries, Scene, StageLog, TruncatedCone
+from contact import Cone, FlatPunch, Impact, Layer, Paraboloid, PronySeries, Scene, TruncatedCone
 from mdr import equivalent_system
 from mdr.effects.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
-from mdr.effects.impact import impact_batch, impact_history
+from mdr.effects.impact import impact_batch, solve_impact
 from mdr.effects.impact_explicit import explicit_impact
 from mdr.effects.impact_groups import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
 from mdr.effects.impact_units import relaxation_of
@@ -28,7 +28,7 @@ PUNCH = IntegralEquation()
 
 
 def history(scene, accuracy=1e-9):
-    return impact_history(scene, PUNCH, StageLog(), accuracy=accuracy)
+    return solve_impact(scene, PUNCH, {"accuracy": accuracy})
 
 
 # Argatov 2013 and Willert 2020, closed form evaluated to six digits.

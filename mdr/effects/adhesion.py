@@ -1,0 +1,246 @@
+"""JKR adhesion of any profile with any layer, Eqs. (40)-(46): detachment, and equilibria at prescribed values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.flat_punch import FlatPunchSource
+from contact import (
+    Adhesion,
+    ContactPath,
+    ContactRadii,
+    Detachment,
+    DetachmentPath,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
+from contact.solution import Setting
+from contact.validation import FloatArray
+from mdr.assembly import equivalent_system
+from mdr.effects.adhesive_branch import DEPTH, FORCE, AdhesiveBranch, adhesive_branch, critical_elongation
+from mdr.effects.detachment_route import CONTROLS, Route
+from mdr.effects.reference_springs import bisected, growing_radii, upper
+from mdr.elastic import PathFields, solve_elastic
+from mdr.equivalent_system import EquivalentSystem
+
+POINTS = 200  # states of a detachment path
+_PINNED = POINTS // 5  # of them with the front at a punch's edge
+_FIRST_WAY = 2.0  # beyond the flat end, in units of the way to where height and elongation are equal
+_CONFINED = 0.45  # Poisson's ratio from which a punch's pressure may have a second maximum in its centre
+_INSIDE = 0.1  # of the contact radius: where the pressure is compared with its value in the centre
+
+
+def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> DetachmentPath:
+    """The whole equilibrium branch of a withdrawal, in order of decreasing contact radius.
+
+    Raises:
+        InvalidInput: If there is nothing to detach, or the indenter ends too early.
+    """
+    log, loading = StageLog(), scene.loading
+    if not isinstance(loading, Detachment):
+        raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")
+    with log.stage("adhesion"):
+        system, route = _withdrawal(scene, loading, flat_punch)
+        radius, depth, force, stable = _states(route, system)
+        control = CONTROLS.index(loading.control)
+        lost_radius, lost_depth, _ = route.state(route.loss(control))
+        tension = route.largest_tension(control)
+        critical_points = route.critical_points()
+    error = system.relative_error["normal_force"] + route.branch.error
+    return DetachmentPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate={
+            name: np.full(radius.size, error)
+            for name in ("indentation_depth", "normal_force", "pull_off_force", "pull_off_depth")
+        },
+        cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
+        stages=log.records,
+        notes=_notes(scene, system, radius[0]),
+        contact_radius=radius,
+        indentation_depth=depth,
+        normal_force=force,
+        stable_displacement_control=stable[DEPTH],
+        stable_force_control=stable[FORCE],
+        pull_off_force=tension,
+        pull_off_depth=lost_depth,
+        pull_off_contact_radius=lost_radius,
+        critical_points=critical_points,
+    )
+
+
+def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
+    """Adhesive equilibria at prescribed radii, depths or forces.
+
+    A depth or force is reached from the undeformed layer: of several stable states the one of smallest radius.
+
+    Raises:
+        InvalidInput: If a prescribed value lies beyond pull-off.
+    """
+    if work_of_adhesion(scene) == 0.0:
+        return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
+    log = StageLog()
+    with log.stage("adhesion"):
+        system, radius, depth = _prescribed(scene, flat_punch)
+        force = np.asarray(system.force(radius, depth))
+        stiffness = np.asarray(system.contact_stiffness(radius))
+    error = np.full(radius.size, system.relative_error["normal_force"])
+    return ContactPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate=dict.fromkeys(("indentation_depth", "normal_force", "contact_stiffness"), error),
+        cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
+        stages=log.records,
+        contact_radius=radius,
+        indentation_depth=depth,
+        normal_force=force,
+        contact_stiffness=stiffness,
+        fields=PathFields(scene, system.flat_punch, radius, depth, singular_edge=True),
+    )
+
+
+def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, Route]:
+    """The equivalent system and the way from the first contact radius inwards."""
+    if isinstance(scene.indenter, FlatPunch):
+        system, branch = _branch(scene, scene.indenter.radius, flat_punch)
+        return system, Route(branch, float(branch.section_ends[-1]), pinned=True)
+    if loading.initial_contact_radius is not None:
+        system, branch = _branch(scene, loading.initial_contact_radius, flat_punch)
+        return system, Route(branch, float(branch.section_ends[-1]), pinned=False)
+    if work_of_adhesion(scene) == 0.0:
+        raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
+    system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= _strength(b))
+    start = branch.solutions(FORCE, np.array([_strength(branch)]))[0]
+    return system, Route(branch, float(start if np.isfinite(start) else branch.section_ends[-1]), pinned=False)
+
+
+def _strength(branch: AdhesiveBranch) -> float:
+    """Largest tension of the branch [N]: pressing as hard shows all of the way back."""
+    folds = branch.folds(FORCE)
+    return -float(branch.values(folds)[FORCE].min(initial=0.0)) if folds.size else np.inf
+
+
+def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, AdhesiveBranch]:
+    """Springs and equilibria up to a radius [m]."""
+    system = equivalent_system(scene.layer, scene.indenter, radius, flat_punch)
+    breakpoints = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
+    return system, adhesive_branch(
+        system, breakpoints=breakpoints, radius=radius, work_of_adhesion=work_of_adhesion(scene)
+    )
+
+
+def _reaching(
+    scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[AdhesiveBranch], bool]
+) -> tuple[EquivalentSystem, AdhesiveBranch]:
+    """A branch that is long enough, or ends at the indenter's rim."""
+    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / scene.layer.contact_modulus
+
+    def excess(r: float) -> float:  # of the height over the elongation on the half-space, squared
+        return float(indenter.height(r)) ** 2 - length * r
+
+    flat = indenter.flat_radius
+    balance = bisected(excess, flat, upper(excess, indenter))
+    for radius in growing_radii(indenter, flat + _FIRST_WAY * (balance - flat)):
+        system, branch = _branch(scene, radius, flat_punch)
+        if enough(branch):
+            break
+    return system, branch
+
+
+def _prescribed(scene: Scene, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, FloatArray, FloatArray]:
+    """Contact radius and depth under prescribed radii, depths or forces."""
+    loading = scene.loading
+    if isinstance(loading, ContactRadii):
+        system = equivalent_system(scene.layer, scene.indenter, float(loading.values[-1]), flat_punch)
+        depth = system.mdr_profile(loading.values) - critical_elongation(
+            system, loading.values, work_of_adhesion(scene)
+        )  # Eq. (41)
+        return system, loading.values, depth
+    if not isinstance(loading, IndentationDepths | NormalForces):
+        raise UnsupportedSceneError(
+            f"loading = {type(loading).__name__}: adhesion needs radii, depths, forces, Detachment"
+        )
+    quantity = DEPTH if isinstance(loading, IndentationDepths) else FORCE
+    if isinstance(scene.indenter, FlatPunch):
+        return _on_punch(scene, scene.indenter.radius, quantity, loading.values, flat_punch)
+    largest = float(loading.values.max())
+    system, branch = _reaching(scene, flat_punch, lambda b: bool(b.values(b.section_ends[-1:])[quantity, 0] >= largest))
+    y = branch.solutions(quantity, loading.values)
+    _refuse_missing(y, loading.values, branch, quantity)
+    return system, branch.radius(y), branch.values(y)[DEPTH]
+
+
+def _on_punch(
+    scene: Scene, radius: float, quantity: int, values: FloatArray, flat_punch: FlatPunchSource
+) -> tuple[EquivalentSystem, FloatArray, FloatArray]:
+    """A flat punch keeps its radius down to where the front sets off; then it peels, if it can do so stably."""
+    system, branch = _branch(scene, radius, flat_punch)
+    stiffness = float(system.contact_stiffness(radius))
+    held = values >= branch.values(branch.section_ends[-1:])[quantity, 0]
+    y = np.where(held, branch.section_ends[-1], branch.solutions(quantity, values))
+    _refuse_missing(y, values, branch, quantity)
+    depth = np.where(held, values if quantity == DEPTH else values / stiffness, branch.values(y)[DEPTH])
+    return system, np.where(held, radius, branch.radius(y)), depth
+
+
+def _refuse_missing(y: FloatArray, values: FloatArray, branch: AdhesiveBranch, quantity: int) -> None:
+    missing = np.flatnonzero(np.isnan(y))
+    if not missing.size:
+        return
+    reach = branch.values(np.append(branch.folds(quantity), branch.section_ends[-1]))[quantity]
+    unit = "m" if quantity == DEPTH else "N"
+    raise InvalidInput(
+        f"loading.values = {values[missing[0]]:g} (entry {missing[0]}): no stable contact; "
+        f"the indenter holds from {reach.min():g} {unit} on, up to {reach.max():g} {unit} at its rim"
+    )
+
+
+def _states(route: Route, system: EquivalentSystem) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Radius, depth, force and stability (by control), shape (n,) and (2, n), radius falling."""
+    y = route.start * np.linspace(1.0, 0.0, POINTS - _PINNED * route.pinned, endpoint=False)
+    depth, force = route.branch.values(y)
+    radius, stable = route.branch.radius(y), route.branch.slopes(y) > 0.0
+    if not route.pinned:
+        return radius, depth, force, stable
+    held = depth[0] * np.arange(_PINNED) / _PINNED  # from rest to where the front sets off
+    edge = np.full(_PINNED, radius[0])
+    return (
+        np.concatenate([edge, radius]),
+        np.concatenate([held, depth]),
+        np.concatenate([system.contact_stiffness(edge) * held, force]),  # Eq. (43)
+        np.concatenate([np.ones((2, _PINNED), dtype=np.bool_), stable], axis=1),
+    )
+
+
+def work_of_adhesion(scene: Scene) -> float:
+    """The scene's dgamma [J/m^2]."""
+    adhesion = scene.effect(Adhesion)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion
+
+
+def _notes(scene: Scene, system: EquivalentSystem, radius: float) -> tuple[str, ...]:
+    """A warning where the contact is likely to lose its circle before the theory lets it detach."""
+    layer = scene.layer
+    if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio < _CONFINED:
+        return ()
+    ratio = radius / layer.thickness
+    smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, ratio))
+    pressure = smooth / np.sqrt(1.0 - np.array([0.0, _INSIDE]) ** 2)
+    if pressure[0] <= pressure[1]:
+        return ()
+    warning = (
+        f"At a/h = {ratio:.3g} the tension under the indenter has a second maximum in its centre: cavitation or "
+        "fingering may come before the axisymmetric detachment computed here (Webber et al. 2003)."
+    )
+    return (warning,)

@@ -1,0 +1,176 @@
+"""The equilibrium branch of an adhering indenter, parametrised by the contact radius, Eqs. (40)-(46).
+
+Along a = b + (y - y_b)^2, b the last breakpoint, depth and force are smooth functions of y: both the elongation, which
+starts like sqrt(a), and g, which starts like sqrt(a - b) behind a kink. Folds are roots of polynomials, all of which
+are found; nothing is stepped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import chebyshev as series
+
+from contact.validation import FloatArray
+from mdr.effects import chebyshev
+from mdr.effects.panels import NODES, Panel, Piecewise, resolved_panels
+
+DEPTH, FORCE = 0, 1
+_TIP = 1e-5  # of the largest y: below it, depth and force have left the tip with a known sign
+_EDGE = 1e-6  # how far outside its panel a root may lie; whether it is one is decided by the signs beside it
+_BISECTIONS = 60
+
+
+class AdheringSprings(Protocol):
+    """What the branch asks of an equivalent system."""
+
+    def spring_stiffness(self, x: FloatArray) -> FloatArray:
+        """c_N(x) [Pa]."""
+
+    def mdr_profile(self, x: FloatArray) -> FloatArray:
+        """g(x) [m]."""
+
+    def force(self, contact_radius: FloatArray, indentation_depth: FloatArray) -> FloatArray:
+        """F_N [N] of springs within a at depth delta, Eq. (4)."""
+
+
+def critical_elongation(springs: AdheringSprings, radius: FloatArray, work_of_adhesion: float) -> FloatArray:
+    """Elongation dl(a) [m] at which the outermost spring lets go, Eq. (40)."""
+    return np.sqrt(2.0 * np.pi * work_of_adhesion * radius / springs.spring_stiffness(radius))
+
+
+@dataclass(frozen=True)
+class AdhesiveBranch:
+    """Depth and force of all equilibria up to a largest radius.
+
+    Attributes:
+        functions: delta, F, d(delta)/dy, dF/dy of y.
+        coefficients: Chebyshev coefficients of the two slopes, shape (count, 2, panels).
+        section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
+        section_radii: a [m] there.
+        error: Largest relative size of the coefficients left out.
+    """
+
+    functions: Piecewise
+    coefficients: FloatArray
+    section_ends: FloatArray
+    section_radii: FloatArray
+    error: float
+
+    def radius(self, y: FloatArray) -> FloatArray:
+        """a [m] at y."""
+        section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
+        return np.asarray(self.section_radii[section] + (y - self.section_ends[section]) ** 2)
+
+    def coordinate(self, radius: FloatArray) -> FloatArray:
+        """The y of a [m]."""
+        section = np.clip(np.searchsorted(self.section_radii, radius, side="right") - 1, 0, self.section_radii.size - 2)
+        return np.asarray(self.section_ends[section] + np.sqrt(np.maximum(radius - self.section_radii[section], 0.0)))
+
+    def values(self, y: FloatArray) -> FloatArray:
+        """delta [m] and F_N [N], shape (2, n)."""
+        return self.functions(y, slice(2))
+
+    def slopes(self, y: FloatArray) -> FloatArray:
+        """d(delta)/dy and dF/dy; a state is stable under prescribed depth, or force, where they are positive."""
+        return self.functions(y, slice(2, 4))
+
+    def folds(self, quantity: int) -> FloatArray:
+        """All y > 0 where the slope of depth or force changes sign, increasing."""
+        return self._sign_changes(np.concatenate([self.section_ends[1:-1], *self._roots(quantity)]), quantity)
+
+    def solutions(self, quantity: int, target: FloatArray) -> FloatArray:
+        """For each target the smallest y on a stable part of the branch with that depth or force; NaN where none."""
+        ends = np.concatenate([[0.0], self.folds(quantity), self.section_ends[-1:]])
+        found = np.full(target.shape, np.nan)
+        for low, high in zip(ends[-2::-1], ends[:0:-1], strict=True):  # the smallest is written last
+            if self.slopes(np.array([0.5 * (low + high)]))[quantity, 0] > 0.0:
+                reach = self.values(np.array([low, high]))[quantity]
+                inside = (target >= reach[0]) & (target <= reach[1])
+                found[inside] = self._bisected(quantity, target[inside], low, high)
+        return found
+
+    def _roots(self, quantity: int) -> list[FloatArray]:
+        """Real roots of the slope on every panel where its mean does not exclude them."""
+        own = self.coefficients[:, quantity]
+        doubtful = np.flatnonzero(np.abs(own[0]) <= np.abs(own[1:]).sum(axis=0))
+        return [self._panel_roots(own[:, i], int(i)) for i in doubtful]
+
+    def _panel_roots(self, coefficients: FloatArray, panel: int) -> FloatArray:
+        size = np.abs(coefficients).max()
+        if size == 0.0:
+            return np.empty(0)
+        roots = series.chebroots(series.chebtrim(coefficients, 1e-15 * size))
+        z = roots.real[(np.abs(roots.imag) < _EDGE) & (np.abs(roots.real) < 1.0 + _EDGE)]
+        slope = series.chebder(coefficients)
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # a double root is no change of sign; where it stays is idle
+            polished = z - series.chebval(z, coefficients) / series.chebval(z, slope)
+        z = np.where(np.abs(polished - z) < _EDGE, polished, z)
+        return np.asarray(self.functions.centres[panel] + z / self.functions.scales[panel])
+
+    def _sign_changes(self, candidates: FloatArray, quantity: int) -> FloatArray:
+        end = self.section_ends[-1]
+        inside = candidates[(candidates > _TIP * end) & (candidates < end)]
+        points = np.unique(np.concatenate([[0.0], inside, [end]]))
+        points = points[np.append(True, np.diff(points) > 1e-12 * points[-1])]
+        signs = np.sign(self.slopes(0.5 * (points[1:] + points[:-1]))[quantity])
+        return np.asarray(points[1:-1][signs[1:] != signs[:-1]])
+
+    def _bisected(self, quantity: int, target: FloatArray, low: float, high: float) -> FloatArray:
+        """The y of each target on a part where the quantity increases, by bisection to the last digit."""
+        left, right = np.full(target.shape, low), np.full(target.shape, high)
+        for _ in range(_BISECTIONS):
+            y = 0.5 * (left + right)
+            above = self.values(y)[quantity] > target
+            left, right = np.where(above, left, y), np.where(above, y, right)
+        return np.asarray(0.5 * (left + right))
+
+
+def adhesive_branch(
+    springs: AdheringSprings, *, breakpoints: tuple[float, ...], radius: float, work_of_adhesion: float
+) -> AdhesiveBranch:
+    """All equilibria with contact radii in (0, radius].
+
+    Args:
+        springs: The equivalent system.
+        breakpoints: Radii [m] where the profile is not analytic, its flat end included.
+        radius: Largest contact radius [m].
+        work_of_adhesion: dgamma [J/m^2].
+
+    Raises:
+        NotConvergedError: If the springs are too rough.
+    """
+    radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
+    ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
+    panels: list[Panel] = []
+    for start, low, high in zip(radii, ends, ends[1:], strict=False):
+        panels += resolved_panels(_sampler(springs, start, low, work_of_adhesion), low, high)
+    values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])  # (panels, 2, nodes)
+    halves = np.array([panel.half for panel in panels])
+    slopes = values @ chebyshev.differentiation(NODES).T / halves[:, None, None]
+    both = np.transpose(np.concatenate([values, slopes], axis=1), (2, 1, 0))
+    return AdhesiveBranch(
+        functions=Piecewise.of(panels, both),
+        coefficients=both[:, 2:],
+        section_ends=ends,
+        section_radii=radii,
+        error=max(panel.tail for panel in panels),
+    )
+
+
+def _sampler(
+    springs: AdheringSprings, start: float, low: float, work_of_adhesion: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Depth and force along the section that begins at the radius `start`, where y = low."""
+
+    def sample(y: FloatArray) -> FloatArray:
+        radius = start + (y - low) ** 2
+        depth = springs.mdr_profile(radius) - critical_elongation(springs, radius, work_of_adhesion)  # Eq. (41)
+        return np.stack([depth, springs.force(radius, depth)])
+
+    return sample

@@ -1,0 +1,122 @@
+"""Several smooth functions on an interval, sampled together on panels that are halved until all are resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from contact import NotConvergedError
+from contact.validation import FloatArray
+from mdr.effects import chebyshev
+
+NODES = 16
+_RESOLVED = 1e-12  # of a panel's largest value: what the last coefficients may be
+_USABLE = 1e-7  # refuse functions that halving panels does not resolve to this
+_FIRST_PANELS = 4
+_MAX_HALVINGS = 14
+
+
+@dataclass(frozen=True)
+class Panel:
+    """Samples at the Chebyshev nodes of one panel.
+
+    Attributes:
+        low: Left end.
+        high: Right end.
+        values: Shape (functions, nodes).
+        tail: Largest of the last coefficients over the largest value, over all functions.
+    """
+
+    low: float
+    high: float
+    values: FloatArray
+    tail: float
+
+    @property
+    def half(self) -> float:
+        """Half width."""
+        return 0.5 * (self.high - self.low)
+
+    @property
+    def nodes(self) -> FloatArray:
+        """Where the samples are."""
+        return np.asarray(0.5 * (self.low + self.high) + self.half * chebyshev.nodes(NODES))
+
+
+def resolved_panels(sample: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[Panel]:
+    """Halve panels until the last Chebyshev coefficients of every function are small.
+
+    Args:
+        sample: From points, shape (n,), to values of all functions, shape (functions, n).
+        low: Left end of the interval.
+        high: Right end.
+
+    Raises:
+        NotConvergedError: If a function is too rough.
+    """
+    waiting, done = list(pairwise(np.linspace(low, high, _FIRST_PANELS + 1))), []
+    for halving in range(_MAX_HALVINGS):
+        sampled = _sampled(sample, waiting)
+        allowed = _RESOLVED if halving < _MAX_HALVINGS - 1 else _USABLE
+        done += [panel for panel in sampled if panel.tail <= allowed]
+        waiting = [half for panel in sampled if panel.tail > allowed for half in _halves(panel)]
+        if not waiting:
+            return sorted(done, key=lambda panel: panel.low)
+    worst = max(panel.tail for panel in sampled)
+    raise NotConvergedError("the equivalent springs are too rough for a table", {"unresolved part": worst})
+
+
+def _halves(panel: Panel) -> list[tuple[float, float]]:
+    middle = 0.5 * (panel.low + panel.high)
+    return [(panel.low, middle), (middle, panel.high)]
+
+
+def _sampled(sample: Callable[[FloatArray], FloatArray], waiting: list[tuple[float, float]]) -> list[Panel]:
+    """One call for all panels that wait."""
+    low, high = np.array(waiting).T
+    points = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * chebyshev.nodes(NODES)
+    values = np.swapaxes(sample(points.ravel()).reshape(-1, *points.shape), 0, 1)
+    tails = _tail(values).max(axis=1)
+    return [Panel(low[i], high[i], values[i], float(tails[i])) for i in range(low.size)]
+
+
+def _tail(values: FloatArray) -> FloatArray:
+    """Size of the last three coefficients against the largest value, along the last axis."""
+    coefficients = values @ chebyshev.analysis(NODES).T
+    largest = np.abs(values).max(axis=-1)
+    return np.asarray(np.abs(coefficients[..., -3:]).max(axis=-1) / np.where(largest > 0.0, largest, 1.0))
+
+
+@dataclass(frozen=True)
+class Piecewise:
+    """Polynomials on consecutive panels.
+
+    Attributes:
+        edges: Panel ends, shape (panels + 1,).
+        centres: Panel middles, shape (panels,).
+        scales: Two over the panels' widths, shape (panels,).
+        powers: Powers of each panel's z in [-1, 1], shape (count, functions, panels).
+    """
+
+    edges: FloatArray
+    centres: FloatArray
+    scales: FloatArray
+    powers: FloatArray
+
+    @classmethod
+    def of(cls, panels: list[Panel], coefficients: FloatArray) -> Piecewise:
+        """From Chebyshev coefficients, shape (count, functions, panels)."""
+        edges = np.array([panels[0].low, *(panel.high for panel in panels)])
+        powers = np.tensordot(chebyshev.to_powers(coefficients.shape[0]), coefficients, 1)
+        return cls(edges, 0.5 * (edges[1:] + edges[:-1]), 2.0 / np.diff(edges), powers)
+
+    def __call__(self, y: FloatArray, rows: slice, first: int = 0, last: int | None = None) -> FloatArray:
+        """Some of the functions at y of any shape, by the panels from `first` to before `last` only."""
+        end = self.centres.size if last is None else last
+        panel = np.minimum(np.maximum(np.searchsorted(self.edges, y, side="right") - 1, first), end - 1)
+        z = (y - self.centres.take(panel)) * self.scales.take(panel)
+        ladder, powers = chebyshev.powers(z, self.powers.shape[0]), self.powers[:, rows].take(panel, axis=2)
+        return np.asarray(np.einsum("kr...,k...->r...", powers, ladder))

@@ -1,0 +1,250 @@
+"""Adhesive contact against closed forms, published values and the energy it comes from."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from bem.integral_equation import IntegralEquation
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    Sphere,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+from mdr import Mdr, equivalent_system
+
+PUNCH = IntegralEquation()
+WORK = 1e-3  # dgamma [J/m^2] in units where E* = 1 Pa and lengths are metres
+HALF_SPACE = Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5)
+
+
+def layer(nu, thickness=1.0, support="bonded"):
+    return Layer(thickness=thickness, youngs_modulus=1.0 - nu**2, poissons_ratio=nu, support=support)
+
+
+def solve(base, indenter, loading=None, work=WORK):
+    scene = Scene(
+        layer=base,
+        indenter=indenter,
+        loading=loading or Detachment(),
+        effects=(Adhesion(work_of_adhesion=work),),
+    )
+    return Mdr(flat_punch=PUNCH).solve(scene)
+
+
+def criticals(path, control, kind):
+    return [c for c in path.critical_points if c.control == control and c.kind == kind]
+
+
+# Fredholm equation solved radius by radius, REFERENCES section 6: a/h and Dl of the maximum of Eq. (42).
+MAXIMA = {
+    0.5: (0.461904, 0.392203), 0.499: (0.464108, 0.392719), 0.49: (0.484694, 0.397331), 0.48: (0.509380, 0.402391),
+    0.45: (0.600217, 0.417261), 0.42: (0.741939, 0.431958), 0.4: (0.914054, 0.442014), 0.38: (1.269329, 0.452826),
+    0.37: (1.613309, 0.458732),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("nu", MAXIMA)
+def test_the_elongation_has_its_maximum_where_others_found_it(nu):
+    ratio, elongation = MAXIMA[nu]
+    path = solve(layer(nu), FlatPunch(radius=8.0), work=1.0 / (2.0 * np.pi))
+    assert path.pull_off_contact_radius == pytest.approx(ratio, abs=1e-6)
+    assert path.pull_off_depth == pytest.approx(-elongation, abs=1e-6)  # Eq. (45)
+
+
+def test_the_maximum_is_located_to_ten_digits():
+    """Two discretisations of the flat punch agree to 1e-10 about a place where the function is flat."""
+    coarse, fine = (
+        Mdr(flat_punch=source).solve(
+            Scene(
+                layer=layer(0.5),
+                indenter=FlatPunch(radius=4.0),
+                loading=Detachment(),
+                effects=(Adhesion(work_of_adhesion=WORK),),
+            )
+        )
+        for source in (PUNCH, PUNCH.refined())
+    )
+    assert coarse.pull_off_contact_radius == pytest.approx(fine.pull_off_contact_radius, rel=1e-10)
+
+
+def test_stability_reverses_twice_near_nu_0365():
+    path = solve(layer(0.365), FlatPunch(radius=8.0))
+    (lost,), (gained,) = criticals(path, "displacement", "pull-off"), criticals(path, "displacement", "snap-in")
+    assert lost.contact_radius == pytest.approx(1.93, abs=0.02)  # REFERENCES section 6 prints 1.93 and 5.03
+    assert gained.contact_radius == pytest.approx(5.03, abs=0.1)
+    a, stable = path.contact_radius, path.stable_displacement_control
+    pinned = a == a[0]
+    between = (a > lost.contact_radius) & (a < gained.contact_radius)
+    assert stable[between].all()
+    assert not stable[~between & ~pinned].any()
+
+
+@pytest.mark.parametrize("nu", [0.36, 0.3, 0.0])
+def test_below_nu_0361_detachment_is_always_abrupt(nu):
+    path = solve(layer(nu), FlatPunch(radius=8.0))
+    assert path.pull_off_contact_radius == pytest.approx(8.0, rel=1e-12)
+    assert not criticals(path, "displacement", "pull-off")
+
+
+@pytest.mark.parametrize(
+    ("control", "radius"), [("displacement", (np.pi / 8.0) ** (1 / 3)), ("force", (9 * np.pi / 8) ** (1 / 3))]
+)
+def test_jkr_sphere(control, radius):
+    """Johnson, Kendall and Roberts 1971: F = -3/2 pi R dgamma, and the radii at both instabilities."""
+    big, work, modulus = 0.7, 3e-3, HALF_SPACE.contact_modulus
+    path = solve(HALF_SPACE, Paraboloid(radius_of_curvature=big), Detachment(control=control), work)
+    unit = (work * big**2 / modulus) ** (1 / 3)
+    assert path.pull_off_force == pytest.approx(-1.5 * np.pi * big * work, rel=1e-12)
+    assert path.pull_off_contact_radius == pytest.approx(radius * unit, rel=1e-10)
+    (contact,) = criticals(path, "displacement", "snap-in")
+    assert contact.contact_radius == pytest.approx((2.0 * np.pi) ** (1 / 3) * unit, rel=1e-10)  # at zero depth
+
+
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_kendall_flat_punch(control):
+    a, work = 0.3, 2e-3
+    path = solve(HALF_SPACE, FlatPunch(radius=a), Detachment(control=control), work)
+    assert path.pull_off_force == pytest.approx(-np.sqrt(8.0 * np.pi * work * a**3), rel=1e-12)
+    assert path.pull_off_depth == pytest.approx(-np.sqrt(2.0 * np.pi * work * a), rel=1e-12)
+    assert path.stable_displacement_control[0]
+
+
+@pytest.mark.parametrize("slope", [0.1, 0.7])
+def test_adhesive_cone(slope):
+    """Maugis 2000: g = pi/2 tan a, so both instabilities follow by hand."""
+    work = 2e-2
+    both = [solve(HALF_SPACE, Cone(slope=slope), Detachment(control=c), work) for c in ("displacement", "force")]
+    rise = 0.5 * np.pi * slope
+    assert both[0].pull_off_contact_radius == pytest.approx(0.5 * np.pi * work / rise**2, rel=1e-10)
+    # dF/da = 2 g' a - 3 sqrt(2 pi dgamma a) = 0
+    assert both[1].pull_off_contact_radius == pytest.approx(4.5 * np.pi * work / rise**2, rel=1e-10)
+
+
+def test_thin_unbonded_layer_approaches_the_winkler_foundation():
+    """Eq. (22): c_N = pi E* x/h makes the elongation constant, sqrt(2 h dgamma/E*)."""
+    gaps = []
+    for a in (20.0, 40.0):
+        path = solve(layer(0.3, support="unbonded"), FlatPunch(radius=a))
+        gaps.append(path.pull_off_depth / -np.sqrt(2.0 * WORK) - 1.0)
+    assert abs(gaps[1]) < 0.02
+    assert gaps[0] / gaps[1] == pytest.approx(2.0, rel=0.05)  # the edge layer is as wide as the layer is thick
+
+
+PROFILES = (
+    Paraboloid(radius_of_curvature=1.0),
+    Sphere(radius=1.5),
+    Cone(slope=0.1),
+    PowerLaw(exponent=4.0, reference_radius=1.0, reference_height=0.2),
+    TruncatedCone(flat_radius=0.4, slope=0.1),
+    TruncatedParaboloid(flat_radius=0.3, radius_of_curvature=1.0),
+)
+
+
+@pytest.mark.parametrize("indenter", PROFILES, ids=lambda p: type(p).__name__)
+@pytest.mark.parametrize("base", [HALF_SPACE, layer(0.5), layer(0.3, support="unbonded")], ids=["hs", "b.5", "u"])
+def test_equilibrium_and_stability_are_those_of_the_energy(base, indenter):
+    """First variation zero, second variation positive exactly where the path says stable: by differences of energy."""
+    path = solve(base, indenter, work=1e-2)
+    springs = equivalent_system(base, indenter, 1.05 * float(path.contact_radius[0]), PUNCH)
+    for i in range(20, len(path) - 20, 30):
+        a, depth, force = path.contact_radius[i], path.indentation_depth[i], path.normal_force[i]
+        step = 1e-3 * a
+        if any(abs(a - k) < 2 * step for k in indenter.kinks):
+            continue
+        at_depth = [_energy(springs, a + s * step, depth, 1e-2) for s in (-1, 0, 1)]
+        at_force = [_potential(springs, a + s * step, force, 1e-2) for s in (-1, 0, 1)]
+        for energies, stable in (
+            (at_depth, path.stable_displacement_control[i]),
+            (at_force, path.stable_force_control[i]),
+        ):
+            slope = (energies[2] - energies[0]) / (2.0 * step)
+            curvature = (energies[2] - 2.0 * energies[1] + energies[0]) / step**2
+            assert abs(slope) < 5e-3 * abs(curvature) * a + 1e-9
+            assert (curvature > 0.0) == stable
+
+
+def _energy(springs, a, depth, work):
+    """Energy at prescribed depth: springs between two radii by quadrature, minus the work of adhesion."""
+
+    def density(x):
+        return float(springs.spring_stiffness(x) * (depth - springs.mdr_profile(x)) ** 2)
+
+    edges = [0.0, *(k for k in (0.3, 0.4) if k < a), a]
+    stored = sum(quad(density, low, high, epsabs=1e-14)[0] for low, high in pairwise(edges))
+    return stored - np.pi * a**2 * work
+
+
+def _potential(springs, a, force, work):
+    """Energy at prescribed force: the depth adjusts itself."""
+    depth = (force + float(springs.profile_moment(a))) / float(springs.contact_stiffness(a))
+    return _energy(springs, a, depth, work) - force * depth
+
+
+@pytest.mark.parametrize("indenter", PROFILES, ids=lambda p: type(p).__name__)
+def test_prescribed_radii_depths_and_forces_are_one_branch(indenter):
+    base, work = layer(0.45), 1e-2
+    path = solve(base, indenter, work=work)
+    radii = np.array([0.9, 1.0]) * path.contact_radius[0]
+    by_radius = solve(base, indenter, ContactRadii(radii), work)
+    by_depth = solve(base, indenter, IndentationDepths(by_radius.indentation_depth), work)
+    by_force = solve(base, indenter, NormalForces(by_radius.normal_force), work)
+    for other in (by_depth, by_force):
+        np.testing.assert_allclose(other.contact_radius, radii, rtol=1e-10)
+        np.testing.assert_allclose(other.normal_force, by_radius.normal_force, rtol=1e-9, atol=1e-13)
+    with pytest.raises(InvalidInput, match="no stable contact"):
+        solve(base, indenter, IndentationDepths([1.01 * path.pull_off_depth]), work)
+
+
+def test_a_flat_punch_holds_peels_and_lets_go():
+    base, punch = layer(0.5), FlatPunch(radius=4.0)
+    path = solve(base, punch)
+    start = criticals(path, "displacement", "start")[0]
+    between = 0.5 * (start.indentation_depth + path.pull_off_depth)
+    answer = solve(base, punch, IndentationDepths([0.5 * start.indentation_depth, between]))
+    assert answer.contact_radius[0] == pytest.approx(4.0)
+    assert 0.461904 < answer.contact_radius[1] < 4.0
+    assert answer.normal_force[1] > path.pull_off_force  # Eq. (46): peeling pulls less than the start did
+    with pytest.raises(InvalidInput, match="no stable contact"):
+        solve(base, punch, NormalForces([1.01 * start.normal_force]))
+
+
+def test_second_maximum_of_the_pressure_is_announced_from_a_h_0788_on():
+    """REFERENCES section 5: at nu = 1/2 the maximum in the centre appears at a/h = 0.788."""
+    assert not solve(layer(0.5), FlatPunch(radius=0.78)).notes
+    (note,) = solve(layer(0.5), FlatPunch(radius=0.80)).notes
+    assert "cavitation" in note
+    assert not solve(layer(0.3), FlatPunch(radius=4.0)).notes
+    assert not solve(layer(0.5, support="unbonded"), FlatPunch(radius=4.0)).notes
+
+
+def test_no_work_of_adhesion_is_no_adhesion():
+    scene = Scene(layer=layer(0.45), indenter=PROFILES[0], loading=IndentationDepths([0.01, 0.1]))
+    bare, listed = Mdr().solve(scene), Mdr().solve(scene.replace(effects=(Adhesion(work_of_adhesion=0.0),)))
+    np.testing.assert_array_equal(listed.normal_force, bare.normal_force)
+    with pytest.raises(InvalidInput, match="initial_contact_radius"):
+        solve(layer(0.45), PROFILES[0], Detachment(), work=0.0)
+    faint = solve(layer(0.45), PROFILES[0], IndentationDepths([0.01, 0.1]), work=1e-30)
+    np.testing.assert_allclose(faint.normal_force, bare.normal_force, rtol=1e-12)
+
+
+def test_results_do_not_know_their_units():
+    si = solve(layer(0.5, thickness=1e-3), Sphere(radius=5e-3), work=1e-6)
+    mm = solve(
+        Layer(thickness=1.0, youngs_modulus=0.75e-6, poissons_ratio=0.5), Sphere(radius=5.0), work=1e-9
+    )  # mm, N: 1 Pa = 1e-6 N/mm^2, 1 J/m^2 = 1e-3 N/mm
+    assert mm.pull_off_force == pytest.approx(si.pull_off_force, rel=1e-12)
+    assert mm.pull_off_depth == pytest.approx(1e3 * si.pull_off_depth, rel=1e-12)
