@@ -1,0 +1,78 @@
+"""The flat punch by one factorisation: stated errors, independence of history, refusals."""
+
+import numpy as np
+import pytest
+
+from bem.flat_punch import FlatPunchSolution, FlatPunchSource
+from bem.integral_equation import LARGEST_RATIO, IntegralEquation
+from contact import InvalidInput, Layer
+
+LAYERS = [
+    Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support)
+    for support, nu in [("unbonded", 0.3), ("bonded", 0.0), ("bonded", 0.3), ("bonded", 0.499), ("bonded", 0.5)]
+]
+RATIOS = np.concatenate([np.linspace(1e-3, 2.0, 60), np.linspace(2.0, 10.0, 60)])
+
+
+def test_protocols_are_met():
+    assert isinstance(IntegralEquation(), FlatPunchSource)
+    assert isinstance(IntegralEquation().solution(LAYERS[0], 1.0), FlatPunchSolution)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+@pytest.mark.parametrize(
+    "settings", [IntegralEquation(), IntegralEquation(nodes=16), IntegralEquation(nodes=8, panel_width=0.5)]
+)
+def test_stated_error_covers_the_true_one(layer, settings):
+    """Against panels a quarter as wide with 20 nodes: 1e-14 where conditioning lets it, and its own error is added."""
+    best = IntegralEquation(nodes=20, panel_width=0.25).solution(layer, 10.0)
+    solution = settings.solution(layer, 10.0)
+    bound = solution.relative_error(RATIOS) + best.relative_error(RATIOS)
+    for name in ("normalized_contact_stiffness", "normalized_spring_stiffness"):
+        error = np.abs(getattr(solution, name)(RATIOS) / getattr(best, name)(RATIOS) - 1)
+        assert np.all(error <= bound), name
+
+
+def test_error_falls_exponentially_with_the_nodes():
+    """Each eight nodes more on a panel gain at least three and a half digits, until rounding."""
+    best = IntegralEquation(panel_width=0.25).solution(LAYERS[-1], 2.0).normalized_contact_stiffness(RATIOS[:60])
+    errors = [
+        np.max(
+            np.abs(
+                IntegralEquation(nodes=m).solution(LAYERS[-1], 2.0).normalized_contact_stiffness(RATIOS[:60]) / best - 1
+            )
+        )
+        for m in (8, 12, 16, 20)
+    ]
+    assert np.all(np.array(errors[2:]) < 10**-3.5 * np.array(errors[:-2]))
+    assert errors[-1] < 1e-11
+
+
+def test_answers_do_not_depend_on_what_was_asked_before():
+    settings = IntegralEquation(nodes=12)
+    first = settings.solution(LAYERS[3], 1.5).normalized_contact_stiffness(1.3)
+    settings.solution(LAYERS[3], 15.0)
+    assert settings.solution(LAYERS[3], 1.5).normalized_contact_stiffness(1.3) == first
+
+
+def test_the_unbonded_layer_does_not_see_poissons_ratio():
+    softer = LAYERS[0].replace(poissons_ratio=0.1)
+    assert IntegralEquation().solution(softer, 1.0) is IntegralEquation().solution(LAYERS[0], 1.0)
+
+
+def test_ratios_beyond_the_range_are_refused():
+    with pytest.raises(InvalidInput, match="a/h = 1e\\+06"):
+        IntegralEquation().solution(LAYERS[0], 1e6)
+    solution = IntegralEquation().solution(LAYERS[0], 1.0)
+    with pytest.raises(InvalidInput, match=r"a/h = 1\.1"):
+        solution.normalized_contact_stiffness(1.1)
+    with pytest.raises(InvalidInput, match="nan"):
+        solution.normalized_spring_stiffness(np.nan)
+    assert LARGEST_RATIO >= 100
+
+
+def test_settings_out_of_range_are_refused():
+    with pytest.raises(InvalidInput, match="nodes"):
+        IntegralEquation(nodes=2)
+    with pytest.raises(InvalidInput, match="panel_width"):
+        IntegralEquation(panel_width=0.0)

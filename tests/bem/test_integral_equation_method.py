@@ -1,0 +1,107 @@
+"""The direct integral equation as a method: against MDR, against closed forms, its own error estimate, refusals."""
+
+import numpy as np
+import pytest
+
+from bem.integral_equation_method import IntegralEquationMethod
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Method,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from mdr import Mdr
+from tests.mdr.test_method import INDENTERS, LAYERS
+
+RADII = [0.5e-3, 3.7e-3]
+
+
+def test_it_is_a_method():
+    assert isinstance(IntegralEquationMethod(), Method)
+    assert IntegralEquationMethod(panel_width=0.5).refined().panel_width == 0.25
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+@pytest.mark.parametrize("indenter", INDENTERS[:-1], ids=lambda i: type(i).__name__)
+def test_direct_solution_agrees_with_mdr(layer, indenter):
+    """Independent but for chi; both state errors near 1e-13. Pressure and displacement are compared where smooth."""
+    scene = Scene(layer=LAYERS[layer], indenter=indenter, loading=ContactRadii(RADII))
+    direct, mdr = IntegralEquationMethod().solve(scene), Mdr().solve(scene)
+    for name in ("indentation_depth", "normal_force", "contact_stiffness"):
+        difference = np.abs(getattr(direct, name) / getattr(mdr, name) - 1)
+        assert np.all(difference <= direct.error_estimate[name] + mdr.error_estimate[name]), name
+    inside, outside = np.array([0.1e-3, 0.7e-3, 2.9e-3, 3.6e-3]), np.array([3.71e-3, 5e-3])
+    np.testing.assert_allclose(direct.pressure(inside, 1), mdr.pressure(inside, 1), rtol=1e-7)
+    scale = mdr.indentation_depth[1]
+    np.testing.assert_allclose(
+        direct.surface_displacement(outside, 1), mdr.surface_displacement(outside, 1), atol=1e-11 * scale
+    )
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_depths_and_forces_find_the_radius(layer):
+    indenter = TruncatedCone(flat_radius=0.4e-3, slope=0.2)
+    by_radius = IntegralEquationMethod().solve(
+        Scene(layer=LAYERS[layer], indenter=indenter, loading=ContactRadii([1e-3]))
+    )
+    for loading in (IndentationDepths(by_radius.indentation_depth), NormalForces(by_radius.normal_force)):
+        path = IntegralEquationMethod().solve(Scene(layer=LAYERS[layer], indenter=indenter, loading=loading))
+        np.testing.assert_allclose(path.contact_radius, [1e-3], rtol=1e-12)
+        np.testing.assert_allclose(path.normal_force, by_radius.normal_force, rtol=1e-12)
+
+
+def test_unbonded_flat_punch_at_unit_ratio():
+    """k_bar = 2.198621365666: settles the tenth digit of a value that is printed elsewhere as 2.19862136617."""
+    layer = Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3, support="unbonded")
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]))
+    for method in (IntegralEquationMethod(), IntegralEquationMethod(nodes=24, panel_width=0.3)):
+        assert method.solve(scene).contact_stiffness[0] / 2 == pytest.approx(2.198621365666, abs=1e-12)
+
+
+def test_flat_punch_pressure_on_a_layer():
+    scene = Scene(layer=LAYERS["incompressible"], indenter=FlatPunch(radius=2e-3), loading=NormalForces([1.0]))
+    direct, mdr = IntegralEquationMethod().solve(scene), Mdr().solve(scene)
+    r = np.array([0.0, 1e-3, 1.99e-3])
+    np.testing.assert_allclose(direct.pressure(r), mdr.pressure(r), rtol=5e-9)  # phi'/t at the centre rounds to 1e-9
+    assert direct.indentation_depth[0] == pytest.approx(mdr.indentation_depth[0], rel=1e-12)
+
+
+def test_own_error_estimate_covers_the_error_of_coarse_settings():
+    scene = Scene(
+        layer=LAYERS["incompressible"], indenter=Paraboloid(radius_of_curvature=0.02), loading=ContactRadii(RADII)
+    )
+    exact = Mdr().solve(scene)
+    coarse = IntegralEquationMethod(nodes=8, panel_width=2.0).solve(scene)
+    for name in ("indentation_depth", "normal_force", "contact_stiffness"):
+        error = np.abs(getattr(coarse, name) / getattr(exact, name) - 1)
+        assert np.all(error <= coarse.error_estimate[name]), name
+        assert coarse.error_estimate[name].max() < 0.1
+
+
+def test_refusals():
+    adhesive = Scene(
+        layer=LAYERS["bonded"],
+        indenter=Cone(slope=0.1),
+        loading=ContactRadii([1e-3]),
+        effects=(Adhesion(work_of_adhesion=0.1),),
+    )
+    with pytest.raises(UnsupportedSceneError, match="Adhesion"):
+        IntegralEquationMethod().solve(adhesive)
+    with pytest.raises(InvalidInput, match="a/h = 100"):
+        IntegralEquationMethod().solve(
+            Scene(layer=LAYERS["bonded"], indenter=Cone(slope=0.1), loading=ContactRadii([0.1]))
+        )
+    tip = IntegralEquationMethod().solve(
+        Scene(layer=LAYERS["bonded"], indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]))
+    )
+    with pytest.raises(InvalidInput, match="infinite"):
+        tip.pressure([0.0])
