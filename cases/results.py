@@ -382,6 +382,51 @@ class WorkPrecision:
     crossover: Positive | None
 
 
+# -- where methods break -------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Rung:
+    """One step of a stability ladder.
+
+    Attributes:
+        value: of the hard parameter.
+        status: PASS when solved; otherwise the reason names the error.
+        reason: of a status other than PASS.
+        digits: significant digits that perturbed repeats share; None when nothing was solved.
+        iterations: of the hardest iteration; None for a method without any.
+        residuals: largest relative residual of each invariant, by name.
+    """
+
+    value: Positive
+    status: Status
+    reason: str = ""
+    digits: NotNegative | None
+    iterations: int | None = None
+    residuals: dict[str, NotNegative] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Ladder:
+    """A hard parameter walked in steps until something breaks.
+
+    Attributes:
+        name: unique within the case, for example "nearly incompressible".
+        parameter: what is walked, with its symbol, for example "1/2 - nu".
+        unit: "1" for a ratio.
+        method: label of the method that climbs.
+        quantity: whose digits are counted.
+        rungs: in the order of walking, from easy to hard.
+    """
+
+    name: str
+    parameter: str
+    unit: str
+    method: str
+    quantity: str
+    rungs: tuple[Rung, ...]
+
+
 # -- figures: all numbers, no ink ----------------------------------------------------------------------------------
 
 
@@ -464,6 +509,7 @@ class CaseResult:
     convergence: tuple[ConvergenceStudy, ...] = ()
     work_precision: tuple[WorkPrecision, ...] = ()
     effects: tuple[EffectEntry, ...] = ()
+    ladders: tuple[Ladder, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property

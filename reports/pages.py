@@ -14,7 +14,7 @@ from cases.results import Acceptance, CaseResult, Kind, RunResult, WorkPrecision
 from cases.results_files import write_whole
 from cases.status import Status
 from reports import case_tables
-from reports.charts import agreement, convergence, work_precision
+from reports.charts import agreement, convergence, ladder, work_precision
 from reports.drawing import plate_of
 from reports.matrix import case_matrix, run_matrix
 from reports.names import file_name
@@ -95,6 +95,8 @@ def _case_view(case: CaseResult, directory: Path) -> dict[str, object]:
         "figures": drawn(plate_of(figure, case=case.name, command=command) for figure in case.figures),
         "agreement": drawn(agreement.plates(case, command)),
         "convergence": drawn(convergence.plates(case, command)),
+        "ladders": drawn(ladder.plates(case, command)),
+        "refusals": tuple(ladder.refusals(case)),
         "work": _timed_views(case.work_precision, drawn(work_precision.plates(case, command))),
         "answers": case_tables.answers(case),
         "stages": case_tables.stages(case),

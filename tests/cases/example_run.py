@@ -17,9 +17,11 @@ from cases.results import (
     Figure,
     Grid,
     Kind,
+    Ladder,
     Origin,
     Panel,
     Quantity,
+    Rung,
     RunResult,
     SceneDescription,
     SceneRun,
@@ -65,6 +67,7 @@ def passing_case() -> CaseResult:
                 scene=SCENE, method="mdr", effect="Adhesion", share_of_time=0.61, quantity="normal_force", change=2e-4
             ),
         ),
+        ladders=(ladder("mdr", 14.0), ladder("fem", 9.0, breaks=True)),
         figures=(figure(),),
     )
 
@@ -477,6 +480,30 @@ def _cheapest(
         bound=bound,
         peak_memory_bytes=20_000_000,
         speed_up=speed_up,
+    )
+
+
+def ladder(method: str, digits: float, *, breaks: bool = False) -> Ladder:
+    """Half a digit lost each decade towards incompressibility."""
+    rungs = [
+        Rung(
+            value=10.0**-k,
+            status=Status.PASS,
+            digits=digits - k / 2,
+            iterations=3 + k,
+            residuals={"load on top": 10.0 ** (k - 15)},
+        )
+        for k in range(1, 8)
+    ]
+    if breaks:
+        rungs[-1] = Rung(value=1e-7, status=Status.INVALID, reason="NotConvergedError: residual 1e-3", digits=None)
+    return Ladder(
+        name="nearly incompressible",
+        parameter="1/2 - nu",
+        unit="1",
+        method=method,
+        quantity="normal_force",
+        rungs=tuple(rungs),
     )
 
 

@@ -7,7 +7,7 @@ import re
 
 import pytest
 
-from reports.charts import agreement, convergence, work_precision
+from reports.charts import agreement, convergence, ladder, work_precision
 from reports.drawing import plate_of
 from reports.pages import FIGURE_FOLDER, LARGEST_PAGE, write_report
 from reports.plates import write_plate
@@ -32,7 +32,7 @@ def words_of(page):
 
 def plates_of(case):
     figures = [plate_of(figure, case=case.name, command="again") for figure in case.figures]
-    charts = (agreement, convergence, work_precision)
+    charts = (agreement, convergence, ladder, work_precision)
     return figures + [plate for chart in charts for plate in chart.plates(case, "again")]
 
 
@@ -136,6 +136,14 @@ def test_work_precision_data_equal_the_records_and_failures_keep_their_reason():
     assert [float(row["seconds"]) for row in rows] == [point.seconds for point in points]
     assert [row["bound"] for row in rows] == ["" if point.bound is None else repr(point.bound) for point in points]
     assert rows[-1]["reason"] == "NotConvergedError: locking"
+
+
+def test_ladder_data_equal_the_records_and_a_refused_rung_has_no_digits():
+    (plate,) = ladder.plates(passing_case(), "again")
+    rungs = [rung for climbed in passing_case().ladders for rung in climbed.rungs]
+    rows = table_of(plate)
+    assert [row["digits"] for row in rows] == ["" if rung.digits is None else repr(rung.digits) for rung in rungs]
+    assert rows[-1]["reason"] == "NotConvergedError: residual 1e-3"
 
 
 def test_agreement_data_equal_the_claims_worst_first():

@@ -1,0 +1,108 @@
+"""Stability ladders: significant digits left as a parameter gets hard, and the rung where a method gives up by name."""
+
+import math
+from collections.abc import Iterable, Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from cases.results import CaseResult, Ladder, Rung
+from reports.method_names import display_name
+from reports.outcomes import worded
+from reports.plates import Cell, Plate
+from reports.style import look_of, mark_decades
+
+DOUBLE_DIGITS = -math.log10(2.0**-53)
+PANELS_A_PLATE = 6
+COLUMNS = (
+    "ladder", "parameter", "unit", "method", "quantity", "value", "status", "digits", "iterations", "residuals",
+    "reason",
+)  # fmt: skip
+CAPTION = (
+    "From left to right the parameter gets harder. Symbols: significant digits that repeats share when inputs move by "
+    "one unit in the last place, unknowns are permuted and other kernels compute. Crosses at the bottom: the method "
+    "refused with a named error instead of a number. The dotted line is what doubles can carry."
+)
+
+
+def plates(case: CaseResult, command: str) -> list[Plate]:
+    """The ladder plates of a case: one panel a ladder, the methods overlaid, six panels a plate."""
+    panels: dict[tuple[str, str], list[Ladder]] = {}
+    for ladder in case.ladders:
+        panels.setdefault((ladder.name, ladder.quantity), []).append(ladder)
+    grouped = list(panels.values())
+    parts = [grouped[i : i + PANELS_A_PLATE] for i in range(0, len(grouped), PANELS_A_PLATE)]
+    return [_plate(case, part, number, command) for number, part in enumerate(parts, start=1)]
+
+
+def _plate(case: CaseResult, panels: Sequence[Sequence[Ladder]], number: int, command: str) -> Plate:
+    return Plate(
+        name=f"{case.name}-ladders-{number}",
+        title="Stability: digits left where it gets hard",
+        caption=CAPTION,
+        paint=lambda: draw(panels),
+        columns=COLUMNS,
+        rows=tuple(_row(ladder, rung) for panel in panels for ladder in panel for rung in ladder.rungs),
+        command=command,
+    )
+
+
+def _row(ladder: Ladder, rung: Rung) -> tuple[Cell, ...]:
+    names = (ladder.name, ladder.parameter, ladder.unit, ladder.method, ladder.quantity)
+    residuals = " ".join(f"{name}={value!r}" for name, value in rung.residuals.items())
+    return *names, rung.value, str(rung.status), rung.digits, rung.iterations, residuals, rung.reason
+
+
+def draw(panels: Sequence[Sequence[Ladder]]) -> Drawing:
+    """Panels in rows of two."""
+    columns = min(2, len(panels))
+    rows = math.ceil(len(panels) / columns)
+    drawing = Drawing(figsize=(5.0 * columns, 2.9 * rows), layout="constrained")
+    all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
+    for axes, ladders in zip(all_axes, panels, strict=False):
+        _draw_panel(axes, ladders)
+    for axes in all_axes[len(panels) :]:
+        axes.set_axis_off()
+    return drawing
+
+
+def _draw_panel(axes: Axes, ladders: Sequence[Ladder]) -> None:
+    first = ladders[0]
+    unit = "" if first.unit == "1" else f" [{first.unit}]"
+    quantity = first.quantity.replace("_", " ")
+    axes.set(xscale="log", xlabel=f"{first.parameter}{unit}", ylabel=f"digits of {quantity}", title=first.name)
+    axes.axhline(DOUBLE_DIGITS, color="black", linestyle=":", linewidth=0.8)
+    for ladder in ladders:
+        _draw_ladder(axes, ladder)
+    axes.set_ylim(0.0, 17.0)
+    if _falls(first.rungs):
+        axes.invert_xaxis()
+    mark_decades(axes.xaxis)
+    axes.legend(loc="lower left")
+
+
+def _draw_ladder(axes: Axes, ladder: Ladder) -> None:
+    look, name = look_of(ladder.method), display_name(ladder.method)
+    climbed = [(rung.value, rung.digits) for rung in ladder.rungs if rung.digits is not None]
+    refused = [rung.value for rung in ladder.rungs if rung.digits is None]
+    values, digits = zip(*climbed, strict=True) if climbed else ((), ())
+    axes.plot(values, digits, color=look.colour, linestyle=look.dash, linewidth=1.0, marker=look.marker, label=name)
+    if refused:
+        axes.plot(
+            refused, [0.0] * len(refused), color=look.colour, marker="x", markersize=8, markeredgewidth=2.0,
+            linestyle="none", clip_on=False, label=f"{name}, refused by name",
+        )  # fmt: skip
+
+
+def _falls(rungs: Sequence[Rung]) -> bool:
+    """Whether the parameter is walked downwards: then the axis turns, so that hard stands on the right."""
+    return rungs[-1].value < rungs[0].value
+
+
+def refusals(case: CaseResult) -> Iterable[str]:
+    """One sentence for each rung where a method refused."""
+    for ladder in case.ladders:
+        for rung in ladder.rungs:
+            if rung.digits is None:
+                place = f"{display_name(ladder.method)}, {ladder.name}, {ladder.parameter} = {rung.value:.3g}"
+                yield f"{place}: {worded(rung.reason)}"
