@@ -1,0 +1,253 @@
+"""Random scenes by the thousand: every answer within its stated error of an independent one, or a named refusal.
+
+The referee of elastic scenes is `second_opinion` as far as it reaches; beyond, where a solution is costly, the method
+with half the discretisation length checks every eighth scene. For other loadings it checks every scene.
+Every solved scene is also solved in other units, where it must give the same answer.
+"""
+
+from __future__ import annotations
+
+import time
+import warnings
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal, TypeAlias
+
+import numpy as np
+
+from cases.stability.random_scenes import RATIO, Family, random_scenes
+from cases.stability.second_opinion import LARGEST_RATIO, second_opinion
+from cases.stability.units import Units, in_units
+from contact import ContactError, ContactPath, Method, NotConvergedError, Scene, Solution
+from contact.validation import FloatArray
+
+End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
+Referee: TypeAlias = Literal["second opinion", "refinement", "other units", "none"]
+
+OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
+UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
+_ROUNDING = 16 * float(np.finfo(float).eps)  # a few operations, also on what was prescribed
+_THIN_LAYERS_REFINED = 8  # one in so many
+_UNLISTED_MOST = 1e-2  # a quantity without a stated error still may not be this far off
+
+
+@dataclass(frozen=True, kw_only=True)
+class Check:
+    """One quantity of one scene at its worst step, everything relative.
+
+    Attributes:
+        quantity: Its name.
+        error: Distance from the referee.
+        stated: Error that the method stated.
+        allowance: The referee's own uncertainty.
+    """
+
+    quantity: str
+    error: float
+    stated: float
+    allowance: float
+
+    @property
+    def holds(self) -> bool:
+        """Whether the stated error covers the distance."""
+        return self.error <= self.stated + self.allowance
+
+
+@dataclass(frozen=True, kw_only=True)
+class Trial:
+    """One scene and how it ended.
+
+    Attributes:
+        number: Its number; with family and seed it repeats the scene.
+        family: Kind of scene.
+        method: Who answered.
+        end: "within" the stated error, "refused" by name, "beyond" the stated error, or "crashed".
+        message: Of the refusal or the crash, or what is beyond.
+        referee: Who checked.
+        checks: One for each quantity.
+        seconds: Processor time of the answer [s].
+    """
+
+    number: int
+    family: Family
+    method: str
+    end: End
+    message: str
+    referee: Referee
+    checks: tuple[Check, ...] = ()
+    seconds: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class CampaignResult:
+    """A campaign.
+
+    Attributes:
+        seed: Of its scenes.
+        trials: In order.
+    """
+
+    seed: int
+    trials: tuple[Trial, ...]
+    counts: Mapping[str, int] = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Count the ends."""
+        ends = [trial.end for trial in self.trials]
+        object.__setattr__(self, "counts", {end: ends.count(end) for end in ("within", "refused", "beyond", "crashed")})
+
+    @property
+    def defects(self) -> tuple[Trial, ...]:
+        """Trials that gave a wrong number without a word, or crashed."""
+        return tuple(trial for trial in self.trials if trial.end in ("beyond", "crashed"))
+
+    def coverage(self) -> dict[str, Coverage]:
+        """By quantity, how well stated errors cover true ones."""
+        checks: dict[str, list[Check]] = {}
+        for trial in self.trials:
+            for check in trial.checks:
+                checks.setdefault(check.quantity, []).append(check)
+        return {quantity: coverage(found) for quantity, found in checks.items()}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Coverage:
+    """How stated errors compare with true ones.
+
+    Attributes:
+        count: Checks made.
+        covered: Share whose stated error covers the distance from the referee.
+        decided: How many of them the referee could tell from its own uncertainty.
+        sharpness: Median of stated over true error among the decided ones; 1 would be perfect, None without any.
+    """
+
+    count: int
+    covered: float
+    decided: int
+    sharpness: float | None
+
+
+def coverage(checks: Sequence[Check]) -> Coverage:
+    """Coverage and sharpness of stated errors; `checks` must not be empty."""
+    decided = [c for c in checks if c.error > c.allowance]
+    ratios = [c.stated / c.error for c in decided]
+    return Coverage(
+        count=len(checks),
+        covered=sum(c.holds for c in checks) / len(checks),
+        decided=len(decided),
+        sharpness=float(np.median(ratios)) if ratios else None,
+    )
+
+
+def campaign(
+    method: Method,
+    *,
+    seed: int,
+    count: int,
+    family: Family = "elastic",
+    ratio: tuple[float, float] = RATIO,
+    numbers: Iterable[int] | None = None,
+) -> CampaignResult:
+    """Draw scenes, let the method answer, and check each answer.
+
+    Args:
+        method: Who answers.
+        seed: Of the scenes.
+        count: How many scenes.
+        family: Kind of scenes.
+        ratio: Range of a/h.
+        numbers: Only these of the scenes; all if None.
+    """
+    scenes = random_scenes(seed, count, family, ratio)
+    chosen = range(count) if numbers is None else numbers
+    return CampaignResult(seed=seed, trials=tuple(trial(method, scenes[n], n, family) for n in chosen))
+
+
+def trial(method: Method, scene: Scene, number: int = 0, family: Family = "elastic") -> Trial:
+    """Let the method answer one scene and check the answer; a warning counts as a crash."""
+    start = time.process_time()
+    referee: Referee = "none"
+    checks: tuple[Check, ...] = ()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            answer = method.solve(scene)
+            seconds = time.process_time() - start
+            referee, checks = _refereed(method, answer, number)
+            wrong = [c for c in checks if not c.holds] + [c for c in _in_other_units(method, answer) if not c.holds]
+        end: End = "beyond" if wrong else "within"
+        message = "; ".join(f"{c.quantity} is off by {c.error:.1e}, stated {c.stated:.1e}" for c in wrong)
+    except ContactError as error:
+        end, message, seconds = "refused", f"{type(error).__name__}: {error!s:.300}", time.process_time() - start
+    except Exception as error:  # any other exception is what a campaign looks for
+        end, message, seconds = "crashed", f"{type(error).__name__}: {error!s:.300}", time.process_time() - start
+    return Trial(
+        number=number,
+        family=family,
+        method=method.name,
+        end=end,
+        message=message,
+        referee=referee,
+        checks=checks,
+        seconds=seconds,
+    )
+
+
+def _refereed(method: Method, answer: Solution, number: int) -> tuple[Referee, tuple[Check, ...]]:
+    """Checks by the best referee there is."""
+    scene = answer.scene
+    if isinstance(answer, ContactPath) and not scene.effects:
+        reach = LARGEST_RATIO * scene.layer.thickness
+        if answer.contact_radius.max() <= reach:
+            opinion = second_opinion(answer)
+            checks = (_check(answer, q, value, opinion.uncertainty) for q, value in opinion.values.items())
+            return "second opinion", tuple(checks)
+        if number % _THIN_LAYERS_REFINED:
+            return "other units", ()
+    try:
+        finer = method.refined().solve(scene)
+    except NotConvergedError:
+        return "none", ()
+    return "refinement", tuple(
+        _check(answer, q, np.atleast_1d(getattr(finer, q)), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
+        for q in answer.error_estimate
+        if np.shape(getattr(finer, q)) == np.shape(getattr(answer, q))
+    )
+
+
+def _check(answer: Solution, quantity: str, expected: FloatArray, allowance: FloatArray) -> Check:
+    """The step with the largest excess of distance over what is allowed."""
+    scale = np.maximum(answer.scale(quantity), np.finfo(float).tiny)
+    error = np.abs(np.atleast_1d(getattr(answer, quantity)) - expected) / scale
+    stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), error.shape)
+    allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
+    worst = int(np.argmax(error - stated - allowance))
+    return Check(
+        quantity=quantity, error=float(error[worst]), stated=float(stated[worst]), allowance=float(allowance[worst])
+    )
+
+
+def _fitted(values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
+    """One value for each entry; a scalar that has errors along a whole path gets the largest."""
+    return np.array(values) if np.shape(values) == shape else np.full(shape, np.max(values))
+
+
+def _in_other_units(method: Method, answer: Solution) -> tuple[Check, ...]:
+    """The same scene with lengths, stresses and times in other units."""
+    other = method.solve(in_units(answer.scene, OTHER_UNITS))
+    names = (*answer.ARRAYS, *answer.SCALARS)
+    same_size = [q for q in names if np.shape(getattr(other, q)) == np.shape(getattr(answer, q))]
+    expected = {q: np.atleast_1d(getattr(other, q)) / OTHER_UNITS.factor(q) for q in same_size}
+    return tuple(
+        Check(
+            quantity=f"{q} in other units",
+            error=float(np.max(np.abs(np.atleast_1d(getattr(answer, q)) - expected[q]) / _scale(answer, q))),
+            stated=UNITS_AGREEMENT,
+            allowance=float(np.max(answer.error_estimate.get(q, 0.0))),
+        )
+        for q in same_size
+    )
+
+
+def _scale(answer: Solution, quantity: str) -> FloatArray:
+    return np.maximum(answer.scale(quantity), np.finfo(float).tiny)

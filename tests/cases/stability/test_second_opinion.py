@@ -1,0 +1,120 @@
+"""The referee itself is checked against closed forms and values that other methods agree on."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from cases.stability.half_space_forms import equivalent_profile
+from cases.stability.second_opinion import LARGEST_RATIO, QUANTITIES, second_opinion
+from contact import (
+    Cone,
+    ContactPath,
+    ContactRadii,
+    Cost,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+
+# Relative; digits to which the tables print k_bar, solved elsewhere by radius-by-radius collocation
+STIFFNESS = {
+    ("bonded", 0.3): {0.2: 1.20655824090, 1.0: 2.48352462914, 2.0: 4.35324429030},
+    ("bonded", 0.5): {0.2: 1.28063660581, 1.0: 3.61873584896, 2.0: 9.14945045204},
+    ("unbonded", 0.3): {0.2: 1.17102775645, 2.0: 3.72760647995},
+}
+
+
+def answer(scene, radius):
+    """A path that claims a contact radius and nothing else of value."""
+    cost = Cost(wall_seconds=0.0, cpu_seconds=0.0, peak_memory_bytes=0, unknowns=0, counters={})
+    zero = np.zeros(1)
+    return ContactPath(
+        scene=scene,
+        method="none",
+        settings={},
+        error_estimate={},
+        cost=cost,
+        contact_radius=np.array([radius]),
+        indentation_depth=zero,
+        normal_force=zero,
+        contact_stiffness=zero,
+    )
+
+
+@pytest.mark.parametrize(("support", "nu"), STIFFNESS)
+def test_flat_punch_stiffness(support, nu):
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support)
+    for ratio, expected in STIFFNESS[support, nu].items():
+        scene = Scene(layer=layer, indenter=FlatPunch(radius=ratio), loading=IndentationDepths([1.0]))
+        found = second_opinion(answer(scene, ratio)).values["contact_stiffness"][0]
+        assert found / (2 * layer.contact_modulus * ratio) == pytest.approx(expected, rel=3e-12)  # printed digits
+
+
+HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # E* = 4
+
+
+def test_hertz():
+    scene = Scene(layer=HALF_SPACE, indenter=Paraboloid(radius_of_curvature=2.0), loading=ContactRadii([0.3]))
+    found = second_opinion(answer(scene, 0.3)).values
+    assert found["indentation_depth"][0] == pytest.approx(0.3**2 / 2.0, rel=1e-13)
+    assert found["normal_force"][0] == pytest.approx(4 / 3 * 4.0 * 0.3**3 / 2.0, rel=1e-13)  # F = 4/3 E* a^3/R
+    assert found["contact_stiffness"][0] == pytest.approx(2 * 4.0 * 0.3, rel=1e-13)
+
+
+def test_truncated_cone_on_the_half_space_at_a_prescribed_depth():
+    cone = TruncatedCone(flat_radius=0.5, slope=0.1)
+    depth = 0.1 * math.acos(0.5)  # delta = slope a arccos(b/a) at a = 1
+    scene = Scene(layer=HALF_SPACE, indenter=cone, loading=IndentationDepths([depth]))
+    found = second_opinion(answer(scene, 1.0 + 1e-7)).values  # a slightly wrong radius is corrected
+    assert found["contact_radius"][0] == pytest.approx(1.0, abs=1e-12)
+    force, _ = quad(lambda x: 2 * 4.0 * (depth - 0.1 * x * math.acos(0.5 / x)), 0.5, 1.0)
+    assert found["normal_force"][0] == pytest.approx(force + 2 * 4.0 * depth * 0.5, rel=1e-10)
+
+
+INDENTERS = [
+    Paraboloid(radius_of_curvature=2.0),
+    Sphere(radius=1.5),
+    Cone(slope=0.2),
+    TruncatedCone(flat_radius=0.4, slope=0.2),
+    TruncatedParaboloid(flat_radius=0.4, radius_of_curvature=2.0),
+    PowerLaw(exponent=3.7, reference_radius=1.0, reference_height=0.2),
+    Tabulated(radii=[0.0, 0.3, 0.5, 0.9, 1.4], heights=[0.0, 0.05, 0.11, 0.4, 0.8]),
+]
+
+
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
+@pytest.mark.parametrize("x", [0.41, 0.77, 1.1])
+def test_closed_forms_are_the_integral(indenter, x):
+    kinks = [math.asin(b / x) for b in indenter.breakpoints if b < x]
+    ends = [0.0, *kinks, math.pi / 2]
+
+    def slope(angle):
+        return float(indenter.slope_at(x * math.sin(angle)))
+
+    pieces = [quad(slope, low, high, epsabs=1e-13, epsrel=1e-13)[0] for low, high in pairwise(ends)]
+    assert float(equivalent_profile(indenter, np.array([x]))[0]) == pytest.approx(x * sum(pieces), rel=1e-11)
+
+
+def test_beyond_its_reach_it_says_so():
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=ContactRadii([1.0]))
+    with pytest.raises(InvalidInput, match="covers ratios up to"):
+        second_opinion(answer(scene, 1.01 * LARGEST_RATIO))
+
+
+def test_every_quantity_has_a_value():
+    scene = Scene(layer=HALF_SPACE, indenter=Cone(slope=0.1), loading=ContactRadii([0.3]))
+    assert tuple(second_opinion(answer(scene, 0.3)).values) == QUANTITIES
