@@ -4,49 +4,38 @@ from collections.abc import Iterable
 
 from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
 from reports.method_names import display_name
-from reports.numbers import duration, measured, memory, prefix_for, small
+from reports.numbers import duration, measured, memory, scaled_unit, small
 from reports.tables import Table
 
 
 def answers(case: CaseResult) -> Table | None:
     """The last step of each scene with a claim by each method, every number with the uncertainty its method states."""
     judged = {claim.scene for claim in case.claims}
-    names = tuple(dict.fromkeys((q.name, q.unit) for run in case.runs for q in run.quantities))
-    scales = {name: _common_prefix(case, name) for name, _unit in names}
-    heads = ("scene", "method", *(_head(name, unit, scales[name][1]) for name, unit in names), "time")
-    rows = tuple(
-        _answer_row(run, [name for name, _ in names], scales) for run in case.runs if run.solved and run.scene in judged
-    )
-    if not rows:
+    shown = [run for run in case.runs if run.solved and run.scene in judged]
+    if not shown:
         return None
+    names = tuple(dict.fromkeys(quantity.name for run in shown for quantity in run.quantities))
     note = (
-        "Digits in brackets: uncertainty of the last digits, stated by the method itself. "
+        "Digits in brackets: uncertainty of the last digits, stated by the method itself; (?) where it states none. "
         "Histories and load paths show their last step; all steps, and scenes without a claim, are in results.json."
     )
-    return Table(title="Answers", note=note, heads=heads, rows=rows, words=2)
+    heads = ("scene", "method", *(name.replace("_", " ") for name in names), "time")
+    return Table(title="Answers", note=note, heads=heads, rows=tuple(_answer_row(run, names) for run in shown), words=2)
 
 
-def _common_prefix(case: CaseResult, name: str) -> tuple[float, str]:
-    found = [q for run in case.runs for q in run.quantities if q.name == name]
-    return prefix_for(q.values[-1] for q in found if q.values) if found[0].unit != "1" else (1.0, "")
-
-
-def _head(name: str, unit: str, prefix: str) -> str:
-    words = name.replace("_", " ")
-    return words if unit == "1" else f"{words} [{prefix}{unit}]"
-
-
-def _answer_row(run: SceneRun, names: Iterable[str], scales: dict[str, tuple[float, str]]) -> tuple[str, ...]:
-    own = {q.name: q for q in run.quantities}
-    numbers = (_last_value(own[name], scales[name][0]) if name in own else "" for name in names)
+def _answer_row(run: SceneRun, names: Iterable[str]) -> tuple[str, ...]:
+    own = {quantity.name: quantity for quantity in run.quantities}
+    numbers = (_last_value(own[name]) if name in own else "" for name in names)
     return run.scene, display_name(run.method), *numbers, duration(run.cost.wall_seconds) if run.cost else ""
 
 
-def _last_value(quantity: Quantity, factor: float) -> str:
+def _last_value(quantity: Quantity) -> str:
     if not quantity.values:
         return ""
-    uncertainty = quantity.uncertainty[-1] / factor if quantity.uncertainty else float("inf")
-    return measured(quantity.values[-1] / factor, uncertainty)
+    value = quantity.values[-1]
+    factor, unit = scaled_unit(value, quantity.unit)
+    uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else float("inf")
+    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
 
 
 def cheapest(work: WorkPrecision) -> Table:

@@ -21,7 +21,7 @@ from reports.method_names import base_of, display_name
 from reports.plates import Plate
 from reports.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
 
-PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 3.55, 0.2  # inches
+PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 4.0, 0.2  # inches
 MOST_COLUMNS = 3
 SYMBOLS_ON_A_CURVE = 24
 LINE_METHODS = ("mdr",)
@@ -78,17 +78,17 @@ def draw(figure: Figure) -> Drawing:
     columns = _columns(figure.panels)
     rows = math.ceil(len(figure.panels) / columns)
     legend = _legend_entries(figure)
-    entries_a_row = 3 * columns
-    height = PANEL_HEIGHT * rows + LEGEND_ROW * math.ceil(len(legend) / entries_a_row) + 0.15
+    legend_rows = math.ceil(len(legend) / (3 * columns))
+    height = PANEL_HEIGHT * rows + LEGEND_ROW * legend_rows + 0.15
     drawing = Drawing(figsize=(max(4.6, PANEL_WIDTH * columns), height), layout="constrained")
     colours = _colours(figure)
-    all_axes = drawing.subplots(rows, columns, squeeze=False).flat
+    all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
     for axes, panel in zip(all_axes, figure.panels, strict=False):
         draw_panel(axes, panel, colours)
-    for axes in list(all_axes)[len(figure.panels) :]:
+    for axes in all_axes[len(figure.panels) :]:
         axes.set_axis_off()
     if legend:
-        drawing.legend(handles=legend, loc="outside lower center", ncols=min(entries_a_row, len(legend)))
+        drawing.legend(handles=legend, loc="outside lower center", ncols=math.ceil(len(legend) / legend_rows))
     return drawing
 
 

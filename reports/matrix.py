@@ -2,8 +2,10 @@
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 
 from cases.results import CaseResult, Claim, Kind, RunResult
+from reports.method_names import display_name
 from reports.names import file_name
 from reports.outcomes import Outcome, case_outcomes, claim_outcome, severity
 
@@ -21,11 +23,15 @@ class Cell:
 
 @dataclass(frozen=True, kw_only=True)
 class Matrix:
-    """Heads and rows; a row is its name, its link and one cell (or nothing) a column."""
+    """Heads and rows; a row is its name, its link and one cell (or nothing) a column.
+
+    `groups` stand above the columns, each with the number of columns below it; empty for plain heads.
+    """
 
     corner: str
     columns: tuple[str, ...]
     rows: tuple[tuple[str, str, tuple[Cell | None, ...]], ...]
+    groups: tuple[tuple[str, int], ...] = ()
 
 
 def run_matrix(run: RunResult) -> Matrix:
@@ -41,19 +47,39 @@ def _kind_cells(case: CaseResult, kinds: Sequence[Kind]) -> tuple[Cell | None, .
     return (*(_cell(part) for part in of_kind), _cell([row for row in rows if row.what == "solution"]))
 
 
+Column = tuple[Kind, str, tuple[str, ...]]
+
+
 def case_matrix(case: CaseResult) -> Matrix:
-    """One row a scene (or group of scenes), one column a claim as it is worded for that scene."""
-    columns = tuple(dict.fromkeys(_column(claim) for claim in case.claims))
-    scenes = dict.fromkeys(claim.scene for claim in case.claims)
-    found: dict[tuple[str, str], list[Outcome]] = {}
+    """One row a scene (or group of scenes), one column a quantity and the methods compared, kinds above."""
+    columns = sorted(
+        dict.fromkeys(_column(claim) for claim in case.claims), key=lambda column: list(Kind).index(column[0])
+    )
+    found: dict[tuple[str, Column], list[Outcome]] = {}
     for claim in case.claims:
         found.setdefault((claim.scene, _column(claim)), []).append(claim_outcome(case.name, claim))
-    cells = ((scene, "", tuple(_cell(found.get((scene, column), [])) for column in columns)) for scene in scenes)
-    return Matrix(corner="scene", columns=columns, rows=tuple(cells))
+    cells = ((scene, "", tuple(_cell(found.get((scene, c), [])) for c in columns)) for scene in _judged_scenes(case))
+    return Matrix(
+        corner="scene",
+        columns=tuple(f"{quantity.replace('_', ' ')}, {_names(methods)}" for _, quantity, methods in columns),
+        rows=tuple(cells),
+        groups=tuple((str(kind), len(list(run))) for kind, run in groupby(columns, key=lambda column: column[0])),
+    )
 
 
-def _column(claim: Claim) -> str:
-    return f"{claim.kind} {claim.quantity.replace('_', ' ')}, {' against '.join(claim.methods)}"
+def _judged_scenes(case: CaseResult) -> list[str]:
+    """Scenes some claim speaks about: in the order of the case, then groups of scenes."""
+    named = dict.fromkeys(claim.scene for claim in case.claims)
+    declared = [scene.name for scene in case.scenes if scene.name in named]
+    return [*declared, *(scene for scene in named if scene not in declared)]
+
+
+def _column(claim: Claim) -> Column:
+    return claim.kind, claim.quantity, claim.methods
+
+
+def _names(methods: Iterable[str]) -> str:
+    return " – ".join(display_name(method) for method in methods)
 
 
 def _cell(rows: Iterable[Outcome]) -> Cell | None:

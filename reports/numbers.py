@@ -19,12 +19,12 @@ PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "
 def measured(value: float, uncertainty: float) -> str:
     """A value with its absolute uncertainty in the same unit, two digits of it in brackets.
 
-    An uncertainty of zero means an exact number; one that is not finite is said in words.
+    An uncertainty of zero means an exact number; "(?)" stands where it is not known.
     """
     if not math.isfinite(value):
         return NOT_FINITE
     if not math.isfinite(uncertainty):
-        return f"{value:.3g} (uncertainty unknown)"
+        return f"{value:.3g}(?)"
     if uncertainty == 0.0:
         return f"{value:.15g}"
     exponent = _leading_power(max(abs(value), uncertainty))
@@ -80,6 +80,14 @@ def with_prefix(value: float, unit: str) -> str:
         return NOT_FINITE
     factor, prefix = prefix_for([value])
     return f"{_three_digits(value / factor)} {prefix}{unit}"
+
+
+def scaled_unit(value: float, unit: str) -> tuple[float, str]:
+    """Factor and unit with a fitting prefix; a ratio has neither."""
+    if unit == "1":
+        return 1.0, ""
+    factor, prefix = prefix_for([value])
+    return factor, f"{prefix}{unit}"
 
 
 def prefix_for(values: Iterable[float]) -> tuple[float, str]:

@@ -8,7 +8,7 @@ import numpy as np
 
 from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution
 from reports.method_names import display_name
-from reports.numbers import duration, measured, prefix_for, small
+from reports.numbers import duration, measured, prefix_for, scaled_unit, small
 from reports.tables import Table
 
 SYMBOLS = {
@@ -22,6 +22,9 @@ SYMBOLS = {
     "stored_energy": "E_el",
     "dissipated_energy": "E_diss",
 }
+BRACKETS = (
+    "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none."
+)
 LONGEST = 40
 """Rows of a printed table; longer answers show every n-th state and the last one."""
 
@@ -43,12 +46,21 @@ def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
     omitted = len(solution) - len(shown)
     skipped = f" {omitted} of {len(solution)} states are not printed; --csv writes all." if omitted else ""
     return Table(
-        title=f"{display_name(solution.method)} on {type(solution.scene.indenter).__name__}",
-        note=f"Digits in brackets: uncertainty of the last digits, as the method itself estimates it.{skipped}",
+        title=_title(solution),
+        note=f"{BRACKETS}{skipped}",
         heads=heads,
         rows=tuple(zip(*columns, strict=True)),
         words=0,
     )
+
+
+def _title(solution: Solution) -> str:
+    """Method, indenter, layer: "MDR: TruncatedCone on a bonded layer, nu = 0.45"."""
+    layer = solution.scene.layer
+    below = "half-space" if layer.is_half_space else f"{layer.support} layer"
+    effects = "".join(f", {type(effect).__name__}" for effect in solution.scene.effects)
+    indenter = type(solution.scene.indenter).__name__
+    return f"{display_name(solution.method)}: {indenter} on a {below}, nu = {layer.poissons_ratio:g}{effects}"
 
 
 def _shown(states: int, longest: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
@@ -109,10 +121,9 @@ def _critical_values(solution: Solution) -> list[tuple[str, str]]:
 def _critical_value(solution: Solution, name: str) -> str:
     value = float(getattr(solution, name))
     relative = solution.error_estimate.get(name)
-    factor, prefix = (1.0, "") if UNITS[name] == "1" else prefix_for([value])
+    factor, unit = scaled_unit(value, UNITS[name])
     uncertainty = float("inf") if relative is None else float(np.max(relative)) * abs(value)
-    unit = "" if UNITS[name] == "1" else f" {prefix}{UNITS[name]}"
-    return f"{measured(value / factor, uncertainty / factor)}{unit}"
+    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
 
 
 def solution_csv(solution: Solution) -> str:

@@ -21,7 +21,8 @@ def summary_text(run: RunResult, *, largest: int = LARGEST) -> str:
     rows = outcomes(run)
     words, _ = headline(run, rows)
     tally = ", ".join(f"{number} {status}" for status, number in counts(rows))
-    taken = f"Suite {run.suite}, revision {run.stamp.revision[:12]}, {duration(run.stamp.wall_seconds)}."
+    suite = f"Suite {run.suite}" if run.suite else "Chosen cases"
+    taken = f"{suite}, revision {run.stamp.revision[:12]}, {duration(run.stamp.wall_seconds)}."
     top = f"# {words}\n\n{tally}. {taken} {baseline_sentence(run)}\n\n"
     return top + _table(rows, largest - len(top.encode()))
 

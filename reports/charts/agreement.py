@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from cases.results import CaseResult, Claim, Kind
+from reports.method_names import display_name
 from reports.outcomes import tone_of
 from reports.plates import Cell, Plate
 from reports.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
@@ -56,7 +57,7 @@ def _row(claim: Claim) -> tuple[Cell, ...]:
 
 def draw(claims: Sequence[Claim]) -> Drawing:
     """One row a claim, fraction of the tolerance on an axis that is logarithmic on both sides of zero."""
-    drawing = Drawing(figsize=(8.6, 1.0 + ROW_HEIGHT * len(claims)), layout="constrained")
+    drawing = Drawing(figsize=(10.0, 1.0 + ROW_HEIGHT * len(claims)), layout="constrained")
     axes = drawing.subplots()
     extent = max(1.0, *(abs(_fraction(claim)) + _spread(claim) for claim in claims))
     axes.set_xscale("symlog", linthresh=_linear_below(claims), linscale=0.5)
@@ -96,4 +97,4 @@ def _spread(claim: Claim) -> float:
 
 
 def _label(claim: Claim) -> str:
-    return f"{claim.scene}, {claim.quantity.replace('_', ' ')}, {'/'.join(claim.methods)}"
+    return f"{claim.scene}, {claim.quantity.replace('_', ' ')}, {' – '.join(map(display_name, claim.methods))}"

@@ -20,7 +20,7 @@ from reports.numbers import NOT_FINITE, duration, measured, memory, prefix_for, 
         (0.3, 2.0, "0.3(2.0)"),
         (0.5, 0.0, "0.5"),
         (math.pi, 1e-18, "3.141592653589793(1)"),  # no digit beyond a double's sixteen
-        (2.0, math.inf, "2 (uncertainty unknown)"),
+        (2.0, math.inf, "2(?)"),
         (math.nan, 1.0, NOT_FINITE),
     ],
 )
