@@ -24,6 +24,7 @@ from cases.library._layers import (
     prescribed_radii,
     scene_name,
 )
+from cases.library._truncated_cone_limits import pressure_limits, profile_limits
 from cases.methods import MethodUse
 from cases.results import Figure, Origin, Panel, SceneRun, Series
 from cases.task import Answers, Sampling
@@ -88,6 +89,8 @@ ON_HALF_SPACE = tuple(scene.name for scene in HALF_SPACE_SCENES)
 FIGURE_LAYERS = ("unbonded", "bonded nu=0.45", "bonded nu=0.5")
 LINE_RADII = 1 - (1 - FLAT_FRACTION) * np.linspace(0, 1, 40, endpoint=False)[::-1] ** 2
 SYMBOL_RADII = np.array([0.6, 0.75, 0.9])
+LIMIT_CONE = TruncatedCone(flat_radius=FLAT_FRACTION * THICKNESS, slope=SLOPE)
+LIMIT_RADII = np.linspace(0.0, 0.999, 100)  # even in number, so that none is b
 
 
 def profile_scene(label: str, ratio: float, role: str, use: MethodUse, radii: NDArray[np.float64]) -> CaseScene:
@@ -112,7 +115,7 @@ def figure_7(case: Case, answers: Answers) -> Iterator[Figure]:
     yield Figure(
         name="fig_7",
         title="Fig. 7: MDR profile and contact pressure of a truncated cone, b/a = 0.5",
-        caption="Lines: MDR. Symbols: finite elements. Pressure over its mean.",
+        caption="Lines: MDR. Symbols: finite elements. Dotted: half-space. Dashed: thin layer. Pressure over its mean.",
         panels=tuple(panels),
     )
 
@@ -124,6 +127,7 @@ def _profile_panel(case: Case, answers: Answers, label: str) -> Panel:
             scene = case.scene(f"{scene_name(label, ratio)}, {role}")
             run = answers.of(case.task(scene, scene.methods[0]))
             series += [_profile(run, ratio, radii)] if run.solved else []
+    series += profile_limits(label, LIMIT_CONE, THICKNESS, LINE_RADII * THICKNESS)
     return Panel(title=label, x_label=r"$x/a$", y_label=r"$g(x)/f(a)$", series=tuple(series))
 
 
@@ -146,6 +150,7 @@ def _pressure_panel(case: Case, answers: Answers, label: str) -> Panel:
         for use in case.methods_of(scene):
             run = answers.of(case.task(scene, use))
             series += [_pressure(run, ratio)] if run.solved and run.curves else []
+    series += pressure_limits(label, LIMIT_CONE, THICKNESS, LIMIT_RADII * THICKNESS)
     return Panel(title=label, x_label=r"$r/a$", y_label=r"$p/p_\mathrm{m}$", series=tuple(series))
 
 
