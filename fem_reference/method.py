@@ -7,11 +7,17 @@ from functools import partial
 from typing import ClassVar, Self
 
 from contact import (
+    Adhesion,
     ContactPath,
     ContactRadii,
+    DepthHistory,
     Detachment,
     DetachmentPath,
     FlatPunch,
+    ForceHistory,
+    HistoryPath,
+    Impact,
+    ImpactHistory,
     IndentationDepths,
     InvalidInput,
     NormalForces,
@@ -20,6 +26,7 @@ from contact import (
     Supported,
     Unsupported,
     UnsupportedSceneError,
+    Viscoelasticity,
 )
 from fem_reference.adaptive import settings_for, solve_to_accuracy
 from fem_reference.certified import CertifiedContact, solve_certified_contact
@@ -77,16 +84,15 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
-        kinds = {type(effect).__name__ for effect in scene.effects}
-        if isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces | Detachment) and (
-            kinds <= {"Adhesion"}
-        ):
+        in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
+        modelled = Viscoelasticity if in_time else Adhesion
+        if all(isinstance(effect, modelled) for effect in scene.effects):
             return Supported()
-        listed = f" with {', '.join(sorted(kinds))}" if kinds else ""
+        listed = f" with {', '.join(type(effect).__name__ for effect in scene.effects)}"
         return Unsupported(f"fem does not model loading {type(scene.loading).__name__}{listed}")
 
-    def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
-        """Depth, force, stiffness and surface fields with their error estimates.
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
+        """The answer with its error estimates.
 
         Raises:
             UnsupportedSceneError: the scene asks for what `supports` denies.
@@ -100,7 +106,19 @@ class Fem:
             from fem_reference.effects.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
 
             return detachment_path(scene, scene.loading, self._solver(scene, log), asdict(self), log)
+        if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
+            return self._solve_in_time(scene, scene.loading, log)
         return contact_path(scene, self._equilibria(scene, log), asdict(self), log)
+
+    def _solve_in_time(
+        self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
+    ) -> ImpactHistory | HistoryPath:
+        from fem_reference.effects import viscoelastic  # noqa: PLC0415 - only scenes in time load it
+
+        theatre = viscoelastic.Theatre(scene, self.discretisation, self.solver, log)
+        if isinstance(loading, Impact):
+            return viscoelastic.impact_history(theatre, loading, asdict(self))
+        return viscoelastic.prescribed_history(theatre, loading, asdict(self))
 
     def _equilibria(self, scene: Scene, log: StageLog) -> list[Equilibrium]:
         loading, solve = scene.loading, self._solver(scene, log)

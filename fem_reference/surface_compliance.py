@@ -77,21 +77,27 @@ def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> Surf
         solver = problem.solver(problem.supported_unknowns)
     log.count("factorisations", solver.checked.factorisations)
     with log.stage("condense"):
-        nodes = problem.top_nodes(1.0)
-        trace = TraceSpace(problem.positions[0, nodes], STRIP_ORDER)
-        pressures = TraceSpace(trace.vertices, 1)
-        hats = np.array([np.interp(trace.radii, trace.vertices, hat) for hat in np.eye(len(trace.vertices))]).T
-        nodal = trace.mass_matrix() @ hats
-        loads = np.zeros((problem.space.size, nodal.shape[1]))
-        loads[2 * nodes + 1] = nodal
-        displacements = solver.solve_loaded(loads)[2 * nodes + 1]
-        compliance = nodal.T @ displacements
+        loads, resultants = strip_loads(problem)
+        solution = solver.solve_loaded(loads)
+        compliance = loads.T @ solution
+        vertices = problem.top_nodes(1.0)[::STRIP_ORDER]
         log.hold(compliance.nbytes)
     return SurfaceCompliance(
         layer_mesh=mesh,
-        pressure_space=pressures,
+        pressure_space=TraceSpace(problem.positions[0, vertices], 1),
         matrix=(compliance + compliance.T) / 2,
-        resultants=nodal.sum(axis=0),
-        vertex_displacements=displacements[::STRIP_ORDER],
+        resultants=resultants,
+        vertex_displacements=solution[2 * vertices + 1],
         unknowns=problem.space.size,
     )
+
+
+def strip_loads(problem: LayerProblem) -> tuple[Array, Array]:
+    """Loads of the piecewise linear pressures on the strip of radius one, (size, n), and their resultants (n,)."""
+    nodes = problem.top_nodes(1.0)
+    trace = TraceSpace(problem.positions[0, nodes], problem.pair.degree)
+    hats = np.array([np.interp(trace.radii, trace.vertices, hat) for hat in np.eye(len(trace.vertices))]).T
+    nodal = trace.mass_matrix() @ hats
+    loads = np.zeros((problem.space.size, nodal.shape[1]))
+    loads[2 * nodes + 1] = nodal
+    return loads, nodal.sum(axis=0)

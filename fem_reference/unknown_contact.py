@@ -52,18 +52,25 @@ class FoundContact:
 
     @property
     def contact_radius(self) -> float:
-        """a / radius, where the line through the squared pressures near the edge meets zero.
+        """a / radius."""
+        return edge_radius(self.strip.radii, self.state.pressure)
 
-        Smooth contact ends like a square root, so p^2 is linear there; the last vertex itself is off by up to a cell.
-        """
-        last = self.active_vertices - 1
-        if last < 4:
-            return float(self.strip.radii[min(last + 1, len(self.strip.radii) - 1)])
-        near = slice(max(0, last - 5), last)
-        slope, offset = np.polyfit(self.strip.radii[near], self.state.pressure[near] ** 2, 1)
-        edge = -offset / slope if slope < 0 else np.inf
-        beyond = self.strip.radii[min(last + 2, len(self.strip.radii) - 1)]
-        return float(np.clip(edge, 0.98 * self.strip.radii[last], beyond))
+
+def edge_radius(radii: Array, pressure: Array) -> float:
+    """Where the line through the squared pressures near the edge meets zero.
+
+    Smooth contact ends like a square root, so p^2 is linear there; the last vertex itself is off by up to a cell.
+    """
+    pressed = np.flatnonzero(pressure > 0)
+    if not len(pressed):
+        return 0.0
+    last = int(pressed[-1])
+    beyond = radii[min(last + 2, len(radii) - 1)]
+    if last < 4:
+        return float(radii[min(last + 1, len(radii) - 1)])
+    near = slice(max(0, last - 5), last)
+    slope, offset = np.polyfit(radii[near], pressure[near] ** 2, 1)
+    return float(np.clip(-offset / slope if slope < 0 else beyond, 0.98 * radii[last], beyond))
 
 
 class ContactSearch:

@@ -1,0 +1,188 @@
+from __future__ import annotations
+
+from math import atan, atanh, exp, sqrt
+
+import numpy as np
+import pytest
+
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    Impact,
+    InvalidInput,
+    KelvinVoigt,
+    Layer,
+    NotConvergedError,
+    Paraboloid,
+    PronySeries,
+    Scene,
+    Sphere,
+    StandardSolid,
+)
+from fem_reference import Fem
+from fem_reference.effects.impact import MAX_STEPS, Body, simulate_impact
+from fem_reference.effects.relaxation_step import relaxation_step
+from fem_reference.effects.stage import Stage
+from fem_reference.effects.surface_memory import ProportionalSurface
+from fem_reference.effects.viscoelastic import peak
+
+QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)
+G1 = 7.5e6
+G_INF = G1 / 9
+SOLID = StandardSolid(long_term_shear_modulus=G_INF, maxwell_shear_modulus=G1, viscosity=G1 * 1e-3)
+IMPACT = Impact(mass=0.02, velocity=0.127479)
+BALL = Paraboloid(radius_of_curvature=0.01)
+
+
+def impact_scene(thickness, nu=0.5, indenter=BALL, effects=(SOLID,)):
+    layer = Layer(thickness=thickness, youngs_modulus=2 * (1 + nu) * (G1 + G_INF), poissons_ratio=nu)
+    return Scene(layer=layer, indenter=indenter, loading=IMPACT, effects=effects)
+
+
+# restitution of the standard solid sphere impact, from the reduction to springs (an independent method)
+@pytest.mark.parametrize(
+    ("thickness", "restitution"),
+    [(1e-3, 0.64341), pytest.param(2e-3, 0.55924, marks=pytest.mark.slow), (3e-3, 0.52344)],
+)
+def test_restitution_of_a_sphere_on_an_incompressible_standard_solid(thickness, restitution):
+    history = Fem().solve(impact_scene(thickness))
+    assert history.coefficient_of_restitution == pytest.approx(restitution, abs=5e-5)
+    assert history.error_estimate["coefficient_of_restitution"][0] < 1e-4
+    assert history.energy_residual < 1e-4
+
+
+@pytest.mark.slow
+def test_finite_bulk_modulus_tends_to_the_incompressible_layer():
+    restitutions = [Fem().solve(impact_scene(1e-3, nu)).coefficient_of_restitution for nu in (0.3, 0.4, 0.49, 0.4999)]
+    assert np.all(np.diff(restitutions) < 0)
+    assert restitutions[-1] == pytest.approx(0.64341, abs=2e-4)
+
+
+def test_field_memory_equals_surface_memory_in_the_incompressible_limit():
+    almost = QUICK.solve(impact_scene(1e-3, 0.49999))
+    exactly = QUICK.solve(impact_scene(1e-3))
+    assert almost.coefficient_of_restitution == pytest.approx(exactly.coefficient_of_restitution, abs=2e-4)
+    assert almost.energy_residual < 1e-3
+
+
+def kelvin_voigt_restitution(damping):
+    """Closed form (49) and its continuation through D = 1."""
+    if damping == 1:
+        return exp(-2)
+    s = sqrt(abs(1 - damping**2))
+    angle = atan(s / damping) if damping < 1 else atanh(s / damping)
+    return exp(-2 * damping / s * angle)
+
+
+@pytest.mark.parametrize("damping", [0.05, 1.0, 3.0])
+def test_flat_punch_on_a_kelvin_voigt_layer(damping):
+    a, G, mass, k_bar = 1e-3, 1e6, 0.01, 3.61873584896  # k_bar: a/h = 1, nu = 1/2, from the integral equation
+    viscosity = damping / sqrt(2 * a * k_bar / (mass * G))
+    scene = Scene(
+        layer=Layer.incompressible(thickness=a, shear_modulus=G),
+        indenter=FlatPunch(radius=a),
+        loading=Impact(mass=mass, velocity=0.1),
+        effects=(KelvinVoigt(shear_modulus=G, viscosity=viscosity),),
+    )
+    history = Fem(growth=0.7, edge_cell=1e-6).solve(scene)
+    error = history.coefficient_of_restitution / kelvin_voigt_restitution(damping) - 1
+    assert abs(error) < 3e-4
+    assert abs(error) <= history.error_estimate["coefficient_of_restitution"][0] + 1e-5
+
+
+def single_spring(relaxation, steps):
+    """Restitution of one degree of freedom (unit compliance, mass and speed) with so many steps in a half period."""
+    surface = ProportionalSurface(np.eye(1), np.ones(1), len(relaxation.moduli))
+    stage = Stage(surface, np.ones(1), np.zeros(1), 1.0, 1)
+    record = simulate_impact(stage, Body(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
+    return -record.velocity[-1], record
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        KelvinVoigt(shear_modulus=1.0, viscosity=0.4),
+        PronySeries(long_term_shear_modulus=0.5, shear_moduli=[0.3, 0.2], relaxation_times=[0.5, 0.05]),
+    ],
+    ids=["KelvinVoigt", "Prony"],
+)
+def test_time_stepping_is_of_second_order(effect):
+    restitution = [single_spring(effect.relaxation, n)[0] for n in (50, 100, 200, 1600)]
+    errors = np.abs(np.array(restitution[:3]) - restitution[3])
+    order = np.log2(errors[:-1] / errors[1:])
+    assert np.all(order > 1.8)
+    assert errors[-1] < 1e-4
+
+
+def test_kinetic_energy_and_work_balance_exactly():
+    _, record = single_spring(
+        PronySeries(long_term_shear_modulus=0.5, shear_moduli=[0.5], relaxation_times=[0.3]).relaxation, 50
+    )
+    velocity, force, depth = map(np.array, (record.velocity, record.force, record.depth))
+    work = np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(depth))
+    kinetic = velocity**2 / 2
+    assert kinetic[1:-1] + work[:-1] == pytest.approx(0.5, abs=1e-13)
+
+
+def test_elastic_impact_loses_nothing():
+    history = QUICK.solve(impact_scene(2e-3, nu=0.3, effects=()))
+    assert history.coefficient_of_restitution == pytest.approx(1.0, abs=1e-3)
+    assert history.dissipated_energy.max() == 0
+
+
+def test_a_body_that_never_comes_off_is_refused(monkeypatch):
+    from fem_reference.effects import impact
+
+    monkeypatch.setattr(impact, "MAX_STEPS", 100)
+    fluid = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1.0], relaxation_times=[1e-3])
+    assert MAX_STEPS > 100
+    with pytest.raises(NotConvergedError, match="come off"):
+        single_spring(fluid.relaxation, 50)
+
+
+def test_depth_history_relaxes_to_the_long_term_modulus():
+    layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
+    loading = DepthHistory(time=[0, 1e-6, 20e-3], depth=[0, 5e-5, 5e-5])
+    history = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
+    at_hold = np.argmin(np.abs(history.time - 1e-6))
+    # the force of a held contact relaxes as G(t): G_0 at once (the ramp lasts tau / 1000), G_inf at last
+    assert history.normal_force[-1] / history.normal_force[at_hold] == pytest.approx(0.1, rel=2e-3)
+    assert history.contact_radius[at_hold] == pytest.approx(history.contact_radius[-1], rel=2e-2)
+
+
+def test_force_history_reproduces_the_depth_history_it_came_from():
+    layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
+    loading = DepthHistory(time=[0, 1e-3, 2e-3], depth=[0, 5e-5, 5e-5])
+    there = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
+    some = np.unique([*range(0, len(there), 10), len(there) - 1])
+    back_loading = ForceHistory(time=there.time[some], force=there.normal_force[some])
+    back = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=back_loading, effects=(SOLID,)))
+    depth = np.interp(there.time, back.time, back.indentation_depth)
+    assert depth[10:] == pytest.approx(there.indentation_depth[10:], abs=5e-3 * 5e-5)
+
+
+def test_history_that_outgrows_or_never_meets_the_profile_is_refused():
+    layer = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
+    for loading, match in (
+        (DepthHistory(time=[0, 1], depth=[0, 1.2e-3]), "end of the profile"),
+        (DepthHistory(time=[0, 1], depth=[0, -1e-6]), "never presses"),
+    ):
+        with pytest.raises(InvalidInput, match=match):
+            QUICK.solve(Scene(layer=layer, indenter=Sphere(radius=0.2e-3), loading=loading))
+
+
+def test_relaxation_step_is_exact_for_linear_strain():
+    relaxation = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1.0], relaxation_times=[0.7]).relaxation
+    step = relaxation_step(relaxation, 0.3)
+    # s' = e' - s/tau with e = t: s = tau (1 - exp(-t/tau))
+    assert step.tangent[0] * 0.3 == pytest.approx(0.7 * (1 - exp(-0.3 / 0.7)), rel=1e-14)
+    assert relaxation_step(relaxation, 1e-12).tangent[0] == pytest.approx(1.0, rel=1e-11)
+    # energy: int s^2 / tau dt
+    exact = 0.7 * (0.3 - 2 * 0.7 * (1 - exp(-0.3 / 0.7)) + 0.35 * (1 - exp(-0.6 / 0.7)))
+    assert step.dissipation(np.zeros((1, 1)), np.array([0.3]), np.eye(1)) == pytest.approx(exact, rel=1e-12)
+
+
+def test_peak_lies_between_samples():
+    t = np.linspace(0, 2, 8)
+    assert peak(1 - (t - 1.1) ** 2) == pytest.approx(1.0, rel=1e-14)
