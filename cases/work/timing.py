@@ -94,11 +94,6 @@ def slowdown(base: Sequence[float], head: Sequence[float], seed: int = 20230420)
     return Slowdown(ratio=float(np.exp(np.median(logs))), lower=float(np.exp(lower)), upper=float(np.exp(upper)))
 
 
-def null_spread(identical: Slowdown) -> float:
-    """Return d, the standard error of the median ratio of two identical versions: a quarter of its 95 % interval."""
-    return float(np.log(identical.upper / identical.lower)) / 4
-
-
 def is_slower(measured: Slowdown, null_spread: float) -> bool:
     """Fail iff the lower bound of the ratio exceeds 1 + max(0.10, 3 d), d from a pair of identical versions."""
     return measured.lower > 1 + max(0.10, 3 * null_spread)
