@@ -30,7 +30,7 @@ class MethodUse:
 
 @dataclass(frozen=True, kw_only=True)
 class TableEntry:
-    """Where a built-in method lives, and what its answers share with others."""
+    """Where a built-in method lives (a class, or a function that returns one), and what its answers share."""
 
     module: str
     attribute: str
@@ -40,10 +40,10 @@ class TableEntry:
 LAYER_KERNEL = "layer kernel"
 
 BUILT_IN: Mapping[str, TableEntry] = {
-    "mdr": TableEntry(module="mdr", attribute="Mdr", shared_inputs=(LAYER_KERNEL,)),
+    "mdr": TableEntry(module="cases.variants", attribute="mdr_by_integral_equation", shared_inputs=(LAYER_KERNEL,)),
+    "mdr_table": TableEntry(module="cases.variants", attribute="mdr_by_fft_table", shared_inputs=(LAYER_KERNEL,)),
     "fem": TableEntry(module="fem_reference", attribute="Fem"),
-    "bem": TableEntry(module="bem", attribute="Bem", shared_inputs=(LAYER_KERNEL,)),
-    "integral_equation": TableEntry(module="bem", attribute="IntegralEquationMethod", shared_inputs=(LAYER_KERNEL,)),
+    "bem": TableEntry(module="bem.direct", attribute="Bem", shared_inputs=(LAYER_KERNEL,)),
 }
 
 

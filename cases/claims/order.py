@@ -1,7 +1,7 @@
 """The observed order of convergence of one method on one scene."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from cases.case import Case, CaseScene
@@ -18,12 +18,12 @@ from contact import Scene
 
 @dataclass(frozen=True, kw_only=True)
 class Order(DeclaredClaim):
-    """Under halved discretisation lengths the quantity's last step converges at its formal order.
+    """On a sequence of grids the quantity's last step converges at its formal order.
 
     Attributes:
         method: label of the method in the case.
-        settings: of the coarsest grid, in place of those of the case.
-        levels: grids; each halves the discretisation length of the one before.
+        ladder: settings of each grid, coarsest first, in place of those of the case.
+        ratio: of the discretisation lengths of neighbours.
         formal_order: p_f of this case, quantity and mesh family; None claims spectral convergence.
         least_digits: digits per refinement, for spectral convergence.
         mesh_family: what the formal order belongs to.
@@ -35,8 +35,8 @@ class Order(DeclaredClaim):
     kind: ClassVar[Kind] = Kind.ORDER
 
     method: str
-    settings: Mapping[str, Any] = field(default_factory=dict)
-    levels: int = 4
+    ladder: tuple[Mapping[str, Any], ...]
+    ratio: float = 2.0
     formal_order: float | None = None
     least_digits: float = 1.0
     mesh_family: str
@@ -68,18 +68,16 @@ class Order(DeclaredClaim):
                 yield self._study(scene, runs)
 
     def _grids(self, case: Case, scene: CaseScene) -> Iterator[Task]:
-        task = case.task(scene, case.use(scene, self.method))
         use = case.use(scene, self.method)
-        table_name = use.method or use.label
-        solver = MethodUse(label=self.method, method=table_name, settings=self.settings or use.settings).build()
-        for level in range(self.levels):
+        task = case.task(scene, use)
+        for level, settings in enumerate(self.ladder):
+            solver = MethodUse(label=use.label, method=use.method, settings=settings).build()
             yield task.changed(f"{self.name}, grid {level}", solver=solver)
-            solver = solver.refined()
 
     def _study(self, scene: CaseScene, runs: list[SceneRun]) -> ConvergenceStudy:
         finest_first = runs[::-1]
         sequence = Refinements(
-            lengths=tuple(0.5**level for level in range(len(runs)))[::-1],
+            lengths=tuple(self.ratio**-level for level in range(len(runs)))[::-1],
             values=tuple(run.quantity(self.quantity).values[-1] for run in finest_first),
             unknowns=tuple(run.cost.unknowns if run.cost else 0 for run in finest_first),
             seconds=tuple(run.cost.cpu_seconds if run.cost else 0.0 for run in finest_first),

@@ -45,6 +45,7 @@ def judge_agreement(
     verdict = _verdict(error, spread, tolerance)
     seen = f"relative difference {difference:+.1e}, uncertainty {spread:.1e}, tolerance {tolerance:.0e}"
     advice = f"; refine {max(uncertainties, key=lambda m: uncertainties[m])}" if spread > tolerance else ""
+    advice += "; more than the methods' own uncertainties explain" if error > spread else ""
     return Judgement(
         status=_STATUS[verdict],
         verdict=verdict,

@@ -72,7 +72,8 @@ def fake_case(*, fast=FAST, slow=SLOW, name="fake_hertz", ladder=None, work=Fals
     ladder = ladder or {"cell": 0.1}
     force = {"quantity": "normal_force", **STATED}
     pressure = {"quantity": "pressure", "tolerance": 1e-5, "fast": "fast", "reference": "slow", **STATED}
-    grids = {"settings": ladder, "formal_order": 1.0, "mesh_family": "uniform", "tolerance": 0.2}
+    steps = tuple({**ladder, "cell": ladder["cell"] / 2**level} for level in range(4))
+    grids = {"ladder": steps, "formal_order": 1.0, "mesh_family": "uniform", "tolerance": 0.2}
     twin = {"change": double_modulus, "factors": {"normal_force": 2.0}, "tolerance": 1e-12}
     claims = (
         Exact(name="closed form", methods=("fast",), expected=hertz_force, tolerance=1e-10, **force),
