@@ -30,12 +30,19 @@ def test_impossible_times_are_refused(bad):
         summed_up(bad)
 
 
-def test_a_fast_call_is_looped_and_a_warm_up_is_not_counted():
+def test_a_fast_call_is_looped_and_a_warm_up_is_not_counted(monkeypatch):
+    """On a clock that only the call itself moves, by one millisecond and by a second in the first (cold) one."""
+    clock = [0.0]
+    monkeypatch.setattr(time, "perf_counter", lambda: clock[0])
     calls = []
-    timing = timed(lambda: calls.append(time.sleep(0.001)), samples=3, shortest=0.01)
-    assert len(timing.samples) == 3
-    assert len(calls) > 3 + 2
-    assert timing.minimum >= 0.001
+
+    def call():
+        calls.append(None)
+        clock[0] += 0.001
+
+    timing = timed(call, samples=3, shortest=0.01)
+    assert timing.samples == pytest.approx((0.001, 0.001, 0.001))
+    assert len(calls) == 2 + 3 * 10
 
 
 def test_identical_versions_pass_twenty_times():

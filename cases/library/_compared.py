@@ -1,0 +1,63 @@
+"""Agreement claims that most cases make, and the methods they compare."""
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import replace
+
+from cases.case import CaseScene
+from cases.claims.agreement import Agreement
+from cases.claims.declared import Reason
+from cases.methods import MethodUse
+from cases.results import Origin
+
+MDR = MethodUse(label="mdr")
+FEM = MethodUse(label="fem", settings={"accuracy": 1e-6})
+QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
+BEM = MethodUse(label="bem", settings={"points": 256})
+TABLE = MethodUse(label="mdr_table", settings={"cells": 256, "ratios": 80, "radii": 200})
+
+FINITE_ELEMENTS = Reason(
+    because="both solve the same linear elastic layer; they share no input",
+    derived_from="ten times the finite element accuracy of 1e-6; MDR's own error is below 1e-9",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="axisymmetric mixed finite elements",
+)
+BOUNDARY_ELEMENTS = Reason(
+    because="the direct method solves the profile on a grid, without flat punches and without MDR",
+    derived_from="ten times the error of second-order boundary elements on 128 cells across the contact",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="FFT boundary elements; shares the layer kernel",
+)
+PUBLISHED_ROUTE = Reason(
+    because="Eqs. (11) and (12) on tabulated FFT flat punches are the published form of the same method",
+    derived_from="twice the error that the table states for forces of profiles, 5e-3 on 80 ratios",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="FFT flat-punch table; shares kernel and MDR",
+)
+
+PATH_QUANTITIES = ("indentation_depth", "normal_force", "contact_stiffness")
+
+
+def agreements(
+    scenes: Iterable[CaseScene],
+    tolerances: Mapping[str, float],
+    quantities: Iterable[str] = PATH_QUANTITIES,
+) -> Iterator[Agreement]:
+    """Yield the agreement of MDR with each method of ``tolerances`` on ``scenes`` in ``quantities``."""
+    reasons = {"fem": FINITE_ELEMENTS, "bem": BOUNDARY_ELEMENTS, "mdr_table": PUBLISHED_ROUTE}
+    names = tuple(scene.name for scene in scenes)
+    for label, tolerance in tolerances.items():
+        for quantity in quantities:
+            yield Agreement(
+                name=f"{quantity.replace('_', ' ')}: MDR and {label}",
+                quantity=quantity,
+                scenes=names,
+                fast="mdr",
+                reference=label,
+                tolerance=tolerance,
+                reason=reasons[label],
+            )
+
+
+def with_reason(reason: Reason, derived_from: str) -> Reason:
+    """Return ``reason`` with another origin of its tolerance."""
+    return replace(reason, derived_from=derived_from)
