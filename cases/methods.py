@@ -44,6 +44,9 @@ BUILT_IN: Mapping[str, TableEntry] = {
     "mdr_table": TableEntry(module="cases.variants", attribute="mdr_by_fft_table", shared_inputs=(LAYER_KERNEL,)),
     "fem": TableEntry(module="fem_reference", attribute="Fem"),
     "bem": TableEntry(module="bem.direct", attribute="Bem", shared_inputs=(LAYER_KERNEL,)),
+    "integral_equation": TableEntry(
+        module="bem.integral_equation_method", attribute="IntegralEquationMethod", shared_inputs=(LAYER_KERNEL,)
+    ),
 }
 
 

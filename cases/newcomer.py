@@ -33,7 +33,9 @@ def with_newcomer(case: Case, name: str, *, claimed_accuracy: float = 0.0) -> Ca
     convergence belong to a mesh family, and residuals to the method that publishes them: they stay as they are.
     """
     claims = (new for claim in case.claims for new in _extended(case, claim, name, claimed_accuracy))
-    return replace(case, methods=(*case.methods, MethodUse(label=name)), claims=tuple(claims))
+    use = MethodUse(label=name)
+    scenes = (replace(scene, methods=(*scene.methods, use)) if scene.methods else scene for scene in case.scenes)
+    return replace(case, methods=(*case.methods, use), scenes=tuple(scenes), claims=tuple(claims))
 
 
 def _extended(case: Case, claim: DeclaredClaim, name: str, accuracy: float) -> Iterator[DeclaredClaim]:
