@@ -15,7 +15,7 @@ from mdr.assembly import equivalent_system
 from mdr.effects import chebyshev
 from mdr.effects.collocation import STAGES, Event, Trajectory, integrate, states
 from mdr.effects.impact_fixed_radius import FlatPunchLanes
-from mdr.effects.impact_history import ESTIMATED
+from mdr.effects.impact_history import ESTIMATED, distinct
 from mdr.effects.impact_results import ImpactResults
 from mdr.effects.impact_units import impact_of, relaxation_of
 
@@ -125,7 +125,7 @@ def _results(problem: _Problem, motion: Trajectory) -> ImpactResults:
 def _samples(motion: Trajectory) -> FloatArray:
     """States of a single lane in order of time, shape (m, n)."""
     state = np.swapaxes(states(motion, _Z), 1, 2)[..., 0].reshape(motion.final.shape[0], -1)
-    return state[:, np.append(True, np.diff(state[1]) > 0.0)]
+    return state[:, distinct(state[1])]
 
 
 def _peak(motion: Trajectory, component: int) -> FloatArray:

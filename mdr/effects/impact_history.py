@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact import ImpactHistory, Scene, StageLog
 from contact.solution import Setting
@@ -18,6 +19,7 @@ from mdr.effects.spring_table import PROFILE, STIFFNESS
 
 _Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))  # samples on each step, both ends among them
 
+_SHORTEST = 1e-12  # of the contact time: between two samples
 ESTIMATED = (
     "time",
     "indentation_depth",
@@ -39,7 +41,7 @@ def history(
     lanes = problem.lanes
     legs = [_pressing(lanes, leg) for leg in motion.way_in] + [_receding(lanes, leg) for leg in motion.way_out]
     samples = np.concatenate(legs, axis=1)
-    t, delta, v, f, y, held, lost = samples[:, np.append(True, np.diff(samples[0]) > 0.0)]  # steps share their ends
+    t, delta, v, f, y, held, lost = samples[:, distinct(samples[0])]
     outcome = results(problem, motion)
     energy = float(problem.mass[0] * problem.velocity[0] ** 2)
     return ImpactHistory(
@@ -61,6 +63,11 @@ def history(
         peak_depth=float(outcome.peak_depth[0]),
         peak_contact_radius=float(outcome.peak_contact_radius[0]),
     )
+
+
+def distinct(time: FloatArray) -> NDArray[np.bool_]:
+    """Samples that are a visible time before the next one: steps share their ends."""
+    return np.append(np.diff(time) > _SHORTEST * time[-1], True)
 
 
 def _sampled(leg: Leg) -> FloatArray:

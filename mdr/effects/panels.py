@@ -13,10 +13,11 @@ from contact.validation import FloatArray
 from mdr.effects import chebyshev
 
 NODES = 16
-_RESOLVED = 1e-12  # of a panel's largest value: what the last coefficients may be
+_RESOLVED = 1e-12  # of a function's largest value: what the last coefficients may be
 _USABLE = 1e-7  # refuse functions that halving panels does not resolve to this
 _FIRST_PANELS = 4
-_MAX_HALVINGS = 14
+_MOST_PANELS = 200
+_SMALLEST = 2.0**-40  # of the interval: panels shrink towards a tip whose power is not smooth
 
 
 @dataclass(frozen=True)
@@ -27,7 +28,7 @@ class Panel:
         low: Left end.
         high: Right end.
         values: Shape (functions, nodes).
-        tail: Largest of the last coefficients over the largest value, over all functions.
+        tail: Largest of the last coefficients over the function's largest value, over all functions.
     """
 
     low: float
@@ -57,16 +58,20 @@ def resolved_panels(sample: Callable[[FloatArray], FloatArray], low: float, high
     Raises:
         NotConvergedError: If a function is too rough.
     """
-    waiting, done = list(pairwise(np.linspace(low, high, _FIRST_PANELS + 1))), []
-    for halving in range(_MAX_HALVINGS):
-        sampled = _sampled(sample, waiting)
-        allowed = _RESOLVED if halving < _MAX_HALVINGS - 1 else _USABLE
-        done += [panel for panel in sampled if panel.tail <= allowed]
-        waiting = [half for panel in sampled if panel.tail > allowed for half in _halves(panel)]
-        if not waiting:
-            return sorted(done, key=lambda panel: panel.low)
-    worst = max(panel.tail for panel in sampled)
-    raise NotConvergedError("the equivalent springs are too rough for a table", {"unresolved part": worst})
+    waiting = list(pairwise(np.linspace(low, high, _FIRST_PANELS + 1)))
+    done: list[Panel] = []
+    sizes: FloatArray | None = None
+    while waiting and len(waiting) + len(done) < _MOST_PANELS:
+        values = _values(sample, waiting)
+        sizes = np.abs(values).max(axis=(0, 2)) if sizes is None else sizes
+        tails = _tails(values, sizes)
+        panels = [Panel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails.tolist(), strict=True)]
+        allowed = _RESOLVED if min(right - left for left, right in waiting) > _SMALLEST * (high - low) else _USABLE
+        done += [panel for panel in panels if panel.tail <= allowed]
+        waiting = [half for panel in panels if panel.tail > allowed for half in _halves(panel)]
+    if waiting:
+        raise NotConvergedError("the equivalent springs are too rough for a table", {"unresolved part": tails.max()})
+    return sorted(done, key=lambda panel: panel.low)
 
 
 def _halves(panel: Panel) -> list[tuple[float, float]]:
@@ -74,20 +79,17 @@ def _halves(panel: Panel) -> list[tuple[float, float]]:
     return [(panel.low, middle), (middle, panel.high)]
 
 
-def _sampled(sample: Callable[[FloatArray], FloatArray], waiting: list[tuple[float, float]]) -> list[Panel]:
-    """One call for all panels that wait."""
+def _values(sample: Callable[[FloatArray], FloatArray], waiting: list[tuple[float, float]]) -> FloatArray:
+    """One call for all panels that wait, shape (panels, functions, nodes)."""
     low, high = np.array(waiting).T
     points = 0.5 * (low + high)[:, None] + 0.5 * (high - low)[:, None] * chebyshev.nodes(NODES)
-    values = np.swapaxes(sample(points.ravel()).reshape(-1, *points.shape), 0, 1)
-    tails = _tail(values).max(axis=1)
-    return [Panel(low[i], high[i], values[i], float(tails[i])) for i in range(low.size)]
+    return np.swapaxes(sample(points.ravel()).reshape(-1, *points.shape), 0, 1)
 
 
-def _tail(values: FloatArray) -> FloatArray:
-    """Size of the last three coefficients against the largest value, along the last axis."""
-    coefficients = values @ chebyshev.analysis(NODES).T
-    largest = np.abs(values).max(axis=-1)
-    return np.asarray(np.abs(coefficients[..., -3:]).max(axis=-1) / np.where(largest > 0.0, largest, 1.0))
+def _tails(values: FloatArray, sizes: FloatArray) -> FloatArray:
+    """Size of the last three coefficients against the functions' sizes, the worst function of each panel."""
+    last = values @ chebyshev.analysis(NODES)[-3:].T
+    return np.asarray((np.abs(last).max(axis=2) / np.where(sizes > 0.0, sizes, 1.0)).max(axis=1))
 
 
 @dataclass(frozen=True)

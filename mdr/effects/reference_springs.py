@@ -130,6 +130,11 @@ def _table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunch
     )
 
 
+def own_table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
+    """The spring table of one scene in SI units."""
+    return _table(layer, indenter, radius, flat_punch)  # type: ignore[arg-type]  # sources are frozen records
+
+
 def table_for_energy(
     layer: Layer, indenter: Profile, start: float, energy: float, flat_punch: FlatPunchSource
 ) -> SpringTable:
@@ -142,7 +147,7 @@ def table_for_energy(
     """
     flat = indenter.flat_radius
     for end in growing_radii(indenter, flat + 2.0 ** math.ceil(math.log2(start - flat))):
-        table = _table(layer, indenter, end, flat_punch)  # type: ignore[arg-type]  # sources are frozen records
+        table = own_table(layer, indenter, end, flat_punch)
         if elastic_energy(table, table.section_ends[-1:])[0] >= energy:
             return table
     raise InvalidInput(

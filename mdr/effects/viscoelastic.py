@@ -1,0 +1,223 @@
+"""Incompressible viscoelastic layers under a prescribed depth or force history, Eqs. (47), (51) and (52).
+
+Loading, unloading with a receding front, and reloading over a surface that has not yet recovered: one bed of springs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bem.flat_punch import FlatPunchSource
+from contact import (
+    DepthHistory,
+    ForceHistory,
+    HistoryPath,
+    InvalidInput,
+    Profile,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
+from contact.solution import Setting
+from contact.validation import FloatArray
+from mdr.assembly import equivalent_system
+from mdr.effects.bed_force import Bed, carried
+from mdr.effects.force_control import Ramp, pressed_at_once, to_force
+from mdr.effects.impact_units import is_flat, relaxation_of
+from mdr.effects.reference_springs import bisected, growing_radii, own_table, upper
+from mdr.effects.spring_bed import BedState, SpringLaw, advance, undeformed
+from mdr.effects.spring_table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
+
+ACCURACY = 1e-9  # of the method's time integration, for which the next two numbers stand; one digit more doubles both
+_GAPS = 640  # between springs; even, so that every second spring reaches from end to end
+_FINENESS = 400  # substeps of a whole force history, at least two an interval
+_FEWEST, _MOST = -2, 2  # how often they may be doubled
+_MOST_SUBSTEPS = 64  # of one interval
+_MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
+_BEND = 1e-6  # of the largest spring force: an outward rise that counts
+
+
+@dataclass(frozen=True)
+class _Track:
+    """One pass over the history.
+
+    Attributes:
+        depth: delta [m] at the given instants, shape (n,).
+        force: F_N [N], shape (n,).
+        y: Front coordinate, negative where there is no contact, shape (n,).
+        bent: Whether the spring forces ever rose outwards.
+    """
+
+    depth: FloatArray
+    force: FloatArray
+    y: FloatArray
+    bent: bool
+
+
+def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
+    """Force under a prescribed depth, or depth under a prescribed force.
+
+    Raises:
+        InvalidInput: If a force is negative or nothing is ever pressed.
+        UnsupportedSceneError: If the contact would leave a gap inside itself.
+    """
+    log, loading = StageLog(), scene.loading
+    if not isinstance(loading, DepthHistory | ForceHistory):
+        raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
+    law, doublings = SpringLaw.of(relaxation_of(scene)), _doublings(settings)
+    gaps, fineness = int(_GAPS * 2.0**doublings), int(_FINENESS * 2.0**doublings)
+    with log.stage("equivalent_system"):
+        table, bed = _bed(scene, loading, law, flat_punch, gaps)
+    with log.stage("history"):
+        fine = _follow(law, bed, loading, fineness)
+        coarse = _follow(law, bed.coarser(), loading, fineness // 2)
+    log.count("springs", bed.y.size)
+    log.count("instants", loading.time.size)
+    contact = fine.y >= 0.0
+    error = np.full(loading.time.size, max(_change(fine.force, coarse.force), _change(fine.depth, coarse.depth)))
+    return HistoryPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate=dict.fromkeys(("indentation_depth", "normal_force"), error),
+        cost=log.cost(unknowns=bed.y.size),
+        stages=log.records,
+        notes=(_BENT,) if fine.bent else (),
+        time=loading.time,
+        indentation_depth=fine.depth,
+        normal_force=fine.force,
+        contact_radius=np.where(contact, _radius(scene, table, np.maximum(fine.y, 0.0)), 0.0),
+    )
+
+
+_BENT = (
+    "Reloading has left spring forces that rise outwards somewhere; that the pressure is positive everywhere then "
+    "follows no longer from the springs alone."
+)
+
+
+def _doublings(settings: Mapping[str, Setting]) -> int:
+    """How much finer than usual the springs and substeps are for the method's accuracy."""
+    accuracy = settings.get("accuracy") or ACCURACY
+    return int(np.clip(round(np.log10(ACCURACY / float(accuracy))), _FEWEST, _MOST))
+
+
+def _change(fine: FloatArray, coarse: FloatArray) -> float:
+    """Largest difference against the largest value."""
+    return float(np.abs(fine - coarse).max() / max(float(np.abs(fine).max()), np.finfo(float).tiny))
+
+
+def _radius(scene: Scene, table: SpringTable | None, y: FloatArray) -> FloatArray:
+    return np.full(y.shape, scene.indenter.max_radius) if table is None else table.radius(y)
+
+
+def _bed(
+    scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
+) -> tuple[SpringTable | None, Bed]:
+    """Springs out to the largest radius that the history can reach."""
+    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
+    _refuse_idle(loading, prescribed)
+    if is_flat(scene):
+        end = scene.indenter.max_radius
+        system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
+        core = float(system.contact_stiffness(end))
+        return None, Bed(np.array([0.0, 1.0]), np.array([0.0, np.inf]), np.zeros(2), core)
+    largest = float(prescribed.max())
+    for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
+        table = own_table(scene.layer, scene.indenter, radius, flat_punch)
+        y = np.linspace(0.0, float(table.section_ends[-1]), gaps + 1)
+        reached = _reached(table, y, loading, law)
+        if np.interp(y[-1] / _MARGIN, y, reached) >= largest:
+            break
+    if reached[-1] < largest:
+        raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
+    y = np.linspace(0.0, min(_MARGIN * float(np.interp(largest, reached, y)), float(y[-1])), gaps + 1)
+    rows = table.evaluate(y)
+    core = float(rows[STIFFNESS, 0]) if scene.indenter.flat_radius > 0.0 else 0.0
+    return table, Bed(y, np.maximum(rows[PROFILE], 0.0), rows[STIFFENING], core)
+
+
+def _refuse_idle(loading: DepthHistory | ForceHistory, prescribed: FloatArray) -> None:
+    if isinstance(loading, ForceHistory) and prescribed.min() < 0.0:
+        worst = int(prescribed.argmin())
+        raise InvalidInput(
+            f"loading.force = {prescribed[worst]:g} (entry {worst}): without adhesion nothing pulls; stay above zero"
+        )
+    if prescribed.max() <= 0.0:
+        raise InvalidInput(f"loading: its largest value is {prescribed.max():g}; the indenter never presses")
+
+
+def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
+    """A radius [m] to start from: where the half-space, roughly, has the largest depth or force."""
+    indenter, modulus = scene.indenter, scene.layer.contact_modulus
+    if isinstance(loading, DepthHistory):
+        largest = float(loading.depth.max())
+        return _beyond_flat(indenter, lambda r: float(indenter.height(r)) - largest)
+    largest = float(loading.force.max())
+    return _beyond_flat(indenter, lambda r: modulus * r * float(indenter.height(r)) - largest)
+
+
+def _beyond_flat(indenter: Profile, excess: Callable[[float], float]) -> float:
+    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
+
+
+def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHistory, law: SpringLaw) -> FloatArray:
+    """The largest depth, or force, that keeps the front within y: the force of a layer relaxed for the whole time."""
+    rows = table.evaluate(y)
+    if isinstance(loading, DepthHistory):
+        return np.asarray(rows[PROFILE])
+    decay = np.exp(-(loading.time[-1] - loading.time[0]) / law.times)
+    softest = law.long_term + float((law.weights * decay).sum())
+    return np.asarray(softest * (rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]))
+
+
+def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, fineness: int) -> _Track:
+    """March through the history and record depth, force and front at the given instants."""
+    time = loading.time
+    states = (
+        _by_depth(law, bed, loading) if isinstance(loading, DepthHistory) else _by_force(law, bed, loading, fineness)
+    )
+    records, bent = [], False
+    for (state, speed), instant in zip(states, time, strict=True):
+        bent |= _check_circle(law, state, speed, float(instant))
+        records.append((state.depth, *carried(law, bed, state, speed)))
+    depth, force, y = np.array(records).T
+    return _Track(depth, force if isinstance(loading, DepthHistory) else loading.force, y, bent)
+
+
+def _by_depth(law: SpringLaw, bed: Bed, loading: DepthHistory) -> Iterator[tuple[BedState, float]]:
+    """The bed and the speed of the depth at each instant."""
+    state = undeformed(law, bed.profile, float(loading.depth[0]))
+    yield state, 0.0
+    for duration, depth in zip(np.diff(loading.time), loading.depth[1:], strict=True):
+        speed = float(depth - state.depth) / float(duration)
+        state = advance(law, bed.profile, state, float(depth), float(duration))
+        yield state, speed
+
+
+def _by_force(law: SpringLaw, bed: Bed, loading: ForceHistory, fineness: int) -> Iterator[tuple[BedState, float]]:
+    """The same under prescribed force."""
+    force, durations = loading.force, np.diff(loading.time)
+    state = pressed_at_once(law, bed, float(force[0])) if force[0] > 0.0 else undeformed(law, bed.profile, 0.0)
+    yield state, 0.0
+    for i, duration in enumerate(durations):
+        substeps = int(np.clip(np.ceil(fineness * duration / durations.sum()), 2, _MOST_SUBSTEPS))
+        state, speed = to_force(law, bed, state, Ramp(float(force[i]), float(force[i + 1]), float(duration)), substeps)
+        yield state, speed
+
+
+def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:
+    """Refuse a contact with a gap inside; say whether spring forces rise outwards."""
+    touching = np.flatnonzero(state.touching)
+    if not touching.size:
+        return False
+    if touching[-1] > touching.size:
+        raise UnsupportedSceneError(
+            f"at t = {time:g} s the contact opens inside while it holds outside: the method needs one circle; "
+            "end the history earlier, or let the layer recover before reloading"
+        )
+    forces = law.force(state.surface, state.branches, speed)[touching]
+    return bool(np.any(np.diff(forces) > _BEND * np.abs(forces).max()))

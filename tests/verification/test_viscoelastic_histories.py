@@ -1,0 +1,214 @@
+"""Prescribed depth and force histories against closed forms, the impact solver and a brute-force bed of springs."""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    InvalidInput,
+    KelvinVoigt,
+    Paraboloid,
+    PronySeries,
+    Scene,
+    StandardSolid,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from mdr import Mdr, equivalent_system
+from tests.mdr.viscoelastic_scenes import GLASSY_BRANCH, LONG_TERM, RELAXATION_TIME, figure_12, incompressible
+
+TOTAL = GLASSY_BRANCH + LONG_TERM
+CURVATURE = 0.01
+STANDARD = StandardSolid(
+    long_term_shear_modulus=LONG_TERM,
+    maxwell_shear_modulus=GLASSY_BRANCH,
+    viscosity=GLASSY_BRANCH * RELAXATION_TIME,
+)
+KELVIN_VOIGT = KelvinVoigt(shear_modulus=TOTAL, viscosity=TOTAL * RELAXATION_TIME)
+HERTZ = 16.0 / 3.0 * np.sqrt(CURVATURE)  # F = HERTZ G delta^1.5 on an incompressible half-space
+
+
+def solve(loading, *, thickness=np.inf, model=STANDARD, indenter=None):
+    return Mdr().solve(
+        Scene(
+            layer=incompressible(thickness, TOTAL),
+            indenter=indenter or Paraboloid(radius_of_curvature=CURVATURE),
+            loading=loading,
+            effects=(model,) if model else (),
+        )
+    )
+
+
+def relaxation(t):
+    return LONG_TERM + GLASSY_BRANCH * np.exp(-t / RELAXATION_TIME)
+
+
+def creep(t):
+    retarded = np.exp(-t * LONG_TERM / TOTAL / RELAXATION_TIME)
+    return 1.0 / LONG_TERM - (1.0 / LONG_TERM - 1.0 / TOTAL) * retarded
+
+
+def test_ramp_in_depth_is_lee_and_radok():
+    """Lee and Radok 1960: F = HERTZ int G(t - s) d(delta^1.5)."""
+    time = np.linspace(0.0, 3e-3, 16)
+    rate = 1e-4 / 3e-3
+    answer = solve(DepthHistory(time=time, depth=rate * time))
+    expected = [
+        HERTZ * quad(lambda s, end=end: relaxation(end - s) * 1.5 * rate * np.sqrt(rate * s), 0.0, end, epsrel=1e-12)[0]
+        for end in time
+    ]
+    np.testing.assert_allclose(answer.normal_force, expected, atol=1e-8 * max(expected))
+    assert np.all(np.abs(answer.normal_force - expected) <= 3.0 * answer.uncertainty("normal_force"))
+    np.testing.assert_allclose(answer.contact_radius, np.sqrt(CURVATURE * rate * time), atol=1e-6 * 1e-3)
+
+
+def test_a_step_in_depth_relaxes():
+    time = np.linspace(0.0, 5e-3, 11)
+    answer = solve(DepthHistory(time=time, depth=np.full(11, 1e-4)))
+    np.testing.assert_allclose(answer.normal_force, HERTZ * 1e-6 * relaxation(time), rtol=1e-9)
+
+
+@pytest.mark.parametrize("last", [3e-3, 30e-3])
+def test_a_step_in_force_creeps(last):
+    time = np.linspace(0.0, last, 11)
+    answer = solve(ForceHistory(time=time, force=np.ones(11)))
+    np.testing.assert_allclose(HERTZ * answer.indentation_depth**1.5, creep(time), rtol=2e-4)  # intervals of three tau
+    exact = (creep(time) / HERTZ) ** (2.0 / 3.0)
+    assert np.all(np.abs(answer.indentation_depth - exact) <= 3.0 * answer.uncertainty("indentation_depth"))
+    assert np.all(answer.contact_radius[1:] > answer.contact_radius[:-1])
+
+
+def test_kelvin_voigt_ramp():
+    """Eq. (47): elastic force plus eta k_N v."""
+    time = np.linspace(0.0, 1e-3, 9)
+    answer = solve(DepthHistory(time=time, depth=0.1 * time), model=KELVIN_VOIGT)
+    depth, a = 0.1 * time, np.sqrt(CURVATURE * 0.1 * time)
+    expected = HERTZ * TOTAL * depth**1.5 + 8.0 * KELVIN_VOIGT.viscosity * a * 0.1
+    np.testing.assert_allclose(answer.normal_force, expected, atol=1e-7 * expected[-1])
+
+
+@pytest.mark.parametrize("frequency", [10.0, 160.0, 500.0])
+def test_flat_punch_oscillates_with_the_complex_modulus(frequency):
+    """F = k_N/G_0 Im[G*(omega) exp(i omega t)] about a relaxed mean, once transients have died."""
+    punch, omega, cycles = (
+        FlatPunch(radius=1e-3),
+        2.0 * np.pi * frequency,
+        max(2, int(20.0 * RELAXATION_TIME * frequency)),
+    )
+    sway = np.linspace(0.0, cycles / frequency, 256 * cycles + 1)
+    time = np.concatenate([[0.0], 100.0 * RELAXATION_TIME + sway])
+    depth = 1e-5 + np.concatenate([[0.0], 1e-6 * np.sin(omega * sway)])
+    answer = solve(DepthHistory(time=time, depth=depth), thickness=1e-3, indenter=punch)
+    layer = incompressible(1e-3, TOTAL)
+    stiffness = float(equivalent_system(layer, punch, 1e-3, Mdr().flat_punch).contact_stiffness(1e-3)) / TOTAL
+    modulus = LONG_TERM + GLASSY_BRANCH * 1j * omega * RELAXATION_TIME / (1.0 + 1j * omega * RELAXATION_TIME)
+    last = slice(-256, None)
+    expected = stiffness * (1e-5 * LONG_TERM + 1e-6 * np.imag(modulus * np.exp(1j * omega * sway[last])))
+    np.testing.assert_allclose(answer.normal_force[last], expected, atol=2e-4 * stiffness * 1e-6 * TOTAL)
+
+
+@pytest.mark.parametrize("thickness", [np.inf, 1e-3])
+def test_an_impact_played_back_as_a_history(thickness):
+    """Depth in, force out; force in, depth out: on loading and on unloading with a receding front."""
+    impact = Mdr(accuracy=1e-11).solve(figure_12(thickness))
+    load = DepthHistory(time=impact.time, depth=impact.indentation_depth)
+    by_depth = solve(load, thickness=thickness)
+    np.testing.assert_allclose(by_depth.normal_force, impact.normal_force, atol=2e-4 * impact.peak_force)
+    inner = impact.contact_radius > 0.1 * impact.peak_contact_radius
+    np.testing.assert_allclose(by_depth.contact_radius[inner], impact.contact_radius[inner], rtol=5e-3)
+
+
+def test_force_in_depth_out_and_back_again():
+    time = np.linspace(0.0, 4e-3, 25)
+    force = np.sin(np.pi * time / 4e-3) ** 2
+    depth = solve(ForceHistory(time=time, force=force), thickness=2e-3).indentation_depth
+    # the depth bends within an interval, so the way back is of second order in the interval
+    again = solve(DepthHistory(time=time, depth=depth), thickness=2e-3).normal_force
+    np.testing.assert_allclose(again, force, atol=5e-3)
+
+
+def brute_force(thickness, time, depth, count=160, substeps=400):
+    """Explicit Euler steps of every spring, free ones included: slow, of first order, from Eqs. (51) and (52) alone."""
+    layer = incompressible(thickness, TOTAL)
+    radius = 1.02 * np.sqrt(CURVATURE * depth.max()) * (1.0 if np.isinf(thickness) else 1.5)
+    springs = equivalent_system(layer, Paraboloid(radius_of_curvature=CURVATURE), radius, Mdr().flat_punch)
+    x = radius * (np.arange(count) + 0.5) / count
+    weight, profile = 2.0 * radius / count * springs.spring_stiffness(x), springs.mdr_profile(x)
+    u, inner, forces = np.zeros(count), np.zeros(count), [0.0]
+    g_inf, g_one = LONG_TERM / TOTAL, GLASSY_BRANCH / TOTAL
+    for k in range(1, time.size):
+        for m in range(substeps):
+            dt = (time[k] - time[k - 1]) / substeps
+            delta = depth[k - 1] + (depth[k] - depth[k - 1]) * (m + 1) / substeps
+            stretched = inner + (delta - profile - u) - inner * dt / RELAXATION_TIME
+            pushed = g_inf * (delta - profile) + g_one * stretched
+            free = g_one * inner * dt / RELAXATION_TIME  # u' (g_inf + g_one) = g_one inner/tau
+            contact = pushed > 0.0  # a free spring that is not reached would be pulled
+            inner = np.where(contact, stretched, inner + free - inner * dt / RELAXATION_TIME)
+            u = np.where(contact, delta - profile, u + free)
+        forces.append(float(weight @ np.where(contact, g_inf * u + g_one * inner, 0.0)))
+    return np.array(forces)
+
+
+@pytest.mark.parametrize("thickness", [np.inf, 1e-3])
+def test_loading_unloading_and_reloading_before_recovery(thickness):
+    time = np.linspace(0.0, 5e-3, 61)
+    depth = 1e-4 * np.interp(time, [0.0, 1e-3, 1.6e-3, 2.6e-3, 3.2e-3, 5e-3], [0.0, 1.0, 0.75, 1.1, 0.3, 1.2])
+    answer = solve(DepthHistory(time=time, depth=depth), thickness=thickness)
+    expected = brute_force(thickness, time, depth)
+    np.testing.assert_allclose(answer.normal_force, expected, atol=1.5e-2 * expected.max())
+
+
+def test_reloading_meets_a_surface_that_has_not_recovered():
+    """The same second stroke, sooner or later: the sooner, the less force, and much later as much as the first."""
+    peaks = []
+    for pause in (1e-3, 10e-3, 200e-3):
+        time = np.array([0.0, 1e-3, 2e-3, 2e-3 + pause, 3e-3 + pause])
+        peaks.append(solve(DepthHistory(time=time, depth=[0.0, 1e-4, -1e-5, -1e-5, 1e-4])).normal_force[[1, -1]])
+    first, second = np.array(peaks).T
+    assert second[0] < second[1] < second[2]
+    assert second[2] == pytest.approx(first[2] * (1.1 / 1.0) ** 0, rel=0.05)
+
+
+def test_one_formulation():
+    """A Prony series of one branch is the standard solid; a very fast branch is a dashpot."""
+    time = np.linspace(0.0, 4e-3, 41)
+    load = DepthHistory(time=time, depth=1e-4 * np.sin(np.pi * time / 4e-3) ** 2)
+    series = PronySeries(
+        long_term_shear_modulus=LONG_TERM, shear_moduli=[GLASSY_BRANCH], relaxation_times=[RELAXATION_TIME]
+    )
+    standard = solve(load)
+    np.testing.assert_allclose(solve(load, model=series).normal_force, standard.normal_force, rtol=1e-12, atol=1e-14)
+    elastic = solve(load, model=None)
+    np.testing.assert_allclose(
+        elastic.normal_force, HERTZ * TOTAL * np.asarray(load.depth) ** 1.5, atol=1e-7 * elastic.normal_force.max()
+    )
+
+
+def test_a_worn_cone_and_its_flat_end():
+    time = np.linspace(0.0, 4e-3, 21)
+    load = DepthHistory(time=time, depth=5e-5 * np.sin(np.pi * time / 4e-3) ** 2)
+    answer = solve(load, indenter=TruncatedCone(flat_radius=5e-4, slope=0.1), thickness=1e-3)
+    in_contact = answer.contact_radius > 0.0
+    assert answer.contact_radius[in_contact].min() >= 5e-4
+    assert not in_contact[-1]
+    assert answer.normal_force[~in_contact].max(initial=0.0) == 0.0
+
+
+def test_what_is_refused():
+    with pytest.raises(InvalidInput, match="without adhesion nothing pulls"):
+        solve(ForceHistory(time=[0.0, 1.0], force=[1.0, -1.0]))
+    with pytest.raises(InvalidInput, match="never presses"):
+        solve(DepthHistory(time=[0.0, 1.0], depth=[0.0, -1e-3]))
+    compressible = Scene(
+        layer=incompressible(1e-3, TOTAL).replace(poissons_ratio=0.45, youngs_modulus=2.9 * TOTAL),
+        indenter=FlatPunch(radius=1e-3),
+        loading=DepthHistory(time=[0.0, 1.0], depth=[0.0, 1e-3]),
+        effects=(STANDARD,),
+    )
+    assert "incompressible layers only" in Mdr().supports(compressible).reason
+    with pytest.raises(UnsupportedSceneError, match="poissons_ratio"):
+        Mdr().solve(compressible)
