@@ -2,10 +2,27 @@
 
 from collections.abc import Iterable
 
-from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
+from cases.results import CaseResult, Claim, EffectEntry, Quantity, SceneRun, WorkPrecision
 from reports.method_names import display_name
 from reports.numbers import duration, measured, memory, scaled_unit, small
 from reports.tables import Table
+
+
+def claims(case: CaseResult) -> Table | None:
+    """What is claimed, why, and where tolerance and expected number come from; one row a claim, whatever its scenes."""
+    distinct = {(claim.name, claim.tolerance): claim for claim in case.claims}
+    if not distinct:
+        return None
+    rows = tuple(
+        (f"{c.kind}: {c.name}", f"{small(c.tolerance)}{_unit(c)}", c.because, c.derived_from, f"{c.origin}: {c.source}")
+        for c in distinct.values()
+    )
+    heads = ("claim", "tolerance", "expected because", "tolerance from", "origin of the expected number")
+    return Table(title="Claims", note="", heads=heads, rows=rows, words=5)
+
+
+def _unit(claim: Claim) -> str:
+    return "" if claim.unit == "1" else f" {claim.unit}"
 
 
 def answers(case: CaseResult) -> Table | None:
@@ -73,7 +90,8 @@ def digit_prices(work: WorkPrecision) -> Table | None:
 def stages(case: CaseResult) -> Table | None:
     """Where the time of each solution went: the ledger of stages."""
     rows = []
-    for run in case.runs:
+    judged = {claim.scene for claim in case.claims}
+    for run in (run for run in case.runs if run.scene in judged):
         total = sum(stage.seconds for stage in run.stages)
         for stage in run.stages:
             share = f"{100.0 * stage.seconds / total:.0f} %" if total > 0.0 else ""

@@ -1,54 +1,38 @@
 """report.html: one file that holds everything, needs no script and no network, and says the verdict first."""
 
 import shlex
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
 import jinja2
-from markupsafe import Markup
 
-from cases.results import Acceptance, CaseResult, Kind, RunResult, WorkPrecision
+from cases.results import Acceptance, Kind, RunResult
 from cases.results_files import write_whole
 from cases.status import Status
-from reports import case_tables
-from reports.charts import agreement, convergence, ladder, work_precision
-from reports.drawing import plate_of
-from reports.matrix import case_matrix, run_matrix
+from reports.case_view import CaseView, case_view
+from reports.gallery import Gallery
+from reports.matrix import run_matrix
 from reports.names import file_name
 from reports.numbers import duration, small
-from reports.outcomes import EXPLANATIONS, case_outcomes, counts, headline, outcomes, severity, tone_of, value_text
-from reports.plates import Plate, write_plate
+from reports.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 from reports.tables import Table
 
-FIGURE_FOLDER = "figures"
 ROWS_ON_FIRST_SCREEN = 5
-LARGEST_PAGE = 5_000_000
-"""Bytes of report.html; a larger page keeps its pictures beside it."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Drawn:
-    """A plate with its picture; `folder` is where its files lie, seen from the page."""
-
-    plate: Plate
-    svg: Markup
-    folder: str = FIGURE_FOLDER
 
 
 def write_report(run: RunResult, directory: Path) -> Path:
     """Write report.html and the figures (SVG, PNG, CSV) of `run` into `directory`; return the page's path."""
-    figures = directory / FIGURE_FOLDER
-    figures.mkdir(parents=True, exist_ok=True)
-    cases = [_case_view(case, directory) for case in run.cases]
+    gallery = Gallery(directory)
+    out = shlex.quote(str(directory))
+    cases = [case_view(case, gallery, f"contact-verify run {case.name} --out {out}") for case in run.cases]
     page = directory / "report.html"
     write_whole(page, render(run, directory, cases))
     return page
 
 
-def render(run: RunResult, directory: Path, cases: Sequence[dict[str, object]]) -> str:
+def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
     """The page as text."""
     rows = outcomes(run)
     words, tone = headline(run, rows)
@@ -71,50 +55,6 @@ def render(run: RunResult, directory: Path, cases: Sequence[dict[str, object]]) 
         directory=shlex.quote(str(directory)),
         css=stylesheet(),
     )
-
-
-@dataclass(frozen=True, kw_only=True)
-class TimedView:
-    """Error against seconds with its two tables beside it."""
-
-    drawn: Drawn
-    cheapest: Table
-    prices: Table | None
-
-
-def _case_view(case: CaseResult, directory: Path) -> dict[str, object]:
-    """Everything the page shows of a case, in the words of the template."""
-    command = f"contact-verify run {case.name} --out {shlex.quote(str(directory))}"
-
-    def drawn(plates: Iterable[Plate]) -> list[Drawn]:
-        return [_drawn(plate, directory) for plate in plates]
-
-    return {
-        "result": case,
-        "matrix": case_matrix(case),
-        "figures": drawn(plate_of(figure, case=case.name, command=command) for figure in case.figures),
-        "agreement": drawn(agreement.plates(case, command)),
-        "convergence": drawn(convergence.plates(case, command)),
-        "ladders": drawn(ladder.plates(case, command)),
-        "refusals": tuple(ladder.refusals(case)),
-        "work": _timed_views(case.work_precision, drawn(work_precision.plates(case, command))),
-        "answers": case_tables.answers(case),
-        "stages": case_tables.stages(case),
-        "effects": case_tables.effects(case),
-        "outcomes": sorted(case_outcomes(case), key=severity),
-    }
-
-
-def _drawn(plate: Plate, directory: Path) -> Drawn:
-    svg = write_plate(plate, directory / FIGURE_FOLDER)
-    return Drawn(plate=plate, svg=Markup(svg))
-
-
-def _timed_views(works: Sequence[WorkPrecision], drawings: Sequence[Drawn]) -> list[TimedView]:
-    return [
-        TimedView(drawn=drawn, cheapest=case_tables.cheapest(work), prices=case_tables.digit_prices(work))
-        for work, drawn in zip(works, drawings, strict=True)
-    ]
 
 
 def baseline_sentence(run: RunResult) -> str:

@@ -25,12 +25,13 @@ CAPTION = (
 
 def plates(case: CaseResult, command: str) -> list[Plate]:
     """One plate for each scene and quantity that was timed."""
-    return [_plate(case, work, command) for work in case.work_precision]
+    return [plate(work, case.name, command) for work in case.work_precision]
 
 
-def _plate(case: CaseResult, work: WorkPrecision, command: str) -> Plate:
+def plate(work: WorkPrecision, case: str, command: str) -> Plate:
+    """The plate of one scene and quantity."""
     return Plate(
-        name=file_name(case.name, "work-precision", work.scene, work.quantity),
+        name=file_name(case, "work-precision", work.scene, work.quantity),
         title=f"Error against seconds: {work.quantity.replace('_', ' ')}, {work.scene}",
         caption=f"{CAPTION} Reference: {work.reference_source}.",
         paint=lambda: draw(work),

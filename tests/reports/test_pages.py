@@ -9,9 +9,12 @@ import pytest
 
 from reports.charts import agreement, convergence, ladder, work_precision
 from reports.drawing import plate_of
-from reports.pages import FIGURE_FOLDER, LARGEST_PAGE, write_report
+from reports.gallery import FOLDER, ROOM, Gallery
+from reports.pages import write_report
 from reports.plates import write_plate
 from tests.cases.example_run import example_run, failing_case, passing_case
+
+LARGEST_PAGE = 5_000_000  # bytes
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +49,7 @@ def not_a_number(text):
 
 def test_nothing_on_the_page_or_in_the_data_reads_nan_or_none(page, directory):
     assert not not_a_number(page)
-    for data in (directory / FIGURE_FOLDER).glob("*.csv"):
+    for data in (directory / FOLDER).glob("*.csv"):
         assert not not_a_number(data.read_text(encoding="utf-8")), data.name
 
 
@@ -105,6 +108,23 @@ def test_every_link_on_the_page_has_its_target_and_no_id_occurs_twice(page):
 
 def test_page_is_far_below_its_size_limit(page):
     assert len(page.encode()) < LARGEST_PAGE / 10
+
+
+def test_pictures_leave_room_for_tables_below_five_megabytes():
+    assert ROOM <= 0.6 * LARGEST_PAGE
+
+
+def test_a_picture_without_room_is_named_with_its_file(tmp_path):
+    first, second = Gallery(tmp_path, room=20_000).hang(plates_of(passing_case())[:2])
+    assert first.svg
+    assert not second.svg
+    assert (tmp_path / FOLDER / f"{second.plate.name}.svg").exists()
+
+
+def test_two_figures_of_one_name_are_refused(tmp_path):
+    plate = plates_of(failing_case())[0]
+    with pytest.raises(ValueError, match="two figures are called 'example_failures-agreement-1'"):
+        Gallery(tmp_path).hang([plate, plate])
 
 
 @pytest.mark.parametrize("plate", plates_of(passing_case()) + plates_of(failing_case()), ids=lambda plate: plate.name)

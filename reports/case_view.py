@@ -1,0 +1,64 @@
+"""Everything a page shows of one case, in the order of the page."""
+
+from dataclasses import dataclass
+
+from cases.results import CaseResult, WorkPrecision
+from reports import case_tables
+from reports.charts import agreement, convergence, ladder, work_precision
+from reports.drawing import plate_of
+from reports.gallery import Gallery, Hung
+from reports.matrix import Matrix, case_matrix
+from reports.outcomes import Outcome, case_outcomes, severity
+from reports.tables import Table
+
+
+@dataclass(frozen=True, kw_only=True)
+class TimedView:
+    """Error against seconds with its two tables beside it."""
+
+    drawn: Hung
+    cheapest: Table
+    prices: Table | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class CaseView:
+    """A case on the page; `refusals` and `effects` are sentences, `outcomes` come worst first."""
+
+    result: CaseResult
+    claims: Table | None
+    matrix: Matrix
+    figures: tuple[Hung, ...]
+    agreement: tuple[Hung, ...]
+    answers: Table | None
+    convergence: tuple[Hung, ...]
+    work: tuple[TimedView, ...]
+    ladders: tuple[Hung, ...]
+    refusals: tuple[str, ...]
+    effects: tuple[str, ...]
+    stages: Table | None
+    outcomes: tuple[Outcome, ...]
+
+
+def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
+    """Draw and tabulate a case; `command` makes its numbers and figures again."""
+    return CaseView(
+        result=case,
+        claims=case_tables.claims(case),
+        matrix=case_matrix(case),
+        figures=gallery.hang(plate_of(figure, case=case.name, command=command) for figure in case.figures),
+        agreement=gallery.hang(agreement.plates(case, command)),
+        answers=case_tables.answers(case),
+        convergence=gallery.hang(convergence.plates(case, command)),
+        work=tuple(_timed(work, gallery, case.name, command) for work in case.work_precision),
+        ladders=gallery.hang(ladder.plates(case, command)),
+        refusals=tuple(ladder.refusals(case)),
+        effects=case_tables.effects(case),
+        stages=case_tables.stages(case),
+        outcomes=tuple(sorted(case_outcomes(case), key=severity)),
+    )
+
+
+def _timed(work: WorkPrecision, gallery: Gallery, case: str, command: str) -> TimedView:
+    (drawn,) = gallery.hang([work_precision.plate(work, case, command)])
+    return TimedView(drawn=drawn, cheapest=case_tables.cheapest(work), prices=case_tables.digit_prices(work))
