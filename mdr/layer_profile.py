@@ -19,6 +19,8 @@ from bem.volterra_factor import VolterraFactor
 from contact.validation import FloatArray
 from mdr.mapped_pieces import MappedFunction
 
+WHOLE = 1e-12  # relative: what rounding makes of the width of a piece that fills its panel
+
 
 def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
     """C^-1 of a load that is zero within the flat radius.
@@ -34,14 +36,15 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     H, grid = factor.panel_width, load.grid
     panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
     position = (grid.nodes + flat_radius) / H - panel[:, None]
-    averages = panel_averages(load, panel, position, np.full(panel[-1] + 1, H))
-    _, inherited = factor.eliminate(averages)
-    values = factor.edge_values(averages + inherited)[panel]  # right as it stands where a piece fills its panel
-    polynomial = factor.edge_values(inherited)
-    whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=1e-12)
+    whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=WHOLE, atol=0.0)
     whole[0] = (
         False  # values near first touch are tiny and keep their relative accuracy only if integrated by themselves
     )
+    averages = panel_averages(load, panel, position, np.full(panel[-1] + 1, H))
+    averages[panel[whole]] = load.node_values[whole]  # by moments, a width off by e would cost e / (last Gauss weight)
+    _, inherited = factor.eliminate(averages)
+    values = factor.edge_values(averages + inherited)[panel]  # right as it stands where a piece fills its panel
+    polynomial = factor.edge_values(inherited)
     for piece in np.flatnonzero(~whole):
         smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
         values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece)

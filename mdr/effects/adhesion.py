@@ -234,7 +234,7 @@ def _notes(scene: Scene, system: EquivalentSystem, radius: float) -> tuple[str, 
     layer = scene.layer
     if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio < _CONFINED:
         return ()
-    ratio = radius / layer.thickness
+    ratio = min(radius / layer.thickness, system.flat_punch.max_ratio)  # the branch's first radius carries rounding
     smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, ratio))
     pressure = smooth / np.sqrt(1.0 - np.array([0.0, _INSIDE]) ** 2)
     if pressure[0] <= pressure[1]:

@@ -1,0 +1,46 @@
+"""Contact radii that end on a panel of the integral equation up to rounding: no digit is lost there.
+
+Origin of the expected numbers: smoothness. Depth and force are analytic in a, so their values at a (1 + e) follow from
+values at radii away from the panel's end.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact import Adhesion, ContactRadii, Detachment, FlatPunch, Layer, Paraboloid, Scene
+from mdr import Mdr
+
+WINDOW = 1e-3
+
+
+def state(layer, radius):
+    indenter = Paraboloid(radius_of_curvature=1e3)
+    path = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([radius])))
+    return np.array([path.indentation_depth[0], path.normal_force[0], path.contact_stiffness[0]])
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("ratio", [2.0, 10.0])
+def test_a_radius_close_to_a_panel_end_has_the_accuracy_of_any_other(support, ratio):
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45, support=support)
+    around = ratio + WINDOW * np.array([-1.0, -0.7, -0.4, -0.1, 0.1, 0.4, 0.7, 1.0])
+    smooth = np.polynomial.Polynomial.fit
+    curves = [smooth(around, values, 5) for values in np.array([state(layer, a) for a in around]).T]
+    for shift in (-1e-9, -1e-11, -1e-13, -1e-15, 0.0, 1e-15, 1e-14, 1e-12, 1e-10):
+        near = ratio * (1.0 + shift)
+        expected = [curve(near) for curve in curves]
+        np.testing.assert_allclose(state(layer, near), expected, rtol=3e-13)  # stated error of these answers: 2e-13
+
+
+@pytest.mark.parametrize("ratio", [1.0, 2.0, 5.0, 10.0])
+def test_a_detaching_punch_may_end_on_the_last_panel(ratio):
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
+    scene = Scene(
+        layer=layer,
+        indenter=FlatPunch(radius=ratio),
+        loading=Detachment(),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+    assert Mdr().solve(scene).contact_radius[0] == pytest.approx(ratio, rel=1e-14)
