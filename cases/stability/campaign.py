@@ -26,7 +26,7 @@ Referee: TypeAlias = Literal["second opinion", "refinement", "other units", "non
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
 UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
-_ROUNDING = 16 * float(np.finfo(float).eps)  # a few operations, also on what was prescribed
+_ROUNDING = 64 * float(np.finfo(float).eps)  # a few operations, also on what was prescribed
 _THIN_LAYERS_REFINED = 8  # one in so many
 _UNLISTED_MOST = 1e-2  # a quantity without a stated error still may not be this far off
 

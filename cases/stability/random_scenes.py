@@ -75,6 +75,14 @@ def log_uniform(draw: Draw, low: float, high: float) -> float:
     return float(np.exp(draw.uniform(np.log(low), np.log(high))))
 
 
+def _contact_ratio(draw: Draw, low: float, high: float) -> float:
+    """a/h: any, or as people choose it, a round number up to a rounding error or a small change."""
+    ratio = log_uniform(draw, low, high)
+    if draw.random() < 0.8 or ratio < 1.0:
+        return ratio
+    return float(np.round(ratio) * (1.0 + draw.choice([-1.0, 0.0, 1.0]) * log_uniform(draw, 1e-16, 1e-6)))
+
+
 # -- layers ----------------------------------------------------------------------------------------------------------
 
 
@@ -144,7 +152,7 @@ def _typical_depth(indenter: Profile, a: float) -> float:
 
 
 def _stage(draw: Draw, ratio: tuple[float, float]) -> tuple[Layer, Profile, float]:
-    a = log_uniform(draw, *ratio)
+    a = _contact_ratio(draw, *ratio)
     return _layer(draw, _poissons_ratio(draw)), _indenter(draw, a), a
 
 
@@ -197,7 +205,7 @@ def _viscoelasticity(draw: Draw, shear_modulus: float, duration: float) -> Effec
 
 def _moving_stage(draw: Draw, ratio: tuple[float, float]) -> tuple[Layer, Profile, float, tuple[Effect, ...], float]:
     """An incompressible layer that may relax, and an indenter; the typical duration is one."""
-    a = log_uniform(draw, *ratio)
+    a = _contact_ratio(draw, *ratio)
     viscous = draw.random() < 0.7
     layer = _layer(draw, 0.5 if viscous else _poissons_ratio(draw))
     effects = (_viscoelasticity(draw, layer.shear_modulus, 1.0),) if viscous else ()

@@ -1,0 +1,162 @@
+"""Ladders count digits honestly, name what breaks, and see what is planted."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from cases.results import Ladder, Rung
+from cases.stability import ladders
+from cases.stability.invariants import LAWS, invariant_residuals
+from cases.stability.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
+from cases.stability.ladders import LadderPlan, breakdown, climb, climb_all, fewest_digits, worsened
+from cases.stability.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
+from cases.status import Status
+from contact import InvalidInput, NotConvergedError, Supported
+from mdr import Mdr
+
+PLAN = LadderPlan(name="test", parameter="b/a", values=(0.5, 0.1, 0.01), scene=truncated)
+
+
+@dataclasses.dataclass(frozen=True)
+class Faulty:
+    """The fast method with a fault from some scene on."""
+
+    fault: object
+    name = "faulty"
+
+    def supports(self, scene):
+        return Supported()
+
+    def solve(self, scene):
+        path = Mdr().solve(scene)
+        return self.fault(path) if scene.indenter.flat_radius < 0.3 * path.contact_radius[-1] else path
+
+    def refined(self):
+        return self
+
+
+def noisy(path):
+    salt = float(path.contact_radius[-1]).hex()
+    noise = 1e-6 * np.random.default_rng(int.from_bytes(salt.encode()) % 2**32).normal()
+    return dataclasses.replace(path, normal_force=path.normal_force * (1 + noise))
+
+
+def wrong(path):
+    return dataclasses.replace(path, normal_force=path.normal_force * 1.01)
+
+
+def broken(path):
+    raise NotConvergedError("planted", {"residual": 1e-3})
+
+
+def crashing(path):
+    raise ZeroDivisionError("planted")
+
+
+def test_digits_of_values_that_differ_in_the_ninth_place():
+    assert shared_digits([1.0, 1.0 + 1e-9, 1.0]) == pytest.approx(9.0, abs=0.01)
+    assert shared_digits([2.5, 2.5]) == DOUBLE_DIGITS
+    assert shared_digits([1.0, -1.0, 3.0]) == 0.0
+
+
+def test_a_nudge_moves_numbers_by_one_unit_in_the_last_place_and_nothing_else():
+    scene = contact_ratio(2.0, nu=0.5, support="bonded")
+    moved = [nudged(scene, np.random.default_rng(seed)) for seed in range(20)]
+    radii = {float(other.loading.values[0]) for other in moved}
+    assert radii == {np.nextafter(2.0, 0.0), 2.0, np.nextafter(2.0, 3.0)}
+    assert {other.layer.poissons_ratio for other in moved} == {0.5}
+
+
+def test_the_fast_method_climbs_with_nearly_all_digits():
+    ladder = climb(PLAN, Mdr())
+    assert breakdown(ladder) is None
+    assert fewest_digits(ladder) > 13.5  # roundings of a dozen operations on well-conditioned numbers
+    assert set(ladder.rungs[0].residuals) >= {"second opinion", "twice the modulus", "stated error"}
+
+
+def test_digits_that_repeats_do_not_share_are_not_counted():
+    digits = [rung.digits for rung in climb(PLAN, Faulty(noisy)).rungs]
+    assert digits[0] > 13
+    assert digits[1] < 7.5
+
+
+def test_a_wrong_number_is_a_failure_even_if_all_repeats_agree():
+    ladder = climb(PLAN, Faulty(wrong))
+    assert [rung.status for rung in ladder.rungs] == [Status.PASS, Status.FAIL, Status.FAIL]
+    assert breakdown(ladder) == 0.1
+
+
+def test_a_named_refusal_and_a_crash_are_told_apart():
+    refusal, crash = climb(PLAN, Faulty(broken)).rungs[1], climb(PLAN, Faulty(crashing)).rungs[1]
+    assert (refusal.status, refusal.digits) == (Status.INVALID, None)
+    assert refusal.reason == "NotConvergedError: planted (residual = 1.000e-03)"
+    assert (crash.status, crash.reason) == (Status.FAIL, "crash: ZeroDivisionError: planted")
+
+
+def ladder(*digits):
+    rungs = [
+        Rung(value=10.0**-k, status=Status.INVALID, reason="NotConvergedError: x", digits=None)
+        if d is None
+        else Rung(value=10.0**-k, status=Status.PASS, digits=d)
+        for k, d in enumerate(digits)
+    ]
+    return Ladder(name="n", parameter="p", unit="1", method="mdr", quantity="normal_force", rungs=tuple(rungs))
+
+
+def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
+    accepted = ladder(14.0, 12.0, 9.0, None)
+    assert worsened(ladder(14.0, 11.5, 8.2, None), accepted) == []
+    assert worsened(ladder(14.0, 12.0, 9.0, 5.0), accepted) == []
+    assert worsened(ladder(14.0, 12.0, 7.9, None), accepted) == ["n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"]
+    assert "NotConvergedError: x, but 12.0 digits" in worsened(ladder(14.0, None, 9.0, None), accepted)[0]
+
+
+def test_a_method_climbs_only_what_it_supports():
+    class Elastic(Faulty):
+        def supports(self, scene):
+            return Supported() if not scene.effects else False
+
+    plans = (PLAN, LadderPlan(name="impact", parameter="D", values=(1.0,), scene=damped_punch))
+    assert [found.name for found in climb_all(plans, {"x": Elastic(lambda path: path)})] == ["test"]
+
+
+def test_every_ladder_starts_with_a_scene_that_the_fast_method_supports():
+    assert len({plan.name for plan in LADDERS}) == len(LADDERS)
+    for plan in LADDERS:
+        assert Mdr().supports(plan.scene(plan.values[0])), plan.name
+
+
+@pytest.mark.parametrize("law", ["twice the modulus", "unbonded does not see nu", "second opinion", "no tension"])
+def test_laws_hold_for_the_fast_method(law):
+    answer = Mdr().solve(contact_ratio(1.0, nu=0.3, support="unbonded"))
+    assert LAWS[law](Mdr(), answer) < 1e-12
+
+
+def test_a_modulus_in_the_wrong_place_breaks_a_law():
+    class Offset(Faulty):
+        def solve(self, scene):
+            path = Mdr().solve(scene)
+            return dataclasses.replace(path, normal_force=path.normal_force + 1e-3)
+
+    scene = contact_ratio(1.0, nu=0.3, support="unbonded")
+    assert invariant_residuals(Offset(None), Offset(None).solve(scene))["twice the modulus"] > 1e-4
+
+
+def test_a_repeat_on_a_scene_out_of_reach_refuses_by_name():
+    with pytest.raises(InvalidInput):
+        list(repeated(Mdr(), contact_ratio(1e6, nu=0.3, support="bonded"), "normal_force"))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("plan", [plan for plan in LADDERS if not plan.only], ids=lambda plan: plan.name)
+def test_no_rung_of_the_fast_method_fails_without_a_name(plan):
+    climbed = climb(plan, Mdr())
+    assert [rung for rung in climbed.rungs if rung.status is Status.FAIL] == []
+
+
+def test_a_warning_on_a_rung_is_a_crash(monkeypatch):
+    monkeypatch.setattr(ladders, "invariant_residuals", lambda method, answer: {"x": float(np.log(np.zeros(1))[0])})
+    assert "crash: RuntimeWarning" in climb(PLAN, Mdr()).rungs[0].reason
