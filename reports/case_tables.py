@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 
-from cases.results import CaseResult, Claim, EffectEntry, Quantity, SceneRun, WorkPrecision
+from cases.results import CaseResult, Claim, EffectEntry, Kind, Quantity, SceneRun, WorkPrecision
 from reports.method_names import display_name
 from reports.numbers import duration, measured, memory, scaled_unit, small
 from reports.tables import Table
@@ -10,15 +10,32 @@ from reports.tables import Table
 
 def claims(case: CaseResult) -> Table | None:
     """What is claimed, why, and where tolerance and expected number come from; one row a claim, whatever its scenes."""
-    distinct = {(claim.name, claim.tolerance): claim for claim in case.claims}
-    if not distinct:
+    same: dict[str, list[Claim]] = {}
+    for claim in case.claims:
+        if claim.kind is not Kind.REGRESSION:  # those say why in the tolerance history
+            same.setdefault(claim.name, []).append(claim)
+    if not same:
         return None
-    rows = tuple(
-        (f"{c.kind}: {c.name}", f"{small(c.tolerance)}{_unit(c)}", c.because, c.derived_from, f"{c.origin}: {c.source}")
-        for c in distinct.values()
-    )
     heads = ("claim", "tolerance", "expected because", "tolerance from", "origin of the expected number")
-    return Table(title="Claims", note="", heads=heads, rows=rows, words=5)
+    return Table(title="Claims", note="", heads=heads, rows=tuple(map(_claim_row, same.values())), words=5)
+
+
+def _claim_row(same: list[Claim]) -> tuple[str, ...]:
+    """One row of claims that differ in scene and method only."""
+    first = same[0]
+    origin = f"{first.origin}: {first.source}"
+    return f"{first.kind}: {first.name}", _tolerances(same), first.because, first.derived_from, origin
+
+
+def _tolerances(same: list[Claim]) -> str:
+    """The tolerance, or each with its methods where they differ."""
+    methods: dict[str, dict[str, None]] = {}
+    for claim in same:
+        shown = methods.setdefault(f"{small(claim.tolerance)}{_unit(claim)}", {})
+        shown.update(dict.fromkeys(map(display_name, claim.methods)))
+    if len(methods) == 1:
+        return next(iter(methods))
+    return ", ".join(f"{tolerance} ({', '.join(names)})" for tolerance, names in methods.items())
 
 
 def _unit(claim: Claim) -> str:

@@ -70,6 +70,7 @@ def draw(claims: Sequence[Claim]) -> Drawing:
     axes.set_yticks(range(len(claims)), [_label(claim) for claim in claims])
     axes.set_ylim(len(claims) - 0.5, -0.5)
     axes.grid(visible=False, axis="y")
+    axes.tick_params(top=True, labeltop=len(claims) > ROWS_A_PLATE // 2)
     mark_signed_decades(axes.xaxis, smallest=_linear_below(claims), largest=3.0 * extent)
     return drawing
 
