@@ -1,0 +1,681 @@
+"""Thirty and more faults of the kinds that happen: where each is, what it does, and what must catch it.
+
+`status` is what the guard must answer while the fault is on; without the fault every guard passes.
+"""
+
+import dataclasses
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+
+from cases.rules.judgement import Judgement
+from cases.status import Status
+from tests.planted.guards import TEMPORARY, Claims, Test
+from tests.planted.planting import override, set_to, swap
+
+
+@dataclass(frozen=True)
+class Fault:
+    """One fault.
+
+    Attributes:
+        name: what is wrong, in words.
+        area: kernels, mdr, transforms, weak forms, time stepping, comparators or baselines.
+        plant: switches it on with a monkeypatch.
+        guard: what must catch it.
+        status: how the guard must end.
+    """
+
+    name: str
+    area: str
+    plant: Callable
+    guard: Claims | Test
+    status: Status = Status.FAIL
+
+
+def cone(claims, scene, method):
+    """Claims of the truncated cone about one method on one scene, with the library's own tolerances."""
+    return Claims("truncated_cone", claims, (scene,), (method,))
+
+
+LAYER = ("layer depth", "layer force")
+HALF_SPACE = ("half-space depth", "half-space force")
+
+# -- kernels ---------------------------------------------------------------------------------------------------------
+
+
+def plane_stress_kolosov(kernel):
+    """kappa = (3 - nu)/(1 + nu), that of plane stress, is the kernel of another Poisson's ratio."""
+    return lambda q, support, nu: kernel(q, support, nu / (1 + nu))
+
+
+def unbonded_without_linear_term(kernel):
+    """2 sinh^2(q)/sinh(2q): the 2q of the denominator is forgotten, 1 - chi = 2 D/(1 + D) with D = exp(-2q)."""
+
+    def wrong(q, support, nu):
+        D = np.exp(-2 * np.asarray(q))
+        return 2 * D / (1 + D) if support == "unbonded" else kernel(q, support, nu)
+
+    return wrong
+
+
+def without_mirror_image(matrix):
+    """L(x, t) = N(x - t)/2: the even continuation N(x + t) is forgotten."""
+
+    def wrong(self, panels, width, count):
+        from bem.panels import gauss_nodes
+
+        x = (width * (np.arange(panels)[:, None] + gauss_nodes(count)[0])).ravel()
+        return self(abs(x[:, None] - x)) / 2
+
+    return wrong
+
+
+KERNELS = [
+    Fault(
+        "Kolosov's constant of plane stress",
+        "kernels",
+        swap("bem.kernels:one_minus_kernel", plane_stress_kolosov),
+        cone(LAYER, "bonded nu=0.45 a/h=1", "mdr"),
+    ),
+    Fault(
+        "2q forgotten in the unbonded kernel",
+        "kernels",
+        swap("bem.kernels:one_minus_kernel", unbonded_without_linear_term),
+        cone(LAYER, "unbonded a/h=1", "mdr"),
+    ),
+    Fault(
+        "sinh 2q - 2q subtracted at small q",
+        "kernels",
+        set_to("bem.kernels:SERIES_LIMIT", 1e-9),
+        Test("bem.test_kernels:test_kernel_keeps_full_relative_accuracy", ("bonded", 0.5)),
+    ),
+    Fault(
+        "mean mode of a layer taken as zero",
+        "kernels",
+        swap("bem.kernels:zero_mode", lambda _: lambda support, nu: 0.0),
+        Test(
+            "bem.test_operators:test_uniform_pressure_compresses_a_layer_by_its_finite_mean_mode",
+            ("unbonded", 0.3, 1.0),
+        ),
+    ),
+    Fault(
+        "contour turned beyond a pole of chi",
+        "kernels",
+        set_to("bem.fredholm_kernel:RAY_ANGLE", math.radians(60)),
+        cone(LAYER, "bonded nu=0.5 a/h=1", "mdr"),
+    ),
+    Fault(
+        "five quadrature nodes where twenty are needed",
+        "kernels",
+        set_to("bem.fredholm_kernel:PANEL_NODES", 5),
+        cone(LAYER, "bonded nu=0.5 a/h=5", "mdr"),
+    ),
+    Fault(
+        "mirror image forgotten in the Fredholm kernel",
+        "kernels",
+        override("bem.fredholm_kernel:FredholmKernel", "panel_matrix", without_mirror_image),
+        cone(LAYER, "bonded nu=0.5 a/h=1", "mdr"),
+    ),
+]
+
+# -- the fast method -------------------------------------------------------------------------------------------------
+
+
+def youngs_modulus(system):
+    """E where E* belongs."""
+
+    def wrong(layer, *others):
+        return dataclasses.replace(system(layer, *others), contact_modulus=layer.youngs_modulus)
+
+    return wrong
+
+
+def cone_without_flat_end(profile):
+    """g_hs = (pi/2) tan(theta) (x - b): the truncated cone as a cone that starts at b."""
+
+    def wrong(indenter, excess):
+        from contact import TruncatedCone
+
+        truncated = isinstance(indenter, TruncatedCone)
+        return np.pi / 2 * indenter.slope * excess if truncated else profile(indenter, excess)
+
+    return wrong
+
+
+def nan_at_the_end(force):
+    """The last force of a path is not a number."""
+
+    def wrong(self, *arguments):
+        values = np.array(force(self, *arguments), dtype=float, ndmin=1)
+        values[-1] = np.nan
+        return values
+
+    return wrong
+
+
+MDR = [
+    Fault(
+        "E in place of E*",
+        "mdr",
+        swap("mdr.assembly:equivalent_system", youngs_modulus),
+        cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
+    ),
+    Fault(
+        "profile's share of the force counted once, not twice",
+        "mdr",
+        override("mdr.equivalent_system:EquivalentSystem", "profile_moment", lambda f: lambda self, a: f(self, a) / 2),
+        cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
+    ),
+    Fault(
+        "flat end forgotten in the half-space transform",
+        "mdr",
+        swap("mdr.half_space_profile:half_space_profile", cone_without_flat_end),
+        cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
+    ),
+    Fault(
+        "force wrong in the ninth digit",
+        "mdr",
+        override("mdr.equivalent_system:EquivalentSystem", "force", lambda f: lambda *a: f(*a) * (1 + 1e-9)),
+        cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
+    ),
+    Fault(
+        "pressure of Eq. (9) twice too large",
+        "mdr",
+        override("mdr.surface_fields:ContactFields", "_pressure_inside", lambda f: lambda self, r: 2 * f(self, r)),
+        Test("mdr.test_method:test_the_pressure_carries_the_force", ("bonded", lambda: _mdr_indenter(0))),
+    ),
+    Fault(
+        "a force that is not a number",
+        "mdr",
+        override("mdr.equivalent_system:EquivalentSystem", "force", nan_at_the_end),
+        cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
+        Status.INVALID,
+    ),
+]
+
+
+def _mdr_indenter(number):
+    from tests.mdr.test_method import INDENTERS
+
+    return INDENTERS[number]
+
+
+# -- transforms and the boundary elements ----------------------------------------------------------------------------
+
+
+def one_mode_off(modes):
+    """Wavenumbers counted from one."""
+
+    def wrong(self):
+        columns, rows = modes.__get__(self)() if callable(modes) else modes
+        return columns + 1, rows + 1
+
+    return property(wrong)
+
+
+def half_space():
+    from tests.bem import test_operators
+
+    return test_operators.HALF_SPACE
+
+
+TRANSFORMS = [
+    Fault(
+        "inverse transform without its factor in one direction",
+        "transforms",
+        override(
+            "bem.transforms:FullTransform", "filter", lambda f: lambda self, field, s: f(self, field, s) * self.period
+        ),
+        Test("bem.test_operators:test_sinusoidal_load_has_its_closed_form", ("bonded", 0.3)),
+    ),
+    Fault(
+        "no zero padding: the convolution is circular",
+        "transforms",
+        swap("bem.transforms:fast_period", lambda f: lambda least: f(least // 2)),
+        Test("bem.test_operators:test_free_space_operator_is_the_direct_sum", (half_space,)),
+    ),
+    Fault(
+        "modes of the cosine transform counted from one",
+        "transforms",
+        override("bem.transforms:QuarterTransform", "modes", one_mode_off),
+        Test("bem.test_operators:test_quarter_grid_gives_the_quadrant"),
+    ),
+    Fault(
+        "Love's solution without 1/pi",
+        "transforms",
+        swap("bem.influence:rectangle_influence", lambda f: lambda offsets: np.pi * f(offsets)),
+        Test("bem.test_influence:test_cell_under_its_own_pressure_sinks_by_the_closed_form"),
+    ),
+    Fault(
+        "layer correction with the wrong sign",
+        "transforms",
+        swap("bem.influence:_cell_average", lambda f: lambda *a: -f(*a)),
+        Test("bem.test_influence:test_layer_far_field_decays_exponentially", (2.0,)),
+    ),
+    Fault(
+        "complementarity never violated, whatever the pressure",
+        "transforms",
+        swap("bem.conjugate_gradients:complementarity_residual", lambda _: lambda *a, **k: 0.0),
+        Test("bem.test_conjugate_gradients:test_the_residual_sees_each_violation"),
+    ),
+]
+
+# -- weak forms ------------------------------------------------------------------------------------------------------
+
+
+def without_hoop(strains):
+    """u_r / r is no strain."""
+
+    def wrong(self):
+        values = strains(self).copy()
+        values[:, :, 2] = 0.0
+        return values
+
+    return property(wrong)
+
+
+def without_radius(measure):
+    """dr dz where 2 pi r dr dz belongs."""
+    return property(lambda self: measure(self) / self.radius)
+
+
+def deviator_in_the_plane():
+    """A half where a third belongs: the deviator of two dimensions."""
+    deviator = np.eye(4)
+    deviator[:2, :2] -= 1 / 2
+    return deviator
+
+
+def sliding_base(held):
+    """The base of a bonded layer slides."""
+
+    def wrong(self):
+        return np.unique(np.concatenate([2 * self.nodes_on("axis"), 2 * self.nodes_on("base") + 1]))
+
+    return property(wrong)
+
+
+def plane_strain_bulk(moduli):
+    """1/K = (1 - 2 nu)/mu, that of plane strain."""
+
+    def wrong(nu):
+        right = moduli(nu)
+        return dataclasses.replace(right, compressibility=(1 - 2 * nu) / right.shear)
+
+    return wrong
+
+
+def modulus_of_e(moduli):
+    """mu = 1/(2 (1 + nu)) is that of E = 1, not of E* = 1."""
+    return lambda nu: dataclasses.replace(moduli(nu), shear=1 / (2 * (1 + nu)))
+
+
+def free_outer_edge(matrix):
+    """The unbonded layer ends at the mesh."""
+    return lambda space, shear: 0 * matrix(space, shear)
+
+
+REFUSED = Status.INVALID  # energy and reactions give different stiffnesses: the method itself refuses the answer
+
+
+def weak(name, plant, scene, status=Status.FAIL):
+    """A fault of the finite elements; the guard compares with an integral equation that shares no line with them."""
+    guard = Test("fem_reference.test_method:test_truncated_cone_within_its_error_bars", scene)
+    return Fault(name, "weak forms", plant, guard, status)
+
+
+THICK, THIN = (0.1, 0.45, "bonded"), (20, 0.45, "bonded")  # a/h, nu, support
+WEAK_FORMS = [
+    weak(
+        "hoop strain forgotten",
+        override("fem_reference.assembly:Space", "strains", without_hoop),
+        THICK,
+        REFUSED,
+    ),
+    weak("r forgotten in 2 pi r dr dz", override("fem_reference.assembly:Space", "measure", without_radius), THICK),
+    weak(
+        "deviator of two dimensions",
+        set_to("fem_reference.assembly:DEVIATOR", deviator_in_the_plane()),
+        THICK,
+        REFUSED,
+    ),
+    weak(
+        "bonded base that slides",
+        override("fem_reference.layer_problem:LayerProblem", "supported_unknowns", sliding_base),
+        THIN,
+    ),
+    weak("bulk modulus of plane strain", swap("fem_reference.material:moduli", plane_strain_bulk), THICK),
+    weak("shear modulus at E = 1", swap("fem_reference.material:moduli", modulus_of_e), (0.1, 0.5, "bonded")),
+    weak(
+        "free outer edge of an unbonded layer",
+        swap("fem_reference.layer_problem:outer_edge_matrix", free_outer_edge),
+        (20, 0.3, "unbonded"),
+    ),
+]
+
+# -- time stepping ---------------------------------------------------------------------------------------------------
+
+
+def forgets_nothing(remembered):
+    """E = 1: what was remembered at first contact does not fade."""
+
+    def wrong(recall, own, state, k):
+        return remembered(recall, dataclasses.replace(own, rates=0 * own.rates), state, k)
+
+    return wrong
+
+
+def released_at_zero_depth(event):
+    """The punch lets go when it is back at the surface, not when the force is back at zero."""
+    return lambda component, target, direction: event(2 if component == 0 else component, target, direction)
+
+
+def arctan_beyond_one(restitution):
+    """The oscillating branch of Eq. (49) continued beyond D = 1 without its artanh."""
+
+    def wrong(damping):
+        D = np.asarray(damping, dtype=float)
+        root = np.sqrt(abs(1 - D**2))
+        return np.where(D < 1, restitution(damping), np.exp(-2 * D / root * np.arctan2(root, D)))
+
+    return wrong
+
+
+def half_the_loss(dissipation):
+    """1/2 eta v^2 is lost, not eta v^2."""
+    return lambda *a: dissipation(*a) / 2
+
+
+TIME_STEPPING = [
+    Fault(
+        "quadrature of first order at a step's end",
+        "time stepping",
+        set_to("mdr.effects.collocation:_TO_END", np.full(10, 0.1)),
+        Test(
+            "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
+            (0.2, 0.571740),
+        ),
+    ),
+    Fault(
+        "memory of first contact that never fades",
+        "time stepping",
+        swap("mdr.effects.impact_lanes:remembered", forgets_nothing),
+        Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
+    ),
+    Fault(
+        "release at zero depth in place of zero force",
+        "time stepping",
+        lambda patch: patch.setattr("mdr.effects.impact_flat_punch.Event", released_at_zero_depth(_event())),
+        Test(
+            "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
+            (0.2, 0.571740),
+        ),
+    ),
+    Fault(
+        "overdamped branch continued with arctan",
+        "time stepping",
+        swap("mdr.effects.flat_punch_restitution:kelvin_voigt_restitution", arctan_beyond_one),
+        Test(
+            "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
+            (2.0, 0.047769),
+        ),
+    ),
+    Fault(
+        "half of the dissipation",
+        "time stepping",
+        swap("mdr.effects.impact_lanes:dissipation", half_the_loss),
+        Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
+    ),
+]
+
+
+def _event():
+    from mdr.effects.collocation import Event
+
+    return Event
+
+
+# -- comparators -----------------------------------------------------------------------------------------------------
+
+
+def sign_ignored(judge):
+    """error <= tolerance: every number that is too small passes."""
+
+    def wrong(error, tolerance, message):
+        return judge(max(error, 0.0), tolerance, message)
+
+    return wrong
+
+
+def everything_finite(_):
+    """NaN passes for a number."""
+    return SimpleNamespace(isfinite=lambda value: True, inf=math.inf)
+
+
+def compared_with_itself(labels):
+    """Both answers of an agreement are those of one method."""
+    return lambda self, case, scene: (self.fast, self.fast)
+
+
+def first_of(judgements):
+    return judgements[0]
+
+
+def natural_for_ratio(order):
+    """ln r taken as r - 1."""
+
+    def wrong(values, lengths):
+        return order(values, lengths) * math.log(lengths[1] / lengths[0]) / (lengths[1] / lengths[0] - 1)
+
+    return wrong
+
+
+def without_circumference(norm):
+    """dr where 2 pi r dr belongs."""
+
+    def wrong(self, pressure):
+        return norm(dataclasses.replace(self, weight=self.weight / (2 * np.pi * self.radius)), pressure)
+
+    return wrong
+
+
+COMPARATORS = [
+    Fault(
+        "sign of an error ignored",
+        "comparators",
+        swap("cases.rules.judgement:passed_or_failed", sign_ignored),
+        Test("cases.rules.test_rules:test_exact_passes_within_and_fails_beyond"),
+    ),
+    Fault(
+        "NaN taken for a number",
+        "comparators",
+        set_to("cases.rules.regression:math", everything_finite(None)),
+        Test("cases.rules.test_rules:test_non_finite_is_invalid_and_never_equal_to_itself", (math.nan, math.nan)),
+    ),
+    Fault(
+        "negative tolerances taken as positive",
+        "comparators",
+        swap("cases.tolerance:positive_tolerance", lambda _: abs),
+        Test("cases.rules.test_rules:test_a_tolerance_of_the_wrong_sign_is_refused", (-1e-10,)),
+    ),
+    Fault(
+        "uncertainties ignored in a verdict",
+        "comparators",
+        swap("cases.rules.agreement:_verdict", lambda f: lambda error, spread, tolerance: f(error, 0.0, tolerance)),
+        Test("cases.test_runner:test_a_coarse_method_is_inconclusive", (TEMPORARY,)),
+    ),
+    Fault(
+        "an answer compared with itself",
+        "comparators",
+        override("cases.claims.agreement:Agreement", "labels", compared_with_itself),
+        Test("cases.test_runner:test_a_wrong_factor_disagrees", (TEMPORARY,)),
+    ),
+    Fault(
+        "the first judgement in place of the worst",
+        "comparators",
+        swap("cases.rules.judgement:worst_judgement", lambda _: first_of),
+        Test("cases.rules.test_rules:test_the_worst_judgement_decides_and_an_empty_claim_is_refused"),
+    ),
+    Fault(
+        "observed order with ln r taken as r - 1",
+        "comparators",
+        swap("cases.convergence.observed_order:observed_order", natural_for_ratio),
+        Test("cases.convergence.test_observed_order:test_nasa_tutorial"),
+    ),
+    Fault(
+        "safety factor of an order that fits, for any order",
+        "comparators",
+        swap("cases.convergence.extrapolation:safety_factor", lambda _: lambda observed, formal: (1.25, formal)),
+        Test(
+            "cases.convergence.test_observed_order:test_safety_factor_trusts_the_formal_order_only_within_ten_percent"
+        ),
+    ),
+    Fault(
+        "asymptotic range taken for granted",
+        "comparators",
+        swap("cases.convergence.asymptotic:is_asymptotic", lambda _: lambda *a: True),
+        Test("cases.convergence.test_asymptotic:test_a_polluted_sequence_is_not"),
+    ),
+    Fault(
+        "norm without 2 pi r",
+        "comparators",
+        override("cases.norms:RingQuadrature", "norm", without_circumference),
+        Test("cases.test_norms:test_weighted_norm_of_one_is_the_root_of_the_area"),
+    ),
+    Fault(
+        "a run of nothing passes",
+        "comparators",
+        swap("cases.status:exit_code", lambda f: lambda statuses, strict=False: 0),
+        Test("cases.test_status:test_nothing_ran_is_not_a_pass"),
+    ),
+]
+
+# -- baselines -------------------------------------------------------------------------------------------------------
+
+
+def passes(_):
+    """Whatever it is asked, it passes."""
+    from cases.results import Verdict
+
+    passed = Judgement(status=Status.PASS, verdict=Verdict.PASS, observed=None, fraction=None, message="")
+    return lambda *a: passed
+
+
+def accepted_folder():
+    """Baselines of the fabricated run."""
+    from pathlib import Path
+    from tempfile import mkdtemp
+
+    from tests.cases.gate.example_baselines import accepted
+
+    return accepted(Path(mkdtemp()))
+
+
+def baseline_file():
+    from cases.gate.baseline import baseline_path
+
+    return baseline_path(accepted_folder(), "example_cone", "mdr")
+
+
+def another(**change):
+    """A condition under which nothing may be accepted."""
+
+    def make():
+        from tests.cases.gate.example_baselines import NOW
+
+        return dataclasses.replace(NOW, **change)
+
+    return make
+
+
+BASELINES = [
+    Fault(
+        "missing records pass",
+        "baselines",
+        swap("cases.gate.check:missing", passes),
+        Test("cases.gate.test_gate:test_a_missing_quantity_fails_by_its_name", (accepted_folder,)),
+    ),
+    Fault(
+        "extra records pass",
+        "baselines",
+        swap("cases.gate.check:extra", passes),
+        Test("cases.gate.test_gate:test_what_nobody_accepted_fails_by_its_name", (accepted_folder,)),
+    ),
+    Fault(
+        "tolerances a thousand times too wide",
+        "baselines",
+        swap("cases.tolerance:permitted_difference", lambda f: lambda b, **k: 1e3 * f(b, **k)),
+        Test(
+            "cases.gate.test_gate:test_a_change_of_1e_7_with_tolerance_1e_9_always_fails",
+            (accepted_folder, "mdr", 1 + 1e-7),
+        ),
+    ),
+    Fault(
+        "unknowns within ten percent",
+        "baselines",
+        swap("cases.rules.regression:permitted_count_change", lambda f: lambda name, b: f("iterations", b)),
+        Test(
+            "cases.gate.test_gate:test_unknowns_repeat_exactly_and_other_counters_nearly",
+            (accepted_folder, 21001, 3, Status.DIFF),
+        ),
+    ),
+    Fault(
+        "settings left out of the specification",
+        "baselines",
+        swap("cases.gate.specification:specification_hash", lambda f: lambda scene, settings: f(scene, {})),
+        Test(
+            "cases.gate.test_baseline:test_another_scene_or_setting_has_another_specification",
+            ('{"a": 0.1}', lambda: {"n": 4}),
+        ),
+    ),
+    Fault(
+        "uncommitted changes accepted",
+        "baselines",
+        swap("cases.gate.accept:_refused_circumstances", lambda _: lambda run, now: ()),
+        Test(
+            "cases.gate.test_accept:test_the_wrong_place_or_time_is_refused",
+            (TEMPORARY, another(changed=("mdr/core.py",)), "mdr/core.py"),
+        ),
+    ),
+    Fault(
+        "failing claims accepted",
+        "baselines",
+        swap("cases.gate.accept:_refused_run", lambda _: lambda run, case: ()),
+        Test(
+            "cases.gate.test_accept:test_a_failing_exact_or_order_claim_is_refused",
+            (TEMPORARY, lambda: "exact", lambda: Status.FAIL),
+        ),
+    ),
+    Fault(
+        "tolerances loosened unnoticed",
+        "baselines",
+        override("cases.gate.proposal:Change", "loosens", lambda _: property(lambda self: False)),
+        Test("cases.gate.test_accept:test_loosening_is_refused_without_the_flag_and_visible_after_it", (TEMPORARY,)),
+    ),
+    Fault(
+        "files edited by hand accepted",
+        "baselines",
+        set_to("cases.gate.baseline:_digest", lambda tree: "0"),
+        Test(
+            "cases.gate.test_baseline:test_a_file_edited_by_hand_is_refused",
+            (baseline_file, "1.5\n", "1.6\n", "changed by something else than accept"),
+        ),
+    ),
+    Fault(
+        "slower code passes while its interval touches the limit",
+        "baselines",
+        swap(
+            "cases.work.timing:is_slower",
+            lambda f: lambda measured, d: f(dataclasses.replace(measured, lower=measured.lower / 1.5), d),
+        ),
+        Test(
+            "cases.gate.test_race:test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_60_races"
+        ),
+    ),
+]
+
+FAULTS = (*KERNELS, *MDR, *TRANSFORMS, *WEAK_FORMS, *TIME_STEPPING, *COMPARATORS, *BASELINES)

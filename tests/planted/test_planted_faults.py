@@ -1,0 +1,41 @@
+"""Every planted fault is caught by the check that is meant to catch it, with the status that is meant."""
+
+from collections import Counter
+
+import pytest
+
+from cases.status import Status
+from tests.planted.faults import FAULTS
+from tests.planted.planting import forget_computed
+
+AREAS = {"kernels", "mdr", "transforms", "weak forms", "time stepping", "comparators", "baselines"}
+
+
+@pytest.fixture(autouse=True)
+def _no_leftovers():
+    forget_computed()
+    yield
+    forget_computed()
+
+
+PARAMETERS = [pytest.param(fault, id=f"{fault.area}: {fault.name}") for fault in FAULTS]
+
+
+@pytest.mark.parametrize("fault", PARAMETERS)
+def test_a_planted_fault_is_caught_with_the_right_status(fault, monkeypatch, tmp_path):
+    guard = fault.guard
+    guard.load()
+    before, after = tmp_path / "before", tmp_path / "after"
+    before.mkdir()
+    after.mkdir()
+    assert guard.status(before) is Status.PASS, "the guard must pass without the fault"
+    forget_computed()
+    with monkeypatch.context() as patch:
+        fault.plant(patch)
+        assert guard.status(after) is fault.status
+
+
+def test_there_are_thirty_faults_of_every_kind_and_no_two_alike():
+    assert len(FAULTS) >= 30
+    assert {fault.area for fault in FAULTS} == AREAS
+    assert max(Counter(fault.name for fault in FAULTS).values()) == 1
