@@ -13,6 +13,7 @@ from contact.validation import FloatArray
 
 RATIO = 0.25  # of neighbouring panels that approach a singular point
 LEVELS = 20  # the last panel is 1e-12 of the first: a square root's slope leaves 1e-6 of itself there
+NARROWEST = 1e-13  # of the distance from the centre
 TIP_LEVELS = 6  # towards r = 0, where smaller panels would lift rounding errors of phi'/t into the pressure
 
 
@@ -37,7 +38,8 @@ class GradedPanels:
             levels = TIP_LEVELS if start == 0 else LEVELS
             steps = start + (stop - start) * RATIO ** np.arange(levels, -1, -1.0)
             ends.append(steps)
-        coarse = np.concatenate(ends)
+        coarse = np.unique(np.concatenate(ends))  # beside a distant point the smallest panels round to nothing
+        coarse = coarse[np.append(np.diff(coarse) > NARROWEST * coarse[1:], True)]
         pieces = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)
         fine = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(coarse[:-1], coarse[1:], pieces, strict=True)]
         return cls(np.concatenate([[0.0], *fine]), count)

@@ -135,7 +135,10 @@ def _half_space_function(
         return MappedFunction(rest, np.zeros((1, count)), 0.0)
     grid, lead = _initial_grid(solution, indenter, unit, max_radius, count)
     scale = np.inf if isinstance(solution, HalfSpaceFlatPunch) else 1.0
-    return resolve(lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, RESOLVED, scale)
+    far = (indenter.max_radius - indenter.flat_radius) / unit
+    return resolve(
+        lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, tolerance=RESOLVED, scale=scale, far=far
+    )
 
 
 def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:

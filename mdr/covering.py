@@ -50,7 +50,8 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
                 f"loading.values = {wanted:g}: the indenter ends at a radius of {radius:g} m, where {reached:g} is "
                 "reached; ask for less or describe the indenter further out"
             )
-        radius = min(_extrapolated(system, wanted / reached, isinstance(loading, NormalForces)), indenter.max_radius)
+        further = _extrapolated(system, wanted / reached, isinstance(loading, NormalForces))
+        radius = min(further, _furthest(indenter, radius))
 
 
 def _up_to(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, SeveralContacts | None]:
@@ -72,6 +73,16 @@ def _reached(system: EquivalentSystem, loading: Loading) -> tuple[float, float]:
     raise UnsupportedSceneError(f"loading {type(loading).__name__} has no largest contact radius of its own")
 
 
+def _furthest(indenter: Profile, radius: float) -> float:
+    """Largest next radius: the indenter's end, or half way to an end where it stands upright, as a sphere does."""
+    end = indenter.max_radius
+    with np.errstate(divide="ignore"):  # an infinite depth is what is looked for
+        upright = np.isfinite(end) and not np.isfinite(
+            half_space_profile(indenter, np.array(end - indenter.flat_radius))
+        )
+    return (radius + end) / 2 if upright else end
+
+
 def _extrapolated(system: EquivalentSystem, factor: float, is_force: bool) -> float:
     """Where depth or force has grown by the factor if it goes on with its present power of the radius, and a little."""
     a = system.max_radius
@@ -84,7 +95,7 @@ def _extrapolated(system: EquivalentSystem, factor: float, is_force: bool) -> fl
 
 
 def _first_radius(scene: Scene) -> float:
-    """The half-space's contact radius, rounded up to a trial radius, within the indenter and `FIRST_RATIO`."""
+    """About the half-space's contact radius, within the indenter and `FIRST_RATIO`."""
     values = getattr(scene.loading, "values", np.ones(1))
     wanted = float(values.max())
     is_force = isinstance(scene.loading, NormalForces)
@@ -95,9 +106,9 @@ def _first_radius(scene: Scene) -> float:
     )  # a sphere's end is upright
     excess = np.minimum(scale * TRIAL_RADII, limit)
     depth, force = _half_space_answer(scene.indenter, excess)
-    enough = (scene.layer.contact_modulus * force if is_force else depth) >= wanted
-    first = int(np.argmax(enough)) if enough.any() else -1
-    return flat + float(excess[first])
+    answer = scene.layer.contact_modulus * force if is_force else depth
+    guess = np.interp(wanted, answer, excess)  # between neighbouring trial radii, which differ by a fifth
+    return flat + min(1.02 * float(guess), limit)
 
 
 def _half_space_answer(indenter: Profile, excess: FloatArray) -> tuple[FloatArray, FloatArray]:

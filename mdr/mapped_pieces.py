@@ -162,18 +162,26 @@ class MappedFunction:
 
 
 def resolve(
-    function: Callable[[FloatArray], FloatArray], grid: MappedGrid, lead: float, tolerance: float, scale: float
+    function: Callable[[FloatArray], FloatArray],
+    grid: MappedGrid,
+    lead: float,
+    *,
+    tolerance: float,
+    scale: float,
+    far: float,
 ) -> MappedFunction:
     """Split pieces until the function's last coefficients fall below the tolerance.
 
     Towards a mapped singularity pieces may become as small as they need; elsewhere a piece below a thousandth of its
     distance from the start shows noise, not structure, and the tail that is left goes into the error estimate.
+    Towards a pole at `far` (a sphere's equator) pieces shrink with the distance to it.
     A mapped piece spends its polynomial degree in steps of its power: it is kept short against the given length scale,
     on which other functions of the same grid vary.
     """
     for _ in range(MAX_SPLITS):
         resolved = MappedFunction.from_values(grid, function(grid.nodes), lead)
-        smallest = np.where(grid.power > 1, 1e-13, 1e-3) * (grid.left + grid.width)
+        right = grid.left + grid.width
+        smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, 0.1 * (far - right))
         coarse = (resolved.truncation() > tolerance) & (grid.width > smallest)
         coarse |= (grid.power > 1) & (grid.width > scale * 4.0 ** (1 - grid.power))
         if not coarse.any():
