@@ -63,8 +63,7 @@ class AdhesiveBranch:
     def radius(self, y: FloatArray) -> FloatArray:
         """a [m] at y."""
         section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
-        radius = self.section_radii[section] + (y - self.section_ends[section]) ** 2
-        return np.asarray(np.minimum(radius, self.section_radii[-1]))
+        return np.asarray(self.section_radii[section] + (y - self.section_ends[section]) ** 2)
 
     def coordinate(self, radius: FloatArray) -> FloatArray:
         """The y of a [m]."""

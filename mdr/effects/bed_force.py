@@ -55,6 +55,8 @@ def touched_front(bed: Bed, touching: NDArray[np.bool_], gaps: FloatArray) -> fl
 
 def _way_to_zero(values: FloatArray, step: float) -> float:
     """How far before the first of up to three equidistant values their polynomial vanishes, at most one step."""
+    if not np.isfinite(values).all():  # beyond a flat punch's rim the gap is infinite
+        return step
     if values.size < 3:
         slope = (values[1] - values[0]) / step if values.size == 2 else values[0] / step
         way = values[0] / slope if slope > 0.0 else step

@@ -44,11 +44,13 @@ def history(
     t, delta, v, f, y, held, lost = samples[:, distinct(samples[0])]
     outcome = results(problem, motion)
     energy = float(problem.mass[0] * problem.velocity[0] ** 2)
+    error = np.full(t.size, outcome.relative_error[0])
+    leaving = np.abs(delta).max() / (np.abs(v[-1]) * t[-1])  # a slow departure hardly says when it is over
     return ImpactHistory(
         scene=scene,
         method="mdr",
         settings=settings,
-        error_estimate=dict.fromkeys(ESTIMATED, np.full(t.size, outcome.relative_error[0])),
+        error_estimate=dict.fromkeys(ESTIMATED, error) | {"contact_time": error * (1.0 + 5.0 * leaving)},
         cost=log.cost(unknowns=int(motion.turn.shape[0])),
         stages=log.records,
         time=t * problem.time[0],

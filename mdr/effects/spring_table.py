@@ -55,8 +55,7 @@ class SpringTable:
     def radius(self, y: FloatArray) -> FloatArray:
         """a [m] at front coordinate y."""
         section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
-        radius = _radius(self.section_radii[section], y - self.section_ends[section])
-        return np.asarray(np.minimum(radius, self.section_radii[-1]))
+        return _radius(self.section_radii[section], y - self.section_ends[section])
 
     def coordinate(self, radius: FloatArray) -> FloatArray:
         """The front coordinate y at a [m]."""

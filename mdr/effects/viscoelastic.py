@@ -16,6 +16,7 @@ from contact import (
     ForceHistory,
     HistoryPath,
     InvalidInput,
+    NotConvergedError,
     Profile,
     Scene,
     StageLog,
@@ -37,6 +38,8 @@ _FINENESS = 400  # substeps of a whole force history, at least two an interval
 _FEWEST, _MOST = -2, 2  # how often they may be doubled
 _MOST_SUBSTEPS = 64  # of one interval
 _MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
+_ROUNDING = 1e-12  # of sums over hundreds of springs
+_LARGEST_ERROR = 1e-4  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
 
 
@@ -63,6 +66,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     Raises:
         InvalidInput: If a force is negative or nothing is ever pressed.
         UnsupportedSceneError: If the contact would leave a gap inside itself.
+        NotConvergedError: If half the springs give another answer.
     """
     log, loading = StageLog(), scene.loading
     if not isinstance(loading, DepthHistory | ForceHistory):
@@ -77,7 +81,13 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     log.count("springs", bed.y.size)
     log.count("instants", loading.time.size)
     contact = fine.y >= 0.0
-    error = np.full(loading.time.size, max(_change(fine.force, coarse.force), _change(fine.depth, coarse.depth)))
+    error = np.full(
+        loading.time.size, max(_change(fine.force, coarse.force), _change(fine.depth, coarse.depth), _ROUNDING)
+    )
+    if error[0] > _LARGEST_ERROR:
+        raise NotConvergedError(
+            "the springs do not resolve this history", {"change with twice as many": float(error[0])}
+        )
     return HistoryPath(
         scene=scene,
         method="mdr",

@@ -1,0 +1,52 @@
+"""Scenes in time whose answers once were wrong beyond their stated error, or crashed; found by random scenes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    Impact,
+    KelvinVoigt,
+    Layer,
+    NotConvergedError,
+    Paraboloid,
+    Scene,
+    Tabulated,
+)
+from mdr import Mdr
+
+SOFT = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
+HISTORY = DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 0.01, 0.0])
+
+
+def test_a_flat_punch_under_a_falling_depth_on_a_viscous_layer():
+    effect = KelvinVoigt(shear_modulus=1.0, viscosity=0.5)
+    path = Mdr().solve(Scene(layer=SOFT, indenter=FlatPunch(radius=2.0), loading=HISTORY, effects=(effect,)))
+    elastic = Mdr().solve(Scene(layer=SOFT, indenter=FlatPunch(radius=2.0), loading=HISTORY))
+    # closed form: F = k_N (delta + tau delta'), tau = eta/G = 0.5 s, delta' = 0.01 m/s before the turn at 1 s
+    assert path.normal_force[1] == pytest.approx(1.5 * elastic.normal_force[1], rel=1e-11)
+
+
+def test_a_history_that_the_springs_do_not_resolve_is_refused():
+    rises = np.diff(np.linspace(0.0, 0.1, 31) ** 2) * (1.0 + 0.02 * np.random.default_rng(3).uniform(-1.0, 1.0, 30))
+    rough = Tabulated(radii=np.linspace(0.0, 0.1, 31), heights=np.concatenate([[0.0], np.cumsum(rises)]))
+    scene = Scene(layer=SOFT, indenter=rough, loading=DepthHistory(time=[0.0, 1.0], depth=[0.0, 0.008]))
+    with pytest.raises(NotConvergedError, match="do not resolve this"):
+        Mdr().solve(scene)
+
+
+@pytest.mark.parametrize("viscosity", [0.3, 3.0, 30.0])
+def test_the_contact_time_of_a_damped_impact_is_within_its_stated_error(viscosity):
+    effect = KelvinVoigt(shear_modulus=1.0, viscosity=viscosity)
+    scene = Scene(
+        layer=SOFT,
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=Impact(mass=0.05, velocity=0.1),
+        effects=(effect,),
+    )
+    answer, finer = Mdr().solve(scene), Mdr(accuracy=1e-12).solve(scene)
+    distance = abs(answer.contact_time / finer.contact_time - 1.0)
+    assert distance <= answer.error_estimate["contact_time"].max() + finer.error_estimate["contact_time"].max()
