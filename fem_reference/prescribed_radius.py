@@ -17,12 +17,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import NotConvergedError, StageLog
-from fem_reference.elements import ElementPair
 from fem_reference.fields import mutual_energies
-from fem_reference.geometry import LayerMesh
 from fem_reference.indenter import ScaledIndenter
 from fem_reference.layer_problem import LayerProblem
-from fem_reference.material import Moduli
 from fem_reference.shape_derivative import cut_off, energy_shape_derivative
 from fem_reference.trace import TraceSpace
 
@@ -48,10 +45,7 @@ class PrescribedContact:
         top_trace: polynomials on the whole top.
         displacements: u_z of u_1 and u_2 at its nodes, shape (node, 2).
         energy_defect: |energy stiffness / reaction stiffness - 1|.
-        layer_mesh: the section.
-        pair: element pair.
-        moduli: shear modulus and compressibility at E* = 1.
-        solutions: all unknowns of u_1 and u_2, shape (size, 2).
+        unknowns: size of the linear system.
     """
 
     stiffness: float
@@ -65,15 +59,7 @@ class PrescribedContact:
     top_trace: TraceSpace
     displacements: Array
     energy_defect: float
-    layer_mesh: LayerMesh
-    pair: ElementPair
-    moduli: Moduli
-    solutions: Array
-
-    @property
-    def unknowns(self) -> int:
-        """Size of the linear system."""
-        return len(self.solutions)
+    unknowns: int
 
     def force(self, depth: float) -> float:
         """Normal force at any depth, the contact radius held."""
@@ -145,10 +131,7 @@ def _evaluate(
         top_trace=TraceSpace(problem.positions[0, top], degree),
         displacements=solutions[2 * top + 1],
         energy_defect=float(defect),
-        layer_mesh=problem.layer_mesh,
-        pair=problem.pair,
-        moduli=problem.moduli,
-        solutions=solutions,
+        unknowns=problem.space.size,
     )
 
 

@@ -173,12 +173,9 @@ def accept(
 def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
-    method: Annotated[
-        str, typer.Option(help="mdr, mdr_table, fem, bem, integral_equation, or a registered one.")
-    ] = "mdr",
+    method: Annotated[str, typer.Option(help="mdr, fem, bem, integral_equation, or a registered method.")] = "mdr",
     accuracy: Annotated[
-        float | None,
-        typer.Option(help="Relative accuracy of the force: chooses the settings, and refuses an answer that is less."),
+        float | None, typer.Option(help="Relative accuracy of the force; chooses the settings.")
     ] = None,
     write: Annotated[
         list[Path] | None,

@@ -3,13 +3,7 @@
 import re
 from collections.abc import Mapping
 
-NAMES: Mapping[str, str] = {
-    "mdr": "MDR",
-    "fem": "FEM",
-    "bem": "BEM",
-    "integral_equation": "integral equation",
-    "mdr_table": "MDR (FFT table)",
-}
+NAMES: Mapping[str, str] = {"mdr": "MDR", "fem": "FEM", "bem": "BEM", "integral_equation": "integral equation"}
 
 
 def base_of(method: str) -> str:

@@ -18,13 +18,14 @@ import numpy as np
 from cases.stability.random_scenes import RATIO, Family, random_scenes
 from cases.stability.second_opinion import LARGEST_RATIO, second_opinion
 from cases.stability.units import Units, in_units
-from contact import ContactError, ContactPath, Method, NotConvergedError, Scene, Solution
+from contact import ContactError, ContactPath, HistoryPath, ImpactHistory, Method, NotConvergedError, Scene, Solution
 from contact.validation import FloatArray
 
 End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
 Referee: TypeAlias = Literal["second opinion", "refinement", "other units", "none"]
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
+IMPACT_NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
 _ROUNDING = 64 * float(np.finfo(float).eps)  # a few operations, also on what was prescribed
 _THIN_LAYERS_REFINED = 8  # one in so many
@@ -209,16 +210,30 @@ def _refereed(method: Method, answer: Solution, number: int) -> tuple[Referee, t
     except NotConvergedError:
         return "none", ()
     return "refinement", tuple(
-        _check(answer, q, np.atleast_1d(getattr(finer, q)), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
-        for q in answer.error_estimate
-        if np.shape(getattr(finer, q)) == np.shape(getattr(answer, q))
+        _check(answer, q, _values(finer, q), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
+        for q in _comparable(answer, finer)
+        if q in answer.error_estimate
     )
+
+
+def _comparable(answer: Solution, other: Solution) -> tuple[str, ...]:
+    """Quantities of two answers that stand for the same states; an impact's samples lie where its steps fall."""
+    if isinstance(answer, ImpactHistory):
+        return IMPACT_NUMBERS
+    if isinstance(answer, HistoryPath):  # its contact radius jumps where contact is lost
+        return tuple(answer.error_estimate)
+    names = (*answer.ARRAYS, *answer.SCALARS)
+    return tuple(q for q in names if np.shape(getattr(other, q)) == np.shape(getattr(answer, q)))
+
+
+def _values(answer: Solution, quantity: str) -> FloatArray:
+    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
 
 
 def _check(answer: Solution, quantity: str, expected: FloatArray, allowance: FloatArray) -> Check:
     """The step with the largest excess of distance over what is allowed."""
     scale = np.maximum(answer.scale(quantity), np.finfo(float).tiny)
-    error = np.abs(np.atleast_1d(getattr(answer, quantity)) - expected) / scale
+    error = np.abs(_values(answer, quantity) - expected) / scale
     stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), error.shape)
     allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
     worst = int(np.argmax(error - stated - allowance))
@@ -235,18 +250,23 @@ def _fitted(values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
 def _in_other_units(method: Method, answer: Solution) -> tuple[Check, ...]:
     """The same scene with lengths, stresses and times in other units."""
     other = method.solve(in_units(answer.scene, OTHER_UNITS))
-    names = (*answer.ARRAYS, *answer.SCALARS)
-    same_size = [q for q in names if np.shape(getattr(other, q)) == np.shape(getattr(answer, q))]
-    expected = {q: np.atleast_1d(getattr(other, q)) / OTHER_UNITS.factor(q) for q in same_size}
     return tuple(
         Check(
             quantity=f"{q} in other units",
-            error=float(np.max(np.abs(np.atleast_1d(getattr(answer, q)) - expected[q]) / _scale(answer, q))),
+            error=float(
+                np.max(np.abs(_values(answer, q) - _values(other, q) / OTHER_UNITS.factor(q)) / _scale(answer, q))
+            ),
             stated=UNITS_AGREEMENT,
-            allowance=float(np.max(answer.error_estimate.get(q, 0.0))),
+            allowance=_largest_stated(answer, q),
         )
-        for q in same_size
+        for q in _comparable(answer, other)
     )
+
+
+def _largest_stated(answer: Solution, quantity: str) -> float:
+    """The error stated for the quantity or, where none is, the largest stated for any."""
+    stated = answer.error_estimate.get(quantity)
+    return max(float(np.max(e)) for e in (answer.error_estimate.values() if stated is None else [stated]))
 
 
 def _scale(answer: Solution, quantity: str) -> FloatArray:
