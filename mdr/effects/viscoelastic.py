@@ -39,7 +39,7 @@ _FEWEST, _MOST = -2, 2  # how often they may be doubled
 _MOST_SUBSTEPS = 64  # of one interval
 _MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
 _ROUNDING = 1e-12  # of sums over hundreds of springs
-_LARGEST_ERROR = 1e-4  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
+_LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
 
 
