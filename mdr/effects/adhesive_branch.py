@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -21,7 +22,7 @@ from mdr.effects.panels import NODES, Panel, Piecewise, resolved_panels
 DEPTH, FORCE = 0, 1
 _TIP = 1e-5  # of the largest y: below it, depth and force have left the tip with a known sign
 _EDGE = 1e-6  # how far outside its panel a root may lie; whether it is one is decided by the signs beside it
-_BISECTIONS = 60
+_NEWTON_STEPS, _ROUNDING = 60, 1e-13  # a Newton step this short has squared its error already
 
 
 class AdheringSprings(Protocol):
@@ -80,7 +81,7 @@ class AdhesiveBranch:
 
     def folds(self, quantity: int) -> FloatArray:
         """All y > 0 where the slope of depth or force changes sign, increasing."""
-        return self._sign_changes(np.concatenate([self.section_ends[1:-1], *self._roots(quantity)]), quantity)
+        return self._folds[quantity]
 
     def solutions(self, quantity: int, target: FloatArray) -> FloatArray:
         """For each target the smallest y on a stable part of the branch with that depth or force; NaN where none."""
@@ -90,8 +91,13 @@ class AdhesiveBranch:
             if self.slopes(np.array([0.5 * (low + high)]))[quantity, 0] > 0.0:
                 reach = self.values(np.array([low, high]))[quantity]
                 inside = (target >= reach[0]) & (target <= reach[1])
-                found[inside] = self._bisected(quantity, target[inside], low, high)
+                found[inside] = self._inverted(quantity, target[inside], low, high)
         return found
+
+    @cached_property
+    def _folds(self) -> tuple[FloatArray, ...]:
+        kinks = self.section_ends[1:-1]
+        return tuple(self._sign_changes(np.concatenate([kinks, *self._roots(q)]), q) for q in (DEPTH, FORCE))
 
     def _roots(self, quantity: int) -> list[FloatArray]:
         """Real roots of the slope on every panel where its mean does not exclude them."""
@@ -121,14 +127,20 @@ class AdhesiveBranch:
         signs = np.sign(self.slopes(0.5 * (points[1:] + points[:-1]))[quantity])
         return np.asarray(points[1:-1][signs[1:] != signs[:-1]])
 
-    def _bisected(self, quantity: int, target: FloatArray, low: float, high: float) -> FloatArray:
-        """The y of each target on a part where the quantity increases, by bisection to the last digit."""
+    def _inverted(self, quantity: int, target: FloatArray, low: float, high: float) -> FloatArray:
+        """The y of each target on a part where the quantity increases; a Newton step out of its bracket is halved."""
         left, right = np.full(target.shape, low), np.full(target.shape, high)
-        for _ in range(_BISECTIONS):
-            y = 0.5 * (left + right)
-            above = self.values(y)[quantity] > target
-            left, right = np.where(above, left, y), np.where(above, y, right)
-        return np.asarray(0.5 * (left + right))
+        y = 0.5 * (left + right)
+        for _ in range(_NEWTON_STEPS):
+            both = self.functions(y, slice(4))
+            excess, slope = both[quantity] - target, both[2 + quantity]
+            left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)
+            step = y - excess / np.where(slope > 0.0, slope, np.inf)
+            new = np.where((step > left) & (step < right) & (slope > 0.0), step, 0.5 * (left + right))
+            if np.all(np.abs(new - y) <= _ROUNDING * high):
+                return np.asarray(new)
+            y = new
+        return np.asarray(y)
 
 
 def adhesive_branch(
