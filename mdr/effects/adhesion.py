@@ -28,7 +28,7 @@ from contact.validation import FloatArray
 from mdr.assembly import equivalent_system
 from mdr.effects.adhesive_branch import DEPTH, FORCE, AdhesiveBranch, adhesive_branch, critical_elongation
 from mdr.effects.detachment_route import CONTROLS, Route
-from mdr.effects.reference_springs import bisected, growing_radii, upper
+from mdr.effects.reference_springs import bisected, growing_radii, power_law, upper
 from mdr.elastic import PathFields, solve_elastic
 from mdr.equivalent_system import EquivalentSystem
 
@@ -144,18 +144,26 @@ def _reaching(
     scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[AdhesiveBranch], bool]
 ) -> tuple[EquivalentSystem, AdhesiveBranch]:
     """A branch that is long enough, or ends at the indenter's rim."""
-    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / scene.layer.contact_modulus
-
-    def excess(r: float) -> float:  # of the height over the elongation on the half-space, squared
-        return float(indenter.height(r)) ** 2 - length * r
-
-    flat = indenter.flat_radius
-    balance = bisected(excess, flat, upper(excess, indenter))
-    for radius in growing_radii(indenter, flat + _FIRST_WAY * (balance - flat)):
+    flat, balance = scene.indenter.flat_radius, balance_radius(scene)
+    for radius in growing_radii(scene.indenter, flat + _FIRST_WAY * (balance - flat)):
         system, branch = _branch(scene, radius, flat_punch)
         if enough(branch):
             break
     return system, branch
+
+
+def balance_radius(scene: Scene) -> float:
+    """The contact radius [m] at which the indenter is as high as the elongation on the half-space is long."""
+    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / scene.layer.contact_modulus
+    law = power_law(indenter)
+    if law is not None:
+        coefficient, exponent = law
+        return float((length / coefficient**2) ** (1.0 / (2.0 * exponent - 1.0)))
+
+    def excess(r: float) -> float:
+        return float(indenter.height(r)) ** 2 - length * r
+
+    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
 
 
 def _prescribed(scene: Scene, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, FloatArray, FloatArray]:

@@ -1,0 +1,155 @@
+"""Thousands of scenes at once, results as arrays: impacts, pull-offs and elastic equilibria.
+
+Scenes that are the same in the units of their own layer share all tables; only what differs is computed for each.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Hashable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from bem.flat_punch import FlatPunchSource
+from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, NormalForces, Scene
+from contact.validation import FloatArray
+from mdr.effects.reference_springs import power_law, reference
+from mdr.elastic import solve_elastic
+
+if TYPE_CHECKING:
+    from mdr.effects.impact_results import ImpactResults
+
+Progress: TypeAlias = Callable[[int, int], None]
+
+_PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
+_CHUNK = 512  # scenes between two reports of progress
+
+
+@dataclass(frozen=True, kw_only=True)
+class PullOffs:
+    """Where many indenters lose contact, each array of shape (n,).
+
+    Attributes:
+        contact_radius: a [m].
+        depth: delta [m].
+        force: Largest tension on the way, as a negative F_N [N].
+    """
+
+    contact_radius: FloatArray
+    depth: FloatArray
+    force: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibria:
+    """Elastic contacts, each array of shape (n,).
+
+    Attributes:
+        contact_radius: a [m].
+        indentation_depth: delta [m].
+        normal_force: F_N [N].
+        contact_stiffness: k_N [N/m].
+    """
+
+    contact_radius: FloatArray
+    indentation_depth: FloatArray
+    normal_force: FloatArray
+    contact_stiffness: FloatArray
+
+
+def impacts(
+    scenes: Sequence[Scene],
+    flat_punch: FlatPunchSource,
+    *,
+    accuracy: float = 1e-9,
+    progress: Progress | None = None,
+) -> ImpactResults:
+    """Restitution, contact time and peaks of many impacts."""
+    from mdr.effects.impact import impact_batch  # noqa: PLC0415  # loaded only when asked for
+
+    return impact_batch(scenes, flat_punch, accuracy=accuracy, progress=progress)
+
+
+def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> PullOffs:
+    """Pull-off of many adhering indenters, power laws together and others one by one.
+
+    Args:
+        scenes: Scenes whose loading is a detachment.
+        flat_punch: Where the flat-punch data come from.
+        progress: Told how many of how many scenes are done.
+
+    Raises:
+        InvalidInput: If a scene is no detachment.
+    """
+    from mdr.effects.pull_off_batch import pull_off_groups  # noqa: PLC0415  # loaded only when asked for
+
+    for number, scene in enumerate(scenes):
+        if not isinstance(scene.loading, Detachment):
+            raise InvalidInput(f"scenes[{number}].loading = {type(scene.loading).__name__}: give a Detachment")
+    found = np.empty((3, len(scenes)))
+    done = 0
+    for members, solve in pull_off_groups(scenes, flat_punch):
+        for start in range(0, len(members), _CHUNK):
+            chunk = members[start : start + _CHUNK]
+            found[:, chunk] = solve(chunk)
+            done += len(chunk)
+            if progress is not None:
+                progress(done, len(scenes))
+    return PullOffs(contact_radius=found[0], depth=found[1], force=found[2])
+
+
+def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> Equilibria:
+    """Elastic contacts at one prescribed radius, depth or force each, power laws together and others one by one.
+
+    Raises:
+        InvalidInput: If a scene lists effects or prescribes more than one value.
+    """
+    found = np.empty((4, len(scenes)))
+    groups: dict[Hashable, list[int]] = defaultdict(list)
+    for number, scene in enumerate(scenes):
+        _refuse(number, scene)
+        groups[_kind(number, scene)].append(number)
+    done = 0
+    for members in groups.values():
+        found[:, members] = _together([scenes[i] for i in members], flat_punch)
+        done += len(members)
+        if progress is not None:
+            progress(done, len(scenes))
+    return Equilibria(
+        contact_radius=found[0], indentation_depth=found[1], normal_force=found[2], contact_stiffness=found[3]
+    )
+
+
+def _refuse(number: int, scene: Scene) -> None:
+    if scene.effects:
+        raise InvalidInput(f"scenes[{number}].effects: a batch of equilibria is elastic; leave effects out")
+    if not isinstance(scene.loading, _PRESCRIBED) or scene.loading.values.size != 1:
+        raise InvalidInput(f"scenes[{number}].loading: give one radius, depth or force a scene")
+
+
+def _kind(number: int, scene: Scene) -> Hashable:
+    """What scenes of one group have in common; a profile that is no power law is a group of its own."""
+    law = power_law(scene.indenter)
+    if law is None:
+        return number
+    shared = reference(scene.layer, scene.indenter, 1.0)
+    return type(scene.loading), shared.layer, shared.indenter
+
+
+def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
+    """Radius, depth, force and stiffness of one group, shape (4, n), from one solution of the shared problem."""
+    if power_law(scenes[0].indenter) is None:
+        path = solve_elastic(scenes[0], flat_punch, {})
+        return np.stack([path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness])
+    units = [reference(scene.layer, scene.indenter, 1.0) for scene in scenes]
+    length, depth, stiffness = (np.array([getattr(u, n) for u in units]) for n in ("length", "depth", "stiffness"))
+    values = np.array([scene.loading.values[0] for scene in scenes if isinstance(scene.loading, _PRESCRIBED)])
+    unit_of = {ContactRadii: length, IndentationDepths: depth, NormalForces: stiffness * depth}
+    kind = next(kind for kind in _PRESCRIBED if isinstance(scenes[0].loading, kind))
+    ordered, place = np.unique(values / unit_of[kind], return_inverse=True)
+    shared = Scene(layer=units[0].layer, indenter=units[0].indenter, loading=kind(values=ordered))
+    path = solve_elastic(shared, flat_punch, {})
+    answers = np.stack([path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness])
+    return np.asarray(answers[:, place] * np.stack([length, depth, stiffness * depth, stiffness]))

@@ -1,0 +1,107 @@
+"""Batches answer as their scenes do one by one, in their order, and say how far they are."""
+
+import numpy as np
+import pytest
+
+from bem.integral_equation import IntegralEquation
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    TruncatedCone,
+)
+from mdr import Mdr
+from mdr.batches import equilibria, impacts, pull_offs
+from tests.mdr.viscoelastic_scenes import figure_12
+
+PUNCH = IntegralEquation()
+RNG = np.random.default_rng(7)
+INDENTERS = (
+    Paraboloid(radius_of_curvature=0.02),
+    Paraboloid(radius_of_curvature=0.005),
+    Cone(slope=0.1),
+    PowerLaw(exponent=4.0, reference_radius=1e-3, reference_height=2e-4),
+    TruncatedCone(flat_radius=2e-4, slope=0.1),
+    FlatPunch(radius=1e-3),
+)
+LAYERS = (
+    Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.4),
+    Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45),
+    Layer(thickness=3e-4, youngs_modulus=2e6, poissons_ratio=0.45),
+    Layer(thickness=2e-3, youngs_modulus=3e6, poissons_ratio=0.3, support="unbonded"),
+)
+
+
+def shuffled(scenes):
+    return [scenes[i] for i in RNG.permutation(len(scenes))]
+
+
+def test_pull_offs_are_what_detachment_paths_say():
+    scenes = shuffled(
+        [
+            Scene(
+                layer=layer,
+                indenter=indenter,
+                loading=Detachment(control=control),
+                effects=(Adhesion(work_of_adhesion=work),),
+            )
+            for layer in LAYERS
+            for indenter in INDENTERS
+            for control in ("displacement", "force")
+            for work in (0.01, 0.05)
+        ]
+    )
+    seen = []
+    together = pull_offs(scenes, PUNCH, progress=lambda done, total: seen.append((done, total)))
+    paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes]
+    displaced = np.array([scene.loading.control == "displacement" for scene in scenes])
+    depths = np.array([p.pull_off_depth for p in paths])
+    # under force control the depth passes through zero: there it is as exact as its two terms are long
+    np.testing.assert_allclose(together.depth, depths, rtol=1e-12, atol=1e-12 * np.abs(depths).max())
+    np.testing.assert_allclose(together.contact_radius, [p.pull_off_contact_radius for p in paths], rtol=1e-8)
+    np.testing.assert_allclose(together.force, [p.pull_off_force for p in paths], rtol=1e-12)
+    assert displaced.any()
+    assert seen[-1] == (len(scenes), len(scenes))
+
+
+def test_equilibria_are_what_single_scenes_say():
+    scenes = shuffled(
+        [
+            Scene(layer=layer, indenter=indenter, loading=loading)
+            for layer in LAYERS
+            for indenter in INDENTERS
+            for loading in (ContactRadii([1.5e-3]), IndentationDepths([2e-5]), NormalForces([0.1]))
+            if not (isinstance(indenter, FlatPunch) and isinstance(loading, ContactRadii))
+        ]
+    )
+    together = equilibria(scenes, PUNCH)
+    for i, scene in enumerate(scenes):
+        alone = Mdr(flat_punch=PUNCH).solve(scene)
+        for name in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
+            assert getattr(together, name)[i] == pytest.approx(getattr(alone, name)[0], rel=1e-12), (name, scene)
+
+
+def test_impacts_go_through_the_same_door():
+    scenes = [figure_12(2e-3), figure_12(1e-3)]
+    found = impacts(scenes, PUNCH)
+    np.testing.assert_allclose(found.coefficient_of_restitution, [0.55924, 0.64341], atol=1e-5)
+
+
+def test_what_a_batch_refuses():
+    scene = Scene(layer=LAYERS[1], indenter=INDENTERS[0], loading=ContactRadii([1e-3, 2e-3]))
+    with pytest.raises(InvalidInput, match=r"scenes\[0\].loading: give one"):
+        equilibria([scene], PUNCH)
+    with pytest.raises(InvalidInput, match=r"scenes\[0\].loading = ContactRadii"):
+        pull_offs([scene], PUNCH)
+    adhesive = scene.replace(effects=(Adhesion(work_of_adhesion=0.1),))
+    with pytest.raises(InvalidInput, match=r"scenes\[0\].effects"):
+        equilibria([adhesive], PUNCH)
