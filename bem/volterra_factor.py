@@ -108,14 +108,16 @@ class VolterraFactor:
 
         Args:
             panel: Number of the panel.
-            edge: Edges in (0, 1], relative to the panel, shape (k,).
+            edge: Edges in [0, 1], relative to the panel, shape (k,).
             points: Points in [0, edge], relative to the panel, shape (k, l).
 
         Returns:
             Shape (k, l).
         """
         rows = lagrange_matrix(self.count, edge) @ self.resolvent[panel]
-        values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, points / edge[:, None]), rows)
+        edges = np.broadcast_to(edge[:, None], points.shape)  # at a panel's start they are rounding errors or zero
+        share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
+        values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, share), rows)
         return values
 
     @cached_property

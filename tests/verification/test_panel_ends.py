@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact import Adhesion, ContactRadii, Detachment, FlatPunch, Layer, Paraboloid, Scene
+from contact import Adhesion, ContactRadii, Detachment, FlatPunch, Layer, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 
 WINDOW = 1e-3
@@ -32,6 +32,17 @@ def test_a_radius_close_to_a_panel_end_has_the_accuracy_of_any_other(support, ra
         near = ratio * (1.0 + shift)
         expected = [curve(near) for curve in curves]
         np.testing.assert_allclose(state(layer, near), expected, rtol=3e-13)  # stated error of these answers: 2e-13
+
+
+def test_a_contact_that_just_enters_the_next_panel():
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
+    cone = TruncatedCone(flat_radius=1.9996, slope=1e-5)
+    radii = 2.0 + np.array([0.0, 1e-15, 3e-15, 1e-14, 1e-13, 1e-12])
+    depths = [
+        Mdr().solve(Scene(layer=layer, indenter=cone, loading=ContactRadii([a]))).indentation_depth for a in radii
+    ]
+    growth = 0.5 / 4e-4 * (radii - 2.0)  # delta ~ sqrt(a - b), Eq. (36)
+    np.testing.assert_allclose(np.concatenate(depths) / depths[0] - 1.0, growth, atol=3e-12)  # b/a: 2e-4 conditions it
 
 
 @pytest.mark.parametrize("ratio", [1.0, 2.0, 5.0, 10.0])
