@@ -266,7 +266,8 @@ def _in_other_units(method: Method, answer: Solution) -> tuple[Check, ...]:
 def _largest_stated(answer: Solution, quantity: str) -> float:
     """The error stated for the quantity or, where none is, the largest stated for any."""
     stated = answer.error_estimate.get(quantity)
-    return max(float(np.max(e)) for e in (answer.error_estimate.values() if stated is None else [stated]))
+    found = answer.error_estimate.values() if stated is None else [stated]
+    return max((float(np.max(error)) for error in found), default=0.0)
 
 
 def _scale(answer: Solution, quantity: str) -> FloatArray:
