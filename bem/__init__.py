@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from bem.flat_punch import FlatPunchSolution, FlatPunchSource
     from bem.integral_equation import IntegralEquation
     from bem.integral_equation_method import IntegralEquationMethod
+    from bem.table_file import TableFile
 
 _HOME = {
     "Bem": "bem.direct",
@@ -20,9 +21,18 @@ _HOME = {
     "FlatPunchSource": "bem.flat_punch",
     "IntegralEquation": "bem.integral_equation",
     "IntegralEquationMethod": "bem.integral_equation_method",
+    "TableFile": "bem.table_file",
 }
 
-__all__ = ["Bem", "FftTable", "FlatPunchSolution", "FlatPunchSource", "IntegralEquation", "IntegralEquationMethod"]
+__all__ = [
+    "Bem",
+    "FftTable",
+    "FlatPunchSolution",
+    "FlatPunchSource",
+    "IntegralEquation",
+    "IntegralEquationMethod",
+    "TableFile",
+]
 
 
 def __getattr__(name: str) -> Any:
