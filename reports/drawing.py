@@ -5,6 +5,7 @@ A figure with a single group is coloured by method instead.
 """
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import groupby
@@ -21,8 +22,10 @@ from reports.method_names import base_of, display_name
 from reports.plates import Plate
 from reports.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
 
-PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 4.0, 0.2  # inches
+PANEL_HEIGHT, PANEL_WIDTH, NARROWEST, LEGEND_ROW = 2.75, 4.0, 4.6, 0.2  # inches
+HANDLE_WIDTH, LETTER_WIDTH = 0.62, 0.072  # inches, of a legend entry
 MOST_COLUMNS = 3
+NARROWEST_BAND = 1e-3
 SYMBOLS_ON_A_CURVE = 24
 LINE_METHODS = ("mdr",)
 FULL_WIDTH, THIN_WIDTH = 1.5, 1.0
@@ -78,9 +81,9 @@ def draw(figure: Figure) -> Drawing:
     columns = _columns(figure.panels)
     rows = math.ceil(len(figure.panels) / columns)
     legend = _legend_entries(figure)
-    legend_rows = math.ceil(len(legend) / (3 * columns))
-    height = PANEL_HEIGHT * rows + LEGEND_ROW * legend_rows + 0.15
-    drawing = Drawing(figsize=(max(4.6, PANEL_WIDTH * columns), height), layout="constrained")
+    width = max(NARROWEST, PANEL_WIDTH * columns)
+    legend_rows = math.ceil(len(legend) / _entries_a_row(legend, width))
+    drawing = Drawing(figsize=(width, PANEL_HEIGHT * rows + LEGEND_ROW * legend_rows + 0.15), layout="constrained")
     colours = _colours(figure)
     all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
     for axes, panel in zip(all_axes, figure.panels, strict=False):
@@ -90,6 +93,12 @@ def draw(figure: Figure) -> Drawing:
     if legend:
         drawing.legend(handles=legend, loc="outside lower center", ncols=math.ceil(len(legend) / legend_rows))
     return drawing
+
+
+def _entries_a_row(legend: Sequence[Line2D], width: float) -> int:
+    """How many legend entries stand side by side in a figure of this width [inches]."""
+    longest = max((len(re.sub(r"[$\\{}_^]|mathrm", "", str(entry.get_label()))) for entry in legend), default=0)
+    return max(1, math.floor(width / (HANDLE_WIDTH + LETTER_WIDTH * longest)))
 
 
 def _columns(panels: Sequence[Panel]) -> int:
@@ -135,8 +144,14 @@ def _draw_series(axes: Axes, series: Series, colour: str) -> None:
         markeredgewidth=1.1,
         zorder=layer,
     )
-    if series.half_width:
+    if _visible(series):
         _draw_uncertainty(axes, series, colour, symbols=bool(stroke.marker))
+
+
+def _visible(series: Series) -> bool:
+    """Whether the uncertainty is wider than the line, roughly a thousandth of what the ordinates span."""
+    span = max(series.y, default=0.0) - min(series.y, default=0.0)
+    return bool(series.half_width) and max(series.half_width) > NARROWEST_BAND * span
 
 
 def _draw_uncertainty(axes: Axes, series: Series, colour: str, *, symbols: bool) -> None:
@@ -168,14 +183,15 @@ def _is_asymptote(method: str) -> bool:
 
 
 def _colour(series: Series, colours: dict[str, str]) -> str:
-    if len(colours) > 1 and series.group:
+    if len(colours) > 1 and series.group in colours:
         return colours[series.group]
     return BLACK if _is_asymptote(series.method) else look_of(series.method).colour
 
 
 def _colours(figure: Figure) -> dict[str, str]:
     """A colour for each group, dark to light as the groups come: readable in grey and with any colour vision."""
-    groups = _distinct(series.group for panel in figure.panels for series in panel.series if series.group)
+    shown = (series for panel in figure.panels for series in panel.series if series.group)
+    groups = _distinct(series.group for series in shown if not _is_asymptote(series.method))
     places = np.linspace(0.0, 0.84, max(2, len(groups)))
     return {group: to_hex(colormaps["viridis"](place)) for group, place in zip(groups, places, strict=False)}
 
@@ -185,7 +201,8 @@ def _legend_entries(figure: Figure) -> list[Line2D]:
     colours = _colours(figure)
     grouped = len(colours) > 1
     entries = [Line2D([], [], color=colour, linewidth=3.0, label=group) for group, colour in colours.items() if grouped]
-    shown = {(s.method, s.style): s for panel in figure.panels for s in panel.series}
+    all_series = [series for panel in figure.panels for series in panel.series]
+    shown = {s.method: s for s in all_series} | {s.method: s for s in all_series if s.style == "by method"}
     return entries + [_method_entry(series, GREY if grouped else _colour(series, colours)) for series in shown.values()]
 
 

@@ -1,6 +1,7 @@
 """The pages in a real browser: verdict first, a failure without scrolling, no clipped label, nothing too wide."""
 
 import dataclasses
+import importlib
 
 import matplotlib.image
 import pytest
@@ -40,6 +41,15 @@ def test_a_failure_stands_on_the_first_screen_of_a_long_report_too(tmp_path):
 def test_no_label_of_a_figure_is_clipped(measured):
     assert measured["figures"] >= 5
     assert measured["clipped"] == []
+
+
+def test_no_label_of_the_paper_s_figures_is_clipped(tmp_path):
+    numbers = ("03", "04", "05", "07", "08", "09", "11", "12")
+    figures = tuple(importlib.import_module(f"cases.figures.figure_{number}").figure() for number in numbers)
+    case = dataclasses.replace(passing_case(), figures=figures)
+    seen = measure(write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path))
+    assert seen["figures"] >= len(figures)
+    assert seen["clipped"] == []
 
 
 def test_the_clipping_check_sees_a_planted_label(failed_page, tmp_path):
