@@ -13,6 +13,7 @@ from pydantic import Field
 from bem.contact_density import ContactDensity
 from bem.fredholm_kernel import FredholmKernel
 from bem.kernels import Support, compliance_kernel
+from bem.large_ratio import LARGEST_RATIO, LargeRatioSolution
 from bem.panels import gauss_nodes, partial_panel_interpolation
 from bem.piecewise import EqualPanels
 from bem.volterra_factor import VolterraFactor
@@ -20,8 +21,8 @@ from contact import InvalidInput, Layer
 from contact.record import Record, record
 from contact.validation import FloatArray, positive
 
-LARGEST_RATIO: Final = 160.0  # the dense factor for it takes 110 MB and a second
-RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_RATIO)  # sizes made: answers do not depend on history
+LARGEST_PROFILE_RATIO: Final = 160.0  # the dense factor for it takes 110 MB and two seconds
+RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_PROFILE_RATIO)  # answers do not depend on history
 
 
 @record
@@ -36,8 +37,10 @@ class IntegralEquation(Record):
     nodes: int = Field(default=24, ge=4, le=64)
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
 
-    def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution:
+    def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution | LargeRatioSolution:
         """The flat punch on this layer up to at least a/h = max_ratio, cached.
+
+        Beyond a/h = 160 only the stiffnesses are known (`large_ratio`), neither pressure nor other profiles.
 
         Raises:
             InvalidInput: If the ratio is beyond `LARGEST_RATIO`.
@@ -45,8 +48,10 @@ class IntegralEquation(Record):
         """
         if not 0 < max_ratio <= LARGEST_RATIO:
             raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
-        rung = next(rung for rung in RUNGS if rung >= max_ratio)
+        rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
         nu = layer.poissons_ratio if layer.support == "bonded" else 0.0  # no influence on the unbonded layer
+        if rung is None:
+            return _large_solution(self, layer.support, nu)
         return _solution(self, layer.support, nu, rung)
 
     def refined(self) -> Self:
@@ -165,3 +170,8 @@ def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: fl
     panels = int(np.ceil(ratio / settings.panel_width))
     factor = VolterraFactor.of_kernel(kernel, panels, settings.panel_width, int(settings.nodes))
     return IntegralEquationSolution(support, nu, kernel, factor)
+
+
+@lru_cache(maxsize=4)
+def _large_solution(settings: IntegralEquation, support: Support, nu: float) -> LargeRatioSolution:
+    return LargeRatioSolution(support, nu, lambda: _solution(settings, support, nu, RUNGS[-1]))

@@ -7,7 +7,8 @@ import numpy as np
 from bem.contact_density import ContactDensity
 from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
-from bem.integral_equation import IntegralEquationSolution
+from bem.integral_equation import LARGEST_PROFILE_RATIO, IntegralEquationSolution
+from bem.large_ratio import LargeRatioSolution
 from bem.panels import gauss_nodes
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.validation import FloatArray
@@ -43,6 +44,7 @@ def equivalent_system(
     _refuse_endless_depth(indenter, max_radius)
     unit = max_radius if layer.is_half_space else layer.thickness
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
+    _refuse_wide_profiles(solution, indenter, max_radius / unit)
     profile = _profile(solution, indenter, unit, max_radius)
     _refuse_rings(profile, indenter, unit)
     return EquivalentSystem(
@@ -139,6 +141,13 @@ def _half_space_function(
     return resolve(
         lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, tolerance=RESOLVED, scale=scale, far=far
     )
+
+
+def _refuse_wide_profiles(solution: FlatPunchSolution, indenter: Profile, ratio: float) -> None:
+    """Of very large ratios the integral equation knows the stiffnesses only: enough for a flat punch."""
+    if isinstance(solution, LargeRatioSolution) and not isinstance(indenter, FlatPunch):
+        message = f"a/h = {ratio:g}: the integral equation covers profiles up to a/h = {LARGEST_PROFILE_RATIO:g}"
+        raise InvalidInput(f"{message}; use a thin-layer form of mdr.asymptotic, or a flat-punch table")
 
 
 def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:

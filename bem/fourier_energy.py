@@ -1,0 +1,88 @@
+"""Energy of a density in wavenumber space: <phi, A phi> = (2/pi) int_0^inf chi(k) phi^(k)^2 dk.
+
+On thin incompressible layers A = I - K is nearly singular: chi(h/a) is 1e-9 at a/h = 1000. As a difference of two
+numbers the energy would lose those nine digits; as an integral over chi > 0 it loses none. It is used to improve
+solutions that have lost them: F = <1, A^-1 1> is the largest value of ``2 <1, phi> - <phi, A phi>``, so that an error
+of phi enters by its square.
+
+Densities are given on equal panels by values at Gauss nodes. ``phi^(k) = int_0^a phi cos(kt) dt`` at thousands of k
+comes from FFTs over the panels, one for each pair of a node in t and an offset in k. Beyond `LARGEST_WAVENUMBER`
+chi = 1, and phi^ is known from the density and its derivatives at the edge, by partial integration.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bem.kernels import Support, compliance_kernel
+from bem.panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from contact.validation import FloatArray
+
+LARGEST_WAVENUMBER = 40.0
+NODES = 28  # of a unit panel in t and of a panel in k: cos(40 t) to 1e-13 over a unit
+
+
+def energy_matrix(densities: FloatArray, width: float, support: Support, poissons_ratio: float) -> FloatArray:
+    """<phi_i, A phi_j> of densities on equal panels of [0, a].
+
+    Args:
+        densities: Values at the panels' Gauss nodes, shape (densities, panels, nodes).
+        width: Width of the panels, in layer thicknesses; a whole number.
+        support: Support of the layer.
+        poissons_ratio: nu.
+
+    Returns:
+        Symmetric matrix, shape (densities, densities).
+    """
+    unit = _on_unit_panels(densities, int(width))
+    panels = unit.shape[1]
+    size = 1 << int(np.ceil(np.log2(max(panels, 64))))
+    step = 2 * np.pi / size
+    blocks = int(np.ceil(LARGEST_WAVENUMBER / step))
+    offsets, weights = gauss_nodes(NODES)
+    energy = np.zeros((len(densities), len(densities)))
+    for offset, weight in zip(step * offsets, step * weights, strict=True):
+        k = step * np.arange(blocks) + offset
+        transform = _transform(unit, k, offset, size)
+        energy += weight * (transform * compliance_kernel(k, support, poissons_ratio)) @ transform.T
+    return 2 / np.pi * (energy + _tail(densities, width, step * blocks))
+
+
+def _on_unit_panels(densities: FloatArray, parts: int) -> FloatArray:
+    """The same polynomials at the nodes of panels of unit width, shape (densities, panels parts, NODES)."""
+    points = (np.arange(parts)[:, None] + gauss_nodes(NODES)[0]) / parts
+    values = densities @ lagrange_matrix(densities.shape[2], points.ravel()).T
+    return values.reshape(len(densities), -1, NODES)
+
+
+def _transform(unit: FloatArray, k: FloatArray, offset: float, size: int) -> FloatArray:
+    """int phi cos(kt) dt at k = offset + (2 pi/size) (0, 1, 2, ...), shape (densities, wavenumbers)."""
+    nodes, weights = gauss_nodes(NODES)
+    turned = np.exp(1j * offset * np.arange(unit.shape[1]))[:, None] * unit
+    sums = size * np.fft.ifft(turned, size, axis=1)  # sum over panels p of phi_p exp(i k p); periodic in k
+    phases = weights * np.exp(1j * np.multiply.outer(k, nodes))
+    transform: FloatArray = np.einsum("kn,dkn->dk", phases, sums[:, np.arange(k.size) % size]).real
+    return transform
+
+
+def _tail(densities: FloatArray, width: float, k: float) -> FloatArray:
+    """int_k^inf phi_i^ phi_j^ dk from derivatives at the edge; what oscillates beyond the first order is left out.
+
+    phi^ = sin(ka) (phi/k - phi''/k^3 + phi''''/k^5) + cos(ka) (phi'/k^2 - phi'''/k^4) + ...
+    """
+    a = width * densities.shape[1]
+    coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
+    # every Chebyshev polynomial is 1 at the edge
+    p0, p1, p2, p3, p4 = ((2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(5))
+    steady = _pair(p0, p0) / k + (_pair(p1, p1) - 2 * _pair(p0, p2)) / (3 * k**3)
+    steady += (_pair(p2, p2) + 2 * _pair(p0, p4) - 2 * _pair(p1, p3)) / (5 * k**5)
+    swinging = _pair(p0, p0) * np.sin(2 * k * a) / (2 * a * k**2) + _pair(p0, p1) * np.cos(2 * k * a) / (a * k**3)
+    tail: FloatArray = (steady + swinging) / 2
+    return tail
+
+
+def _pair(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Symmetrised outer product."""
+    product: FloatArray = np.multiply.outer(left, right)
+    return (product + product.T) / 2

@@ -1,0 +1,68 @@
+"""Flat punches up to a/h = 1000, above all on the bonded incompressible layer, where conditioning is 1e9."""
+
+import numpy as np
+import pytest
+
+import bem.large_ratio
+from bem.integral_equation import IntegralEquation
+from bem.large_ratio import LargeRatioSolution
+from contact import Cone, InvalidInput, Layer
+from mdr import equivalent_system
+
+LAYERS = {
+    "bonded 0.5": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5),
+    "bonded 0.4999": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4999),
+    "unbonded": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="unbonded"),
+}
+RATIOS = np.array([161.0, 240.0, 333.0, 500.0, 777.0, 1000.0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LAYERS)
+def test_other_panels_give_the_same_within_the_stated_error(name, monkeypatch):
+    """The density that enters differs in the third digit at a/h = 1000; the Ritz value does not in the twelfth."""
+    layer = LAYERS[name]
+    solution = IntegralEquation().solution(layer, 1000.0)
+    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 28)
+    other = LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: solution.near)
+    assert other.log_stiffness is not solution.log_stiffness
+    assert solution.error < 1e-8
+    for quantity in ("normalized_contact_stiffness", "normalized_spring_stiffness"):
+        differences = np.abs(getattr(other, quantity)(RATIOS) / getattr(solution, quantity)(RATIOS) - 1)
+        assert np.all(differences < 1e-9)
+        assert np.all(differences < solution.relative_error(RATIOS))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LAYERS)
+def test_stiffness_is_continuous_where_the_two_solutions_meet(name):
+    solution = IntegralEquation().solution(LAYERS[name], 1000.0)
+    for quantity in ("normalized_contact_stiffness", "normalized_spring_stiffness"):
+        below, beyond = getattr(solution, quantity)(np.array([160.0, 160.0 * (1 + 1e-12)]))
+        assert beyond == pytest.approx(below, rel=float(solution.relative_error(161.0)))
+
+
+@pytest.mark.slow
+def test_the_thin_layer_limit_is_approached_with_first_order():
+    """k_bar -> (3 pi/64) (a/h)^3, Eq. (18): the error halves as the ratio doubles."""
+    solution, ratios = IntegralEquation().solution(LAYERS["bonded 0.5"], 1000.0), np.array([250.0, 500.0, 1000.0])
+    errors = 3 * np.pi / 64 * ratios**3 / solution.normalized_contact_stiffness(ratios) - 1
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(1.0, abs=0.02)
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(1.0, abs=0.01)
+    assert abs(errors[2]) < 7e-3
+
+
+def test_a_profile_is_refused_at_once():
+    """Nothing large is factorised before the refusal."""
+    wide = Layer(thickness=1e-3, youngs_modulus=1.0, poissons_ratio=0.123)
+    with pytest.raises(InvalidInput, match="profiles up to a/h = 160"):
+        equivalent_system(wide, Cone(slope=0.1), 0.5, IntegralEquation())
+    with pytest.raises(InvalidInput, match="a/h = 1001"):
+        IntegralEquation().solution(LAYERS["unbonded"], 1000.0).normalized_contact_stiffness(1001.0)
+
+
+@pytest.mark.slow
+def test_the_pressure_is_refused_beyond_the_narrow_panels():
+    solution = IntegralEquation().solution(LAYERS["unbonded"], 1000.0)
+    with pytest.raises(InvalidInput, match="a/h = 500"):
+        solution.smooth_pressure(0.5, 500.0)
