@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
-from functools import lru_cache
-from typing import ClassVar, Final, Self
+from typing import ClassVar, Final, Literal, Self
 
 import numpy as np
 
-from bem.pixel_disc import THIN, PixelDisc, PunchSolution
+from bem.adhesive_path import branch_errors, detachment_branch, stable_under_force, start_radius
+from bem.pixel_disc import THIN, PixelDisc, PunchSolution, measured_disc
 from bem.pressed_state import LEAST_CELLS, Boundary, Grid, Prescribed, Press, PressedState
 from bem.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from contact import (
@@ -17,6 +17,7 @@ from contact import (
     ContactPath,
     ContactRadii,
     Detachment,
+    DetachmentPath,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -85,7 +86,7 @@ class Bem:
         """A copy with half the cell size."""
         return dataclasses.replace(self, points=2 * self.points)
 
-    def solve(self, scene: Scene) -> ContactPath:
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria of the scene.
 
         Raises:
@@ -96,6 +97,11 @@ class Bem:
         if isinstance(answer, Unsupported):
             raise UnsupportedSceneError(answer.reason)
         log = StageLog()
+        if isinstance(scene.loading, Detachment):
+            return self._detach(scene, scene.loading.control, log)
+        return self._press(scene, log)
+
+    def _press(self, scene: Scene, log: StageLog) -> ContactPath:
         step = self._punch_step if isinstance(scene.indenter, FlatPunch) else self._smooth_step
         kind, values = _prescription(scene)
         steps = [step(scene, kind, float(value), log) for value in values]
@@ -112,6 +118,35 @@ class Bem:
             indentation_depth=arrays["indentation_depth"],
             normal_force=arrays["normal_force"],
             contact_stiffness=arrays["contact_stiffness"],
+        )
+
+    def _detach(self, scene: Scene, control: Literal["displacement", "force"], log: StageLog) -> DetachmentPath:
+        with log.stage("first_guess"):
+            start = start_radius(scene, self.threads, log)
+        with log.stage("detachment"):
+            fine, coarse = (
+                detachment_branch(scene, start, cells, self.threads, log, to_least_force=control == "force")
+                for cells in (self.points, self.points // 2)
+            )
+        end = fine.pull_off(control)
+        errors = branch_errors(fine, coarse, control)
+        return DetachmentPath(
+            scene=scene,
+            method=self.name,
+            settings=dataclasses.asdict(self),
+            cost=log.cost(unknowns=self.points**2 // 4),
+            stages=log.records,
+            notes=("only the branch that is stable under displacement control is followed",),
+            error_estimate={name: np.atleast_1d(error) for name, error in errors.items()},
+            contact_radius=fine.contact_radius,
+            indentation_depth=fine.indentation_depth,
+            normal_force=fine.normal_force,
+            stable_displacement_control=np.ones(len(fine.normal_force), dtype=np.bool_),
+            stable_force_control=stable_under_force(fine),
+            pull_off_force=float(fine.normal_force[fine.least_force]),
+            pull_off_depth=float(fine.indentation_depth[end]),
+            pull_off_contact_radius=float(fine.contact_radius[end]),
+            critical_points=fine.critical_points(),
         )
 
     def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
@@ -174,15 +209,10 @@ def grid_punch(scene: Scene, radius: float, cells: int) -> tuple[PunchSolution, 
     """The flat punch of this radius on the scene's layer, and the grid disc it was computed with."""
     layer = scene.layer
     ratio = radius / layer.thickness  # zero on a half-space
-    disc = _measured_disc(cells, bool(ratio > THIN))
+    disc = measured_disc(cells, bool(ratio > THIN))
     if layer.is_half_space:
         return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
     return disc.solve(ratio, layer.support, layer.poissons_ratio, None), disc
-
-
-@lru_cache(maxsize=8)
-def _measured_disc(cells: int, periodic: bool) -> PixelDisc:
-    return PixelDisc.measured(cells, periodic=periodic)
 
 
 def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:

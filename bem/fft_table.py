@@ -11,7 +11,7 @@ import numpy as np
 
 from bem.flat_punch_table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
 from bem.kernels import Support
-from bem.pixel_disc import GAP, THIN, PixelDisc, PunchSolution
+from bem.pixel_disc import GAP, THIN, PunchSolution, measured_disc
 from contact import InvalidInput, Layer
 from contact.validation import FloatArray
 
@@ -96,7 +96,7 @@ def _on_grid(cells: int, ratios: FloatArray, radii: int, support: Support, poiss
 
 def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: float) -> list[PunchSolution]:
     """One solution a ratio, each starting from the one before."""
-    discs = {periodic: PixelDisc.measured(cells, periodic=periodic) for periodic in {False, ratios[-1] > THIN}}
+    discs = {periodic: measured_disc(cells, periodic) for periodic in {False, ratios[-1] > THIN}}
     punches: list[PunchSolution] = []
     for ratio in ratios:
         start = punches[-1].pressure if punches else None

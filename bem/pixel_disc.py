@@ -17,7 +17,7 @@ Lengths are in cell sizes, pressures in units of E*.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from math import ceil, sqrt
 from typing import Final, Self, TypeVar
 
@@ -128,6 +128,12 @@ class PixelDisc:
         argument = np.minimum(2.0 * (radius / self.radius) ** 2 - 1.0, 1.0)
         orthogonal, triangle = np.linalg.qr(np.polynomial.chebyshev.chebvander(argument, LARGEST_DEGREE))
         return orthogonal, triangle
+
+
+@lru_cache(maxsize=8)
+def measured_disc(cells: int, periodic: bool) -> PixelDisc:
+    """`PixelDisc.measured`, remembered: it depends on nothing else."""
+    return PixelDisc.measured(cells, periodic=periodic)
 
 
 def shape_degree(ratio: float) -> int:

@@ -37,7 +37,9 @@ EDGE_SHIFT = {2: 0.10, 3: 0.06, 4: 0.04}
 HALF_SPACE_COEFFICIENT = 1.2
 UNBONDED_TRUNCATION = 5.0
 ROUND_OFF = 1e-12
-TYPICAL_RATE = 0.1  # e(k) / e(k-1) is about this times growth^2 on graded meshes
+TYPICAL_RATE = 0.1  # measured: e(k) / e(k-1) is seldom below this times growth^2 on graded meshes
+UNMEASURED_RATE = 0.4  # measured: e(3) / e(2) is seldom above this times growth^3
+TRUNCATION_SAFETY = 4.0  # the mesh's end lets the layer give way a few times more than the energy beyond it
 SAFETY = 3.0  # on the interpolation error: rho is itself an extrapolation
 SLOPE_RATIO = 3.0  # the error of k_N' is a derivative of that of k_N, and does not cancel over the section as it does
 
@@ -94,7 +96,7 @@ class CertifiedContact:
             return 1.0
         floor = TYPICAL_RATE * self.settings.growth**2
         if len(self._last_changes) == 1:
-            return min(1.0, 4 * floor)
+            return min(1.0, UNMEASURED_RATE * self.settings.growth**3)
         previous, last = (self._change(*pair).mean() for pair in self._last_changes[-2:])
         return float(np.clip(last / previous, min(floor, 1.0), 1.0))
 
@@ -110,13 +112,13 @@ class CertifiedContact:
         """A contact smaller by a fraction of the edge cell: dk_N = k_N' da; depth and force react more strongly."""
         edge = dict(graded_points(self.layer_mesh.thickness, self.indenter, self.settings))[1.0]
         shift = EDGE_SHIFT[self.settings.order] * edge * self.answer.stiffness_slope / self.answer.stiffness
-        return {"stiffness": shift, "stiffness_slope": shift, "smooth_depth": 1.5 * shift, "smooth_force": 2.5 * shift}
+        return {"stiffness": shift, "stiffness_slope": shift, "smooth_depth": 2.5 * shift, "smooth_force": 2.5 * shift}
 
     @property
     def _truncation_error(self) -> Mapping[str, float]:
         if self.layer.support == "unbonded" and not self.layer.is_half_space:
             return dict.fromkeys(QUANTITIES, self._unbonded_truncation_error)
-        answer, tail = self.answer, np.abs(self.answer.tail_energies)
+        answer, tail = self.answer, TRUNCATION_SAFETY * np.abs(self.answer.tail_energies)
         force_at_depth = tail[0, 1] + abs(answer.smooth_depth) * tail[0, 0]
         depth = answer.decay * force_at_depth / answer.stiffness_slope
         absolute = (tail[0, 0], answer.decay * tail[0, 0], depth, force_at_depth + depth * answer.stiffness)

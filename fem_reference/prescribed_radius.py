@@ -17,9 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import NotConvergedError, StageLog
+from fem_reference.elements import ElementPair
 from fem_reference.fields import mutual_energies
+from fem_reference.geometry import LayerMesh
 from fem_reference.indenter import ScaledIndenter
 from fem_reference.layer_problem import LayerProblem
+from fem_reference.material import Moduli
 from fem_reference.shape_derivative import cut_off, energy_shape_derivative
 from fem_reference.trace import TraceSpace
 
@@ -45,7 +48,10 @@ class PrescribedContact:
         top_trace: polynomials on the whole top.
         displacements: u_z of u_1 and u_2 at its nodes, shape (node, 2).
         energy_defect: |energy stiffness / reaction stiffness - 1|.
-        unknowns: size of the linear system.
+        layer_mesh: the section.
+        pair: element pair.
+        moduli: shear modulus and compressibility at E* = 1.
+        solutions: all unknowns of u_1 and u_2, shape (size, 2).
     """
 
     stiffness: float
@@ -59,7 +65,15 @@ class PrescribedContact:
     top_trace: TraceSpace
     displacements: Array
     energy_defect: float
-    unknowns: int
+    layer_mesh: LayerMesh
+    pair: ElementPair
+    moduli: Moduli
+    solutions: Array
+
+    @property
+    def unknowns(self) -> int:
+        """Size of the linear system."""
+        return len(self.solutions)
 
     def force(self, depth: float) -> float:
         """Normal force at any depth, the contact radius held."""
@@ -131,7 +145,10 @@ def _evaluate(
         top_trace=TraceSpace(problem.positions[0, top], degree),
         displacements=solutions[2 * top + 1],
         energy_defect=float(defect),
-        unknowns=problem.space.size,
+        layer_mesh=problem.layer_mesh,
+        pair=problem.pair,
+        moduli=problem.moduli,
+        solutions=solutions,
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.prescribed_radius import PrescribedContact
+from fem_reference.section import Section
 
 Array = NDArray[np.float64]
 
@@ -39,6 +40,11 @@ class FemFields:
         """p(r) [Pa]."""
         state = self.states[step]
         return state.contact_modulus * state.contact.pressure(radius / state.contact_radius, state.depth)
+
+    def section(self, step: int = 0) -> Section:
+        """Displacement and stress inside the layer."""
+        state = self.states[step]
+        return Section(state.contact, state.contact_radius, state.depth, state.contact_modulus)
 
     def surface_displacement(self, radius: Array, step: int) -> Array:
         """w(r) [m], positive into the layer; zero beyond the mesh, where it is below the truncation error."""

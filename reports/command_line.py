@@ -173,9 +173,12 @@ def accept(
 def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
-    method: Annotated[str, typer.Option(help="mdr, fem, bem, integral_equation, or a registered method.")] = "mdr",
+    method: Annotated[
+        str, typer.Option(help="mdr, mdr_table, fem, bem, integral_equation, or a registered one.")
+    ] = "mdr",
     accuracy: Annotated[
-        float | None, typer.Option(help="Relative accuracy of the force; chooses the settings.")
+        float | None,
+        typer.Option(help="Relative accuracy of the force: chooses the settings, and refuses an answer that is less."),
     ] = None,
     write: Annotated[
         list[Path] | None,

@@ -3,7 +3,13 @@
 import re
 from collections.abc import Mapping
 
-NAMES: Mapping[str, str] = {"mdr": "MDR", "fem": "FEM", "bem": "BEM", "integral_equation": "integral equation"}
+NAMES: Mapping[str, str] = {
+    "mdr": "MDR",
+    "fem": "FEM",
+    "bem": "BEM",
+    "integral_equation": "integral equation",
+    "mdr_table": "MDR (FFT table)",
+}
 
 
 def base_of(method: str) -> str:

@@ -26,7 +26,7 @@ def measured(value: float, uncertainty: float) -> str:
     if not math.isfinite(uncertainty):
         return f"{value:.3g}(?)"
     if uncertainty == 0.0:
-        return f"{value:.15g}"
+        return f"{value:.12g}"
     exponent = _leading_power(max(abs(value), uncertainty))
     if SMALLEST_PLAIN <= max(abs(value), uncertainty) < LARGEST_PLAIN and uncertainty < 10.0:
         return _bracketed(value, uncertainty, exponent)

@@ -68,11 +68,12 @@ class Look:
 
 LOOKS: Mapping[str, Look] = {
     "mdr": Look(colour=BLUE, dash="-", marker="o"),
+    "mdr_table": Look(colour=SKY, dash="--", marker="v"),
     "fem": Look(colour=VERMILLION, dash="--", marker="s"),
     "bem": Look(colour=GREEN, dash="-.", marker="^"),
     "integral_equation": Look(colour=PURPLE, dash=":", marker="D"),
 }
-SPARE_LOOKS: tuple[SpareLook, ...] = ((ORANGE, "-", "v"), (SKY, "--", "P"), (GREY, "-.", "X"))
+SPARE_LOOKS: tuple[SpareLook, ...] = ((ORANGE, "-", "P"), (GREY, "-.", "X"))
 
 
 def look_of(method: str) -> Look:

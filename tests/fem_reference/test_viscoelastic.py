@@ -159,7 +159,8 @@ def test_force_history_reproduces_the_depth_history_it_came_from():
     back_loading = ForceHistory(time=there.time[some], force=there.normal_force[some])
     back = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=back_loading, effects=(SOLID,)))
     depth = np.interp(there.time, back.time, back.indentation_depth)
-    assert depth[10:] == pytest.approx(there.indentation_depth[10:], abs=5e-3 * 5e-5)
+    later = there.time > 2e-4  # the chords of the sampled force differ from its curve at first
+    assert depth[later] == pytest.approx(there.indentation_depth[later], abs=5e-3 * 5e-5)
 
 
 def test_history_that_outgrows_or_never_meets_the_profile_is_refused():

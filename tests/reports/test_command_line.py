@@ -13,8 +13,10 @@ import pytest
 from contact import load_scene
 from reports import command_line
 from reports.command_line import run
+from reports.commands import solve as solve_command
 from reports.commands.run import only_methods
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+from tests.cases.fake_method import FakeHertz
 
 COMMANDS = ("list", "show", "validate", "run", "report", "solve", "schema", "explain", "gate", "accept")
 HERTZ = """
@@ -203,6 +205,14 @@ def test_solve_prints_numbers_with_error_bars_and_writes_files(hertz, tmp_path, 
     with h5py.File(files[1]) as stored:
         assert stored["arrays/normal_force"][1] == float(rows[1]["normal_force_N"])
     assert (tmp_path / "answer.svg").read_text(encoding="utf-8").startswith("<svg")
+
+
+def test_solve_refuses_an_answer_less_accurate_than_asked(hertz, capsys, monkeypatch):
+    assert run(["solve", hertz, "--method", "fake", "--accuracy", "1e-3"]) == 0
+    monkeypatch.setattr(solve_command, "build", lambda *_: FakeHertz(stated=1e-2))
+    assert run(["solve", hertz, "--method", "fake", "--accuracy", "1e-3"]) == 1
+    assert "asked for 1.0e-03" in capsys.readouterr().err
+    assert run(["solve", hertz, "--method", "fake", "--accuracy", "-1"]) == 4
 
 
 def test_solve_refuses_an_unknown_ending_before_it_solves(hertz, capsys):

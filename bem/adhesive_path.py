@@ -1,0 +1,183 @@
+"""The detachment of an adhering indenter as a path: where it starts, its grid, its stability and its errors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi, sqrt
+from typing import Final
+
+import numpy as np
+import numpy.typing as npt
+
+from bem.contact_edge import AREA_SCATTER
+from bem.detachment import FOLD, AdheringIndenter, AdheringState, strength
+from bem.operators import FreeSpaceOperator
+from bem.pixel_disc import FILL, disc, measured_disc
+from bem.pressed_state import Grid
+from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, NotConvergedError, Scene, StageLog
+from contact.validation import FloatArray
+
+SCOUT_CELLS: Final = 64
+AHEAD: Final = 1.2  # start radius over that of the least force; nearer, and the grid would resolve it better still
+PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "contact_radius": "pull_off_contact_radius"}
+PAST_MINIMUM: Final = 0.85  # under force control the path ends once the force has risen again to this part
+
+
+@dataclass(frozen=True, eq=False)
+class Branch:
+    """Stable states at decreasing depth.
+
+    Attributes:
+        contact_radius: a [m], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        cell_size: s [m].
+    """
+
+    contact_radius: FloatArray
+    indentation_depth: FloatArray
+    normal_force: FloatArray
+    cell_size: float
+
+    @property
+    def least_force(self) -> int:
+        """Index of the least force: where a force-controlled indenter pulls off."""
+        return int(np.argmin(self.normal_force))
+
+    def pull_off(self, control: str) -> int:
+        """Index of the last state that is stable under this control."""
+        return self.least_force if control == "force" else len(self.normal_force) - 1
+
+    def critical_points(self) -> tuple[CriticalPoint, ...]:
+        """Pull-off under either control, as far as the path goes."""
+        return tuple(
+            CriticalPoint(
+                control=control,
+                kind="pull-off",
+                contact_radius=float(self.contact_radius[self.pull_off(control)]),
+                indentation_depth=float(self.indentation_depth[self.pull_off(control)]),
+                normal_force=float(self.normal_force[self.pull_off(control)]),
+            )
+            for control in ("force", "displacement")
+        )
+
+
+def detachment_branch(
+    scene: Scene, start_radius: float, cells: int, threads: int, log: StageLog, *, to_least_force: bool = False
+) -> Branch:
+    """The stable branch from a contact radius to pull-off, or to just beyond the least force, on one grid."""
+    indenter, start = _on_grid(scene, start_radius, cells, threads, log)
+
+    def enough(states: list[AdheringState]) -> bool:
+        if not to_least_force:
+            return False
+        forces = [indenter.normal_force(state) for state in states]
+        return forces[-1] > PAST_MINIMUM * min(forces) > min(forces)
+
+    states = indenter.unload(start, enough)
+    return Branch(
+        contact_radius=np.array([indenter.contact_radius(state) for state in states]),
+        indentation_depth=np.array([state.indentation_depth for state in states]),
+        normal_force=np.array([indenter.normal_force(state) for state in states]),
+        cell_size=indenter.grid.cell_size,
+    )
+
+
+def start_radius(scene: Scene, threads: int, log: StageLog) -> float:
+    """Where the detachment starts [m]: the punch's radius, the one prescribed, or ahead of the least force.
+
+    The scouting run begins where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*).
+    """
+    prescribed = _detachment(scene).initial_contact_radius
+    if isinstance(scene.indenter, FlatPunch):
+        return scene.indenter.radius
+    if prescribed is not None:
+        return prescribed
+    radius = _balance_radius(scene)
+    for _ in range(12):
+        scout = detachment_branch(scene, radius, SCOUT_CELLS, threads, log)
+        found = float(scout.contact_radius[scout.least_force])
+        wanted = max(AHEAD * found, found + scene.indenter.flat_radius / 10.0)
+        if scout.least_force > 0 and radius / 3.0 < wanted < radius * 1.2:
+            return min(wanted, scene.indenter.max_radius)
+        radius = min(1.5 * radius if scout.least_force == 0 else wanted, scene.indenter.max_radius)
+    raise NotConvergedError("no least force was found; prescribe Detachment.initial_contact_radius")
+
+
+def branch_errors(fine: Branch, coarse: Branch, control: str) -> dict[str, FloatArray | float]:
+    """Differences of two grids at equal contact radii, relative to the largest magnitude on the path."""
+    cell = fine.cell_size / fine.contact_radius  # the rim lags by up to about a cell
+    errors: dict[str, FloatArray | float] = {
+        "contact_radius": (AREA_SCATTER + 1.0)
+        * fine.cell_size
+        / fine.contact_radius[0]
+        * np.ones(len(fine.contact_radius))
+    }
+    order = np.argsort(coarse.contact_radius)
+    for name in ("indentation_depth", "normal_force"):
+        values, other = getattr(fine, name), getattr(coarse, name)
+        same_radius = np.interp(fine.contact_radius, coarse.contact_radius[order], other[order])
+        errors[name] = np.abs(same_radius - values) / np.max(np.abs(values)) + 2.0 * cell
+    i, j = fine.pull_off(control), coarse.pull_off(control)
+    force, other_force = fine.normal_force[fine.least_force], coarse.normal_force[coarse.least_force]
+    force_error = float(abs(other_force / force - 1.0) + 2.0 * cell[fine.least_force])
+    errors["pull_off_force"] = force_error
+    for name in ("indentation_depth", "contact_radius"):
+        values, reached = getattr(fine, name), getattr(coarse, name)[j]
+        spread = _spread(values, fine.normal_force, force_error) if control == "force" else FOLD
+        errors[PULL_OFF[name]] = abs(reached / values[i] - 1.0) + 2.0 * cell[i] + spread
+    return errors
+
+
+def _spread(values: FloatArray, force: FloatArray, force_error: float) -> float:
+    """Relative range of a quantity over the states whose force is least within its error: the minimum is flat."""
+    least = int(np.argmin(force))
+    near = values[force <= force[least] * (1.0 - force_error)]
+    return float(np.max(np.abs(near / values[least] - 1.0)))
+
+
+def stable_under_force(branch: Branch) -> npt.NDArray[np.bool_]:
+    """Under force control the branch is stable up to its least force."""
+    return np.arange(len(branch.normal_force)) <= branch.least_force
+
+
+def _on_grid(
+    scene: Scene, radius: float, cells: int, threads: int, log: StageLog
+) -> tuple[AdheringIndenter, AdheringState]:
+    """The indenter on a grid that its first contact fills, and that contact as it begins to let go."""
+    measured = measured_disc(cells, False).radius  # a disc of cells acts as a punch of this radius, in cell sizes
+    grid = Grid(cells, radius / measured)
+    adhesion = scene.effect(Adhesion)
+    work = adhesion.work_of_adhesion if adhesion is not None else 0.0
+    operator = FreeSpaceOperator(scene.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
+    contact = disc(cells, FILL * cells / 2)
+    height = np.zeros(contact.shape) if isinstance(scene.indenter, FlatPunch) else _finite_height(scene, grid)
+    tension = strength(scene.layer.contact_modulus, work, grid.cell_size)
+    indenter = AdheringIndenter(operator, grid, height, tension, log)
+    start = indenter.first_state(contact)
+    settled = None if isinstance(scene.indenter, FlatPunch) else indenter.settle(start, start.indentation_depth)
+    return indenter, start if settled is None else settled
+
+
+def _finite_height(scene: Scene, grid: Grid) -> FloatArray:
+    height = scene.indenter.height(grid.radius)
+    return np.where(np.isfinite(height), height, np.max(height[np.isfinite(height)]))
+
+
+def _balance_radius(scene: Scene) -> float:
+    """a where f(a)^2 = 2 pi dgamma a / E*, by bisection."""
+    adhesion = scene.effect(Adhesion)
+    work = adhesion.work_of_adhesion if adhesion is not None else 0.0
+    low, high = 1e-12, min(scene.indenter.max_radius, 1e12)
+    for _ in range(200):
+        middle = sqrt(low * high)
+        reached = float(scene.indenter.height(np.array([middle]))[0]) ** 2
+        balance = 2.0 * pi * work * middle / scene.layer.contact_modulus
+        low, high = (middle, high) if reached < balance else (low, middle)
+    return high
+
+
+def _detachment(scene: Scene) -> Detachment:
+    if not isinstance(scene.loading, Detachment):
+        raise TypeError(f"a detachment was expected, got {type(scene.loading).__name__}")
+    return scene.loading

@@ -1,0 +1,75 @@
+"""What the figures share: series with an error band, the layers they are drawn for, one source of flat-punch data."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.flat_punch import FlatPunchSolution
+from bem.integral_equation import IntegralEquation
+from cases.results import Series
+from contact import Layer
+from contact.validation import FloatArray
+
+SOURCE = IntegralEquation()
+LARGEST_RATIO = 100.0  # of a/h in the figures
+
+
+def layer(poissons_ratio: float, *, support: Literal["bonded", "unbonded"] = "bonded") -> Layer:
+    """A layer of unit thickness and unit contact modulus E*."""
+    modulus = (1.0 - poissons_ratio) * (1.0 + poissons_ratio)
+    return Layer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=poissons_ratio, support=support)
+
+
+HALF_SPACE = Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5)
+UNBONDED = layer(0.5, support="unbonded")
+
+
+def name_of(one: Layer) -> str:
+    """Such as "bonded nu=0.45"; nu does not matter for other layers."""
+    if one.is_half_space:
+        return "half-space"
+    return f"bonded nu={one.poissons_ratio:g}" if one.support == "bonded" else "unbonded"
+
+
+def punch(one: Layer, largest: float = LARGEST_RATIO) -> FlatPunchSolution:
+    """Flat-punch data up to a ratio a/h."""
+    return SOURCE.solution(one, largest)
+
+
+def mdr_line(
+    group: str,
+    x: ArrayLike,
+    y: ArrayLike,
+    relative_error: ArrayLike = 0.0,
+    *,
+    style: Literal["by method", "dotted"] = "by method",
+) -> Series:
+    """A line computed by MDR, with its band."""
+    ordinates = np.asarray(y, dtype=np.float64)
+    band = np.abs(ordinates) * np.broadcast_to(np.asarray(relative_error, dtype=np.float64), ordinates.shape)
+    return Series(
+        label=group,
+        method="mdr",
+        group=group,
+        x=_tuple(x),
+        y=_tuple(ordinates),
+        half_width=_tuple(band),
+        style=style,
+    )
+
+
+def closed_form(group: str, method: str, x: ArrayLike, y: ArrayLike) -> Series:
+    """A closed form or an asymptote; `method` says which, such as "thin layer"."""
+    return Series(label=f"{group}, {method}", method=method, group=group, x=_tuple(x), y=_tuple(y))
+
+
+def percent(value: FloatArray | float) -> str:
+    """A ratio's excess over one, for captions."""
+    return f"{100.0 * (float(value) - 1.0):.1f} %"
+
+
+def _tuple(values: ArrayLike) -> tuple[float, ...]:
+    return tuple(np.asarray(values, dtype=np.float64).tolist())

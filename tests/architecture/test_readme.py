@@ -1,0 +1,50 @@
+"""The README stays true: its example prints what it says, its commands, files and folders exist."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+TEXT = (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", TEXT, flags=re.DOTALL)
+
+
+def test_the_example_prints_what_the_readme_says(capsys):
+    (code,), (expected,) = blocks("python"), blocks("text")
+    exec(compile(code, "README.md", "exec"), {})
+    assert capsys.readouterr().out == expected
+
+
+def test_the_example_has_about_ten_lines():
+    assert 8 <= len(blocks("python")[0].strip().splitlines()) <= 12
+
+
+@pytest.mark.parametrize("link", sorted(set(re.findall(r"\]\((?!https?:)([^)]+)\)", TEXT))))
+def test_every_linked_file_exists(link):
+    assert (ROOT / link).is_file()
+
+
+def test_every_folder_named_exists_and_none_is_missing():
+    named = set(re.findall(r"^\| `([a-z_]+)/` \|", TEXT, flags=re.MULTILINE))
+    assert all((ROOT / folder).is_dir() for folder in named)
+    assert {"contact", "bem", "mdr", "fem_reference", "cases", "reports", "tests"} <= named
+
+
+def test_every_command_of_the_shell_blocks_exists():
+    from typer.main import get_command
+
+    from reports.command_line import app
+
+    known = set(get_command(app).commands)
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(), flags=re.MULTILINE))
+    for line in "".join(blocks("sh")).splitlines():
+        words = line.split("#")[0].split()
+        assert words[1] in (targets if words[0] == "make" else known), line
+        for word in words[2:]:
+            assert not word.endswith(".toml") or (ROOT / word).is_file(), line

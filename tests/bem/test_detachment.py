@@ -1,0 +1,157 @@
+from functools import lru_cache
+
+import numpy as np
+import pytest
+from scipy.integrate import dblquad
+
+from bem.detachment import CELL_ENERGY, AdheringIndenter, dilated, rim, strength
+from bem.direct import Bem
+from bem.influence import rectangle_influence
+from bem.operators import FreeSpaceOperator
+from bem.pixel_disc import disc
+from bem.pressed_state import Grid
+from contact import (
+    Adhesion,
+    Detachment,
+    FlatPunch,
+    Layer,
+    NotConvergedError,
+    Paraboloid,
+    Scene,
+    StageLog,
+)
+from mdr import Mdr
+
+WORK = 0.1
+HALF_SPACE = Layer.half_space(youngs_modulus=0.75e6, poissons_ratio=0.5)  # E* = 1 MPa
+LAYER = Layer(thickness=1e-3, youngs_modulus=0.75e6, poissons_ratio=0.5, support="bonded")
+SPHERE = Paraboloid(radius_of_curvature=0.01)
+
+
+def scene(layer, indenter, control="displacement", start=None):
+    return Scene(
+        layer=layer,
+        indenter=indenter,
+        loading=Detachment(control=control, initial_contact_radius=start),
+        effects=(Adhesion(work_of_adhesion=WORK),),
+    )
+
+
+@lru_cache
+def detached(layer, indenter, control):
+    return Bem(points=96).solve(scene(layer, indenter, control))
+
+
+def test_the_constant_is_the_energy_of_a_uniformly_loaded_cell():
+    # kappa = (1/2) mean displacement of a unit square under unit pressure, E* = 1; the mean over two points of a
+    # square by their coordinate differences x, y, in polar coordinates so that nothing is singular
+    def integrand(rho, phi):
+        return (1.0 - rho * np.cos(phi)) * (1.0 - rho * np.sin(phi))
+
+    octant, _ = dblquad(integrand, 0.0, np.pi / 4, 0.0, lambda phi: 1.0 / np.cos(phi), epsabs=1e-12)
+    mean_of_inverse_distance = 4.0 * 2.0 * octant
+    assert pytest.approx(mean_of_inverse_distance / (2.0 * np.pi), rel=1e-10) == CELL_ENERGY
+    assert pytest.approx(0.473201, abs=5e-7) == CELL_ENERGY  # Pohrt and Popov (2015)
+
+
+def test_the_constant_agrees_with_the_grids_own_influence():
+    # the same energy from Love's solution on a cell divided into n x n cells
+    n = 64
+    influence = rectangle_influence(n)
+    count = np.minimum(np.arange(n), 1) + 1.0  # offsets i and -i
+    multiplicity = (n - np.arange(n)) * count
+    total = multiplicity @ influence[:n, :n] @ multiplicity
+    assert total / (2.0 * n**3) == pytest.approx(CELL_ENERGY, rel=1e-3)
+
+
+def test_strength_balances_energy_and_work():
+    tau, s = strength(2e6, 0.1, 1e-5), 1e-5
+    assert CELL_ENERGY * tau**2 * s**3 / 2e6 == pytest.approx(0.1 * s**2, rel=1e-14)
+
+
+def test_rim_and_dilation_know_the_mirrors():
+    contact = disc(16, 5.0)
+    edge = rim(contact)
+    assert not edge[0, 0]
+    assert edge[0, 4]
+    assert edge[4, 0]
+    assert np.count_nonzero(dilated(contact, 1) & ~contact) == np.count_nonzero(rim(dilated(contact, 1)))
+
+
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_sphere_on_the_half_space_pulls_off_as_jkr(control):
+    # F = -1.5 pi R dgamma, under either control; first order in the cell size, hence the stated error
+    path = detached(HALF_SPACE, SPHERE, control)
+    exact = -1.5 * np.pi * 0.01 * WORK
+    assert abs(path.pull_off_force / exact - 1.0) < path.error_estimate["pull_off_force"][0]
+    assert abs(path.pull_off_force / exact - 1.0) < 0.05
+
+
+def test_flat_punch_on_the_half_space_detaches_at_once():
+    # Kendall: F = -sqrt(8 pi E* dgamma a^3), delta = -sqrt(2 pi dgamma a / E*)
+    a, modulus = 1e-3, 1e6
+    path = detached(HALF_SPACE, FlatPunch(radius=a), "displacement")
+    assert path.pull_off_force == pytest.approx(-np.sqrt(8 * np.pi * modulus * WORK * a**3), rel=0.01)
+    assert path.pull_off_depth == pytest.approx(-np.sqrt(2 * np.pi * WORK * a / modulus), rel=0.015)
+    assert path.pull_off_contact_radius == pytest.approx(a, rel=0.01)
+
+
+def test_flat_punch_on_an_incompressible_layer_detaches_in_a_stable_way():
+    # Eqs. (42), (45): from a/h = 1 stably to the maximum of dl at a/h = 0.4619
+    path = detached(LAYER, FlatPunch(radius=1e-3), "displacement")
+    exact = -0.392203 * np.sqrt(2 * np.pi * WORK * 1e-3 / 1e6)
+    assert abs(path.pull_off_depth / exact - 1.0) < path.error_estimate["pull_off_depth"][0]
+    assert path.pull_off_depth == pytest.approx(exact, rel=0.05)
+    assert path.pull_off_contact_radius < 0.6e-3
+    assert len(path) > 3
+
+
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_sphere_on_a_layer_agrees_with_mdr(control):
+    problem = scene(LAYER, SPHERE, control)
+    path, exact = detached(LAYER, SPHERE, control), Mdr().solve(problem)
+    for name in path.SCALARS:
+        error = abs(getattr(path, name) / getattr(exact, name) - 1.0)
+        assert error < path.error_estimate[name][0], name
+    assert path.pull_off_force == pytest.approx(exact.pull_off_force, rel=0.05)
+
+
+def test_the_branch_agrees_with_mdr_at_every_radius():
+    path = detached(HALF_SPACE, SPHERE, "displacement")
+    a = path.contact_radius
+    depth = a**2 / 0.01 - np.sqrt(2 * np.pi * WORK * a / 1e6)  # Eq. (40), g = a^2/R, c_N = E*
+    error = np.abs(path.indentation_depth - depth) / np.max(np.abs(depth))
+    assert np.all(error < path.error_estimate["indentation_depth"])
+    assert np.all(np.diff(a) <= 0.0)
+    assert path.stable_force_control[0]
+
+
+def test_loading_follows_the_unloading_branch():
+    cells, radius = 64, 0.35e-3
+    grid = Grid(cells, 2.0 * radius / (0.9 * cells))
+    operator = FreeSpaceOperator(HALF_SPACE, cell_size=grid.cell_size, cells=cells, quarter=True)
+    tension = strength(1e6, WORK, grid.cell_size)
+    indenter = AdheringIndenter(operator, grid, SPHERE.height(grid.radius), tension, StageLog())
+    start = indenter.first_state(disc(cells, 0.9 * cells / 2))
+    first = indenter.settle(start, start.indentation_depth)
+    states = indenter.unload(first, lambda states: len(states) > 10)
+    back = indenter.load(states[-1], np.array([state.indentation_depth for state in states[-2::-1]]))
+    for state, again in zip(states[-2::-1], back, strict=True):
+        assert indenter.contact_radius(again) == pytest.approx(indenter.contact_radius(state), abs=2 * grid.cell_size)
+        assert indenter.normal_force(again) == pytest.approx(indenter.normal_force(state), abs=0.1 * 0.0047)
+    with pytest.raises(NotConvergedError, match="no adhering contact"):
+        indenter.load(states[-1], np.array([-1.0]))
+
+
+def test_a_wrong_constant_is_seen(monkeypatch):
+    monkeypatch.setattr("bem.detachment.CELL_ENERGY", 2.0 * CELL_ENERGY)
+    path = Bem(points=96).solve(scene(HALF_SPACE, FlatPunch(radius=1e-3)))
+    assert path.pull_off_force != pytest.approx(-np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9), rel=0.2)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
+def test_pull_off_force_within_one_per_cent_at_512(layer):
+    exact = Mdr().solve(scene(layer, SPHERE, "force")).pull_off_force
+    path = Bem(points=512).solve(scene(layer, SPHERE, "force"))
+    assert path.pull_off_force == pytest.approx(exact, rel=0.01)
