@@ -135,7 +135,10 @@ def gate(
     against: Annotated[
         str, typer.Option(metavar="REVISION", help="Also time every method alternately with this git revision.")
     ] = "",
-    pairs: Annotated[int, typer.Option(min=7, help="How often each is timed.")] = 15,
+    only: Annotated[
+        list[str] | None, typer.Option(metavar="CASE", help="With --against: time only these cases. Repeatable.")
+    ] = None,
+    pairs: Annotated[int, typer.Option(min=7, help="With --against: how often each method is timed.")] = 15,
     strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
     quiet: Quiet = False,
 ) -> int:
@@ -143,9 +146,10 @@ def gate(
 
     The regression claims join the others in the report, together with the history of accepted changes.
     """
-    from reports.commands.gate import run_gate  # noqa: PLC0415
+    from reports.commands.gate import Timing, run_gate  # noqa: PLC0415
 
-    return run_gate(run, baseline, against=against, pairs=pairs, strict=strict, quiet=quiet)
+    timing = Timing(revision=against, cases=tuple(only or ()), pairs=pairs)
+    return run_gate(run, baseline, timing=timing, strict=strict, quiet=quiet)
 
 
 @app.command()

@@ -1,5 +1,6 @@
 """`contact-verify gate`: a finished run against the accepted numbers and, if asked, against the speed of a revision."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 from cases.case import Case
@@ -17,7 +18,16 @@ from reports.commands.report import write_pages
 from reports.commands.run import show_verdict
 
 
-def run_gate(directory: Path, baselines: Path, *, against: str, pairs: int = PAIRS, strict: bool, quiet: bool) -> int:
+@dataclass(frozen=True, kw_only=True)
+class Timing:
+    """What is timed: against which revision (empty: nothing), which cases of the run (empty: all), how often."""
+
+    revision: str = ""
+    cases: tuple[str, ...] = ()
+    pairs: int = PAIRS
+
+
+def run_gate(directory: Path, baselines: Path, *, timing: Timing, strict: bool, quiet: bool) -> int:
     """Gate the run in `directory`, write its pages again and return the exit code.
 
     Raises:
@@ -27,15 +37,18 @@ def run_gate(directory: Path, baselines: Path, *, against: str, pairs: int = PAI
     if not accepted:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
     result = gate(read_run(directory), accepted, read_history(baselines))
-    if against:
-        result = with_times_against(result, against, _declared(result), pairs=pairs)
+    if timing.revision:
+        result = with_times_against(result, timing.revision, _declared(result, timing.cases), pairs=timing.pairs)
     write_run(result, directory)
     write_pages(result, directory)
     show_verdict(result, directory, quiet=quiet)
     return exit_code(result.statuses, strict=strict) if result.complete else ExitCode.INTERRUPTED
 
 
-def _declared(result: RunResult) -> tuple[Case, ...]:
-    """The declarations of the cases that this run has; a case that left the library cannot be timed."""
-    library = load_cases()
-    return select(library, names=[case.name for case in result.cases if case.name in library])
+def _declared(result: RunResult, wanted: tuple[str, ...]) -> tuple[Case, ...]:
+    """The declarations of the cases asked for, or of all the run has; one that left the library cannot be timed."""
+    library, ran = load_cases(), [case.name for case in result.cases]
+    missing = [name for name in wanted if name not in ran]
+    if missing:
+        raise InvalidInput(f"the run does not have {missing[0]}; it has {', '.join(ran)}")
+    return select(library, names=wanted or [name for name in ran if name in library])

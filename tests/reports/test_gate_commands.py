@@ -156,3 +156,11 @@ def test_an_unknown_revision_is_one_clear_line(capsys):
     accept_case("--write")
     assert gate_run("--against", "no-such-revision") == 4
     assert "rev-parse" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("here")
+def test_only_cases_of_the_run_can_be_timed(capsys):
+    run_cases()
+    accept_case("--write")
+    assert gate_run("--against", "HEAD", "--only", "nothing") == 4
+    assert "the run does not have nothing; it has fake_hertz" in capsys.readouterr().err
