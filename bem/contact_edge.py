@@ -20,9 +20,11 @@ from contact.validation import FloatArray
 
 AREA_SHIFT: Final = 0.11  # cells
 AREA_SCATTER: Final = 0.05  # cells, largest seen from 128 to 1024 cells
+THIN_SCATTER: Final = 0.2  # cells, where the pressure vanishes like that of a thin layer and not like a root
 ZERO_SHIFT: Final = 0.0085  # cells
 ZERO_SCATTER: Final = 0.002  # cells
 INNER, OUTER, DEGREE = 20.0, 4.0, 4  # cells inside the edge that the fit uses, and its degree in r^2
+LEAST_RINGS: Final = 8.0  # cells between its ends
 
 
 def area_radius(pressure: FloatArray, cell_size: float) -> float:
@@ -37,31 +39,40 @@ class ContactRadius(NamedTuple):
     scatter: float
 
 
-def contact_radius(pressure: FloatArray, radius: FloatArray, cell_size: float, smooth_beyond: float) -> ContactRadius:
-    """a as the zero of p^2.
+def contact_radius(
+    pressure: FloatArray, radius: FloatArray, cell_size: float, *, smooth_beyond: float, thickness: float
+) -> ContactRadius:
+    """a as the zero of p^2, or by the area where p^2 is not resolved.
+
+    The scatter grows with what one degree less of the polynomial makes of the zero: a kink of the profile, or an edge
+    layer of a thin layer, is seen there.
 
     Args:
         pressure: p [Pa] on the quadrant.
         radius: r of its cells [m].
         cell_size: s [m].
         smooth_beyond: Radius [m] outside of which the profile is smooth (its last kink inside the contact).
+        thickness: h [m]; where the cells of the fit span more than that, the area is taken.
 
     Returns:
-        The radius; that of the area where fewer than three rings of cells lie in the smooth part, or where the two
-        measures contradict each other.
+        The radius and its scatter.
     """
     guess = area_radius(pressure, cell_size)
     outer = guess - OUTER * cell_size
     inner = max(guess - INNER * cell_size, smooth_beyond + cell_size, 0.3 * guess)
-    rings = (radius > inner) & (radius < outer)
-    by_area = ContactRadius(guess, cell_size * (AREA_SCATTER + cell_size / guess))
-    if outer - inner < 3.0 * cell_size:
+    unresolved = min(1.0, INNER * cell_size / thickness)  # part of the edge layer of a thin layer that cells span
+    by_area = ContactRadius(guess, cell_size * (AREA_SCATTER + THIN_SCATTER * unresolved + cell_size / guess))
+    if outer - inner < LEAST_RINGS * cell_size or unresolved == 1.0:
         return by_area
+    rings = (radius > inner) & (radius < outer)
     x = (radius[rings] / guess) ** 2
-    square = np.polynomial.Polynomial.fit(x, pressure[rings] ** 2, DEGREE if inner < outer - 8.0 * cell_size else 2)
-    zero = _root_near_one(square)
-    by_zero = ContactRadius(guess * sqrt(max(zero, 0.0)) - ZERO_SHIFT * cell_size, ZERO_SCATTER * cell_size)
-    return by_zero if abs(by_zero.value - guess) < 2.0 * by_area.scatter else by_area
+    higher, lower = (
+        sqrt(max(_root_near_one(np.polynomial.Polynomial.fit(x, pressure[rings] ** 2, degree)), 0.0))
+        for degree in (DEGREE, DEGREE - 1)
+    )
+    scatter = ZERO_SCATTER * cell_size + guess * abs(higher - lower)
+    by_zero = ContactRadius(guess * higher - ZERO_SHIFT * cell_size, scatter)
+    return by_zero if abs(by_zero.value - guess) < 2.0 * by_area.scatter and scatter < by_area.scatter else by_area
 
 
 def _root_near_one(polynomial: np.polynomial.Polynomial) -> float:

@@ -156,10 +156,10 @@ class Bem:
             stiffness = contact_stiffness(scene, fine.contact_radius, min(self.points, STIFFNESS_CELLS))
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
-        values = _values(fine) | {"contact_stiffness": stiffness}
-        return Step(
-            values, _errors(kind, fine, coarse) | {"pressure": _pressure_difference(fields, other, fine)}, fields
-        )
+        errors = _errors(kind, fine, coarse)
+        errors["pressure"] = _pressure_difference(fields, other, fine)
+        errors["pressure"] += LARGEST_EXPONENTS["normal_force"] * fine.radius_scatter / fine.contact_radius
+        return Step(_values(fine) | {"contact_stiffness": stiffness}, errors, fields)
 
     def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
         """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""

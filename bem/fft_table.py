@@ -17,7 +17,7 @@ from contact.validation import FloatArray
 
 SMALLEST_RATIO: Final = 1e-3
 LARGEST_RATIO: Final = 1e3
-INTERPOLATION_ERROR: Final = 1e-8  # of the splines over 400 ratios
+ERROR_FLOOR: Final = 5e-7  # conjugate gradients stop at 1e-7 of the displacement; q may be off by a few times that
 SPREAD: Final = 12  # rows either side over which the error's largest value counts: a difference may cross zero
 
 
@@ -113,7 +113,7 @@ def _difference(fine: FlatPunchTable, coarse: FlatPunchTable) -> FloatArray:
     q = np.max(root * np.abs(coarse.pressure - fine.pressure), axis=1) / np.max(root * fine.pressure, axis=1)
     worst = np.pad(np.maximum(np.maximum(k, c), q), SPREAD, mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(worst, 2 * SPREAD + 1)
-    return np.asarray(np.max(windows, axis=1) + INTERPOLATION_ERROR)
+    return np.asarray(np.max(windows, axis=1) + ERROR_FLOOR)
 
 
 def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> dict[str, str | int | float]:

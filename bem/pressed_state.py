@@ -172,7 +172,11 @@ class Press:
             grid = self._grid(radius, COARSE_CELLS, "free")
             thin = self.layer.thickness < 2.0 * grid.cell_size
             operator = self._operator(grid, "periodic" if thin else "free")
-            equilibrium = solve_contact(operator, self._height(grid), depth=depth, tolerance=1e-4)
+            try:
+                equilibrium = solve_contact(operator, self._height(grid), depth=depth, tolerance=1e-4)
+            except NotConvergedError:  # a box that is all contact may have no equilibrium (bonded, nu = 1/2)
+                radius *= 1.3
+                continue
             reached = area_radius(equilibrium.pressure, grid.cell_size)
             if reached < 0.97 * grid.cell_size * COARSE_CELLS / 2:
                 return self._state(grid, equilibrium, ContactRadius(reached, grid.cell_size))
@@ -193,7 +197,13 @@ class Press:
             operator, self._height(grid), depth=depth, load=load, start=start, tolerance=self.tolerance
         )
         self.log.count("iterations", answer.iterations)
-        a = contact_radius(answer.pressure, grid.radius, grid.cell_size, self._last_kink(answer, grid))
+        a = contact_radius(
+            answer.pressure,
+            grid.radius,
+            grid.cell_size,
+            smooth_beyond=self._last_kink(answer, grid),
+            thickness=self.layer.thickness,
+        )
         self._check_inside(answer, grid, a.value)
         return self._state(grid, answer, a)
 

@@ -57,6 +57,23 @@ def test_stated_error_covers_the_difference_to_the_integral_equation(indenter, l
         assert np.all(error < 0.01), name
 
 
+@pytest.mark.parametrize(
+    ("nu", "ratio", "boundary"), [(0.3, 10.0, "free"), (0.5, 10.0, "periodic"), (0.5, 0.01, "free")]
+)
+@pytest.mark.parametrize("indenter", [Paraboloid, TruncatedCone])
+def test_stated_errors_hold_from_thick_to_thin_layers(indenter, nu, ratio, boundary):
+    a, material = ratio * 1e-3, LAYER.replace(poissons_ratio=nu)
+    profile = PARABOLOID if indenter is Paraboloid else TruncatedCone(flat_radius=a / 2, slope=0.1)
+    scene = Scene(layer=material, indenter=profile, loading=ContactRadii([a]))
+    path, exact = Bem(points=128, boundary=boundary).solve(scene), Mdr().solve(scene)
+    for name in path.ARRAYS:
+        error = abs(getattr(path, name)[0] / getattr(exact, name)[0] - 1.0)
+        assert error <= path.error_estimate[name][0], name
+    r = a * (np.arange(50) + 0.5) / 50
+    p, expected = path.pressure(r), exact.pressure(r)
+    assert np.sqrt(np.sum(r * (p - expected) ** 2) / np.sum(r * expected**2)) <= path.error_estimate["pressure"][0]
+
+
 def test_pressure_and_displacement_are_those_of_mdr():
     loading = ContactRadii([2e-3])
     path, exact = (

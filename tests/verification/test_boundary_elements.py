@@ -97,16 +97,16 @@ def test_full_table_reaches_the_thin_layer(support, nu, limit):
 
 @pytest.mark.parametrize(("support", "nu"), KERNELS[:1])
 def test_mdr_on_the_table_agrees_with_mdr_on_the_integral_equation(support, nu):
-    compare_mdr(support, nu, [0.6e-3, 1e-3], cells=64)
+    assert_mdr_agrees(support, nu, [0.6e-3, 1e-3], cells=64)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(("support", "nu"), KERNELS)
 def test_mdr_on_a_fine_table_agrees_with_mdr_on_the_integral_equation(support, nu):
-    compare_mdr(support, nu, [0.6e-3, 1e-3, 2e-3, 5e-3], cells=256)
+    assert_mdr_agrees(support, nu, [0.6e-3, 1e-3, 2e-3, 5e-3], cells=256)
 
 
-def compare_mdr(support, nu, radii, cells):
+def assert_mdr_agrees(support, nu, radii, cells):
     """delta and F of both profiles within the table's stated error at the largest ratio."""
     material = layer(support, nu)
     source = FftTable(cells=cells)
