@@ -34,6 +34,7 @@ def here(tmp_path, library, monkeypatch):
     monkeypatch.setattr(spread, "process_pool", executors.serial)
     monkeypatch.setattr(accept_command, "circumstances", lambda *_: CLEAN)
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("COLUMNS", "200")  # whatever the terminal: a table is not folded
     return set_library
 
 
