@@ -28,6 +28,8 @@ _SWEEPS = 24  # a step that needs more is too long
 _SWEEP_TOLERANCE = 0.05  # of the tolerance of a step
 _SAFETY, _SHRINK, _GROW = 0.85, 0.25, 1.5
 _ALMOST = 1.6  # an event that lies so little beyond a step is landed on at once
+_STIFF = 0.02  # a step this short should converge by sweeps; where it does not, Newton's method takes over
+_DIFFERENCE = 1e-7  # of a state: to differentiate its slopes
 _PATIENCE, _SLOW = 4, 0.5  # after four sweeps, a lane whose change shrinks by less than this factor is given up
 
 _POINTS, _GAUSS_WEIGHTS = legendre.leggauss(STAGES)
@@ -172,6 +174,37 @@ def _trial(
     return _Step(start, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweep)
 
 
+def _stiff_trial(
+    derivative: Derivative, start: FloatArray, slope: FloatArray, size: FloatArray, precision: FloatArray
+) -> _Step:
+    """The same step by simplified Newton iteration, for slopes that answer fast: Gauss collocation is A-stable."""
+    components, lanes, watched = *start.shape, precision.shape[0]
+    allowed, base = precision / np.abs(size), start[:, None]
+    coupling = np.einsum("l,ij,abl->laibj", size, _TO_STAGES, _jacobian(derivative, start))
+    count = components * STAGES
+    matrix = np.eye(count) - coupling.reshape(lanes, count, count)
+    slopes, failed, sweep = np.repeat(slope[:, None], STAGES, axis=1), np.full(lanes, True), 0
+    while failed.any() and sweep < _SWEEPS:
+        sweep += 1
+        residual = derivative(base + size * (_TO_STAGES @ slopes)) - slopes
+        if not np.all(np.isfinite(residual)):
+            break
+        move = np.linalg.solve(matrix, np.moveaxis(residual, 2, 0).reshape(lanes, count, 1))
+        update = np.moveaxis(move.reshape(lanes, components, STAGES), 0, 2)
+        change = _largest(update[:watched], allowed)
+        slopes = np.where(failed, slopes + update, slopes)  # a lane that has converged is left alone
+        failed = np.logical_and(failed, ~(change <= _SWEEP_TOLERANCE))
+    tail = _largest(_ANALYSIS[-2:] @ slopes[:watched], allowed)
+    return _Step(start, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweep)
+
+
+def _jacobian(derivative: Derivative, start: FloatArray) -> FloatArray:
+    """d(slope a)/d(state b) by one-sided differences, shape (m, m, lanes)."""
+    step = _DIFFERENCE * np.maximum(1.0, np.abs(start))
+    shifted = start[:, None] + np.eye(start.shape[0])[:, :, None] * step[:, None]
+    return np.asarray((derivative(shifted) - derivative(start[:, None])) / step)
+
+
 def _largest(values: FloatArray, allowed: FloatArray) -> FloatArray:
     """Largest magnitude over stages and components, in units of what is allowed; shape (lanes,)."""
     return np.asarray(np.maximum.reduce(np.maximum.reduce(np.abs(values), axis=1) / allowed, axis=0))
@@ -187,7 +220,7 @@ class _Walk:
         self.problem, self.events, self.tolerance = problem, events, tolerance
         self.state, self.size = state.copy(), first_step.copy()
         self.due, self.ended_by = np.full(lanes, -1, dtype=np.intp), np.full(lanes, -1, dtype=np.intp)
-        self.error = np.zeros(lanes)
+        self.error, self.stiff = np.zeros(lanes), np.zeros(lanes, dtype=np.bool_)
         self.pieces: list[tuple[Lanes, FloatArray, FloatArray]] = []
         self.sweeps = 0
         self.active = np.arange(lanes)
@@ -212,10 +245,32 @@ class _Walk:
             self.derivative = self.problem.derivative(self.active)
 
     def _trial(self, derivative: Derivative, start: FloatArray, slope: FloatArray, size: FloatArray) -> _Step:
+        return self._counted(_trial, derivative, start, slope, size)
+
+    def _counted(
+        self,
+        method: Callable[..., _Step],
+        derivative: Derivative,
+        start: FloatArray,
+        slope: FloatArray,
+        size: FloatArray,
+    ) -> _Step:
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # a wild trial has no finite error
             precision = self.tolerance * np.maximum(1.0, np.abs(start[: self.problem.controlled]))
-            trial = _trial(derivative, start, slope, size, precision)
+            trial = method(derivative, start, slope, size, precision)
         self.sweeps += trial.sweeps + 1
+        return trial
+
+    def _plain(self, lanes: Lanes, derivative: Derivative, start: FloatArray, slope: FloatArray) -> _Step:
+        """A step by sweeps, and by Newton's method for lanes that turn out to be stiff."""
+        size = self.size[lanes]
+        trial = self._trial(derivative, start, slope, size)
+        self.stiff[lanes] |= ~np.isfinite(trial.error) & (size < _STIFF)
+        hard = np.flatnonzero(self.stiff[lanes] & ~np.isfinite(trial.error))
+        if hard.size:
+            inner = self.problem.derivative(lanes[hard])
+            harder = self._counted(_stiff_trial, inner, start[:, hard], slope[:, hard], size[hard])
+            trial.slopes[:, :, hard], trial.error[hard] = harder.slopes, harder.error
         return trial
 
     def _first_event(self, lanes: Lanes, start: FloatArray, end: FloatArray) -> Lanes:
@@ -232,7 +287,7 @@ class _Walk:
 
     def _walk(self, lanes: Lanes, derivative: Derivative, start: FloatArray, slope: FloatArray, _: Lanes) -> None:
         """A plain step; one that passes an event is forgotten, and the next must land."""
-        trial = self._trial(derivative, start, slope, self.size[lanes])
+        trial = self._plain(lanes, derivative, start, slope)
         good = trial.error <= 1.0
         self.due[lanes] = np.where(good, self._first_event(lanes, start, trial.end), -1)
         kept = np.flatnonzero(good & (self.due[lanes] < 0))
