@@ -39,7 +39,7 @@ def step_tolerance(accuracy: float) -> float:
     """
     if not _BEST_ACCURACY <= accuracy <= _LEAST_ACCURACY:
         raise InvalidInput(f"accuracy = {accuracy:g}: choose between {_BEST_ACCURACY:g} and {_LEAST_ACCURACY:g}")
-    return float(max(1e5 * accuracy ** (4.0 / 3.0), 1e-12))
+    return float(max(2e4 * accuracy ** (4.0 / 3.0), 1e-12))
 
 
 def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
@@ -62,7 +62,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         shared, table = table_of(scene, flat_punch)
     with log.stage("impact"):
         problem = scaled([scene], [shared], table)
-        motion = impacts(problem.lanes, tolerance=tolerance, audit=True)
+        motion = impacts(problem.lanes, tolerance=tolerance)
     legs = motion.way_in + motion.way_out
     log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in legs))
     log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
@@ -108,7 +108,7 @@ def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, tolerance: flo
 
     def shaped_results(chunk: list[int]) -> ImpactResults:
         problem = scaled([scenes[i] for i in chunk], [shaped[i][0] for i in chunk], shaped[chunk[0]][1])
-        return results(problem, impacts(problem.lanes, tolerance=tolerance, audit=False))
+        return results(problem, impacts(problem.lanes, tolerance=tolerance))
 
     def flat_results(chunk: list[int]) -> ImpactResults:
         return flat_punch_results([scenes[i] for i in chunk], flat_punch, tolerance=tolerance)

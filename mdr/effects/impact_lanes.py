@@ -80,20 +80,19 @@ def outline(branches: int) -> tuple[slice, slice, slice]:
 
 @dataclass(frozen=True)
 class Pressing:
-    """From first touch to the turn. State: y, t, v, S_j, M_j; with the audit N_j and the dissipated energy too."""
+    """From first touch to the turn. State: y, t, v, S_j, M_j, N_j and the dissipated energy."""
 
     lanes: ImpactLanes
     section: int
-    audit: bool
 
     @property
     def controlled(self) -> int:
-        """All but the audit, which must not change the steps."""
-        return 3 + 2 * self.lanes.branches
+        """All of them."""
+        return 4 + 3 * self.lanes.branches
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/d(sigma)."""
-        own, section, audit = self.lanes.take(lanes), self.section, self.audit
+        own, section = self.lanes.take(lanes), self.section
         shared, memory, squares = outline(own.branches)
 
         def rhs(state: FloatArray) -> FloatArray:
@@ -106,10 +105,9 @@ class Pressing:
             slopes[2] = -own.inertia * force(own, springs, g, v, k * history - past) * g_y  # Eq. (48) for any profile
             slopes[shared] = (own.weights * v - own.rates * history) * g_y
             slopes[memory] = k_y * v * history - own.rates * past * g_y
-            if audit:
-                left = k * history**2 - 2.0 * history * past + state[squares]
-                slopes[squares] = k_y * v * history**2 - 2.0 * own.rates * state[squares] * g_y
-                slopes[-1] = own.inertia * dissipation(own, k, v, left) * g_y
+            left = k * history**2 - 2.0 * history * past + state[squares]
+            slopes[squares] = k_y * v * history**2 - 2.0 * own.rates * state[squares] * g_y
+            slopes[-1] = own.inertia * dissipation(own, k, v, left) * g_y
             return slopes
 
         return rhs
@@ -117,22 +115,21 @@ class Pressing:
 
 @dataclass(frozen=True)
 class Receding:
-    """From the turn to the loss of contact. State: y, t, delta, v, S_j; with the audit the dissipated energy too."""
+    """From the turn to the loss of contact. State: y, t, delta, v, S_j and the dissipated energy."""
 
     lanes: ImpactLanes
     section: int
     memory: Memory | None
     step: int
-    audit: bool
 
     @property
     def controlled(self) -> int:
-        """All but the audit."""
-        return 4 + self.lanes.branches
+        """All of them."""
+        return 5 + self.lanes.branches
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/d(sigma)."""
-        own, section, audit = self.lanes.take(lanes), self.section, self.audit
+        own, section = self.lanes.take(lanes), self.section
         recall = self.memory.recall(self.step, lanes) if self.memory is not None else None
         branches = own.branches
 
@@ -150,9 +147,8 @@ class Receding:
             slopes[2] = v * g_y
             slopes[3] = acceleration * g_y
             slopes[4 : 4 + branches] = (own.weights * v - own.rates * history) * g_y
-            if audit:
-                released = 0.5 * (own.long_term * (delta - g) ** 2 + np.add.reduce(front**2 / own.weights))
-                slopes[-1] = own.inertia * (dissipation(own, k, v, left) * g_y - k_y * slopes[0] * released)
+            released = 0.5 * (own.long_term * (delta - g) ** 2 + np.add.reduce(front**2 / own.weights))
+            slopes[-1] = own.inertia * (dissipation(own, k, v, left) * g_y - k_y * slopes[0] * released)
             return slopes
 
         return rhs
@@ -170,7 +166,7 @@ def remembered(
     fading = np.exp(-(state[1] - past[0]) * own.rates)
     front = history - fading * past[1 : 1 + n]
     memory = fading * past[1 + n : 1 + 2 * n]
-    squares = fading**2 * past[1 + 2 * n : 1 + 3 * n] if past.shape[0] > 1 + 2 * n else memory
+    squares = fading**2 * past[1 + 2 * n :]
     return k * history - memory, front, fading, k * history**2 - 2.0 * history * memory + squares
 
 

@@ -57,19 +57,18 @@ class Impacts:
     error: FloatArray
 
 
-def impacts(lanes: ImpactLanes, *, tolerance: float, audit: bool) -> Impacts:
+def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
     """Integrate all lanes.
 
     Args:
         lanes: The impacts.
         tolerance: Local error per step, in the impact's units.
-        audit: Also integrate the energies; the motion does not change by a bit.
 
     Raises:
         TableTooShort: If a front runs beyond the spring table.
         NotConvergedError: If an impact does not end.
     """
-    run = _Run(lanes, tolerance, audit)
+    run = _Run(lanes, tolerance)
     way_in, turn, turned_in = run.press()
     way_out, end = run.recede(way_in, turn, turned_in)
     error = np.full(lanes.count, _SPRINGS_TO_MOTION * lanes.table.error)
@@ -81,20 +80,20 @@ def impacts(lanes: ImpactLanes, *, tolerance: float, audit: bool) -> Impacts:
 class _Run:
     """Lanes under way; `size` is each lane's next trial step."""
 
-    def __init__(self, lanes: ImpactLanes, tolerance: float, audit: bool) -> None:
-        self.lanes, self.tolerance, self.audit = lanes, tolerance, audit
+    def __init__(self, lanes: ImpactLanes, tolerance: float) -> None:
+        self.lanes, self.tolerance = lanes, tolerance
         self.size = np.full(lanes.count, _FIRST_STEP)
 
     def press(self) -> tuple[tuple[Leg, ...], FloatArray, Lanes]:
         """The way in, section by section; the state at the turn and the section where each lane turned."""
         lanes, ends = self.lanes, self.lanes.table.section_ends
-        state = np.zeros((3 + 2 * lanes.branches + (1 + lanes.branches) * self.audit, lanes.count))
+        state = np.zeros((4 + 3 * lanes.branches, lanes.count))
         state[2] = 1.0
         turned_in, going, legs = np.full(lanes.count, ends.size - 1), np.arange(lanes.count), []
         for section in range(ends.size - 1):
             own = lanes.take(going)
             events = Event(2, np.zeros(going.size), -1), Event(0, ends[section + 1] / own.units[6], +1)
-            trajectory = self._integrate(Pressing(own, section, self.audit), state, going, events)
+            trajectory = self._integrate(Pressing(own, section), state, going, events)
             legs.append(Leg(going, section, trajectory, self._memory(trajectory)))
             turned_in[going[trajectory.ended_by == TURN]] = section
             going = going[trajectory.ended_by != TURN]
@@ -105,10 +104,9 @@ class _Run:
     def recede(self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: Lanes) -> tuple[tuple[Leg, ...], FloatArray]:
         """The way out, back through the same sections, and the state at its end."""
         lanes, legs = self.lanes, []
-        state = np.zeros((4 + lanes.branches + self.audit, lanes.count))
+        state = np.zeros((5 + lanes.branches, lanes.count))
         state[:2], state[4 : 4 + lanes.branches] = turn[:2], turn[outline(lanes.branches)[0]]
-        if self.audit:
-            state[-1] = turn[-1]
+        state[-1] = turn[-1]
         self.size *= _AFTER_TURN
         for leg in reversed(way_in):
             starting = np.flatnonzero(turned_in == leg.section)
@@ -124,7 +122,7 @@ class _Run:
         own = self.lanes.take(going)
         memory = leg.memory.take(there) if leg.memory else None
         target = memory.low[step] if memory else self.lanes.table.section_ends[leg.section] / own.units[6]
-        problem = Receding(own, leg.section, memory, step, self.audit)
+        problem = Receding(own, leg.section, memory, step)
         trajectory = self._integrate(problem, state, going, (Event(0, target, -1),))
         self.size[going] = _AT_ONCE
         return Leg(going, leg.section, trajectory, memory, step)
@@ -136,8 +134,8 @@ class _Run:
         return trajectory
 
     def _memory(self, trajectory: Trajectory) -> Memory | None:
-        """Rows t, S_j, M_j (and N_j): nothing to remember without branches."""
+        """Rows t, S_j, M_j and N_j: nothing to remember without branches."""
         if not self.lanes.branches:
             return None
-        last = outline(self.lanes.branches)[2 if self.audit else 1].stop
+        last = outline(self.lanes.branches)[2].stop
         return memory_of(trajectory, [1, *range(3, last)], turning_event=TURN)

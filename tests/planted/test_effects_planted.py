@@ -1,0 +1,96 @@
+"""The checks of the effects are seen to fail: each plants one error and must see it refused."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
+from mdr import Mdr
+from mdr.effects import adhesive_branch, flat_punch_restitution, impact_lanes
+from mdr.effects.impact import impact_batch
+from tests.mdr.viscoelastic_scenes import figure_12, kelvin_voigt_sphere
+from tests.verification import test_adhesion as adhesion
+from tests.verification import test_impact as impact
+
+
+def test_youngs_modulus_for_the_contact_modulus(monkeypatch):
+    """The JKR force does not know the modulus; the radius at pull-off does."""
+    wrong = property(lambda layer: layer.youngs_modulus)
+    monkeypatch.setattr(Layer, "contact_modulus", wrong)
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5),
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=Detachment(),
+        effects=(Adhesion(work_of_adhesion=1e-3),),
+    )
+    radius = Mdr().solve(scene).pull_off_contact_radius
+    assert radius != pytest.approx((np.pi * 1e-3 / 8.0) ** (1 / 3), rel=1e-2)
+
+
+def test_a_lost_two_pi_in_the_elongation(monkeypatch):
+    right = adhesive_branch.critical_elongation
+    monkeypatch.setattr(adhesive_branch, "critical_elongation", lambda *args: right(*args) / np.sqrt(2.0 * np.pi))
+    with pytest.raises(AssertionError):
+        adhesion.test_jkr_sphere("force", (9 * np.pi / 8) ** (1 / 3))
+    with pytest.raises(AssertionError):
+        adhesion.test_equilibrium_and_stability_are_those_of_the_energy(adhesion.HALF_SPACE, adhesion.PROFILES[0])
+
+
+def test_stability_turned_upside_down(monkeypatch):
+    right = adhesive_branch.AdhesiveBranch.slopes
+    monkeypatch.setattr(adhesive_branch.AdhesiveBranch, "slopes", lambda branch, y: -right(branch, y))
+    with pytest.raises(AssertionError):
+        adhesion.test_equilibrium_and_stability_are_those_of_the_energy(adhesion.HALF_SPACE, adhesion.PROFILES[0])
+
+
+def test_a_factor_two_in_the_force(monkeypatch):
+    right = impact_lanes.force
+    monkeypatch.setattr(impact_lanes, "force", lambda *args: 2.0 * right(*args))
+    with pytest.raises(AssertionError):
+        impact.test_kelvin_voigt_sphere_on_the_half_space(0.1, impact.KELVIN_VOIGT_SPHERE[0.1])
+    with pytest.raises(AssertionError):
+        impact.test_figure_12_restitution_peak_audit_and_self_convergence(np.inf)
+
+
+def test_springs_without_memory(monkeypatch):
+    """Forget when each spring was touched: the audit and the explicit scheme notice."""
+    right = impact_lanes.remembered
+
+    def forgetful(recall, own, state, k):
+        _, front, fading, left = right(recall, own, state, k)
+        return k * state[4 : 4 + own.branches], front, fading, left
+
+    monkeypatch.setattr(impact_lanes, "remembered", forgetful)
+    with pytest.raises(AssertionError):
+        impact.test_the_papers_explicit_springs_agree(2e-3)
+
+
+def test_dissipation_left_out_of_the_audit(monkeypatch):
+    monkeypatch.setattr(impact_lanes, "dissipation", lambda lanes, k, v, squares: 0.0 * k)
+    with pytest.raises(AssertionError):
+        impact.test_figure_12_restitution_peak_audit_and_self_convergence(1e-3)
+
+
+def test_the_overdamped_branch_forgotten(monkeypatch):
+    """arctan for artanh beyond D = 1."""
+    wrong = flat_punch_restitution.np.arctan2
+    monkeypatch.setattr(flat_punch_restitution.np, "log", lambda x: wrong(x, 1.0))
+    with pytest.raises(AssertionError):
+        impact.test_flat_punch_restitution_of_the_closed_form_and_of_the_integration(2.0, impact.CLOSED_FORM[2.0])
+
+
+def test_a_batch_that_mixes_up_its_lanes(monkeypatch):
+    from mdr.effects import impact as module
+
+    right = module.joined
+
+    def mixed(parts, order):
+        answer = right(parts, order)
+        turned = {f.name: np.roll(getattr(answer, f.name), 1) for f in dataclasses.fields(answer)}
+        return type(answer)(**turned)
+
+    monkeypatch.setattr(module, "joined", mixed)
+    scenes = [figure_12(1e-3), figure_12(2e-3), kelvin_voigt_sphere(0.1)]
+    found = impact_batch(scenes, impact.PUNCH).coefficient_of_restitution
+    assert found[0] != pytest.approx(0.64341, abs=1e-3)
