@@ -12,19 +12,22 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 from scipy.linalg import cholesky, solve_triangular
 
-from bem.flat_punch import FlatPunchSolution
 from bem.fourier_energy import energy_matrix
 from bem.fredholm_kernel import FredholmKernel
 from bem.kernels import Support
 from bem.panels import gauss_nodes
 from contact import InvalidInput, NotConvergedError
 from contact.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.integral_equation import IntegralEquationSolution
 
 LARGEST_RATIO = 1000.0
 FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
@@ -48,7 +51,7 @@ class LargeRatioSolution:
 
     support: Support
     poissons_ratio: float
-    make_near: Callable[[], FlatPunchSolution]
+    make_near: Callable[[], IntegralEquationSolution]
 
     @property
     def max_ratio(self) -> float:
@@ -70,8 +73,23 @@ class LargeRatioSolution:
         """c_bar = k_bar (1 + d ln k_bar/d ln ratio), Eq. (10)."""
         ratio = self._covered(ratio)
         within = self.near.normalized_spring_stiffness(np.minimum(ratio, self.near.max_ratio))
-        slope = self.log_stiffness.deriv()(np.log(np.maximum(ratio, FIRST_RATIO)))
-        return np.where(ratio <= self.near.max_ratio, within, self._stiffness(ratio) * (1 + slope))
+        return np.where(
+            ratio <= self.near.max_ratio, within, self.wide_spring_stiffness(np.maximum(ratio, FIRST_RATIO))
+        )
+
+    def wide_spring_stiffness(self, ratio: FloatArray) -> FloatArray:
+        """c_bar from the wide panels alone, `FIRST_RATIO` <= ratio."""
+        stiffness: FloatArray = self._stiffness(ratio) * (1 + self.log_stiffness.deriv()(np.log(ratio)))
+        return stiffness
+
+    def reach(self, ratio: float) -> float:
+        """The smallest ratio with a known density that is not below the given one."""
+        return min(known for known in self.densities if known >= ratio * (1 - 1e-12))
+
+    @property
+    def densities(self) -> dict[float, FloatArray]:
+        """Unit flat punch's density at some ratios, by values at the nodes of wide panels, shape (panels, nodes)."""
+        return self._punches[3]
 
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
         """q as from `near`.
@@ -88,14 +106,14 @@ class LargeRatioSolution:
         return np.where(ratio <= self.near.max_ratio, within, self.error)
 
     @cached_property
-    def near(self) -> FlatPunchSolution:
+    def near(self) -> IntegralEquationSolution:
         """Solution for smaller ratios."""
         return self.make_near()
 
     @cached_property
     def log_stiffness(self) -> Chebyshev:
         """ln k_bar over ln(a/h)."""
-        ratios, stiffness, _ = self._punches
+        ratios, stiffness, *_ = self._punches
         return Chebyshev.fit(np.log(ratios), np.log(stiffness), DEGREE)
 
     @cached_property
@@ -103,13 +121,13 @@ class LargeRatioSolution:
         """Bound of the relative error of both stiffnesses: twice what overlap and Ritz values show."""
         overlap = np.linspace(OVERLAP, self.near.max_ratio, 9)
         k = self._stiffness(overlap)
-        c = k * (1 + self.log_stiffness.deriv()(np.log(overlap)))
+        c = self.wide_spring_stiffness(overlap)
         k_error = np.abs(k / self.near.normalized_contact_stiffness(overlap) - 1)
         c_error = np.abs(c / self.near.normalized_spring_stiffness(overlap) - 1)
         return 2 * (float(np.max(np.maximum(k_error, c_error))) + self._punches[2])
 
     @cached_property
-    def _punches(self) -> tuple[FloatArray, FloatArray, float]:
+    def _punches(self) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
         return _wide_punches(self.support, self.poissons_ratio)
 
     def _stiffness(self, ratio: FloatArray) -> FloatArray:
@@ -124,14 +142,17 @@ class LargeRatioSolution:
         return ratio
 
 
-def _wide_punches(support: Support, poissons_ratio: float) -> tuple[FloatArray, FloatArray, float]:
-    """Ratios, k_bar there, and the largest relative difference that the last Ritz density makes."""
+def _wide_punches(
+    support: Support, poissons_ratio: float
+) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
+    """Ratios, k_bar there, the largest relative difference that the last Ritz density makes, and the densities."""
     ratios = _radii_at_panel_ends()
     root = np.sqrt(PANEL_WIDTH * np.tile(gauss_nodes(PANEL_NODES)[1], int(LARGEST_RATIO / PANEL_WIDTH)))
     lower = _factorise(support, poissons_ratio, root)
-    values = [_ritz_values(lower, root, a, support, poissons_ratio) for a in ratios]
-    best, fewer = np.array(values).T
-    return ratios, best / ratios, float(np.max(np.abs(fewer / best - 1)))
+    punches = [_ritz_punch(lower, root, float(a), support, poissons_ratio) for a in ratios]
+    best, fewer = (np.array([punch[item] for punch in punches]) for item in (0, 1))
+    densities = {float(a): punch[2] for a, punch in zip(ratios, punches, strict=True)}
+    return ratios, best / ratios, float(np.max(np.abs(fewer / best - 1))), densities
 
 
 def _radii_at_panel_ends() -> FloatArray:
@@ -156,10 +177,10 @@ def _factorise(support: Support, poissons_ratio: float, root: FloatArray) -> Flo
     return lower
 
 
-def _ritz_values(
+def _ritz_punch(
     lower: FloatArray, root: FloatArray, ratio: float, support: Support, poissons_ratio: float
-) -> tuple[float, float]:
-    """F/(2 E*) of a flat punch pressed in by 1, from all Ritz densities and from one less."""
+) -> tuple[float, float, FloatArray]:
+    """F/(2 E*) of a flat punch pressed in by 1, from all Ritz densities and from one less, and its density."""
     panels = int(ratio / PANEL_WIDTH)
     n, nodes = panels * PANEL_NODES, gauss_nodes(PANEL_NODES)[0]
     t = PANEL_WIDTH * (np.arange(panels)[:, None] + nodes).ravel()
@@ -168,10 +189,12 @@ def _ritz_values(
     densities = solve_triangular(lower[:n, :n], half, lower=True, trans=1, check_finite=False) / root[:n, None]
     energy = energy_matrix(densities.T.reshape(-1, panels, PANEL_NODES), PANEL_WIDTH, support, poissons_ratio)
     load = densities.T @ root[:n] ** 2
-    return _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
+    shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
+    return float(load @ shares), float(load[:-1] @ fewer), (densities @ shares).reshape(panels, PANEL_NODES)
 
 
-def _stationary(energy: FloatArray, load: FloatArray) -> float:
-    """b^T G^-1 b with unit diagonal of G, since the densities differ by orders of magnitude."""
+def _stationary(energy: FloatArray, load: FloatArray) -> FloatArray:
+    """G^-1 b with unit diagonal of G, since the densities differ by orders of magnitude."""
     scale = 1 / np.sqrt(np.diag(energy))
-    return float((load * scale) @ np.linalg.solve(energy * np.multiply.outer(scale, scale), load * scale))
+    shares: FloatArray = scale * np.linalg.solve(energy * np.multiply.outer(scale, scale), load * scale)
+    return shares

@@ -7,8 +7,8 @@ import numpy as np
 from bem.contact_density import ContactDensity
 from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
-from bem.integral_equation import LARGEST_PROFILE_RATIO, IntegralEquationSolution
-from bem.large_ratio import LargeRatioSolution
+from bem.integral_equation import LARGEST_FACTORISED_RATIO, IntegralEquationSolution
+from bem.large_ratio import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
 from bem.panels import gauss_nodes
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.validation import FloatArray
@@ -18,6 +18,7 @@ from mdr.layer_profile import contact_averages, edge_values
 from mdr.mapped_pieces import MappedFunction, MappedGrid, resolve
 from mdr.published_transform import published_profile
 from mdr.surface_fields import ContactFields
+from mdr.wide_profile import wide_profile
 
 NODES = 24  # on each piece, where the flat-punch data do not prescribe their own
 TABLE_NODES = 12  # with a table, whose functions are no smoother than its splines
@@ -44,8 +45,9 @@ def equivalent_system(
     _refuse_endless_depth(indenter, max_radius)
     unit = max_radius if layer.is_half_space else layer.thickness
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
-    _refuse_wide_profiles(solution, indenter, max_radius / unit)
-    profile = _profile(solution, indenter, unit, max_radius)
+    if isinstance(solution, LargeRatioSolution) and not isinstance(indenter, FlatPunch):
+        max_radius = _known_radius(solution, indenter, unit, max_radius)
+    profile, own_error = _profile(solution, indenter, unit, max_radius)
     _refuse_rings(profile, indenter, unit)
     return EquivalentSystem(
         contact_modulus=layer.contact_modulus,
@@ -55,7 +57,7 @@ def equivalent_system(
         flat_punch=solution,
         profile=profile,
         moment=_moment(solution, profile, indenter.flat_radius / unit),
-        profile_error=0.0 if isinstance(indenter, FlatPunch) else profile.relative_error(),
+        profile_error=own_error,
     )
 
 
@@ -77,7 +79,7 @@ def contact_fields(
     if isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution):
         profile = _half_space_function(flat_punch, indenter, unit, contact_radius)
     else:
-        profile, table = _profile(flat_punch, indenter, unit, contact_radius), flat_punch
+        profile, table = _profile(flat_punch, indenter, unit, contact_radius)[0], flat_punch
     if isinstance(flat_punch, IntegralEquationSolution):
         averages = np.full((int(np.ceil(ratio / flat_punch.factor.panel_width)), profile.grid.count), delta)
         if not isinstance(indenter, FlatPunch):
@@ -115,16 +117,27 @@ class SeveralContacts(UnsupportedSceneError):
         super().__init__(f"{message} beyond; keep radii, depths or forces below")
 
 
-def _profile(solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float) -> MappedFunction:
-    """g in units of `unit`."""
+def _profile(
+    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float
+) -> tuple[MappedFunction, float]:
+    """g in units of `unit`, and its relative error beyond that of the flat-punch data."""
     g_hs = _half_space_function(solution, indenter, unit, max_radius)
-    if isinstance(indenter, FlatPunch) or isinstance(solution, HalfSpaceFlatPunch):
-        return g_hs
-    if not isinstance(solution, IntegralEquationSolution):
-        return published_profile(solution, indenter, unit, g_hs)
-    flat = indenter.flat_radius / unit
-    edge = edge_values(solution.factor, g_hs, flat)
-    return MappedFunction.from_values(g_hs.grid, edge / solution.edge_density(flat + g_hs.grid.nodes), g_hs.lead)
+    if isinstance(indenter, FlatPunch):
+        return g_hs, 0.0
+    flat, seen = indenter.flat_radius / unit, 0.0
+    match solution:
+        case HalfSpaceFlatPunch():
+            profile = g_hs
+        case IntegralEquationSolution():
+            edge = edge_values(solution.factor, g_hs, flat)
+            profile = MappedFunction.from_values(
+                g_hs.grid, edge / solution.edge_density(flat + g_hs.grid.nodes), g_hs.lead
+            )
+        case LargeRatioSolution():
+            profile, seen = wide_profile(solution, g_hs, flat)
+        case _:
+            profile = published_profile(solution, indenter, unit, g_hs)
+    return profile, profile.relative_error() + seen
 
 
 def _half_space_function(
@@ -143,11 +156,17 @@ def _half_space_function(
     )
 
 
-def _refuse_wide_profiles(solution: FlatPunchSolution, indenter: Profile, ratio: float) -> None:
-    """Of very large ratios the integral equation knows the stiffnesses only: enough for a flat punch."""
-    if isinstance(solution, LargeRatioSolution) and not isinstance(indenter, FlatPunch):
-        message = f"a/h = {ratio:g}: the integral equation covers profiles up to a/h = {LARGEST_PROFILE_RATIO:g}"
-        raise InvalidInput(f"{message}; use a thin-layer form of mdr.asymptotic, or a flat-punch table")
+def _known_radius(solution: LargeRatioSolution, indenter: Profile, unit: float, max_radius: float) -> float:
+    """The next radius at which the flat punch's density is known; profiles there are fitted, not integrated."""
+    last = max((indenter.flat_radius, *indenter.breakpoints)) / unit
+    if last > FIRST_RATIO / 2:
+        message = f"a/h = {max_radius / unit:g}: beyond {LARGEST_FACTORISED_RATIO:g} a profile must be smooth from"
+        raise InvalidInput(f"{message} r/h = {FIRST_RATIO / 2:g} on, but it has a breakpoint at {last:g}")
+    radius = unit * solution.reach(max_radius / unit)
+    if radius > indenter.max_radius:
+        message = f"the indenter ends at {indenter.max_radius:g} m, but its answer at {max_radius:g} m takes it"
+        raise InvalidInput(f"{message} out to {radius:g} m; describe it that far")
+    return radius
 
 
 def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:
@@ -178,6 +197,8 @@ def _initial_grid(
 def _nodes_for(solution: FlatPunchSolution) -> int:
     if isinstance(solution, IntegralEquationSolution):
         return solution.factor.count
+    if isinstance(solution, LargeRatioSolution):
+        return solution.near.factor.count
     return NODES if isinstance(solution, HalfSpaceFlatPunch) else TABLE_NODES
 
 
@@ -187,6 +208,9 @@ def _panel_ends(solution: FlatPunchSolution, ratio: float) -> FloatArray:
         return solution.factor.panel_width * np.arange(1.0, np.ceil(ratio / solution.factor.panel_width))
     if isinstance(solution, HalfSpaceFlatPunch):
         return np.empty(0)
+    if isinstance(solution, LargeRatioSolution):
+        narrow = _panel_ends(solution.near, solution.near.max_ratio * (1 + GAP))
+        return np.sort(np.append(narrow, _apart(np.arange(PANEL_WIDTH, ratio, PANEL_WIDTH), narrow)))
     return np.exp2(np.arange(FIRST_OCTAVE, np.ceil(np.log2(ratio)), dtype=np.float64))
 
 

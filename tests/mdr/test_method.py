@@ -166,8 +166,6 @@ def test_out_of_reach_is_refused_with_the_value():
     short = Tabulated(radii=[0.0, 1e-3, 2e-3], heights=[0.0, 1e-5, 4e-5])
     with pytest.raises(InvalidInput, match="the indenter ends"):
         solve(LAYERS["bonded"], short, IndentationDepths([1e-3]))
-    with pytest.raises(InvalidInput, match="profiles up to a/h = 160"):
-        solve(LAYERS["bonded"], Cone(slope=0.1), ContactRadii([0.9]))
     with pytest.raises(InvalidInput, match="a/h = 10000"):
         solve(LAYERS["bonded"], Cone(slope=0.1), ContactRadii([10.0]))
     with pytest.raises(InvalidInput, match="upright"):

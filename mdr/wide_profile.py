@@ -1,0 +1,70 @@
+"""MDR profile on layers much thinner than the contact is wide, where `bem.large_ratio` knows the flat punch.
+
+By Betti's theorem the profile's moment is the flat punch's density weighted with the half-space profile,
+
+    M(x) = int_0^x c_bar g dx = <phi_1(.; x), g_hs>,    so    g = M'/c_bar.
+
+The densities are known at some thirty radii. There ln M is fitted by a polynomial in ln x, and the fit is
+differentiated; that needs a profile without breakpoints at such radii. Lengths count in layer thicknesses.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+
+from bem.large_ratio import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
+from bem.panels import lagrange_matrix
+from contact.validation import FloatArray
+from mdr.layer_profile import edge_values
+from mdr.mapped_pieces import MappedFunction, MappedGrid
+
+DEGREE = 16  # of ln M in ln x, or two less than the number of radii within reach
+
+
+def wide_profile(
+    solution: LargeRatioSolution, load: MappedFunction, flat_radius: float
+) -> tuple[MappedFunction, float]:
+    """g on the load's grid, and the relative error seen where narrow and wide panels overlap.
+
+    Args:
+        solution: Flat punches up to large ratios.
+        load: g_hs on a grid that ends at a known radius; ends of wide panels, and the end of `solution.near`, are piece
+            ends.
+        flat_radius: b, well below `FIRST_RATIO`, as all breakpoints.
+    """
+    near, grid = solution.near, load.grid
+    x = flat_radius + grid.nodes
+    within = x[:, 0] < near.max_ratio
+    inner = MappedGrid(grid.left[within], grid.width[within], grid.power[within], grid.count)
+    edge = edge_values(near.factor, MappedFunction(inner, load.coefficients[within], load.lead), flat_radius)
+    values = np.empty_like(x)
+    values[within] = edge / near.edge_density(np.minimum(x[within], near.max_ratio))
+    far = _moment_fit(solution, load, flat_radius)
+    values[~within] = _slope_over_springs(solution, far, x[~within])
+    overlap = within & (x[:, 0] > 1.5 * FIRST_RATIO)
+    seen = np.max(np.abs(_slope_over_springs(solution, far, x[overlap]) / values[overlap] - 1))
+    return MappedFunction.from_values(grid, values, load.lead), 2 * float(seen)
+
+
+def _moment_fit(solution: LargeRatioSolution, load: MappedFunction, flat_radius: float) -> Chebyshev:
+    """ln M over ln x from the densities at the known radii."""
+    grid = load.grid
+    x = flat_radius + grid.nodes
+    panel = np.floor(x[:, 0] / PANEL_WIDTH).astype(np.intp)
+    weighted = load.node_values * grid.weights
+    radii = [ratio for ratio in solution.densities if ratio <= flat_radius + grid.end + PANEL_WIDTH / 2]
+    count = solution.densities[radii[0]].shape[1]
+    onto_nodes = np.einsum("qi,qij->qj", weighted, lagrange_matrix(count, x / PANEL_WIDTH - panel[:, None]))
+    moments = []
+    for ratio in radii:
+        inside = panel < round(ratio / PANEL_WIDTH)
+        moments.append(float(np.sum(onto_nodes[inside] * solution.densities[ratio][panel[inside]])))
+    return Chebyshev.fit(np.log(radii), np.log(moments), min(DEGREE, len(radii) - 2))
+
+
+def _slope_over_springs(solution: LargeRatioSolution, fit: Chebyshev, x: FloatArray) -> FloatArray:
+    """g = M'/c_bar."""
+    log = np.log(x)
+    g: FloatArray = np.exp(fit(log)) * fit.deriv()(log) / x / solution.wide_spring_stiffness(x)
+    return g
