@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from bem.flat_punch import FlatPunchSource
 from bem.fredholm_kernel import FredholmKernel
-from bem.integral_equation import LARGEST_RATIO, RUNGS, IntegralEquation, IntegralEquationSolution
+from bem.integral_equation import LARGEST_FACTORISED_RATIO, RUNGS, IntegralEquation, IntegralEquationSolution
 from bem.volterra_factor import VolterraFactor
 from contact import CoatedPair, InvalidInput, Layer
 from contact.record import Record, record
@@ -46,8 +46,10 @@ class PairedCoatings(Record):
         Raises:
             InvalidInput: If the ratio is beyond what the integral equation covers.
         """
-        if not 0.0 < max_ratio <= LARGEST_RATIO:
-            raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
+        if not 0.0 < max_ratio <= LARGEST_FACTORISED_RATIO:
+            raise InvalidInput(
+                f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_FACTORISED_RATIO:g}"
+            )
         rung = next(rung for rung in RUNGS if rung >= max_ratio)
         nu = layer.poissons_ratio if layer.support == "bonded" else 0.0  # no influence on an unbonded coating
         return _solution(self, layer.support, nu, rung)
