@@ -9,6 +9,7 @@ from cases.task import Sampling
 from contact import UNITS, ContactPath, Cost, HistoryPath, ImpactHistory, Solution, StageRecord
 
 _IMPACT_SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
+_ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth"}
 
 
 def quantities(solution: Solution, sampling: Sampling) -> tuple[Quantity, ...]:
@@ -43,8 +44,14 @@ def _check(solution: Solution, name: str) -> Quantity:
 
 def _uncertainty(solution: Solution, name: str, size: int) -> tuple[float, ...]:
     if name not in solution.error_estimate:
-        return ()
+        return _of_the_branch(solution, name)
     return tuple(np.broadcast_to(np.abs(solution.uncertainty(name)), (size,)).tolist())
+
+
+def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:
+    """A critical point lies on the branch and is as uncertain as the branch at its worst."""
+    branch = _ON_BRANCH.get(name, "")
+    return (float(np.max(solution.uncertainty(branch))),) if branch in solution.error_estimate else ()
 
 
 def _size(values: np.typing.NDArray[np.float64]) -> float:

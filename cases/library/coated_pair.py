@@ -1,0 +1,143 @@
+"""Section 2.2 of Forsbach (2023): two coated bodies in contact, reduced to one indenter on one layer."""
+
+import numpy as np
+
+from cases.case import Case, CaseScene
+from cases.claims.approach import Approach
+from cases.claims.declared import Reason
+from cases.claims.twin import Twin
+from cases.library._compared import BEM, EQUATION, FEM, MDR, agreements
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, prescribed_radii
+from cases.results import Origin
+from contact import CoatedPair, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
+
+RADIUS = 1e-2  # m, of both bodies in the symmetric pair
+POISSONS_RATIO = 0.3
+RATIOS = (0.5, 2.0)
+THIN_RATIOS = (75.0, 150.0)
+UNEQUAL = (0.9 * THICKNESS, 1.1 * THICKNESS)
+
+TEXT = """
+Two rigid bodies with curvatures 1/R1 and 1/R2 carry equal coatings. They are equivalent to a rigid paraboloid of
+curvature 1/R1 + 1/R2, Eq. (23), on one layer with half the modulus, Eq. (24). For two equal bodies symmetry gives a
+check that does not use these equations: the plane between them stays plane, so each coating is pressed by a rigid plane
+through half the approach, which is one body of radius R on one layer of the full modulus.
+
+Coatings of slightly different thickness are replaced by their mean, Eq. (25). On thin compressible coatings this is
+exact: two Winkler beds in series.
+"""
+
+
+def pair(
+    first_radius: float, second_radius: float, thicknesses: tuple[float, float], radius: float, support: str = "bonded"
+) -> Scene:
+    """Return the scene equivalent to a coated pair at contact radius ``radius``."""
+    return CoatedPair(
+        first_radius=first_radius,
+        second_radius=second_radius,
+        first_thickness=thicknesses[0],
+        second_thickness=thicknesses[1],
+        youngs_modulus=YOUNGS_MODULUS,
+        poissons_ratio=POISSONS_RATIO,
+        support="unbonded" if support == "unbonded" else "bonded",
+        loading=ContactRadii(values=np.array([radius])),
+    ).scene()
+
+
+def symmetric(support: str, ratio: float) -> CaseScene:
+    """Return two equal coated bodies."""
+    scene = pair(RADIUS, RADIUS, (THICKNESS, THICKNESS), ratio * THICKNESS, support)
+    return CaseScene(
+        name=f"equal bodies, {support} a/h={ratio:g}",
+        parameters={"support": support, "a_over_h": ratio},
+        scene=scene,
+    )
+
+
+def unequal(ratio: float) -> CaseScene:
+    """Return two bodies with thin coatings of different thickness."""
+    scene = pair(1000 * RADIUS, 2000 * RADIUS, UNEQUAL, ratio * THICKNESS)
+    return CaseScene(
+        name=f"unequal coatings a/h={ratio:g}",
+        parameters={"a_over_h": ratio},
+        scene=scene,
+        methods=(MDR,),
+    )
+
+
+SYMMETRIC = tuple(symmetric(support, ratio) for support in ("bonded", "unbonded") for ratio in RATIOS)
+THIN = tuple(unequal(ratio) for ratio in THIN_RATIOS)
+
+
+def one_body_on_its_plane(scene: Scene) -> Scene:
+    """Return one coated body pressed by a rigid plane: the full modulus, the body's own radius."""
+    if not isinstance(scene.indenter, Paraboloid):
+        raise InvalidInput(f"indenter = {type(scene.indenter).__name__}: a coated pair reduces to a paraboloid")
+    own = Layer(
+        thickness=THICKNESS,
+        youngs_modulus=YOUNGS_MODULUS,
+        poissons_ratio=POISSONS_RATIO,
+        support=scene.layer.support,
+    )
+    return scene.replace(layer=own, indenter=Paraboloid(radius_of_curvature=RADIUS))
+
+
+def beds_in_series(scene: Scene) -> float:
+    """k_N = pi a^2 E~/(h1 + h2): two Winkler beds, one after the other."""
+    a = float(prescribed_radii(scene)[0])
+    full = Layer(thickness=THICKNESS, youngs_modulus=YOUNGS_MODULUS, poissons_ratio=POISSONS_RATIO)
+    return np.pi * a**2 * full.confined_modulus / sum(UNEQUAL)
+
+
+def thinness(scene: Scene) -> float:
+    """h/a."""
+    return scene.layer.thickness / float(prescribed_radii(scene)[0])
+
+
+SYMMETRY = Reason(
+    because="the plane between two equal bodies stays plane",
+    derived_from="round-off; finite elements see the same contact in other units",
+    origin=Origin.CLOSED_FORM,
+    source="mirror symmetry",
+)
+SERIES = Reason(
+    because="thin compressible coatings are Winkler beds, and beds add their compliances",
+    derived_from="accepted band [p_f - 0.2, p_f + 0.5] between a/h = 75 and 150",
+    origin=Origin.CLOSED_FORM,
+    source="Eqs. (16) and (25)",
+)
+
+CASE = Case(
+    name="coated_pair",
+    title="Two coated bodies",
+    question="Are the reductions of curvature, modulus and thickness right?",
+    equations=("Eq. (23)", "Eq. (24)", "Eq. (25)", "Fig. 2"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*SYMMETRIC, *THIN),
+    methods=(MDR, FEM, BEM, EQUATION),
+    claims=(
+        Twin(
+            name="half the approach on one body",
+            quantity="normal_force",
+            scenes=tuple(s.name for s in SYMMETRIC),
+            change=one_body_on_its_plane,
+            factors={"indentation_depth": 0.5, "normal_force": 1.0, "contact_stiffness": 2.0},
+            tolerance=1e-12,
+            tolerances={"fem": 1e-9, "bem": 1e-6},
+            reason=SYMMETRY,
+        ),
+        Approach(
+            name="thin unequal coatings are beds in series",
+            quantity="contact_stiffness",
+            scenes=tuple(s.name for s in THIN),
+            parameter=thinness,
+            limit=beds_in_series,
+            formal_order=1.0,
+            largest=0.05,
+            tolerance=0.2,
+            reason=SERIES,
+        ),
+        *agreements(SYMMETRIC, {"fem": 1e-5, "bem": 2e-3, "integral_equation": 1e-9}),
+    ),
+)

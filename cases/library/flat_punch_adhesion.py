@@ -1,0 +1,238 @@
+"""Section 4.2 of Forsbach (2023): adhesive detachment of a flat punch under displacement and force control."""
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cases.case import Case, CaseScene
+from cases.claims.declared import Reason
+from cases.claims.exact import Exact
+from cases.library._compared import BEM, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, half_space
+from cases.results import Figure, Origin, Panel, SceneRun, Series
+from cases.task import Answers
+from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
+
+WORK_OF_ADHESION = 0.05  # J/m^2
+ADHESION = Adhesion(work_of_adhesion=WORK_OF_ADHESION)
+ONLY_MDR = (MDR,)
+
+TEXT = """
+A flat punch of radius a* adheres to a layer and is pulled off. Detachment starts at delta_c1 = -Delta l(a*), with
+Delta l = sqrt(2 pi Delta gamma a / c_N), Eq. (40). On the half-space it is abrupt under both controls (Kendall). On a
+bonded layer with nu above about 0.36 the elongation Delta l(a) has a maximum; beyond it, under displacement control,
+the contact shrinks stably to the radius of the maximum and only then jumps, Eq. (45). Under force control detachment is
+always abrupt, at F_A = -k_N(a*) Delta l(a*).
+"""
+
+MAXIMA = {0.5: (0.461904, 0.392203), 0.45: (0.600217, 0.417261), 0.4: (0.914054, 0.442014)}  # a/h, Delta l bar
+STIFFNESS_AND_SPRING = {1.0: (3.61873584896, 7.684546)}  # nu = 0.5: kbar, cbar at a*/h
+
+
+def scene_of(nu: float, ratio: float, control: str, layer: Layer | None = None) -> Scene:
+    """Return the detachment of a punch of radius ``ratio`` h."""
+    bonded = Layer(thickness=THICKNESS, youngs_modulus=YOUNGS_MODULUS, poissons_ratio=nu)
+    return Scene(
+        layer=layer or bonded,
+        indenter=FlatPunch(radius=ratio * THICKNESS),
+        loading=Detachment(control="force" if control == "force" else "displacement"),
+        effects=(ADHESION,),
+    )
+
+
+def case_scene(nu: float, ratio: float, control: str, *, only_mdr: bool = False) -> CaseScene:
+    """Return the scene of a bonded layer."""
+    return CaseScene(
+        name=f"bonded nu={nu:g} a/h={ratio:g}, {control}",
+        parameters={"poissons_ratio": nu, "a_over_h": ratio, "control": control},
+        scene=scene_of(nu, ratio, control),
+        methods=ONLY_MDR if only_mdr else (),
+    )
+
+
+def on_half_space(control: str) -> CaseScene:
+    """Return Kendall's punch."""
+    return CaseScene(
+        name=f"half-space, {control}",
+        parameters={"control": control},
+        scene=scene_of(0.3, 1.0, control, half_space()),
+        methods=ONLY_MDR if control == "force" else (MDR, QUICK_FEM),
+    )
+
+
+HALF_SPACE = tuple(on_half_space(control) for control in ("displacement", "force"))
+BEYOND_MAXIMUM = tuple(case_scene(nu, 2.0, "displacement", only_mdr=nu != 0.5) for nu in MAXIMA)
+ABRUPT = (case_scene(0.5, 1.0, "force"),)
+FIGURE_9 = tuple(case_scene(0.5, ratio, "displacement", only_mdr=True) for ratio in (0.2, 0.46, 1.0, 3.0, 10.0))
+FIGURE_8 = tuple(case_scene(nu, 20.0, "displacement", only_mdr=True) for nu in (0.3, 0.4, 0.45, 0.5))
+
+
+def kendall_depth(scene: Scene) -> list[float]:
+    """delta_c = -sqrt(2 pi Delta gamma a / E*)."""
+    return [-float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * scene.indenter.flat_radius / scene.layer.contact_modulus))]
+
+
+def kendall_force(scene: Scene) -> list[float]:
+    """F_c = -sqrt(8 pi E* Delta gamma a^3)."""
+    a = scene.indenter.flat_radius
+    return [-float(np.sqrt(8 * np.pi * scene.layer.contact_modulus * WORK_OF_ADHESION * a**3))]
+
+
+def unit_elongation(layer: Layer) -> float:
+    """sqrt(2 pi Delta gamma h / E*) [m], the unit of Delta l in Eq. (42)."""
+    return float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * layer.thickness / layer.contact_modulus))
+
+
+def abrupt_force(scene: Scene) -> list[float]:
+    """F_A = -k_N(a*) Delta l(a*), Eq. (46), from tabulated kbar and cbar."""
+    a = scene.indenter.flat_radius
+    kbar, cbar = STIFFNESS_AND_SPRING[round(a / scene.layer.thickness, 9)]
+    elongation = np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / (scene.layer.contact_modulus * cbar))
+    return [-float(2 * scene.layer.contact_modulus * a * kbar * elongation)]
+
+
+def figure_8(case: Case, answers: Answers) -> Iterator[Figure]:
+    """Fig. 8: largest spring elongation over a/h."""
+    series = []
+    for scene in FIGURE_8:
+        run = answers.of(case.task(scene, MDR))
+        if run.solved:
+            depth = run.curve("indentation_depth")
+            unit = unit_elongation(scene.scene.layer)
+            nu = scene.parameters["poissons_ratio"]
+            x = tuple(a / THICKNESS for a in depth.x)
+            series.append(_line(f"nu={nu}", x, tuple(-d / unit for d in depth.y)))
+    panel = Panel(title="", x_label="$a/h$", y_label=r"$\overline{\Delta l}$", x_scale="log", series=tuple(series))
+    yield Figure(
+        name="fig_8",
+        title="Fig. 8: normalised spring elongation on bonded layers",
+        caption="A maximum exists for nearly incompressible layers only.",
+        panels=(panel,),
+    )
+
+
+def figure_9(case: Case, answers: Answers) -> Iterator[Figure]:
+    """Fig. 9: force over depth, both over the critical values of the half-space."""
+    series = []
+    for scene in FIGURE_9:
+        run = answers.of(case.task(scene, MDR))
+        if run.solved:
+            series.append(_force_over_depth(scene, run))
+    panel = Panel(
+        title="",
+        x_label=r"$\delta/|\delta_c^\mathrm{HS}|$",
+        y_label=r"$F_N/|F_c^\mathrm{HS}|$",
+        series=tuple(series),
+    )
+    yield Figure(
+        name="fig_9",
+        title="Fig. 9: detachment of a flat punch from a bonded incompressible layer",
+        caption="From the undeformed state along the punch's stiffness, then along the branch of shrinking contact.",
+        panels=(panel,),
+    )
+
+
+def _force_over_depth(scene: CaseScene, run: SceneRun) -> Series:
+    depth, force = run.curve("indentation_depth"), run.curve("normal_force")
+    unit_depth, unit_force = -kendall_depth(scene.scene)[0], -kendall_force(scene.scene)[0]
+    x = (0.0, *(d / unit_depth for d in depth.y))  # the straight line of the punch at full contact comes first
+    y = (0.0, *(f / unit_force for f in force.y))
+    return _line(f"a*/h={scene.parameters['a_over_h']}", x, y)
+
+
+def _line(group: str, x: tuple[float, ...], y: tuple[float, ...]) -> Series:
+    return Series(label=group, method="mdr", group=group, x=x, y=y)
+
+
+KENDALL = Reason(
+    because="linear elastic fracture mechanics of the punch's edge on the half-space",
+    derived_from="MDR: round-off; finite elements ten times their accuracy of 1e-4",
+    origin=Origin.CLOSED_FORM,
+    source="Kendall, J. Phys. D 4 (1971) 1186",
+)
+MAXIMUM = Reason(
+    because="under displacement control the contact holds until Delta l(a) is largest, Eq. (45)",
+    derived_from="six printed digits of a maximum found on a separate solution; finite elements add their 1e-4",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="Nystrom solution of the integral equation, maximum of Eq. (42)",
+)
+STABILITY = Reason(
+    because="a maximum is flat: its place is known to the root of what its height is known to",
+    derived_from="six printed digits, twice; finite elements add the root of their error",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="Nystrom solution of the integral equation, maximum of Eq. (42)",
+)
+GRIFFITH = Reason(
+    because="under force control detachment is abrupt at Delta l(a*), Eq. (46)",
+    derived_from="seven printed digits of cbar, halved by the root; finite elements add their accuracy",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="kbar and cbar of the Nystrom solution",
+)
+
+CLAIMS = (
+    Exact(
+        name="Kendall's depth",
+        quantity="pull_off_depth",
+        scenes=tuple(s.name for s in HALF_SPACE),
+        expected=kendall_depth,
+        tolerance=1e-10,
+        tolerances={"fem": 1e-3},
+        reason=KENDALL,
+    ),
+    Exact(
+        name="Kendall's force",
+        quantity="pull_off_force",
+        scenes=tuple(s.name for s in HALF_SPACE),
+        expected=kendall_force,
+        tolerance=1e-10,
+        tolerances={"fem": 1e-3},
+        reason=KENDALL,
+    ),
+    Exact(
+        name="depth of the jump",
+        quantity="pull_off_depth",
+        expected={
+            s.name: (-MAXIMA[nu][1] * unit_elongation(s.scene.layer),)
+            for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)
+        },
+        tolerance=3e-6,
+        tolerances={"fem": 1e-3, "bem": 2e-2},
+        reason=MAXIMUM,
+    ),
+    Exact(
+        name="radius of the jump",
+        quantity="pull_off_contact_radius",
+        expected={s.name: (MAXIMA[nu][0] * THICKNESS,) for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)},
+        tolerance=3e-6,
+        tolerances={"fem": 1e-2, "bem": 5e-2},
+        reason=STABILITY,
+    ),
+    Exact(
+        name="force of abrupt detachment",
+        quantity="pull_off_force",
+        scenes=tuple(s.name for s in ABRUPT),
+        expected=abrupt_force,
+        tolerance=1e-6,
+        tolerances={"fem": 1e-3, "bem": 2e-2},
+        reason=GRIFFITH,
+    ),
+    *agreements(
+        (BEYOND_MAXIMUM[0], *ABRUPT),
+        {"fem": 1e-3},
+        ("pull_off_force", "pull_off_depth"),
+        reason=with_reason(FINITE_ELEMENTS, "ten times the finite element accuracy of 1e-4 on every contact radius"),
+    ),
+)
+
+CASE = Case(
+    name="flat_punch_adhesion",
+    title="Adhesive detachment of a flat punch",
+    question="When does a punch leave a layer, and is it abrupt?",
+    equations=("Eq. (40)", "Eq. (42)", "Eq. (45)", "Eq. (46)", "Figs. 8-9"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT, *FIGURE_9, *FIGURE_8),
+    methods=(MDR, QUICK_FEM, BEM),
+    claims=CLAIMS,
+    figures=(figure_8, figure_9),
+)

@@ -1,0 +1,197 @@
+"""Section 4.3 of Forsbach (2023): impact of a flat punch on a Kelvin-Voigt layer, in closed form."""
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from cases.case import Case, CaseScene
+from cases.claims.declared import Reason
+from cases.claims.exact import Exact
+from cases.claims.residual import Residual
+from cases.library._compared import FEM, FINITE_ELEMENTS, MDR, agreements, with_reason
+from cases.results import Figure, Origin, Panel, Series
+from cases.task import Answers
+from contact import FlatPunch, Impact, KelvinVoigt, Layer, Scene
+
+SHEAR_MODULUS = 1e6  # Pa
+MASS = 0.02  # kg
+VELOCITY = 0.1  # m/s
+RADIUS = 1e-3  # m
+DAMPING_RATIOS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.5, 2.0, 3.0)
+
+TEXT = """
+A rigid flat punch hits an incompressible layer whose shear response is a spring and a dashpot in parallel. The contact
+radius is constant, so the motion is a damped oscillation, Eq. (48), and the coefficient of restitution depends on the
+damping ratio D = eta sqrt(2 a kbar/(M G)) only, Eqs. (49) and (50). Beyond D = 1 the arctangent continues as
+exp(-(2 D/s) artanh(s/D)), s = sqrt(D^2 - 1), through exp(-2) at D = 1.
+"""
+
+KBAR = {("bonded", 1.0): 3.61873584896, ("bonded", 2.0): 9.14945045204, ("unbonded", 1.0): 2.19862136567}
+FIGURE_RATIOS = tuple(float(r) for r in np.geomspace(0.01, 10, 10))
+FIGURE_DAMPING = (0.1, 0.5)
+
+
+def restitution(damping: float) -> float:
+    """Return the coefficient of restitution at a damping ratio, Eq. (49) and its continuation."""
+    if damping == 1:
+        return math.exp(-2)
+    s = math.sqrt(abs(1 - damping**2))
+    angle = math.atan2(s, damping) if damping < 1 else math.atanh(s / damping)
+    return math.exp(-2 * damping / s * angle)
+
+
+def viscosity(damping: float) -> float:
+    """Return eta [Pa s] that gives ``damping`` on the half-space, Eq. (50) with kbar = 1."""
+    return damping * math.sqrt(MASS * SHEAR_MODULUS / (2 * RADIUS))
+
+
+def scene_of(layer: Layer, damping: float) -> Scene:
+    """Return an impact whose damping ratio on the half-space is ``damping``."""
+    return Scene(
+        layer=layer,
+        indenter=FlatPunch(radius=RADIUS),
+        loading=Impact(mass=MASS, velocity=VELOCITY),
+        effects=(KelvinVoigt(shear_modulus=SHEAR_MODULUS, viscosity=viscosity(damping)),),
+    )
+
+
+def on_half_space(damping: float) -> CaseScene:
+    """Return an impact on the half-space."""
+    layer = Layer.half_space(youngs_modulus=3 * SHEAR_MODULUS, poissons_ratio=0.5)
+    return CaseScene(
+        name=f"half-space D={damping:g}",
+        parameters={"damping_ratio": damping},
+        scene=scene_of(layer, damping),
+        methods=() if damping in (0.1, 1.0) else (MDR,),
+    )
+
+
+def on_layer(support: str, ratio: float, damping: float, *, only_mdr: bool = False) -> CaseScene:
+    """Return an impact on a layer of thickness a / ratio."""
+    layer = Layer.incompressible(
+        thickness=RADIUS / ratio,
+        shear_modulus=SHEAR_MODULUS,
+        support="unbonded" if support == "unbonded" else "bonded",
+    )
+    return CaseScene(
+        name=f"{support} a/h={ratio:.4g} D_HS={damping:g}",
+        parameters={"support": support, "a_over_h": ratio, "damping_ratio": damping},
+        scene=scene_of(layer, damping),
+        methods=(MDR,) if only_mdr else (),
+    )
+
+
+HALF_SPACE = tuple(on_half_space(damping) for damping in DAMPING_RATIOS)
+ON_LAYERS = tuple(on_layer(support, ratio, 0.3) for support, ratio in KBAR)
+FIGURE_11 = tuple(
+    on_layer(support, ratio, damping, only_mdr=True)
+    for support in ("bonded", "unbonded")
+    for damping in FIGURE_DAMPING
+    for ratio in FIGURE_RATIOS
+)
+
+
+def figure_11(case: Case, answers: Answers) -> Iterator[Figure]:
+    """Fig. 11: restitution over damping ratio on the half-space, and over a/h on layers."""
+    solved = [(d, answers.of(case.task(s, MDR))) for d, s in zip(DAMPING_RATIOS, HALF_SPACE, strict=True)]
+    points = [(d, run.quantity("coefficient_of_restitution").values[0]) for d, run in solved if run.solved]
+    theory = np.linspace(0.02, 3, 80)
+    half_space = Panel(
+        title="half-space",
+        x_label="$D$",
+        y_label=r"$\varepsilon$",
+        series=(
+            _line("closed form", theory.tolist(), [restitution(d) for d in theory], "literature"),
+            _line("MDR", [d for d, _ in points], [e for _, e in points]),
+        ),
+    )
+    layers = Panel(
+        title="layers",
+        x_label="$a/h$",
+        y_label=r"$\varepsilon$",
+        x_scale="log",
+        series=tuple(
+            _layer_line(case, answers, support, damping)
+            for support in ("bonded", "unbonded")
+            for damping in FIGURE_DAMPING
+        ),
+    )
+    yield Figure(
+        name="fig_11",
+        title="Fig. 11: restitution of a flat punch on a Kelvin-Voigt layer",
+        caption="A thinner layer is stiffer, so the impact is shorter and more strongly damped.",
+        panels=(half_space, layers),
+    )
+
+
+def _layer_line(case: Case, answers: Answers, support: str, damping: float) -> Series:
+    scenes = [case.scene(f"{support} a/h={ratio:.4g} D_HS={damping:g}") for ratio in FIGURE_RATIOS]
+    runs = [answers.of(case.task(scene, MDR)) for scene in scenes]
+    solved = [(r, run) for r, run in zip(FIGURE_RATIOS, runs, strict=True) if run.solved]
+    values = [run.quantity("coefficient_of_restitution").values[0] for _, run in solved]
+    return _line(f"{support} D={damping:g}", [r for r, _ in solved], values)
+
+
+def _line(group: str, x: list[float], y: list[float], method: str = "mdr") -> Series:
+    return Series(label=group, method=method, group=group, x=tuple(x), y=tuple(y))
+
+
+CLOSED_FORM = Reason(
+    because="the contact radius is constant: a damped oscillation with constant coefficients",
+    derived_from="MDR: its time integration to 1e-9, ten times; finite elements ten times their time and space error",
+    origin=Origin.CLOSED_FORM,
+    source="Eqs. (48)-(50); Argatov 2013; Willert 2020 for D >= 1",
+)
+ENERGY = Reason(
+    because="kinetic, stored and dissipated energy add up to the initial one",
+    derived_from="MDR: tolerance of its time integration; finite elements: second order of 600 time steps",
+    origin=Origin.CLOSED_FORM,
+    source="first law of thermodynamics",
+)
+
+CLAIMS = (
+    Exact(
+        name="restitution on the half-space",
+        quantity="coefficient_of_restitution",
+        expected={s.name: (restitution(d),) for d, s in zip(DAMPING_RATIOS, HALF_SPACE, strict=True)},
+        tolerance=1e-6,
+        tolerances={"fem": 1e-4},
+        reason=CLOSED_FORM,
+    ),
+    Exact(
+        name="restitution on layers",
+        quantity="coefficient_of_restitution",
+        expected={s.name: (restitution(0.3 * math.sqrt(k)),) for k, s in zip(KBAR.values(), ON_LAYERS, strict=True)},
+        tolerance=1e-6,
+        tolerances={"fem": 1e-4},
+        reason=CLOSED_FORM,
+    ),
+    Residual(
+        name="energy balance",
+        quantity="energy_residual",
+        scenes=tuple(s.name for s in ON_LAYERS),
+        tolerance=1e-7,
+        tolerances={"fem": 1e-3},
+        reason=ENERGY,
+    ),
+    *agreements(
+        ON_LAYERS,
+        {"fem": 1e-4},
+        ("coefficient_of_restitution", "peak_force", "peak_depth"),
+        reason=with_reason(FINITE_ELEMENTS, "ten times the finite element error in space and time, 1e-5"),
+    ),
+)
+
+CASE = Case(
+    name="flat_punch_impact",
+    title="Impact of a flat punch on a viscoelastic layer",
+    question="Is the one impact with a closed form reproduced, through critical damping and beyond?",
+    equations=("Eq. (48)", "Eq. (49)", "Eq. (50)", "Fig. 11"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*HALF_SPACE, *ON_LAYERS, *FIGURE_11),
+    methods=(MDR, FEM),
+    claims=CLAIMS,
+    figures=(figure_11,),
+)

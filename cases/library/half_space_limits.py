@@ -1,0 +1,178 @@
+"""Thick layers: closed forms on the half-space, and the rate at which layers approach them."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cases.case import Case, CaseScene
+from cases.claims.approach import Approach
+from cases.claims.declared import Reason
+from cases.claims.exact import Exact
+from cases.library._compared import BEM, EQUATION, FEM, MDR
+from cases.library._layers import LAYERS, THICKNESS, half_space, layer, prescribed_radii, scene_name
+from cases.results import Origin
+from contact import (
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Loading,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Scene,
+)
+
+RADIUS = 1e-3  # m
+SLOPE = 0.1
+RADIUS_OF_CURVATURE = 1e-2  # m
+DEPTH = 1e-5  # m
+THICK_RATIOS = (0.02, 0.01)
+
+TEXT = """
+On the half-space flat punch, cone, paraboloid and power law have closed forms (Sneddon). Every method must give them.
+A thick layer is stiffer by kbar = 1 + alpha a/h + O((a/h)^2), where alpha = (2/pi) int (1 - chi) dq depends on the
+support only: 0.743303 unbonded, 0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in
+the limit, what is left must fall with the second order of a/h.
+"""
+
+ALPHA = {"unbonded": 0.743303, "bonded nu=0.3": 0.876533, "bonded nu=0.45": 1.034807, "bonded nu=0.5": 1.126955}
+
+
+def on_half_space(name: str, indenter: Profile, loading: Loading) -> CaseScene:
+    """Return a scene on the half-space."""
+    scene = Scene(layer=half_space(), indenter=indenter, loading=loading)
+    return CaseScene(name=f"half-space, {name}", parameters={"layer": "half-space", "a_over_h": 0.0}, scene=scene)
+
+
+def on_thick_layer(label: str, ratio: float) -> CaseScene:
+    """Return a flat punch of radius a on a layer of thickness a / ratio."""
+    scene = Scene(
+        layer=layer(label),
+        indenter=FlatPunch(radius=ratio * THICKNESS),
+        loading=IndentationDepths(values=np.array([DEPTH])),
+    )
+    return CaseScene(
+        name=scene_name(label, ratio),
+        parameters={"layer": label, "a_over_h": ratio},
+        scene=scene,
+        methods=(MDR, FEM),
+    )
+
+
+AT_RADIUS = ContactRadii(values=np.array([RADIUS]))
+CURVED = (
+    on_half_space("cone", Cone(slope=SLOPE), AT_RADIUS),
+    on_half_space("paraboloid", Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), AT_RADIUS),
+    on_half_space("quartic", PowerLaw(exponent=4.0, reference_radius=RADIUS, reference_height=1e-6), AT_RADIUS),
+)
+PUNCH = on_half_space("flat punch", FlatPunch(radius=RADIUS), IndentationDepths(values=np.array([DEPTH])))
+THICK = tuple(on_thick_layer(label, ratio) for label in LAYERS for ratio in THICK_RATIOS)
+
+
+def depth(scene: Scene) -> list[float]:
+    """delta = a int_0^a f'(r)/sqrt(a^2 - r^2) dr, by closed form."""
+    a = float(prescribed_radii(scene)[0])
+    match scene.indenter:
+        case Cone(slope=slope):
+            return [np.pi / 2 * a * slope]
+        case Paraboloid(radius_of_curvature=radius):
+            return [a**2 / radius]
+        case PowerLaw(exponent=4.0, reference_radius=radius, reference_height=height):
+            return [8 / 3 * height * (a / radius) ** 4]  # a int_0^a 4 r^3/sqrt(a^2 - r^2) dr = (8/3) a^4
+    raise InvalidInput(f"indenter = {type(scene.indenter).__name__}: no closed form is written for it")
+
+
+def force(scene: Scene) -> list[float]:
+    """F = 2 E* int_0^a (delta - g) dx; for g = A x^n this is 2 n/(n+1) E* delta a."""
+    a = float(prescribed_radii(scene)[0])
+    exponents: dict[type[Profile], float] = {Cone: 1.0, Paraboloid: 2.0, PowerLaw: 4.0}
+    n = exponents[type(scene.indenter)]
+    return [2 * n / (n + 1) * scene.layer.contact_modulus * depth(scene)[0] * a]
+
+
+def punch_force(scene: Scene) -> list[float]:
+    """F = 2 E* a delta."""
+    return [2 * scene.layer.contact_modulus * RADIUS * DEPTH]
+
+
+def thick_limit(label: str) -> Callable[[Scene], float]:
+    """Return k_N to first order in a/h as a function of the scene."""
+
+    def limit(scene: Scene) -> float:
+        a = scene.indenter.flat_radius
+        return 2 * scene.layer.contact_modulus * a * (1 + ALPHA[label] * a / scene.layer.thickness)
+
+    return limit
+
+
+def confinement(scene: Scene) -> float:
+    """a/h."""
+    return scene.indenter.flat_radius / scene.layer.thickness
+
+
+SNEDDON = Reason(
+    because="linear elasticity on the half-space, solved by Sneddon",
+    derived_from="MDR and the integral equation: quadrature to 1e-12; finite elements ten times their accuracy of "
+    "1e-6; boundary elements second order on 128 cells across the contact",
+    origin=Origin.CLOSED_FORM,
+    source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
+)
+FIRST_ORDER_TERM = Reason(
+    because="kbar has a power series in a/h whose first coefficient is an integral of the kernel",
+    derived_from="accepted band [p_f - 0.2, p_f + 0.5]; alpha has six digits, so a/h stays above 0.01",
+    origin=Origin.CLOSED_FORM,
+    source="alpha = (2/pi) int_0^inf (1 - chi) dq",
+)
+
+LOOSER = {"fem": 1e-5, "bem": 2e-3}
+CLAIMS = (
+    *(
+        Exact(
+            name=f"Sneddon's {quantity.replace('_', ' ')}",
+            quantity=quantity,
+            scenes=tuple(s.name for s in CURVED),
+            expected=closed_form,
+            tolerance=1e-10,
+            tolerances=LOOSER,
+            reason=SNEDDON,
+        )
+        for quantity, closed_form in (("indentation_depth", depth), ("normal_force", force))
+    ),
+    Exact(
+        name="force of the flat punch",
+        quantity="normal_force",
+        scenes=(PUNCH.name,),
+        expected=punch_force,
+        tolerance=1e-10,
+        tolerances=LOOSER,
+        reason=SNEDDON,
+    ),
+    *(
+        Approach(
+            name=f"first-order term, {label}",
+            quantity="contact_stiffness",
+            scenes=tuple(scene_name(label, ratio) for ratio in THICK_RATIOS),
+            parameter=confinement,
+            limit=thick_limit(label),
+            formal_order=2.0,
+            largest=1e-3,
+            tolerance=0.2,
+            reason=FIRST_ORDER_TERM,
+        )
+        for label in LAYERS
+    ),
+)
+
+CASE = Case(
+    name="half_space_limits",
+    title="Limits of thick layers",
+    question="Does every method give Sneddon's closed forms, and do layers approach them at the right rate?",
+    equations=("Eq. (14)", "Eq. (15)", "Table 1"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*CURVED, PUNCH, *THICK),
+    methods=(MDR, FEM, BEM, EQUATION),
+    claims=CLAIMS,
+)

@@ -1,0 +1,197 @@
+"""A paraboloid on layers: prescribed radii, depths and forces, five methods, and the fits of the literature."""
+
+import math
+
+import numpy as np
+
+from cases.case import Case, CaseScene
+from cases.claims.declared import Reason
+from cases.claims.exact import Exact
+from cases.claims.field_agreement import FieldAgreement
+from cases.claims.twin import Twin
+from cases.library._compared import BEM, EQUATION, FEM, FINITE_ELEMENTS, MDR, TABLE, agreements, with_reason
+from cases.library._layers import LAYERS, THICKNESS, edges, in_millimetres, layer, scene_name
+from cases.results import Origin
+from cases.task import Sampling
+from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
+
+RADIUS_OF_CURVATURE = 1e-2  # m
+RATIOS = (0.2, 1.0, 2.0, 5.0, 10.0)
+
+TEXT = """
+A rigid paraboloid f(r) = r^2/(2R) presses on bonded and unbonded layers. Depth and force at five contact radii are
+compared with a separate solution of the Fredholm equation to its printed digits, with the fit of Hermanowicz (2021) for
+the incompressible bonded layer, with finite elements, direct boundary elements, the direct integral equation, and MDR
+on FFT flat-punch tables as published. The same states are then asked for by depth and by force: the contact radius must
+come back.
+"""
+
+TABULATED: dict[str, dict[float, tuple[float, float]]] = {  # a/h: delta R/h^2, F R/(E* h^3)
+    "bonded nu=0.5": {
+        0.2: (0.034253, 0.010733),
+        1.0: (0.559415, 1.880667),
+        2.0: (1.819611, 27.71329),
+        5.0: (8.978117, 1657.7172),
+        10.0: (31.22602, 54813.51),
+    },
+    "unbonded": {1.0: (0.673981, 1.578123), 2.0: (2.360922, 17.83896), 5.0: (13.397682, 564.7204)},
+}
+
+
+def depth(label: str, ratio: float) -> float:
+    """Return the tabulated depth [m]."""
+    return TABULATED[label][ratio][0] * THICKNESS**2 / RADIUS_OF_CURVATURE
+
+
+def force(label: str, ratio: float) -> float:
+    """Return the tabulated force [N]."""
+    return TABULATED[label][ratio][1] * layer(label).contact_modulus * THICKNESS**3 / RADIUS_OF_CURVATURE
+
+
+def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScene:
+    """Return a paraboloid under ``loading``."""
+    return CaseScene(
+        name=scene_name(label, ratio) + how,
+        parameters={"layer": label, "a_over_h": ratio},
+        scene=Scene(layer=layer(label), indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), loading=loading),
+        sampling=Sampling(ring_edges=edges(ratio * THICKNESS, (0.0, 0.4, 0.8, 1.0)) if not how else ()),
+        methods=(MDR, BEM, EQUATION, TABLE) if how else (),  # an unknown contact set costs finite elements minutes
+    )
+
+
+BY_RADIUS = tuple(
+    scene(label, ratio, ContactRadii(values=np.array([ratio * THICKNESS]))) for label in LAYERS for ratio in RATIOS
+)
+BY_DEPTH = tuple(
+    scene(label, ratio, IndentationDepths(values=np.array([depth(label, ratio)])), " by depth")
+    for label, rows in TABULATED.items()
+    for ratio in rows
+)
+BY_FORCE = tuple(
+    scene(label, ratio, NormalForces(values=np.array([force(label, ratio)])), " by force")
+    for label, rows in TABULATED.items()
+    for ratio in rows
+)
+
+
+def hermanowicz(reduced_depth: float) -> float:
+    """Return F R/(E* h^3) over delta R/h^2 as fitted for the bonded incompressible layer."""
+    x, root = reduced_depth, math.sqrt(reduced_depth)
+    if x < 0.4:
+        series = 1 + 1.1053416390578608 * root + 1.606749412034415 * x + 1.6018294436819807 * x * root
+        return 4 / 3 * x * root * series
+    polynomial = 0.6157882175705465 - 3.1143156864367647 * root + 6.692972504122468 * x
+    return polynomial - 7.1702772387228935 * x * root + 8.227673152332168 * x**2 + math.pi / 2 * x**3
+
+
+def fitted_forces() -> dict[str, tuple[float, ...]]:
+    """Return the fitted force [N] at each tabulated depth."""
+    unit = layer("bonded nu=0.5").contact_modulus * THICKNESS**3 / RADIUS_OF_CURVATURE
+    return {
+        scene_name("bonded nu=0.5", ratio) + " by depth": (hermanowicz(row[0]) * unit,)
+        for ratio, row in TABULATED["bonded nu=0.5"].items()
+    }
+
+
+SEPARATE_SOLUTION = Reason(
+    because="the Fredholm equation solved for the paraboloid, radius by radius",
+    derived_from="half a unit of the last printed digit over the smallest value, 0.0107; others add their own error",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="Nystrom solution of the integral equation, separate code",
+)
+RETURN = with_reason(
+    SEPARATE_SOLUTION, "the digits of the prescribed depth and force, halved or less in the radius by their powers of a"
+)
+HERMANOWICZ_FIT = Reason(
+    because="the same Fredholm equations, solved numerically and fitted by Remez polynomials",
+    derived_from="the fit's own error of 0.08 % with a quarter on top",
+    origin=Origin.LITERATURE,
+    source="Hermanowicz, Int. J. Mech. Sci. 193 (2021) 106138, coefficients as printed in AtomicJ",
+)
+DIMENSIONS = Reason(
+    because="mechanics knows no metre",
+    derived_from="round-off of a factor that is no power of two; iterations stop at their own tolerance",
+    origin=Origin.CLOSED_FORM,
+    source="dimensional analysis",
+)
+
+LOOSER = {"fem": 4e-5, "bem": 1e-3, "mdr_table": 1e-2}
+CLAIMS = (
+    Exact(
+        name="tabulated depth",
+        quantity="indentation_depth",
+        expected={
+            scene_name(label, ratio): (depth(label, ratio),) for label, rows in TABULATED.items() for ratio in rows
+        },
+        tolerance=3e-5,
+        tolerances=LOOSER,
+        reason=SEPARATE_SOLUTION,
+    ),
+    Exact(
+        name="tabulated force",
+        quantity="normal_force",
+        expected={
+            scene_name(label, ratio): (force(label, ratio),) for label, rows in TABULATED.items() for ratio in rows
+        },
+        tolerance=5e-5,
+        tolerances=LOOSER | {"fem": 6e-5},
+        reason=SEPARATE_SOLUTION,
+    ),
+    *(
+        Exact(
+            name=f"the radius comes back {how}",
+            quantity="contact_radius",
+            expected={
+                scene_name(label, ratio) + f" {how}": (ratio * THICKNESS,)
+                for label, rows in TABULATED.items()
+                for ratio in rows
+            },
+            tolerance=3e-5,
+            tolerances=LOOSER,
+            reason=RETURN,
+        )
+        for how in ("by depth", "by force")
+    ),
+    Exact(
+        name="fit of Hermanowicz",
+        quantity="normal_force",
+        expected=fitted_forces(),
+        tolerance=1e-3,
+        tolerances={"bem": 2e-3, "mdr_table": 1e-2},
+        reason=HERMANOWICZ_FIT,
+    ),
+    *agreements(BY_RADIUS, {"fem": 1e-5, "bem": 2e-3, "mdr_table": 1.5e-2, "integral_equation": 1e-9}),
+    *agreements((*BY_DEPTH, *BY_FORCE), {"bem": 2e-3, "integral_equation": 1e-9}, ("contact_radius",)),
+    FieldAgreement(
+        name="pressure: MDR and fem",
+        quantity="pressure",
+        norm="weighted L2",
+        scenes=tuple(s.name for s in BY_RADIUS),
+        fast="mdr",
+        reference="fem",
+        refined=("mdr",),
+        tolerance=2e-3,
+        reason=with_reason(FINITE_ELEMENTS, "the root at r = a limits finite elements to about 2e-4"),
+    ),
+    Twin(
+        name="the unit system does not matter",
+        quantity="normal_force",
+        scenes=tuple(scene_name(label, 1.0) for label in ("bonded nu=0.5", "unbonded")),
+        change=in_millimetres,
+        factors={"indentation_depth": 1e3, "normal_force": 1.0},
+        tolerance=1e-9,
+        reason=DIMENSIONS,
+    ),
+)
+
+CASE = Case(
+    name="paraboloid",
+    title="Indentation by a paraboloid",
+    question="Do five methods agree on a smooth profile, whatever is prescribed?",
+    equations=("Eq. (4)", "Eq. (8)", "Eq. (11)", "Eq. (12)", "Eq. (34)"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
+    methods=(MDR, FEM, BEM, EQUATION, TABLE),
+    claims=CLAIMS,
+)

@@ -1,0 +1,138 @@
+"""Thin layers: the closed forms of Table 1 and Eqs. (16)-(22), (36), (38), and the rate of approach."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cases.case import Case, CaseScene
+from cases.claims.approach import Approach
+from cases.claims.declared import Reason
+from cases.library._compared import FEM, MDR, agreements
+from cases.library._layers import THICKNESS, layer, prescribed_radii, scene_name
+from cases.results import Origin
+from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
+
+LABELS = ("unbonded", "bonded nu=0.3", "bonded nu=0.45", "bonded nu=0.5")
+RATIOS = (75.0, 150.0)
+CHECKED_RATIO = 40.0  # thin enough to see the limit, and affordable for finite elements
+RADIUS_OF_CURVATURE = 10.0  # m
+SLOPE = 1e-3
+FLAT_FRACTION = 0.5
+
+TEXT = """
+When a >> h a compressible bonded layer and an unbonded layer become Winkler beds, and a bonded incompressible layer
+squeezes its material outwards. Stiffness and depth then have the closed forms of Table 1, the truncated cone those of
+Eqs. (36) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the stiffness of
+the bonded incompressible layer still is 11 % off, so the limit itself is no substitute for the layer.
+"""
+
+
+def paraboloid(label: str, ratio: float) -> CaseScene:
+    """Return a paraboloid at contact radius ``ratio`` h."""
+    return _scene(
+        f"{scene_name(label, ratio)}, paraboloid", label, ratio, Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE)
+    )
+
+
+def cone(label: str, ratio: float) -> CaseScene:
+    """Return a truncated cone at contact radius ``ratio`` h, b/a = 0.5."""
+    indenter = TruncatedCone(flat_radius=FLAT_FRACTION * ratio * THICKNESS, slope=SLOPE)
+    return _scene(f"{scene_name(label, ratio)}, truncated cone", label, ratio, indenter)
+
+
+def _scene(name: str, label: str, ratio: float, indenter: Profile) -> CaseScene:
+    scene = Scene(layer=layer(label), indenter=indenter, loading=ContactRadii(values=np.array([ratio * THICKNESS])))
+    methods = (MDR,) if ratio > CHECKED_RATIO else ()
+    return CaseScene(name=name, parameters={"layer": label, "a_over_h": ratio}, scene=scene, methods=methods)
+
+
+def bed_modulus(bed: Layer) -> float:
+    """Modulus of the Winkler bed [Pa]: E~ when bonded, Eq. (16); E* when unbonded, Eq. (21)."""
+    return bed.contact_modulus if bed.support == "unbonded" else bed.confined_modulus
+
+
+def is_squeezed(scene: Scene) -> bool:
+    """Whether the material must flow outwards: bonded and incompressible."""
+    return scene.layer.support == "bonded" and scene.layer.poissons_ratio == 0.5
+
+
+def stiffness(scene: Scene) -> float:
+    """k_N of Eqs. (16), (18), (21)."""
+    a, h = _radius(scene), scene.layer.thickness
+    if is_squeezed(scene):
+        return np.pi * scene.layer.youngs_modulus * a**4 / (8 * h**3)  # Eq. (18)
+    return np.pi * bed_modulus(scene.layer) * a**2 / h  # Eqs. (16), (21)
+
+
+def depth(scene: Scene) -> float:
+    """delta(a) of a paraboloid, Table 1."""
+    return _radius(scene) ** 2 / ((4 if is_squeezed(scene) else 2) * RADIUS_OF_CURVATURE)
+
+
+def cone_force(scene: Scene) -> float:
+    """F of a truncated cone, Eqs. (36) and (38)."""
+    a, h, q = _radius(scene), scene.layer.thickness, FLAT_FRACTION
+    if is_squeezed(scene):
+        shape = 2 - 5 * q**3 + 3 * q**5
+        return scene.layer.youngs_modulus * np.pi * a**2 / 120 * (a / h) ** 3 * SLOPE * shape  # Eq. (38)
+    return bed_modulus(scene.layer) * np.pi * a**3 / (3 * h) * SLOPE * (1 - q**3)  # Eq. (36)
+
+
+def _radius(scene: Scene) -> float:
+    return float(prescribed_radii(scene)[0])
+
+
+def thinness(scene: Scene) -> float:
+    """h/a."""
+    return scene.layer.thickness / _radius(scene)
+
+
+TABLE_1 = Reason(
+    because="to leading order in h/a the layer is a Winkler bed, or squeezes its material outwards",
+    derived_from="accepted band [p_f - 0.2, p_f + 0.5] between a/h = 75 and 150",
+    origin=Origin.CLOSED_FORM,
+    source="Forsbach, Machines 11 (2023) 474, Table 1, Eqs. (16), (18), (21), (36), (38)",
+)
+
+
+def approach(
+    what: str, quantity: str, scenes: Callable[[str, float], CaseScene], limit: Callable[[Scene], float]
+) -> tuple[Approach, ...]:
+    """Return one claim a layer."""
+    return tuple(
+        Approach(
+            name=f"{what}, {label}",
+            quantity=quantity,
+            scenes=tuple(scenes(label, ratio).name for ratio in RATIOS),
+            parameter=thinness,
+            limit=limit,
+            formal_order=1.0,
+            largest=0.1,
+            tolerance=0.2,
+            methods=("mdr",),
+            reason=TABLE_1,
+        )
+        for label in LABELS
+    )
+
+
+PARABOLOIDS = tuple(paraboloid(label, ratio) for label in LABELS for ratio in (*RATIOS, CHECKED_RATIO))
+CONES = tuple(cone(label, ratio) for label in LABELS for ratio in RATIOS)
+CHECKED = tuple(s for s in PARABOLOIDS if not s.methods)
+
+CASE = Case(
+    name="thin_layer_limits",
+    title="Limits of thin layers",
+    question="Are the thin-layer formulas the limits of the layer, and how fast are they reached?",
+    equations=("Eq. (16)", "Eq. (18)", "Eq. (21)", "Eq. (36)", "Eq. (38)", "Table 1"),
+    text=TEXT.strip(),
+    suites=("ci", "nightly"),
+    scenes=(*PARABOLOIDS, *CONES),
+    methods=(MDR, FEM),
+    claims=(
+        *approach("stiffness", "contact_stiffness", paraboloid, stiffness),
+        *approach("depth of the paraboloid", "indentation_depth", paraboloid, depth),
+        *approach("force of the truncated cone", "normal_force", cone, cone_force),
+        *agreements(CHECKED, {"fem": 1e-5}),
+    ),
+)
