@@ -45,7 +45,10 @@ def _check(solution: Solution, name: str) -> Quantity:
 def _uncertainty(solution: Solution, name: str, size: int) -> tuple[float, ...]:
     if name not in solution.error_estimate:
         return _of_the_branch(solution, name)
-    return tuple(np.broadcast_to(np.abs(solution.uncertainty(name)), (size,)).tolist())
+    stated = np.abs(np.atleast_1d(solution.uncertainty(name)))
+    if stated.size != size:  # one number for all steps, or one for each step of a history whose peak is the quantity
+        return (float(np.max(stated)),) * size
+    return tuple(stated.tolist())
 
 
 def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:

@@ -6,8 +6,9 @@ incomplete; timing tasks run after all others, one by one, so that they never sh
 
 import time
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
@@ -163,22 +164,31 @@ def _solve_in(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Pla
 
 def _solve_until_broken(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> list[_Planned]:
     """Return the tasks that were under way when the executor broke; none if it did not."""
-    executor = factory(jobs)
     waiting, under_way = deque(planned), dict[Future[SceneRun], _Planned]()
     ahead = 1 if factory is serial else 2 * jobs  # few enough that little is repeated after a breakdown
-    try:
-        while waiting or under_way:
-            while waiting and len(under_way) < ahead:
-                next_one = waiting.popleft()
-                under_way[_submit(executor, run, next_one)] = next_one
-            for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                row = future.result()
-                run.finish(under_way.pop(future), row)
-    except BrokenExecutor:
-        return list(under_way.values())
-    finally:
-        executor.shutdown(wait=False, cancel_futures=True)
+    with _closing(factory(jobs)) as executor:
+        try:
+            while waiting or under_way:
+                while waiting and len(under_way) < ahead:
+                    next_one = waiting.popleft()
+                    under_way[_submit(executor, run, next_one)] = next_one
+                for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                    row = future.result()
+                    run.finish(under_way.pop(future), row)
+        except BrokenExecutor:
+            return list(under_way.values())
     return []
+
+
+@contextmanager
+def _closing(executor: Executor) -> Iterator[Executor]:
+    """Wait for the executor's own threads and processes to end, unless the run itself is over."""
+    try:
+        yield executor
+    except BaseException:  # Ctrl-C above all
+        executor.shutdown(wait=False, cancel_futures=True)
+        raise
+    executor.shutdown(wait=True, cancel_futures=True)
 
 
 def _submit(executor: Executor, run: _Run, planned: _Planned) -> Future[SceneRun]:
@@ -186,13 +196,11 @@ def _submit(executor: Executor, run: _Run, planned: _Planned) -> Future[SceneRun
 
 
 def _solve_apart(run: _Run, factory: ExecutorFactory, planned: _Planned) -> None:
-    executor = factory(1)
-    try:
-        row = _submit(executor, run, planned).result()
-    except BrokenExecutor as error:
-        row = _died(planned, f"the process that solved it died: {error}")
-    finally:
-        executor.shutdown(wait=False, cancel_futures=True)
+    with _closing(factory(1)) as executor:
+        try:
+            row = _submit(executor, run, planned).result()
+        except BrokenExecutor as error:
+            row = _died(planned, f"the process that solved it died: {error}")
     run.finish(planned, row)
 
 

@@ -74,8 +74,8 @@ def jkr_depth(scene: Scene) -> list[float]:
 
 JKR = Reason(
     because="Johnson, Kendall and Roberts: energy release rate equals the work of adhesion",
-    derived_from="MDR: turning points of an analytic branch; finite elements ten times their accuracy of 1e-4; boundary "
-    "elements let go cell by cell, within 1 %",
+    derived_from="MDR: turning points of an analytic branch; finite elements ten times their accuracy of 1e-4; "
+    "boundary elements let go cell by cell, within 1 %",
     origin=Origin.CLOSED_FORM,
     source="Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971) 301",
 )

@@ -101,7 +101,7 @@ class WorkStudy:
             peak_memory_bytes=0,
             on_front=False,
         )
-        if not run.solved or run.cost is None:
+        if not run.solved or run.cost is None or not run.samples:
             return base
         error = abs(run.quantity(self.quantity).values[-1] - expected) / abs(expected)
         timing = summed_up(run.samples)
