@@ -178,8 +178,17 @@ CLAIMS = (
     *agreements(
         ON_LAYERS,
         {"fem": 1e-4},
-        ("coefficient_of_restitution", "peak_force", "peak_depth"),
+        ("coefficient_of_restitution", "peak_depth"),
         reason=with_reason(FINITE_ELEMENTS, "ten times the finite element error in space and time, 1e-5"),
+    ),
+    *agreements(
+        ON_LAYERS,
+        {"fem": 1e-2},
+        ("peak_force",),
+        reason=with_reason(
+            FINITE_ELEMENTS,
+            "the dashpot answers the impact with a jump, which 600 time steps resolve to 2e-3; five times",
+        ),
     ),
 )
 
