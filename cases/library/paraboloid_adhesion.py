@@ -14,14 +14,13 @@ RADIUS_OF_CURVATURE = 1e-2  # m
 WORK_OF_ADHESION = 0.05  # J/m^2
 
 TEXT = """
-A paraboloid adheres to a layer and is pulled off. On the half-space JKR theory gives F_A = -(3/2) pi R Delta gamma
-under force control and -(5/6) pi R Delta gamma at the fold under displacement control, at contact radii
-(9 pi Delta gamma R^2/(8 E*))^(1/3) and (pi Delta gamma R^2/(8 E*))^(1/3). The forces depend on no modulus. On layers
+A paraboloid adheres to a layer and is pulled off. On the half-space JKR theory gives the largest tension
+F_A = -(3/2) pi R Delta gamma, whatever the modulus. Contact is lost at the radius (9 pi Delta gamma R^2/(8 E*))^(1/3)
+under force control and (pi Delta gamma R^2/(8 E*))^(1/3) under displacement control, where the branch turns. On layers
 MDR follows the branch through its turning points by the contact radius, Eqs. (40)-(41); finite elements take the energy
 release rate from the derivative of the strain energy.
 """
 
-FORCE_FACTOR = {"force": 3 / 2, "displacement": 5 / 6}
 RADIUS_FACTOR = {"force": 9 / 8, "displacement": 1 / 8}
 
 
@@ -56,8 +55,8 @@ def control_of(scene: Scene) -> str:
 
 
 def jkr_force(scene: Scene) -> list[float]:
-    """F = -(3/2) or -(5/6) pi R Delta gamma."""
-    return [-FORCE_FACTOR[control_of(scene)] * np.pi * RADIUS_OF_CURVATURE * WORK_OF_ADHESION]
+    """F = -(3/2) pi R Delta gamma: the largest tension on the way, under either control."""
+    return [-1.5 * np.pi * RADIUS_OF_CURVATURE * WORK_OF_ADHESION]
 
 
 def jkr_radius(scene: Scene) -> list[float]:
@@ -105,9 +104,11 @@ CLAIMS = (
     ),
     *agreements(
         ELASTIC,
-        {"fem": 1e-3},
+        {"fem": 1e-2},
         ("pull_off_force", "pull_off_depth"),
-        reason=with_reason(FINITE_ELEMENTS, "ten times the finite element accuracy of 1e-4 on every contact radius"),
+        reason=with_reason(
+            FINITE_ELEMENTS, "errors of 1e-4 of the largest force on the branch, which is fifty times the pull-off"
+        ),
     ),
 )
 

@@ -208,7 +208,12 @@ CLAIMS = (
         reason=SEPARATE_IMPACT,
     ),
     Residual(
-        name="energy balance", quantity="energy_residual", tolerance=1e-7, tolerances={"fem": 1e-3}, reason=ENERGY
+        name="energy balance",
+        quantity="energy_residual",
+        scenes=tuple(s.name for s in ON_LAYERS),
+        tolerance=1e-7,
+        tolerances={"fem": 1e-3},
+        reason=ENERGY,
     ),
     Twin(
         name="only R v0 matters",
