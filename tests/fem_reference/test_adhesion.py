@@ -88,6 +88,15 @@ def test_flat_punch_on_an_incompressible_layer_detaches_stably_and_then_jumps():
 
 
 @pytest.mark.slow
+def test_threshold_of_stable_detachment():
+    # integral equation: the maximum of the elongation, nu: (a/h, dl / sqrt(2 pi dgamma h / E*))
+    for nu, start, radius, elongation in ((0.5, 1.0, 0.461904, 0.392203), (0.45, 1.0, 0.600217, 0.417261)):
+        path = Fem().solve(adhesive(unit_layer(nu), FlatPunch(radius=start), Detachment(), work=1e-4))
+        assert path.pull_off_contact_radius == pytest.approx(radius, rel=1e-4)
+        assert path.pull_off_depth == pytest.approx(-elongation * np.sqrt(2 * np.pi * 1e-4), rel=1e-5)
+
+
+@pytest.mark.slow
 def test_small_or_compressible_punch_jumps_at_once():
     for nu, a in ((0.5, 0.3), (0.3, 1.0)):
         path = QUICK.solve(adhesive(unit_layer(nu), FlatPunch(radius=a), Detachment(), work=1e-4))
