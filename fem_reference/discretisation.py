@@ -88,13 +88,12 @@ def graded_points(
     """(radius, cell size) at the edge, the kinks, a sharp tip, and plain vertices at the other breakpoints.
 
     At the edge the energy error of the last cell falls like its size; at a kink, where the stress is merely
-    logarithmic, like its square.
+    logarithmic, like its square, but the L2 error of the pressure like its root.
     """
     last_kink = max(indenter.kinks, default=0.0)
     edge_cell = settings.edge_cell * min(1.0, thickness, 1.0 - last_kink)
-    kink_cell = np.sqrt(settings.edge_cell) / 10 * min(1.0, thickness, 1.0 - last_kink)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
-    cells |= {r: float(kink_cell * min(1.0, r)) for r in indenter.kinks}
+    cells |= {r: edge_cell * r for r in indenter.kinks}
     if indenter.has_sharp_tip:
-        cells[0.0] = float(kink_cell)
+        cells[0.0] = edge_cell
     return tuple(sorted((cells | {1.0: edge_cell}).items()))
