@@ -112,7 +112,7 @@ class CertifiedContact:
     @property
     def _interpolation_error(self) -> Mapping[str, float]:
         change = self._change(*self._last_changes[-1])
-        change = np.maximum(change, 0.3 * change.mean())  # one quantity may change little by accident
+        change = np.maximum(change, 0.6 * change.mean())  # one quantity may change little by accident
         change[1] = max(change[1], SLOPE_RATIO * change[0])
         return dict(zip(QUANTITIES, SAFETY * self._rate * change, strict=True))
 
