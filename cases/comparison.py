@@ -9,12 +9,12 @@ from cases.status import Status
 
 
 class Change(StrEnum):
-    """How two numbers differ."""
+    """How two numbers differ, measured by the combined uncertainty of both."""
 
     IDENTICAL = "identical"  # every digit
-    WITHIN = "within uncertainty"
-    BEYOND = "beyond uncertainty"
-    UNKNOWN = "uncertainty unknown"
+    WITHIN = "within"
+    BEYOND = "beyond"
+    UNKNOWN = "unknown"
     INCOMPARABLE = "incomparable"  # unit or number of steps differ
 
 

@@ -7,7 +7,7 @@ from cases.comparison import Change, ClaimChange, NumberChange, RunComparison, T
 from cases.results import RunResult
 from cases.results_files import write_whole
 from reports.method_names import display_name
-from reports.numbers import duration, measured, small
+from reports.numbers import duration, measured, scaled_unit, small
 from reports.pages import stamp_lines, stylesheet, template
 from reports.tables import Table
 
@@ -28,6 +28,7 @@ def write_comparison(comparison: RunComparison, runs: tuple[RunResult, RunResult
         numbers=number_table(comparison.numbers),
         times=time_table(comparison.times),
         missing=comparison.missing,
+        counts=counts_sentence(comparison),
         css=stylesheet(),
     )
     write_whole(page, text)
@@ -37,12 +38,20 @@ def headline(comparison: RunComparison) -> tuple[str, str]:
     """The result in a few words, and its tone."""
     tally = Counter(number.change for number in comparison.numbers)
     worse = sum(_got_worse(claim) for claim in comparison.claims)
-    moved = tally[Change.BEYOND] + tally[Change.INCOMPARABLE]
-    parts = [f"{tally[change]} {change}" for change in ORDER if tally[change]]
-    counted = f"{len(comparison.numbers)} numbers: {', '.join(parts)}" if parts else "no number in common"
-    tone = "bad" if worse or moved or not parts else "warn" if comparison.claims or comparison.missing else "good"
+    moved, total = tally[Change.BEYOND] + tally[Change.INCOMPARABLE], len(comparison.numbers)
     checks = f"{worse} check{'s'[: worse != 1]} got worse; " if worse else ""
-    return checks + counted, tone
+    if not total:
+        return f"{checks}no number in common", "bad"
+    tone = "bad" if worse or moved else "warn" if comparison.claims or comparison.missing else "good"
+    if tally[Change.IDENTICAL] == total:
+        return f"{checks}all {total} numbers identical", tone
+    return f"{checks}{moved} of {total} numbers moved beyond their uncertainty", tone
+
+
+def counts_sentence(comparison: RunComparison) -> str:
+    """How many numbers are identical, moved within their uncertainty, and so on."""
+    tally = Counter(number.change for number in comparison.numbers)
+    return ", ".join(f"{tally[change]} {change}" for change in ORDER if tally[change])
 
 
 def _got_worse(change: ClaimChange) -> bool:
@@ -89,33 +98,35 @@ def _claim_row(change: ClaimChange) -> tuple[str, ...]:
     )
 
 
-def number_table(numbers: tuple[NumberChange, ...]) -> Table:
+def number_table(numbers: tuple[NumberChange, ...], most: int = MOST_ROWS) -> Table:
     """Every number that moved, the furthest first."""
     moved = [number for number in numbers if number.change is not Change.IDENTICAL]
     moved.sort(key=lambda number: (ORDER.index(number.change), -abs(number.difference or 0.0)))
-    left_out = len(moved) - MOST_ROWS
+    left_out = len(moved) - most
     rest = f" {left_out} smaller changes are not listed." if left_out > 0 else ""
     return Table(
         title="Numbers that moved",
         note=f"Difference: second minus first, over the scale of the quantity, at the step where it is largest.{rest}",
-        heads=("change", "case", "scene", "quantity", "methods", "first", "second", "difference", "uncertainty"),
-        rows=tuple(_number_row(number) for number in moved[:MOST_ROWS]),
-        words=5,
+        heads=("change", "scene", "quantity", "methods", "first", "second", "difference", "uncertainty"),
+        rows=tuple(_number_row(number) for number in moved[:most]),
+        words=4,
     )
 
 
 def _number_row(number: NumberChange) -> tuple[str, ...]:
-    names = tuple(dict.fromkeys(display_name(method) for method in number.methods))
-    shown = [_value(number, place) for place in (0, 1)]
-    sizes = ["" if size is None else small(size) for size in (number.difference, number.uncertainty)]
-    return str(number.change), number.case, number.scene, number.quantity, " against ".join(names), *shown, *sizes
+    methods = " against ".join(dict.fromkeys(display_name(method) for method in number.methods))
+    names = (str(number.change), f"{number.case} / {number.scene}", number.quantity.replace("_", " "), methods)
+    sizes = ("" if size is None else small(size) for size in (number.difference, number.uncertainty))
+    return *names, _value(number, 0), _value(number, 1), *sizes
 
 
 def _value(number: NumberChange, place: int) -> str:
+    """One of the two values, both in the unit that fits the first."""
     if number.values is None:
         return "not comparable"
+    factor, unit = scaled_unit(number.values[0], number.unit)
     uncertainty = number.uncertainties[place] if number.uncertainties else float("inf")
-    return f"{measured(number.values[place], uncertainty)}{'' if number.unit == '1' else f' {number.unit}'}"
+    return f"{measured(number.values[place] / factor, uncertainty / factor)} {unit}".strip()
 
 
 def time_table(times: tuple[TimeChange, ...]) -> Table | None:

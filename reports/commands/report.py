@@ -29,6 +29,9 @@ def write_pages(run: RunResult, directory: Path) -> None:
     write_whole(directory / "junit.xml", junit_text(run))
 
 
+ROWS_IN_TERMINAL = 20
+
+
 def compare_runs(first: Path, second: Path) -> None:
     """Compare the run in `second` with that in `first`; the page lands beside the second."""
     runs = read_run(first), read_run(second)
@@ -38,7 +41,7 @@ def compare_runs(first: Path, second: Path) -> None:
     words, tone = headline(comparison)
     terminal = console()
     terminal.print(words, style=STYLES[tone])
-    for table in (claim_table(comparison.claims), number_table(comparison.numbers)):
+    for table in (claim_table(comparison.claims), number_table(comparison.numbers, most=ROWS_IN_TERMINAL)):
         if table is not None and table.rows:
             show_table(table, on=terminal)
     terminal.print(f"comparison: {page}")

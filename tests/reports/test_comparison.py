@@ -26,13 +26,13 @@ def runs(tmp_path):
 
 def test_a_run_against_itself_is_all_equal():
     words, tone = headline(compare(example_run(), example_run()))
-    assert (words, tone) == ("10 numbers: 10 identical", "good")
+    assert (words, tone) == ("all 10 numbers identical", "good")
 
 
 def test_what_got_worse_is_the_headline(runs, capsys):
     compare_runs(*runs)
     page = (runs[1] / "comparison.html").read_text(encoding="utf-8")
-    assert "1 check got worse; 8 numbers: 8 identical" in words_of(page)
+    assert "1 check got worse; all 8 numbers identical" in words_of(page)
     assert "force agrees" in capsys.readouterr().out
     assert not not_a_number(page)
 
