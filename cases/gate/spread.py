@@ -1,7 +1,8 @@
 """How much an answer moves when nothing has changed: the spread that sets the tolerance of a baseline.
 
-Every accepted solution is repeated with all its inputs one unit in the last place larger, smaller, and with the plain
-kernels of another processor in OpenBLAS.  What differs then is rounding, and another machine may differ by as much.
+Every accepted solution is repeated twice: with all its inputs one unit in the last place larger, and with them one unit
+smaller by the plain kernels of OpenBLAS, those of another processor.  What differs then is rounding, and another
+machine may differ by as much.
 """
 
 import math
@@ -33,24 +34,19 @@ def measured_spreads(case: Case, runs: Mapping[tuple[str, str], SceneRun], *, jo
     tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
     solved = [task for task in tasks if (task.scene, task.method) in runs and runs[task.scene, task.method].solved]
     answers = {task.identity: [runs[task.scene, task.method]] for task in solved}
-    for task, row in (*_repeated(_nudged_tasks(solved), jobs), *_repeated_with_plain_kernel(solved, jobs)):
+    repeated = _repeated(solved, math.inf, jobs)
+    with _plain_kernel():
+        repeated += _repeated(solved, 0.0, jobs)
+    for task, row in repeated:
         answers[task.identity].append(row)
     return {place: spread for task in solved for place, spread in _spreads(task, answers[task.identity])}
 
 
-def _nudged_tasks(tasks: list[Task]) -> list[tuple[Task, Task]]:
-    return [(task, task.changed(name, scene)) for task in tasks for name, scene in nudged_scenes(task.problem)]
-
-
-def _repeated_with_plain_kernel(tasks: list[Task], jobs: int) -> list[tuple[Task, SceneRun]]:
-    with _plain_kernel():
-        return _repeated([(task, task.changed("plain kernel")) for task in tasks], jobs)
-
-
-def _repeated(pairs: list[tuple[Task, Task]], jobs: int) -> list[tuple[Task, SceneRun]]:
-    """Solve the second of each pair; the first is what it repeats."""
+def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[tuple[Task, SceneRun]]:
+    """Solve each task's nudged scene, in fresh processes."""
     with process_pool(jobs) as executor:
-        futures = [(task, repetition, executor.submit(solve, repetition, "")) for task, repetition in pairs]
+        nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
+        futures = [(task, repetition, executor.submit(solve, repetition, "")) for task, repetition in nudged]
         return [(task, _numbers(repetition, future.result())) for task, repetition, future in futures]
 
 
@@ -66,26 +62,22 @@ def _spreads(task: Task, answers: list[SceneRun]) -> Iterator[tuple[tuple[str, s
         yield place, _spread(place, [answer.quantity(quantity.name) for answer in answers])
 
 
-def nudged_scenes(scene: Scene) -> Iterator[tuple[str, Scene]]:
-    """The scene with modulus, thickness and loading one unit in the last place larger, then smaller.
+def nudged_scene(scene: Scene, towards: float) -> Scene:
+    """Return the scene with modulus, thickness and loading one unit in the last place nearer to ``towards``.
 
-    A direction in which the scene is none (a radius beyond the end of a table) is left out.
+    Where that is no scene (a radius beyond the end of a table) the loading stays as it is.
     """
-    for name, towards in (("one ulp up", math.inf), ("one ulp down", 0.0)):
-        try:
-            yield name, _nudged(scene, towards)
-        except InvalidInput:
-            continue
-
-
-def _nudged(scene: Scene, towards: float) -> Scene:
     layer, loading = scene.layer, scene.loading
     layer = layer.replace(youngs_modulus=math.nextafter(layer.youngs_modulus, towards))
     if not layer.is_half_space:
         layer = layer.replace(thickness=math.nextafter(layer.thickness, towards))
-    if isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
-        loading = loading.replace(values=np.nextafter(loading.values, towards))
-    return scene.replace(layer=layer, loading=loading)
+    nudged = scene.replace(layer=layer)
+    if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
+        return nudged
+    try:
+        return nudged.replace(loading=loading.replace(values=np.nextafter(loading.values, towards)))
+    except InvalidInput:
+        return nudged
 
 
 def _spread(place: tuple[str, str, str], repeated: list[Quantity]) -> float:
