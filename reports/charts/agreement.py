@@ -9,6 +9,7 @@ from matplotlib.figure import Figure as Drawing
 from cases.results import CaseResult, Claim, Kind
 from reports.method_names import display_name
 from reports.outcomes import tone_of
+from reports.panels import cut
 from reports.plates import Cell, Plate
 from reports.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
 
@@ -32,8 +33,8 @@ def plates(case: CaseResult, command: str) -> list[Plate]:
     """The agreement plates of a case, worst rows first, forty rows each."""
     compared = [claim for claim in case.claims if claim.kind is Kind.AGREEMENT and claim.observed is not None]
     compared.sort(key=lambda claim: -(claim.fraction or 0.0))
-    parts = [compared[i : i + ROWS_A_PLATE] for i in range(0, len(compared), ROWS_A_PLATE)]
-    return [_plate(case, part, number, command) for number, part in enumerate(parts, start=1)]
+    parts = enumerate(cut(compared, ROWS_A_PLATE), start=1)
+    return [_plate(case, part, number, command) for number, part in parts]
 
 
 def _plate(case: CaseResult, claims: Sequence[Claim], number: int, command: str) -> Plate:

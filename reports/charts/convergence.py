@@ -1,6 +1,5 @@
 """Error under refinement: symbols for the measured error, bars for the estimated one, dashes for the formal order."""
 
-import math
 from collections.abc import Iterable, Sequence
 
 from matplotlib.axes import Axes
@@ -8,6 +7,7 @@ from matplotlib.figure import Figure as Drawing
 
 from cases.results import CaseResult, ConvergenceStudy
 from reports.method_names import display_name
+from reports.panels import cut, panel_grid
 from reports.plates import Cell, Plate
 from reports.style import GREY, look_of, mark_decades
 
@@ -27,8 +27,8 @@ CAPTION = (
 def plates(case: CaseResult, command: str) -> list[Plate]:
     """The convergence plates of a case, six panels each: one panel a scene and quantity, the methods overlaid."""
     panels = list(_by_panel(case.convergence).values())
-    parts = [panels[i : i + PANELS_A_PLATE] for i in range(0, len(panels), PANELS_A_PLATE)]
-    return [_plate(case, part, number, command) for number, part in enumerate(parts, start=1)]
+    parts = enumerate(cut(panels, PANELS_A_PLATE), start=1)
+    return [_plate(case, part, number, command) for number, part in parts]
 
 
 def _by_panel(studies: Iterable[ConvergenceStudy]) -> dict[tuple[str, str], list[ConvergenceStudy]]:
@@ -59,14 +59,9 @@ def _rows(study: ConvergenceStudy) -> Iterable[tuple[Cell, ...]]:
 
 def draw(panels: Sequence[Sequence[ConvergenceStudy]]) -> Drawing:
     """Panels in rows of two."""
-    columns = min(2, len(panels))
-    rows = math.ceil(len(panels) / columns)
-    drawing = Drawing(figsize=(5.0 * columns, 3.1 * rows), layout="constrained")
-    all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
-    for axes, studies in zip(all_axes, panels, strict=False):
+    drawing, all_axes = panel_grid(len(panels), 2, (5.0, 3.1))
+    for axes, studies in zip(all_axes, panels, strict=True):
         _draw_panel(axes, studies)
-    for axes in all_axes[len(panels) :]:
-        axes.set_axis_off()
     return drawing
 
 

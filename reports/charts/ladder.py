@@ -9,6 +9,7 @@ from matplotlib.figure import Figure as Drawing
 from cases.results import CaseResult, Ladder, Rung
 from reports.method_names import display_name
 from reports.outcomes import worded
+from reports.panels import cut, panel_grid
 from reports.plates import Cell, Plate
 from reports.style import look_of, mark_decades
 
@@ -30,9 +31,8 @@ def plates(case: CaseResult, command: str) -> list[Plate]:
     panels: dict[tuple[str, str], list[Ladder]] = {}
     for ladder in case.ladders:
         panels.setdefault((ladder.name, ladder.quantity), []).append(ladder)
-    grouped = list(panels.values())
-    parts = [grouped[i : i + PANELS_A_PLATE] for i in range(0, len(grouped), PANELS_A_PLATE)]
-    return [_plate(case, part, number, command) for number, part in enumerate(parts, start=1)]
+    parts = enumerate(cut(list(panels.values()), PANELS_A_PLATE), start=1)
+    return [_plate(case, part, number, command) for number, part in parts]
 
 
 def _plate(case: CaseResult, panels: Sequence[Sequence[Ladder]], number: int, command: str) -> Plate:
@@ -55,14 +55,9 @@ def _row(ladder: Ladder, rung: Rung) -> tuple[Cell, ...]:
 
 def draw(panels: Sequence[Sequence[Ladder]]) -> Drawing:
     """Panels in rows of two."""
-    columns = min(2, len(panels))
-    rows = math.ceil(len(panels) / columns)
-    drawing = Drawing(figsize=(5.0 * columns, 2.9 * rows), layout="constrained")
-    all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
-    for axes, ladders in zip(all_axes, panels, strict=False):
+    drawing, all_axes = panel_grid(len(panels), 2, (5.0, 2.9))
+    for axes, ladders in zip(all_axes, panels, strict=True):
         _draw_panel(axes, ladders)
-    for axes in all_axes[len(panels) :]:
-        axes.set_axis_off()
     return drawing
 
 
