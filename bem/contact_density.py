@@ -14,11 +14,11 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import solve_triangular
 
 from bem.fredholm_kernel import FredholmKernel
 from bem.panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from bem.piecewise import chebyshev_sum
+from bem.triangular import solve_lower
 from bem.volterra_factor import VolterraFactor
 from contact.validation import FloatArray
 
@@ -116,7 +116,5 @@ def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> Float
     last = np.linalg.solve(np.eye(m) - schur * (last_width * omega), load[-1] + E @ inherited[-1])
     root = np.sqrt(factor.weights)
     returned = factor.lower[before : before + m, :before].T @ (E.T @ (last_width * omega * last) / root)
-    earlier = solve_triangular(
-        factor.lower[:before, :before], z[:before] - returned, lower=True, trans=1, check_finite=False
-    )
+    earlier = solve_lower(factor.lower[:before, :before], z[:before] - returned, transposed=True)
     return np.vstack([earlier.reshape(-1, m) / root, last])

@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
-from scipy.linalg import cholesky, solve_triangular
 
 from bem.fourier_energy import energy_matrix
 from bem.fredholm_kernel import FredholmKernel
 from bem.kernels import Support
 from bem.panels import gauss_nodes
-from contact import InvalidInput, NotConvergedError
+from bem.triangular import cholesky_lower, solve_lower
+from contact import InvalidInput
 from contact.validation import FloatArray
 
 if TYPE_CHECKING:
@@ -169,12 +169,7 @@ def _factorise(support: Support, poissons_ratio: float, root: FloatArray) -> Flo
     matrix *= -2 / np.pi * root
     matrix *= root[:, None]
     matrix[np.diag_indices_from(matrix)] += 1
-    try:
-        lower: FloatArray = cholesky(matrix, lower=True, overwrite_a=True, check_finite=False)
-    except np.linalg.LinAlgError:
-        message = f"the layer's equation up to a/h = {LARGEST_RATIO:g} is singular to double precision"
-        raise NotConvergedError(message) from None
-    return lower
+    return cholesky_lower(matrix, LARGEST_RATIO)
 
 
 def _ritz_punch(
@@ -185,8 +180,8 @@ def _ritz_punch(
     n, nodes = panels * PANEL_NODES, gauss_nodes(PANEL_NODES)[0]
     t = PANEL_WIDTH * (np.arange(panels)[:, None] + nodes).ravel()
     loads = root[:n, None] * np.polynomial.legendre.legvander(2 * (t / ratio) ** 2 - 1, RITZ_DENSITIES - 1)
-    half = solve_triangular(lower[:n, :n], loads, lower=True, check_finite=False)
-    densities = solve_triangular(lower[:n, :n], half, lower=True, trans=1, check_finite=False) / root[:n, None]
+    half = solve_lower(lower[:n, :n], loads)
+    densities = solve_lower(lower[:n, :n], half, transposed=True) / root[:n, None]
     energy = energy_matrix(densities.T.reshape(-1, panels, PANEL_NODES), PANEL_WIDTH, support, poissons_ratio)
     load = densities.T @ root[:n] ** 2
     shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])

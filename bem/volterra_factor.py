@@ -25,11 +25,10 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.linalg import cholesky, solve_triangular
 
 from bem.fredholm_kernel import FredholmKernel
 from bem.panels import gauss_nodes, lagrange_matrix, partial_panel_interpolation
-from contact import NotConvergedError
+from bem.triangular import cholesky_lower, solve_lower
 from contact.validation import FloatArray
 
 
@@ -59,7 +58,7 @@ class VolterraFactor:
         """
         K = 2 / np.pi * kernel.panel_matrix(panels, panel_width, count)
         root = np.sqrt(panel_width * np.tile(gauss_nodes(count)[1], panels))
-        lower = _cholesky(np.eye(panels * count) - root[:, None] * K * root, panels * panel_width)
+        lower = cholesky_lower(np.eye(panels * count) - root[:, None] * K * root, panels * panel_width)
         schur = _schur_kernels(K, lower, root, count)
         return cls(panel_width, lower, schur, _edge_resolvents(schur, panel_width))
 
@@ -89,7 +88,7 @@ class VolterraFactor:
             nodes, shape (q, m).
         """
         n, root = load.size, np.sqrt(self.weights)
-        z = solve_triangular(self.lower[:n, :n], (root * load).ravel(), lower=True, check_finite=False)
+        z = solve_lower(self.lower[:n, :n], (root * load).ravel())
         starts = range(0, n, self.count)
         inherited = np.array([-self.lower[s : s + self.count, :s] @ z[:s] for s in starts]) / root
         return z, inherited
@@ -127,16 +126,6 @@ class VolterraFactor:
         E = partial_panel_interpolation(self.count)
         matrix: FloatArray = np.eye(self.count) + np.einsum("pij,ijk->pik", self.resolvent * weights, E)
         return matrix
-
-
-def _cholesky(matrix: FloatArray, ratio: float) -> FloatArray:
-    try:
-        factor = cholesky(matrix, lower=True, overwrite_a=True, check_finite=False)
-    except np.linalg.LinAlgError:
-        message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
-        raise NotConvergedError(message) from None
-    lower: FloatArray = np.tril(factor)
-    return lower
 
 
 def _schur_kernels(K: FloatArray, lower: FloatArray, root: FloatArray, count: int) -> FloatArray:
