@@ -133,14 +133,11 @@ def solve_contact(
         contact = (p > 0.0) | (gap < 0.0)
         r = _restricted(-gap, contact)
         z = _restricted(operator.precondition(r), contact)
-        if load is not None:  # no net force: subtract the answer to a uniform displacement, which is a change of depth
-            uniform = _restricted(operator.precondition(contact.astype(np.float64)), contact)
-            z = z - z.sum() / uniform.sum() * uniform
-        curvature = float(np.vdot(r_before, z_before))
-        beta = max(0.0, float(np.vdot(z, r - r_before)) / curvature) if curvature > 0.0 else 0.0  # Polak-Ribiere
-        v = z + beta * _restricted(v, contact)
         if load is not None:
-            v = _restricted(v - v.sum() / contact.sum(), contact)
+            z = _without_net_force(operator, z, contact)
+        v = z + _polak_ribiere(r, z, r_before, z_before) * _restricted(v, contact)
+        if load is not None:
+            v = _restricted(v - v.sum() / np.count_nonzero(contact), contact)
         step = float(np.vdot(r, v)) / float(np.vdot(v, operator.displacement(v)))
         p = np.maximum(p + step * v, 0.0)
         if load is not None:
@@ -163,6 +160,18 @@ def _not_converged(residual: float, tolerance: float, iterations: int) -> NotCon
         f"no equilibrium to {tolerance:.1e} in {iterations} iterations; allow more or a larger tolerance",
         {"residual": residual},
     )
+
+
+def _polak_ribiere(r: FloatArray, z: FloatArray, r_before: FloatArray, z_before: FloatArray) -> float:
+    """Share of the last direction in the next; zero starts anew, as when cells have come or gone."""
+    curvature = float(np.vdot(r_before, z_before))
+    return max(0.0, float(np.vdot(z, r - r_before)) / curvature) if curvature > 0.0 else 0.0
+
+
+def _without_net_force(operator: Operator, z: FloatArray, contact: BoolArray) -> FloatArray:
+    """z less the answer to a uniform displacement, which is a change of depth."""
+    uniform = _restricted(operator.precondition(contact.astype(np.float64)), contact)
+    return np.asarray(z - z.sum() / uniform.sum() * uniform)
 
 
 def _first_guess(height: FloatArray, depth: float | None, load: float | None) -> FloatArray:

@@ -46,7 +46,9 @@ class Bem:
         threads: Threads of FFTW.
 
     Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
-    what the contact radius may be off. The method converges with second order in the cell size.
+    what the contact radius may be off. The method converges with second order in the cell size. A flat punch is a disc
+    of cells measured by the half-space (`pixel_disc`), so that on the half-space itself its stiffness is exact by
+    construction. Detachment converges with about first order (`detachment`).
 
     Raises:
         InvalidInput: If `points` is too small or no multiple of 4, or the tolerance is not in (0, 1e-2].
@@ -76,7 +78,10 @@ class Bem:
         if self.boundary == "periodic" and scene.layer.is_half_space:
             return Unsupported(reason='a half-space has no periodic answer; use boundary="free"')
         if isinstance(scene.loading, Detachment):
-            return Supported()
+            free = self.boundary == "free"
+            return (
+                Supported() if free else Unsupported(reason='detachment is followed in free space; use boundary="free"')
+            )
         if scene.effects or type(scene.loading) not in PRESCRIBED:
             what = "with adhesion, a Detachment" if scene.effects else "radii, depths or forces"
             return Unsupported(reason=f"bem follows {what}, not {type(scene.loading).__name__}; ask mdr")

@@ -8,7 +8,7 @@ m = cells/2, and the first cell's centre lies half a cell from both axes.
 from __future__ import annotations
 
 from math import isinf, pi
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -40,30 +40,8 @@ class Operator(Protocol):
         ...
 
 
-class _Filters:
-    """Two filters on one grid: the operator, and its approximate inverse."""
-
-    def __init__(self, forward: Transform, symbol: FloatArray, inverse: Transform, inverse_symbol: FloatArray) -> None:
-        self._forward, self._symbol = forward, symbol
-        self._inverse, self._inverse_symbol = inverse, inverse_symbol
-        self.applications = 0
-
-    def displacement(self, pressure: FloatArray) -> FloatArray:
-        """u [m] by p [Pa], both of shape (m, m)."""
-        self.applications += 1
-        return self._forward.filter(pressure, self._symbol)
-
-    def precondition(self, displacement: FloatArray) -> FloatArray:
-        """A pressure [Pa] that nearly causes this displacement [m]."""
-        return self._inverse.filter(displacement, self._inverse_symbol)
-
-
-class PeriodicOperator(_Filters):
-    """Pressures repeated with the box: the symbol is Eq. (27) at the lattice's own wavenumbers.
-
-    A field is taken as the trigonometric polynomial through its values, so a sinusoidal load has its exact answer,
-    Eq. (32). Images decay exponentially for a layer. The mean mode k = 0 answers with the layer's finite compliance
-    `h chi(q)/q` at q = 0; a half-space has none, and there the mean displacement is taken as zero.
+class GridOperator:
+    """Two filters on one grid: the operator, and its approximate inverse without padding.
 
     Args:
         layer: The elastic layer or half-space.
@@ -84,62 +62,66 @@ class PeriodicOperator(_Filters):
         threads: int = 1,
         planning: Planning = "FFTW_ESTIMATE",
     ) -> None:
-        transform = _transform(cells, cells, quarter=quarter, threads=threads, planning=planning)
-        symbol = layer_symbol(_wavenumbers(transform, cell_size), layer)
-        super().__init__(transform, symbol, transform, _reciprocal(symbol))
+        def transform(period: int) -> Transform:
+            return _transform(cells, period, quarter=quarter, threads=threads, planning=planning)
+
+        cyclic = transform(cells)
+        symbol = layer_symbol(_wavenumbers(cyclic, cell_size), layer)
+        self._inverse, self._inverse_symbol = cyclic, _reciprocal(symbol)
+        self._forward, self._symbol = cyclic, symbol
+        if self.padded:
+            self._forward = transform(fast_period(2 * cells))
+            influence = self._influence(layer, self._forward.period // 2, cell_size)
+            self._symbol = convolution_symbol(self._forward, influence * (cell_size / layer.contact_modulus))
+
+    padded: ClassVar[bool]
+
+    def _influence(self, layer: Layer, offsets: int, cell_size: float) -> FloatArray:
+        """Displacement by a unit pressure on one cell, lengths in cell sizes, E* = 1."""
+        return layer_influence(offsets, layer.thickness / cell_size, layer.support, layer.poissons_ratio)
+
+    def displacement(self, pressure: FloatArray) -> FloatArray:
+        """u [m] by p [Pa], both of shape (m, m)."""
+        return self._forward.filter(pressure, self._symbol)
+
+    def precondition(self, displacement: FloatArray) -> FloatArray:
+        """A pressure [Pa] that nearly causes this displacement [m]."""
+        return self._inverse.filter(displacement, self._inverse_symbol)
 
 
-class FreeSpaceOperator(_Filters):
+class PeriodicOperator(GridOperator):
+    """Pressures repeated with the box: the symbol is Eq. (27) at the lattice's own wavenumbers.
+
+    A field is taken as the trigonometric polynomial through its values, so a sinusoidal load has its exact answer,
+    Eq. (32). Images decay exponentially for a layer. The mean mode k = 0 answers with the layer's finite compliance
+    `h chi(q)/q` at q = 0; a half-space has none, and there the mean displacement is taken as zero.
+    """
+
+    padded = False
+
+
+class FreeSpaceOperator(GridOperator):
     """Pressures alone on an infinite layer: a linear convolution with the influence of one cell, padded by zeros.
 
     A field is taken as piecewise constant over the cells and the displacement is exact at their centres.
-
-    Args:
-        layer: The elastic layer or half-space.
-        cell_size: s [m].
-        cells: Cells across the grid; the padded lattice has at least twice as many.
-        quarter: Whether fields hold the quadrant x, y > 0 of a mirror-symmetric grid.
-        threads: Threads of FFTW.
-        planning: FFTW planning rigour; results repeat bit by bit only with FFTW_ESTIMATE.
     """
 
-    def __init__(
-        self,
-        layer: Layer,
-        *,
-        cell_size: float,
-        cells: int,
-        quarter: bool = False,
-        threads: int = 1,
-        planning: Planning = "FFTW_ESTIMATE",
-    ) -> None:
-        period = fast_period(2 * cells)
-        padded = _transform(cells, period, quarter=quarter, threads=threads, planning=planning)
-        influence = layer_influence(period // 2, layer.thickness / cell_size, layer.support, layer.poissons_ratio)
-        symbol = convolution_symbol(padded, influence * (cell_size / layer.contact_modulus))
-        cyclic = _transform(cells, cells, quarter=quarter, threads=threads, planning=planning)
-        super().__init__(padded, symbol, cyclic, _reciprocal(layer_symbol(_wavenumbers(cyclic, cell_size), layer)))
+    padded = True
 
 
-class BandLimitedHalfSpace(_Filters):
-    """A half-space in free space whose pressures are trigonometric interpolants, as those of `PeriodicOperator` are.
+class BandLimitedHalfSpace(GridOperator):
+    """A half-space in free space whose pressures are trigonometric polynomials, as those of `PeriodicOperator` are.
 
-    It answers what a periodic operator would if its images were removed, and so tells how a set of cells acts.
-
-    Args:
-        contact_modulus: E* [Pa].
-        cell_size: s [m].
-        cells: Cells across the grid (the quadrant holds half as many).
+    It answers what a periodic operator would if its images were removed, and so tells how a set of cells acts there.
     """
 
-    def __init__(self, contact_modulus: float, *, cell_size: float, cells: int) -> None:
-        period = fast_period(2 * cells)
-        padded = _transform(cells, period, quarter=True, threads=1, planning="FFTW_ESTIMATE")
-        scale = cell_size / contact_modulus
-        symbol = convolution_symbol(padded, band_limited_influence(period // 2) * scale)
-        cyclic = _transform(cells, cells, quarter=True, threads=1, planning="FFTW_ESTIMATE")
-        inverse = _wavenumbers(cyclic, cell_size) * (contact_modulus / 2.0)
-        super().__init__(padded, symbol, cyclic, inverse)
+    padded = True
+
+    def _influence(self, layer: Layer, offsets: int, cell_size: float) -> FloatArray:
+        """Of the trigonometric interpolant of a unit pressure at one cell."""
+        if not layer.is_half_space:
+            raise InvalidInput(f"only a half-space is known in this form, got a layer with h = {layer.thickness:g}")
+        return band_limited_influence(offsets)
 
 
 def layer_symbol(wavenumber: FloatArray, layer: Layer) -> FloatArray:

@@ -26,7 +26,7 @@ import numpy.typing as npt
 
 from bem.conjugate_gradients import Equilibrium, solve_on_contact
 from bem.kernels import Support
-from bem.operators import BandLimitedHalfSpace, FreeSpaceOperator, Operator, PeriodicOperator
+from bem.operators import BandLimitedHalfSpace, FreeSpaceOperator, PeriodicOperator
 from bem.transforms import fast_period
 from contact import Layer
 
@@ -72,11 +72,8 @@ class PixelDisc:
         """Press the disc of a grid of `cells` x `cells` into the half-space."""
         contact = disc(cells, FILL * cells / 2)
         half_space = Layer.half_space(youngs_modulus=MODULUS, poissons_ratio=0.0)
-        operator: Operator = (
-            BandLimitedHalfSpace(MODULUS, cell_size=1.0, cells=cells)
-            if periodic
-            else FreeSpaceOperator(half_space, cell_size=1.0, cells=cells, quarter=True)
-        )
+        kind = BandLimitedHalfSpace if periodic else FreeSpaceOperator
+        operator = kind(half_space, cell_size=1.0, cells=cells, quarter=True)
         return cls(cells, periodic, solve_on_contact(operator, contact, 1.0, tolerance=TOLERANCE))
 
     @cached_property
@@ -97,11 +94,8 @@ class PixelDisc:
             thickness=thickness, youngs_modulus=youngs_modulus, poissons_ratio=poissons_ratio, support=support
         )
         cells = fast_period(ceil(2 * self.radius + GAP * thickness)) if self.periodic else self.cells
-        operator: Operator = (
-            PeriodicOperator(layer, cell_size=1.0, cells=cells, quarter=True)
-            if self.periodic
-            else FreeSpaceOperator(layer, cell_size=1.0, cells=cells, quarter=True)
-        )
+        kind = PeriodicOperator if self.periodic else FreeSpaceOperator
+        operator = kind(layer, cell_size=1.0, cells=cells, quarter=True)
         contact = _resized(self.contact, cells // 2)
         first = None if start is None else _resized(start, cells // 2)
         answer = solve_on_contact(operator, contact, 1.0, start=first, tolerance=TOLERANCE)

@@ -6,6 +6,7 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
+    Detachment,
     FlatPunch,
     Impact,
     IndentationDepths,
@@ -181,7 +182,10 @@ def test_scenes_it_does_not_model_are_refused_with_a_reason():
         layer=LAYER, indenter=PARABOLOID, loading=NormalForces([1.0]), effects=(Adhesion(work_of_adhesion=0.1),)
     )
     periodic = Scene(layer=HALF_SPACE, indenter=PARABOLOID, loading=NormalForces([1.0]))
-    for scene, method in ((viscous, Bem()), (impact, Bem()), (sticky, Bem()), (periodic, Bem(boundary="periodic"))):
+    detaching = Scene(layer=LAYER, indenter=PARABOLOID, loading=Detachment(), effects=(Adhesion(work_of_adhesion=0.1),))
+    wrapped = Bem(boundary="periodic")
+    pairs = ((viscous, Bem()), (impact, Bem()), (sticky, Bem()), (periodic, wrapped), (detaching, wrapped))
+    for scene, method in pairs:
         assert not method.supports(scene)
         with pytest.raises(UnsupportedSceneError):
             method.solve(scene)
