@@ -36,6 +36,7 @@ POINTS = 200  # states of a detachment path
 _PINNED = POINTS // 5  # of them with the front at a punch's edge
 _FIRST_WAY = 2.0  # beyond the flat end, in units of the way to where height and elongation are equal
 _CONFINED = 0.45  # Poisson's ratio from which a punch's pressure may have a second maximum in its centre
+_THINNEST = 50.0  # a/h beyond which the pressure inside no longer changes its shape
 _INSIDE = 0.1  # of the contact radius: where the pressure is compared with its value in the centre
 
 
@@ -243,7 +244,8 @@ def _notes(scene: Scene, system: EquivalentSystem, radius: float) -> tuple[str, 
     if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio < _CONFINED:
         return ()
     ratio = min(radius / layer.thickness, system.flat_punch.max_ratio)  # the branch's first radius carries rounding
-    smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, ratio))
+    asked = min(ratio, _THINNEST)
+    smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, asked))
     pressure = smooth / np.sqrt(1.0 - np.array([0.0, _INSIDE]) ** 2)
     if pressure[0] <= pressure[1]:
         return ()
