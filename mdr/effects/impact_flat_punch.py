@@ -16,7 +16,7 @@ from mdr.effects import chebyshev
 from mdr.effects.collocation import STAGES, Event, Trajectory, integrate, states
 from mdr.effects.impact_fixed_radius import FlatPunchLanes
 from mdr.effects.impact_history import ESTIMATED, distinct
-from mdr.effects.impact_results import ImpactResults
+from mdr.effects.impact_results import ImpactResults, refuse_rest
 from mdr.effects.impact_units import impact_of, relaxation_of
 
 _FIRST_STEP = 0.5  # of the inverse of the elastic frequency
@@ -111,6 +111,7 @@ def _force_unit(problem: _Problem) -> FloatArray:
 
 
 def _results(problem: _Problem, motion: Trajectory) -> ImpactResults:
+    refuse_rest(motion.final[3], problem.lanes.long_term)
     depth = problem.velocity / problem.frequency
     return ImpactResults(
         coefficient_of_restitution=-motion.final[3],

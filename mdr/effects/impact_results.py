@@ -7,6 +7,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from contact import NotConvergedError
 from contact.validation import FloatArray
 from mdr.effects import chebyshev
 from mdr.effects.collocation import states
@@ -15,6 +16,7 @@ from mdr.effects.impact_solver import Impacts, Leg
 from mdr.effects.impact_units import ScaledImpacts
 from mdr.effects.spring_table import PROFILE, STIFFNESS
 
+_REST = 1e-10  # of the approach speed
 _NODES = 14  # of the force on each step
 
 
@@ -40,8 +42,13 @@ class ImpactResults:
 
 
 def results(scaled: ScaledImpacts, impacts: Impacts) -> ImpactResults:
-    """Back to SI units."""
+    """Back to SI units.
+
+    Raises:
+        NotConvergedError: If an indenter comes to rest in the layer.
+    """
     lanes = scaled.lanes
+    refuse_rest(impacts.end[3], lanes.long_term)
     depth = np.empty(lanes.count)
     peak = np.zeros(lanes.count)
     for leg in impacts.way_in:
@@ -56,6 +63,21 @@ def results(scaled: ScaledImpacts, impacts: Impacts) -> ImpactResults:
         peak_contact_radius=lanes.table.radius(impacts.turn[0] * lanes.units[6]) * scaled.length,
         relative_error=impacts.error,
     )
+
+
+def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
+    """A layer without long-term stiffness may hold the indenter: what is left then is rounding, no rebound.
+
+    Args:
+        final_velocity: Over the approach speed, negative for a rebound, shape (lanes,).
+        long_term: G_inf / G_0, shape (lanes,).
+    """
+    resting = np.flatnonzero((final_velocity >= 0.0) | ((long_term == 0.0) & (final_velocity > -_REST)))
+    if resting.size:
+        raise NotConvergedError(
+            f"impact {resting[0]} does not rebound: the indenter comes to rest in a layer that relaxes completely; "
+            "give it a long-term shear modulus above zero"
+        )
 
 
 def force_on_way_in(scaled: ScaledImpacts, leg: Leg, z: FloatArray) -> FloatArray:

@@ -66,7 +66,9 @@ def resolved_panels(sample: Callable[[FloatArray], FloatArray], low: float, high
         sizes = np.abs(values).max(axis=(0, 2)) if sizes is None else sizes
         tails = _tails(values, sizes)
         panels = [Panel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails.tolist(), strict=True)]
-        allowed = _RESOLVED if min(right - left for left, right in waiting) > _SMALLEST * (high - low) else _USABLE
+        room = len(done) + 2 * len(waiting) < _MOST_PANELS
+        halvable = min(right - left for left, right in waiting) > _SMALLEST * (high - low)
+        allowed = _RESOLVED if room and halvable else _USABLE
         done += [panel for panel in panels if panel.tail <= allowed]
         waiting = [half for panel in panels if panel.tail > allowed for half in _halves(panel)]
     if waiting:

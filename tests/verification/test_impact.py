@@ -5,7 +5,19 @@ import pytest
 from scipy.special import gamma
 
 from bem.integral_equation import IntegralEquation
-from contact import Cone, FlatPunch, Impact, Layer, Paraboloid, PronySeries, Scene, TruncatedCone
+from contact import (
+    Cone,
+    FlatPunch,
+    Impact,
+    InvalidInput,
+    Layer,
+    NotConvergedError,
+    Paraboloid,
+    PronySeries,
+    Scene,
+    Sphere,
+    TruncatedCone,
+)
 from mdr import equivalent_system
 from mdr.effects.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
 from mdr.effects.impact import impact_batch, solve_impact
@@ -266,3 +278,36 @@ def test_flat_punch_on_a_layer_follows_its_closed_form():
         ),), loading=Impact(mass=0.01, velocity=0.5),
     )  # fmt: skip
     assert history(scene).coefficient_of_restitution == pytest.approx(float(kelvin_voigt_restitution(0.3)), rel=1e-9)
+
+
+def test_an_indenter_that_stays_is_refused():
+    """A Maxwell layer relaxes faster than the punch is thrown back: it creeps to rest, and no restitution is given."""
+    layer = incompressible(1e-3, 1e6)
+    model = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1e6], relaxation_times=[1e-6])
+    scene = Scene(
+        layer=layer, indenter=FlatPunch(radius=1e-3), loading=Impact(mass=1e-3, velocity=0.01), effects=(model,)
+    )
+    with pytest.raises(NotConvergedError, match="does not rebound"):
+        history(scene)
+
+
+def test_an_impact_beyond_the_rim_is_refused():
+    heavy = Scene(
+        layer=incompressible(1e-3, 1e6), indenter=Sphere(radius=1e-3), loading=Impact(mass=10.0, velocity=10.0)
+    )
+    with pytest.raises(InvalidInput, match="beyond its rim"):
+        history(heavy)
+
+
+@pytest.mark.parametrize("ratio", [1e-7, 1e-5, 1e-4, 1e-2, 1e2, 1e5])
+def test_relaxation_far_faster_or_slower_than_the_impact(ratio):
+    """Both ends are elastic: very fast branches leave G_inf alone, very slow ones never relax."""
+    scene = figure_12(1e-3)
+    model = PronySeries(
+        long_term_shear_modulus=LONG_TERM, shear_moduli=[GLASSY_BRANCH], relaxation_times=[ratio * 1.3e-3]
+    )
+    answer = history(scene.replace(effects=(model,)))
+    assert 0.0 < answer.coefficient_of_restitution <= 1.0
+    assert answer.energy_residual < 1e-8
+    if ratio < 1e-6 or ratio > 1e4:
+        assert answer.coefficient_of_restitution == pytest.approx(1.0, abs=5e-3)
