@@ -28,7 +28,7 @@ from contact import (
     UnsupportedSceneError,
     Viscoelasticity,
 )
-from fem_reference.adaptive import settings_for, solve_to_accuracy
+from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.certified import CertifiedContact, solve_certified_contact
 from fem_reference.discretisation import Discretisation
 from fem_reference.elastic import ContactSolver, Equilibrium, contact_path, equilibria_at_radii, flat_punch_equilibria
@@ -105,7 +105,7 @@ class Fem:
         if isinstance(scene.loading, Detachment):
             from fem_reference.effects.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
 
-            return detachment_path(scene, scene.loading, self._solver(scene, log), asdict(self), log)
+            return detachment_path(scene, self._solver(scene, log), self.accuracy, asdict(self), log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
         return contact_path(scene, self._equilibria(scene, log), asdict(self), log)
@@ -115,17 +115,22 @@ class Fem:
     ) -> ImpactHistory | HistoryPath:
         from fem_reference.effects import viscoelastic  # noqa: PLC0415 - only scenes in time load it
 
-        theatre = viscoelastic.Theatre(scene, self.discretisation, self.solver, log)
-        if isinstance(loading, Impact):
-            return viscoelastic.impact_history(theatre, loading, asdict(self))
-        return viscoelastic.prescribed_history(theatre, loading, asdict(self))
+        def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
+            theatre = viscoelastic.Theatre(scene, settings, self.solver, log)
+            if isinstance(loading, Impact):
+                return viscoelastic.impact_history(theatre, loading, asdict(self))
+            return viscoelastic.prescribed_history(theatre, loading, asdict(self))
+
+        if self.accuracy is None:
+            return attempt(self.discretisation)
+        return solve_history_to_accuracy(attempt, self.accuracy)
 
     def _equilibria(self, scene: Scene, log: StageLog) -> list[Equilibrium]:
         loading, solve = scene.loading, self._solver(scene, log)
         if scene.effects:
             from fem_reference.effects.adhesion import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
 
-            return adhesive_equilibria(scene, solve)
+            return adhesive_equilibria(scene, solve, self.accuracy)
         if isinstance(loading, ContactRadii):
             return equilibria_at_radii(loading.values, solve)
         if isinstance(scene.indenter, FlatPunch):

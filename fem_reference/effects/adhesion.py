@@ -15,6 +15,7 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
+    NotConvergedError,
     Scene,
 )
 from fem_reference.certified import CertifiedContact
@@ -23,7 +24,7 @@ from fem_reference.elastic import ContactSolver, Equilibrium
 
 Array = NDArray[np.float64]
 
-NODES = 11
+NODES = (11, 17, 25)  # Chebyshev points of a piece: the first number that meets the accuracy
 LARGEST_RATIO = 6.0  # of the radii that end one piece
 SAMPLES = 241
 
@@ -63,8 +64,13 @@ def fixed_radius_equilibrium(contact: CertifiedContact, depth: float, depth_erro
     return Equilibrium(contact=contact, depth=depth, force=force, error=reported)
 
 
-def adhesive_equilibria(scene: Scene, solve: ContactSolver) -> list[Equilibrium]:
+def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | None) -> list[Equilibrium]:
     """States at prescribed radii, depths or forces; of several states at one load, the stable one.
+
+    Args:
+        scene: the scene.
+        solve: contact of a given radius.
+        accuracy: asked of the interpolation between solved radii, relative.
 
     Raises:
         InvalidInput: no stable state carries the load: the indenter has come off.
@@ -77,7 +83,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver) -> list[Equilibrium]
     by_depth = isinstance(loading, IndentationDepths)
     targets = loading.values / (1.0 if by_depth else scene.layer.contact_modulus)
     start = None if isinstance(scene.indenter, FlatPunch) else _radius_beyond(scene, float(targets.max()), by_depth)
-    branch = branch_of(scene, start, solve)
+    branch = branch_of(scene, start, solve, accuracy)
     return [_state_at(scene, branch, float(target), by_depth, solve) for target in targets]
 
 
@@ -119,8 +125,12 @@ def branch_samples(branch: AdhesiveBranch) -> Array:
     return np.unique(np.concatenate([np.geomspace(ends[0], ends[-1], SAMPLES), ends]))
 
 
-def branch_of(scene: Scene, start: float | None, solve: ContactSolver) -> AdhesiveBranch:
-    """The branch from a radius [m] (by default one where the contact is pressed) down past every pull-off."""
+def branch_of(scene: Scene, start: float | None, solve: ContactSolver, accuracy: float | None) -> AdhesiveBranch:
+    """The branch from a radius [m] (by default one where the contact is pressed) down past every pull-off.
+
+    Raises:
+        NotConvergedError: the interpolation between solved radii misses half the accuracy.
+    """
     high = start or _first_radius(scene)
     kinks = [k for k in scene.indenter.kinks if k < high]
     smallest = min([high / 3, scene.layer.thickness, *kinks])
@@ -136,7 +146,13 @@ def branch_of(scene: Scene, start: float | None, solve: ContactSolver) -> Adhesi
             solved[radius] = solve(radius)
         return solved[radius]
 
-    return solve_branch(breaks, kinks, work_of_adhesion(scene), once, NODES)
+    for nodes in NODES:
+        branch = solve_branch(breaks, kinks, work_of_adhesion(scene), once, nodes)
+        if accuracy is None or branch.interpolation_error <= accuracy / 2:
+            return branch
+    raise NotConvergedError(
+        f"accuracy {accuracy:g} was not reached along the branch", {"interpolation_error": branch.interpolation_error}
+    )
 
 
 def _first_radius(scene: Scene) -> float:

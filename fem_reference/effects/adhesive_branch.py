@@ -131,11 +131,15 @@ class AdhesiveBranch:
         return [contact for piece in self.pieces for contact in piece.contacts]
 
     @property
+    def interpolation_error(self) -> float:
+        """Of k_N' between the solved radii, relative."""
+        return max(piece.interpolation_error for piece in self.pieces)
+
+    @property
     def error(self) -> dict[str, float]:
         """Relative errors of depth and force along the branch: that of dl is half that of k_N'."""
-        interpolation = max(piece.interpolation_error for piece in self.pieces)
         worst = {name: max(c.error[name] for c in self.contacts) for name in self.contacts[0].error}
-        elongation = 0.5 * worst["stiffness_slope"] + interpolation
+        elongation = 0.5 * (worst["stiffness_slope"] + self.interpolation_error)
         depth = elongation + worst["smooth_depth"]
         return {"indentation_depth": depth, "normal_force": depth + worst["stiffness"] + worst["smooth_force"]}
 

@@ -9,7 +9,16 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import brentq
 
-from contact import CriticalPoint, Detachment, DetachmentPath, FlatPunch, NotConvergedError, Scene, StageLog
+from contact import (
+    CriticalPoint,
+    Detachment,
+    DetachmentPath,
+    FlatPunch,
+    InvalidInput,
+    NotConvergedError,
+    Scene,
+    StageLog,
+)
 from fem_reference.effects.adhesion import branch_of, branch_samples
 from fem_reference.effects.adhesive_branch import AdhesiveBranch
 from fem_reference.elastic import ContactSolver
@@ -26,17 +35,27 @@ CAVITATION = (
 
 def detachment_path(
     scene: Scene,
-    loading: Detachment,
     solve: ContactSolver,
+    accuracy: float | None,
     settings: Mapping[str, bool | int | float | str | None],
     log: StageLog,
 ) -> DetachmentPath:
     """The branch in the order of decreasing contact radius.
 
+    Args:
+        scene: a scene with a `Detachment`.
+        solve: contact of a given radius.
+        accuracy: asked of the interpolation between solved radii, relative.
+        settings: numerical settings, to be shown.
+        log: stages and counters.
+
     Raises:
         NotConvergedError: the branch ends before it becomes unstable.
     """
-    branch = branch_of(scene, loading.initial_contact_radius, solve)
+    loading = scene.loading
+    if not isinstance(loading, Detachment):
+        raise InvalidInput(f"loading = {type(loading).__name__}: this path needs a Detachment")
+    branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy)
     radius = branch_samples(branch)[::-1]
     depth, force = branch.depth(radius), branch.force(radius)
     critical = [*_start(scene, branch), *_turning_points(branch, radius)]

@@ -21,6 +21,7 @@ from contact import (
     StandardSolid,
 )
 from fem_reference import Fem
+from fem_reference.adaptive import solve_history_to_accuracy
 from fem_reference.effects.impact import MAX_STEPS, Body, simulate_impact
 from fem_reference.effects.relaxation_step import relaxation_step
 from fem_reference.effects.stage import Stage
@@ -50,6 +51,14 @@ def test_restitution_of_a_sphere_on_an_incompressible_standard_solid(thickness, 
     assert history.coefficient_of_restitution == pytest.approx(restitution, abs=5e-5)
     assert history.error_estimate["coefficient_of_restitution"][0] < 1e-4
     assert history.energy_residual < 1e-4
+
+
+def test_requested_accuracy_of_an_impact_is_reached_or_refused():
+    history = Fem(accuracy=1e-3).solve(impact_scene(2e-3))
+    assert history.coefficient_of_restitution == pytest.approx(0.55924, rel=1e-3)
+    assert history.error_estimate["peak_force"][0] <= 1e-3
+    with pytest.raises(NotConvergedError, match="in time"):
+        solve_history_to_accuracy(lambda settings: history, 1e-9)
 
 
 @pytest.mark.slow
