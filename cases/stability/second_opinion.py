@@ -175,7 +175,7 @@ def _pieces(a: float, breaks: tuple[float, ...]) -> tuple[FloatArray, FloatArray
     first = _FINEST * a
     pieces = [_gauss(_PIECE_NODES, 0.0, first), *_doubling(first, first, ends[0])]
     for start, end in zip(breaks, ends[1:], strict=True):
-        size = min(start, end - start)
+        size = min(start, end - start, 1.0)
         s, weights = _gauss(_PIECE_NODES, 0.0, 1.0)
         pieces += [(start + size * s**2, 2 * size * s * weights), *_doubling(start + size, size, end)]
     return _joined(iter(pieces))
