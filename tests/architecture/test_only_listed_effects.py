@@ -1,0 +1,99 @@
+"""An effect that a scene does not list is not imported, not called, holds no state and changes no bit."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+SCENES = """
+import json, sys
+from contact import *
+from cases.methods import build
+layer = Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=0.5)
+cone = TruncatedCone(flat_radius=0.5, slope=0.1)
+solid = StandardSolid(long_term_shear_modulus=0.25, maxwell_shear_modulus=0.75, viscosity=0.5)
+SCENES = {
+    "elastic": Scene(layer=layer, indenter=cone, loading=ContactRadii([1.0])),
+    "depths": Scene(layer=layer, indenter=cone, loading=IndentationDepths([0.05])),
+    "adhesive": Scene(layer=layer, indenter=cone, loading=Detachment(initial_contact_radius=1.0),
+                      effects=(Adhesion(work_of_adhesion=1e-4),)),
+    "impact": Scene(layer=layer, indenter=cone, loading=Impact(mass=0.1, velocity=0.05)),
+    "viscoelastic": Scene(layer=layer, indenter=cone, loading=Impact(mass=0.1, velocity=0.05), effects=(solid,)),
+}
+method, scene = build(sys.argv[1], json.loads(sys.argv[3])), SCENES[sys.argv[2]]
+if not method.supports(scene):
+    print(json.dumps(None)); raise SystemExit
+answer = method.solve(scene)
+print(json.dumps({
+    "modules": sorted(m for m in sys.modules if m.split(".")[0] in ("bem", "mdr", "fem_reference")),
+    "foreign": sorted({m.split(".")[0] for m in sys.modules} & {"pyfftw", "skfem", "gmsh", "matplotlib", "h5py"}),
+    "stages": sorted(stage.name for stage in answer.stages),
+}))
+"""
+
+COARSE_FEM = '{"order": 2, "edge_cell": 1e-2}'
+
+
+def solved(method, scene, settings="{}"):
+    """Import set and stage set of one solution in a process of its own."""
+    command = [sys.executable, "-W", "error::RuntimeWarning", "-c", SCENES, method, scene, settings]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def effects_among(found):
+    return [name for name in found["modules"] if ".effects." in name]
+
+
+@pytest.fixture(scope="module")
+def elastic():
+    return solved("mdr", "elastic")
+
+
+def test_an_elastic_scene_imports_no_effect_and_no_other_method(elastic):
+    assert effects_among(elastic) == []
+    assert elastic["foreign"] == []
+    assert [m for m in elastic["modules"] if m.startswith("fem_reference")] == []
+    assert {"bem.transforms", "bem.conjugate_gradients", "bem.operators"} & set(elastic["modules"]) == set()
+
+
+def test_an_elastic_scene_runs_exactly_the_elastic_stages(elastic):
+    assert elastic["stages"] == ["flat_punch_data", "force", "mdr_profile"]
+
+
+def test_prescribed_depths_need_the_same_stages(elastic):
+    depths = solved("mdr", "depths")
+    assert depths["stages"] == elastic["stages"]
+    assert effects_among(depths) == []
+
+
+def test_adhesion_loads_no_time_integration():
+    found = effects_among(solved("mdr", "adhesive"))
+    assert found
+    assert [m for m in found if "impact" in m or "viscoelastic" in m or "collocation" in m] == []
+
+
+def test_impact_loads_no_adhesion():
+    found = effects_among(solved("mdr", "impact"))
+    assert found
+    assert [m for m in found if "adhes" in m or "detach" in m] == []
+
+
+def test_finite_elements_load_no_effect_for_an_elastic_scene():
+    found = solved("fem", "elastic", COARSE_FEM)
+    assert effects_among(found) == []
+    assert [m for m in found["modules"] if m.startswith(("mdr", "bem"))] == []
+    assert set(found["foreign"]) <= {"skfem", "gmsh"}
+
+
+def test_a_planted_import_is_seen():
+    planted = SCENES.replace("answer = ", "import mdr.effects.adhesion\nanswer = ")
+    command = [sys.executable, "-c", planted, "mdr", "elastic", "{}"]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    assert "mdr.effects.adhesion" in effects_among(json.loads(done.stdout))
