@@ -139,6 +139,23 @@ def test_stated_errors_cover_the_difference_to_a_refined_solution(layer):
             assert np.all(error <= path.error_estimate[name] + exact.error_estimate[name]), name
 
 
+@pytest.mark.parametrize("layer", ["incompressible", "unbonded"])
+@pytest.mark.parametrize("nodes", [10, 24])
+def test_stated_pressure_error_covers_the_difference_to_a_refined_solution(layer, nodes):
+    """In the norm weighted with 2 pi r, on each side of the rim of a truncated cone."""
+    a, rim = 3e-3, 1.5e-3
+    x, w = np.polynomial.legendre.leggauss(60)
+    r = np.concatenate([rim * (1 + x) / 2, rim + rim * (1 + x) / 2])
+    weight = np.tile(w, 2) * r
+    scenes = [TruncatedCone(flat_radius=rim, slope=0.1), Paraboloid(radius_of_curvature=0.02)]
+    for indenter in scenes:
+        exact = solve(LAYERS[layer], indenter, ContactRadii([a]), Mdr(flat_punch=IntegralEquation(panel_width=0.5)))
+        path = solve(LAYERS[layer], indenter, ContactRadii([a]), Mdr(flat_punch=IntegralEquation(nodes=nodes)))
+        difference = np.sum((path.pressure(r) - exact.pressure(r)) ** 2 * weight)
+        error = np.sqrt(difference / np.sum(exact.pressure(r) ** 2 * weight))
+        assert error <= path.error_estimate["pressure"][0] + exact.error_estimate["pressure"][0]
+
+
 def test_stages_and_counters_tell_what_ran():
     path = solve(LAYERS["bonded"], Cone(slope=0.1), ContactRadii([1e-3]))
     assert {stage.name for stage in path.stages} == {"flat_punch_data", "mdr_profile", "force"}
