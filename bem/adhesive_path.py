@@ -20,7 +20,6 @@ from contact.validation import FloatArray
 SCOUT_CELLS: Final = 64
 AHEAD: Final = 1.2  # start radius over that of the least force; nearer, and the grid would resolve it better still
 PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "contact_radius": "pull_off_contact_radius"}
-PAST_MINIMUM: Final = 0.85  # under force control the path ends once the force has risen again to this part
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,12 +67,7 @@ def detachment_branch(
     """The stable branch from a contact radius to pull-off, or to just beyond the least force, on one grid."""
     indenter, start = _on_grid(scene, start_radius, cells, threads, log)
 
-    def enough(states: list[AdheringState]) -> bool:
-        if not to_least_force:
-            return False
-        forces = [indenter.normal_force(state) for state in states]
-        return forces[-1] > PAST_MINIMUM * min(forces) > min(forces)
-
+    enough = indenter.is_past_least_force if to_least_force else lambda _: False
     states = indenter.unload(start, enough)
     return Branch(
         contact_radius=np.array([indenter.contact_radius(state) for state in states]),

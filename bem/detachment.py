@@ -47,6 +47,7 @@ STEPS: Final = 40  # of the depth, over the critical elongation at the start
 FOLD: Final = 2e-3  # the depth of pull-off is found within this part of the critical elongation
 COLLAPSE: Final = 0.7  # a contact that shrinks below this part of its radius at a fixed depth is past the fold
 LOST: Final = 0.1  # and below this part it will not come to rest again
+PAST_LEAST_FORCE: Final = 0.85  # of the largest tension
 SOLVER_TOLERANCE: Final = 1e-3  # of the displacement under the contact; 1e-4 moves the pull-off force by 0.3 %
 
 
@@ -151,6 +152,11 @@ class AdheringIndenter:
                     break
             states.append(state)
         return states[1:]
+
+    def is_past_least_force(self, states: list[AdheringState]) -> bool:
+        """Whether the tension has fallen again, by more than the grid's noise, from its largest on these states."""
+        forces = [self.normal_force(state) for state in states]
+        return forces[-1] > PAST_LEAST_FORCE * min(forces) > min(forces)
 
     def contact_radius(self, state: AdheringState) -> float:
         """a [m] of the area, which for a contact with a singular edge is that of the effective radius as well."""

@@ -7,8 +7,9 @@ from bem.fft_table import FftTable
 from bem.flat_punch import FlatPunchSource
 from bem.integral_equation import IntegralEquation
 from bem.table_file import TableFile, read_foreign_table, read_table, write_table
-from contact import InvalidInput, Layer
+from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 from contact.storage import read_tree, write_tree
+from mdr import Mdr
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")
 
@@ -83,6 +84,20 @@ def test_a_missing_array_is_named(tmp_path):
     write_tree(tmp_path / "bad.h5", tree)
     with pytest.raises(InvalidInput, match="p_bar is missing"):
         read_foreign_table(tmp_path / "bad.h5", support="bonded", poissons_ratio=0.5)
+
+
+def test_mdr_runs_on_a_stored_table_and_on_one_in_the_layout_of_the_paper(tmp_path):
+    scene = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=0.1), loading=ContactRadii([0.5e-3, 1e-3]))
+    source, exact = FftTable(cells=64, ratios=60), Mdr().solve(scene)
+    write_table(tmp_path / "table.h5", source.solution(LAYER, 1.0))
+    stored = Mdr(flat_punch=TableFile(path=str(tmp_path / "table.h5"))).solve(scene)
+    np.testing.assert_array_equal(stored.normal_force, Mdr(flat_punch=source).solve(scene).normal_force)
+    write_tree(tmp_path / "paper.h5", supplementary())
+    foreign = TableFile(path=str(tmp_path / "paper.h5"), support="bonded", poissons_ratio=0.5)
+    force = Mdr(flat_punch=foreign).solve(scene).normal_force
+    np.testing.assert_allclose(
+        force, exact.normal_force, rtol=5e-4
+    )  # equal radii end at 0.995, short of the edge layer
 
 
 def test_a_stored_table_serves_its_own_layer_only(table, tmp_path):
