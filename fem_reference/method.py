@@ -41,8 +41,8 @@ class Fem:
     """Axisymmetric finite elements: mixed P_k-P_(k-1) on graded triangles, at every Poisson's ratio.
 
     Attributes:
-        accuracy: relative accuracy wanted in depth, force, stiffness and its derivative; the other settings are then
-            chosen (and refined until the estimated errors hold), and the values given for them are not used.
+        accuracy: relative accuracy wanted in depth, force and stiffness; the other settings are then chosen (and
+            refined until the estimated errors hold), and the values given for them are not used.
         order: degree k of the displacement, 2, 3 or 4.
         edge_cell: cell at the contact edge, relative to the smallest length there.
         growth: growth of cells per distance, and largest cell per thickness.
