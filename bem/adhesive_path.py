@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi, sqrt
+from math import pi
 from typing import Final
 
 import numpy as np
@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from bem.contact_edge import AREA_SCATTER
 from bem.detachment import FOLD, AdheringIndenter, AdheringState, strength
+from bem.grid import Grid, first_radius
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import FILL, disc, measured_disc
-from bem.pressed_state import Grid
 from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, NotConvergedError, Scene, StageLog
 from contact.validation import FloatArray
 
@@ -162,13 +162,12 @@ def _balance_radius(scene: Scene) -> float:
     """a where f(a)^2 = 2 pi dgamma a / E*, by bisection."""
     adhesion = scene.effect(Adhesion)
     work = adhesion.work_of_adhesion if adhesion is not None else 0.0
-    low, high = 1e-12, min(scene.indenter.max_radius, 1e12)
-    for _ in range(200):
-        middle = sqrt(low * high)
-        reached = float(scene.indenter.height(np.array([middle]))[0]) ** 2
-        balance = 2.0 * pi * work * middle / scene.layer.contact_modulus
-        low, high = (middle, high) if reached < balance else (low, middle)
-    return high
+
+    def outgrown(radius: float) -> bool:
+        balance = 2.0 * pi * work * radius / scene.layer.contact_modulus
+        return float(scene.indenter.height(np.array([radius]))[0]) ** 2 >= balance
+
+    return first_radius(outgrown, scene.indenter.max_radius)
 
 
 def _detachment(scene: Scene) -> Detachment:

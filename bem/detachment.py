@@ -35,8 +35,8 @@ import numpy.typing as npt
 
 from bem.conjugate_gradients import solve_on_contact
 from bem.contact_edge import AREA_SHIFT
+from bem.grid import Grid
 from bem.operators import Operator
-from bem.pressed_state import Grid
 from contact import NotConvergedError, StageLog
 from contact.validation import FloatArray
 

@@ -9,8 +9,9 @@ from typing import ClassVar, Final, Literal, Self
 import numpy as np
 
 from bem.adhesive_path import branch_errors, detachment_branch, stable_under_force, start_radius
+from bem.grid import LEAST_CELLS, Grid
 from bem.pixel_disc import THIN, PixelDisc, PunchSolution, measured_disc
-from bem.pressed_state import LEAST_CELLS, Boundary, Grid, Prescribed, Press, PressedState
+from bem.pressed_state import Boundary, Prescribed, Press, PressedState
 from bem.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from contact import (
     Adhesion,

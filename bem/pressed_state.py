@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
-from math import log, sqrt
+from math import log
 from typing import Final, Literal
 
 import numpy as np
 
 from bem.conjugate_gradients import Equilibrium, solve_contact
 from bem.contact_edge import ContactRadius, area_radius, contact_radius
+from bem.grid import Grid, first_radius, grid_sequence, prolonged
 from bem.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog
 from contact.validation import FloatArray
@@ -20,32 +20,12 @@ Boundary = Literal["free", "periodic"]
 Prescribed = Literal["radius", "depth", "force"]
 
 COARSE_CELLS: Final = 64
-LEAST_CELLS: Final = 48  # of the coarsest grid of a sequence
 FIRST_BOX: Final = (
     1.0973  # over the radius where f equals the depth; no round number: no cell centre lies on that radius
 )
 FILL: Final = 0.88  # contact radius over half the box
 IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
 RADIUS_TOLERANCE: Final = 1e-6  # relative, of a prescribed contact radius, besides its scatter
-
-
-@dataclass(frozen=True, eq=False)
-class Grid:
-    """The quadrant x, y > 0 of a square box.
-
-    Attributes:
-        cells: Cells across the whole box.
-        cell_size: s [m].
-    """
-
-    cells: int
-    cell_size: float
-
-    @cached_property
-    def radius(self) -> FloatArray:
-        """r of the cell centres [m], shape (cells/2, cells/2)."""
-        centre = self.cell_size * (np.arange(self.cells // 2) + 0.5)
-        return np.asarray(np.hypot(centre[:, None], centre))
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,12 +221,9 @@ class Press:
         return kind(self.layer, cell_size=grid.cell_size, cells=grid.cells, quarter=True, threads=self.threads)
 
     def _geometric_radius(self, depth: float) -> float:
-        """Where f equals the depth, by bisection over decades of the indenter's own lengths."""
-        low, high = 1e-12, min(self.indenter.max_radius, 1e12)
-        for _ in range(200):
-            middle = sqrt(low * high)
-            low, high = (middle, high) if self.indenter.height(np.array([middle]))[0] < depth else (low, middle)
-        return max(high, self.indenter.flat_radius)
+        """Where f equals the depth [m]."""
+        reached = first_radius(lambda r: self._depth_scale(r) >= depth, self.indenter.max_radius)
+        return max(reached, self.indenter.flat_radius)
 
     def _depth_scale(self, radius: float) -> float:
         """f at the contact radius: the depth of a thin layer, and of the right size for any."""
@@ -254,22 +231,6 @@ class Press:
 
     def _depth_of_force(self, force: float) -> float:
         """The depth at which 2 E* r f(r) equals the force, r the radius where f equals the depth."""
-        low, high = 1e-12, min(self.indenter.max_radius, 1e12)
-        for _ in range(200):
-            middle = sqrt(low * high)
-            reached = 2.0 * self.layer.contact_modulus * middle * self._depth_scale(middle)
-            low, high = (middle, high) if reached < force else (low, middle)
-        return self._depth_scale(low)
-
-
-def prolonged(field: FloatArray) -> FloatArray:
-    """The field on a grid of half the cell size, each value on four cells."""
-    return np.repeat(np.repeat(field, 2, axis=0), 2, axis=1)
-
-
-def grid_sequence(points: int) -> list[int]:
-    """points, points/2, points/4, ... as long as they are even and not below `LEAST_CELLS`; coarsest first."""
-    cells = [points]
-    while cells[-1] % 4 == 0 and cells[-1] // 2 >= LEAST_CELLS:
-        cells.append(cells[-1] // 2)
-    return cells[::-1]
+        stiffness = 2.0 * self.layer.contact_modulus
+        radius = first_radius(lambda r: stiffness * r * self._depth_scale(r) >= force, self.indenter.max_radius)
+        return self._depth_scale(radius * (1.0 - 1e-12))

@@ -14,8 +14,9 @@ from typing import Final, Protocol
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from bem.grid import Grid
 from bem.influence import REACH, correction_function
-from bem.pressed_state import Grid, PressedState
+from bem.pressed_state import PressedState
 from contact import Layer, Profile
 from contact.validation import FloatArray
 

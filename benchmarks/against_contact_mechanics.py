@@ -18,8 +18,8 @@ from collections.abc import Callable
 import numpy as np
 
 from bem.conjugate_gradients import solve_contact, solve_on_contact
+from bem.grid import prolonged
 from bem.operators import PeriodicOperator
-from bem.pressed_state import prolonged
 from contact import Layer
 
 CELLS, BOX, TOLERANCE, REPEATS = 512, 8.0, 1e-5, 5

@@ -6,10 +6,10 @@ from scipy.integrate import dblquad
 
 from bem.detachment import CELL_ENERGY, AdheringIndenter, dilated, rim, strength
 from bem.direct import Bem
+from bem.grid import Grid
 from bem.influence import rectangle_influence
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import disc
-from bem.pressed_state import Grid
 from contact import (
     Adhesion,
     Detachment,

@@ -9,10 +9,10 @@ import pytest
 from bem.conjugate_gradients import solve_contact, solve_on_contact
 from bem.direct import Bem
 from bem.fft_table import FftTable
+from bem.grid import prolonged
 from bem.integral_equation import IntegralEquation
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import PixelDisc, disc
-from bem.pressed_state import prolonged
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 
