@@ -96,6 +96,8 @@ def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[fl
     if not state.touching.any():
         return 0.0, -1.0
     forces = law.force(state.surface, state.branches, speed)
+    if bed.y.size < _FEW:  # a flat punch has no flank
+        return bed.core * float(forces[0]), 0.0
     if law.viscosity == 0.0 or speed <= 0.0:
         y = released_front(bed, state.touching, forces)
         return total_force(bed, state.touching, forces, y, 0.0), y

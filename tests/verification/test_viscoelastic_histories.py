@@ -198,6 +198,20 @@ def test_a_worn_cone_and_its_flat_end():
     assert answer.normal_force[~in_contact].max(initial=0.0) == 0.0
 
 
+def test_flat_punch_on_a_kelvin_voigt_layer():
+    """F = k_N (delta + tau v) on a ramp of depth; under a steady force delta = F/k_N (1 - exp(-t/tau))."""
+    punch, layer = FlatPunch(radius=1e-3), incompressible(1e-3, TOTAL)
+    stiffness = float(equivalent_system(layer, punch, 1e-3, Mdr().flat_punch).contact_stiffness(1e-3))
+    time = np.linspace(0.0, 4e-3, 9)
+    ramp = solve(DepthHistory(time=time, depth=0.01 * time), thickness=1e-3, model=KELVIN_VOIGT, indenter=punch)
+    np.testing.assert_allclose(ramp.normal_force[1:], stiffness * 0.01 * (time[1:] + RELAXATION_TIME), rtol=1e-12)
+    rising = ForceHistory(time=time, force=1e3 * time)
+    answer = solve(rising, thickness=1e-3, model=KELVIN_VOIGT, indenter=punch)
+    lag = RELAXATION_TIME * -np.expm1(-time / RELAXATION_TIME)
+    np.testing.assert_allclose(answer.indentation_depth, 1e3 / stiffness * (time - lag), atol=2e-3 * 4.0 / stiffness)
+    np.testing.assert_array_equal(answer.contact_radius[1:], 1e-3)
+
+
 def test_what_is_refused():
     with pytest.raises(InvalidInput, match="without adhesion nothing pulls"):
         solve(ForceHistory(time=[0.0, 1.0], force=[1.0, -1.0]))
