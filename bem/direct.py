@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import ClassVar, Final, Literal, Self
 
 import numpy as np
+from pydantic import Field
 
 from bem.adhesive_path import branch_errors, detachment_branch, stable_under_force, start_radius
 from bem.grid import LEAST_CELLS, Grid
@@ -29,6 +30,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.record import Record, record
 from contact.validation import FloatArray
 
 STIFFNESS_CELLS: Final = 256  # grid of the flat punch behind k_N: its own error is below 1e-5
@@ -36,8 +38,8 @@ PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", Indentation
 LARGEST_EXPONENTS: Final = {"indentation_depth": 2.0, "normal_force": 6.0, "contact_stiffness": 4.0}
 
 
-@dataclass(frozen=True, kw_only=True)
-class Bem:
+@record
+class Bem(Record):
     """Direct contact by FFT boundary elements.
 
     Attributes:
@@ -52,7 +54,8 @@ class Bem:
     construction. Detachment converges with about first order (`detachment`).
 
     Raises:
-        InvalidInput: If `points` is too small or no multiple of 4, or the tolerance is not in (0, 1e-2].
+        InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, or the tolerance is
+            not in (0, 1e-2].
     """
 
     name: ClassVar[str] = "bem"
@@ -60,14 +63,12 @@ class Bem:
     points: int = 512
     boundary: Boundary = "free"
     tolerance: float = 1e-7
-    threads: int = 1
+    threads: int = Field(default=1, ge=1)
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be solved."""
         if self.points < 2 * LEAST_CELLS or self.points % 4:
             raise InvalidInput(f"points must be a multiple of 4 and at least {2 * LEAST_CELLS}, got {self.points}")
-        if self.boundary not in ("free", "periodic"):
-            raise InvalidInput(f'boundary must be "free" or "periodic", got {self.boundary!r}')
         if not 0.0 < self.tolerance <= 1e-2:
             raise InvalidInput(f"tolerance must lie in (0, 0.01], got {self.tolerance:g}")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, Self
 
@@ -13,6 +12,7 @@ from bem.flat_punch_table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
 from bem.kernels import Support
 from bem.pixel_disc import GAP, THIN, PunchSolution, measured_disc
 from contact import InvalidInput, Layer
+from contact.record import Record, record
 from contact.validation import FloatArray
 
 SMALLEST_RATIO: Final = 1e-3
@@ -21,8 +21,8 @@ ERROR_FLOOR: Final = 5e-7  # conjugate gradients stop at 1e-7 of the displacemen
 SPREAD: Final = 12  # rows either side over which the error's largest value counts: a difference may cross zero
 
 
-@dataclass(frozen=True, kw_only=True)
-class FftTable:
+@record
+class FftTable(Record):
     """Flat-punch tables by the FFT boundary element method; a `FlatPunchSource`.
 
     Attributes:

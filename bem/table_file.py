@@ -7,7 +7,7 @@ row for each ratio. Our own files hold the same four, the stated error, the kern
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
 from pathlib import Path
@@ -20,6 +20,7 @@ from bem.flat_punch_table import FlatPunchTable
 from bem.influence import correction_function
 from bem.kernels import Support, zero_mode
 from contact import InvalidInput, Layer
+from contact.record import Record, record
 from contact.storage import read_tree, write_tree
 from contact.validation import FloatArray
 
@@ -93,8 +94,8 @@ def read_foreign_table(
     return replace(table, error=np.full(len(table.ratios), error))
 
 
-@dataclass(frozen=True, kw_only=True)
-class TableFile:
+@record
+class TableFile(Record):
     """A stored table as a `FlatPunchSource`.
 
     Attributes:

@@ -164,7 +164,9 @@ def test_a_contact_beyond_the_indenter_is_refused():
         solve(Sphere(radius=1e-3), IndentationDepths([3e-3]))
 
 
-@pytest.mark.parametrize("bad", [{"points": 90}, {"points": 130}, {"boundary": "open"}, {"tolerance": 0.0}])
+@pytest.mark.parametrize(
+    "bad", [{"points": 90}, {"points": 130}, {"boundary": "open"}, {"tolerance": 0.0}, {"threads": 0}]
+)
 def test_bad_settings_are_refused(bad):
     with pytest.raises(InvalidInput):
         Bem(**bad)
