@@ -58,5 +58,6 @@ def test_error_bars_cover_95_in_100_and_overestimate_less_than_tenfold():
 
 def test_error_bars_of_a_few():
     ratios = overestimates(5, seed=11)
-    assert np.mean(ratios >= 1) >= 0.95
+    assert np.sum(ratios < 1) <= 1  # 16 to 20 numbers: one miss in twenty is the promise
+    assert ratios.min() > 0.5
     assert np.median(ratios) < 20
