@@ -154,7 +154,10 @@ def gate(
 
 @app.command()
 def accept(
-    cases: Annotated[list[str], typer.Argument(metavar="CASE...", help="Cases whose numbers become the baseline.")],
+    cases: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[CASE]...", help="Cases whose numbers become the baseline; all of RUN."),
+    ] = None,
     *,
     reason: Annotated[str, typer.Option(help="Why these numbers are right; the report shows it.")],
     run: Annotated[Path, typer.Option(help="Folder of the finished run they come from.")] = Path("build/verification"),
@@ -170,7 +173,7 @@ def accept(
     from reports.commands.accept import Wish, accept_cases  # noqa: PLC0415
 
     wish = Wish(reason=reason, run=run, baselines=baseline, loosen=loosen, write=write, jobs=jobs)
-    accept_cases(cases, wish)
+    accept_cases(cases or [], wish)
 
 
 @app.command()

@@ -41,14 +41,15 @@ class Wish:
 
 
 def accept_cases(names: list[str], wish: Wish) -> None:
-    """Show for each case what would change; write it when told to.
+    """Show for each case (all of the run if none is named) what would change; write it when told to.
 
     Raises:
         InvalidInput: naming every reason why a case may not be accepted; cases before it are written then.
     """
     result = read_run(wish.run)
-    for case in select(load_cases(), names=names):
-        if case.name not in {ran.name for ran in result.cases}:
+    ran = [case.name for case in result.cases]
+    for case in select(load_cases(), names=names or ran):
+        if case.name not in ran:
             raise InvalidInput(f"the run in {wish.run} does not have {case.name}; run it first")
         _accept_case(case, result, wish)
 

@@ -57,8 +57,8 @@ def edit_results(edit):
     path.write_text(json.dumps(tree), encoding="utf-8")
 
 
-def accept_case(*more, reason="first numbers"):
-    return run(["accept", "fake_hertz", "--reason", reason, "--run", "out", *more])
+def accept_case(*more, name="fake_hertz", reason="first numbers"):
+    return run(["accept", *([name] if name else []), "--reason", reason, "--run", "out", *more])
 
 
 def gate_run(*more):
@@ -149,6 +149,13 @@ def test_a_case_that_did_not_run_cannot_be_accepted(capsys):
     edit_results(lambda tree: tree.update(cases=[]))
     assert accept_case() == 4
     assert "run it first" in capsys.readouterr().err
+
+
+@pytest.mark.usefixtures("here")
+def test_without_a_name_all_cases_of_the_run_are_accepted(tmp_path):
+    run_cases()
+    assert accept_case("--write", name="") == 0
+    assert sorted(path.name for path in (tmp_path / "baselines" / "fake_hertz").iterdir()) == ["fast.json", "slow.json"]
 
 
 @pytest.mark.usefixtures("here")
