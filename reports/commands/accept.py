@@ -44,14 +44,20 @@ def accept_cases(names: list[str], wish: Wish) -> None:
     """Show for each case (all of the run if none is named) what would change; write it when told to.
 
     Raises:
-        InvalidInput: naming every reason why a case may not be accepted; cases before it are written then.
+        InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
     """
     result = read_run(wish.run)
     ran = [case.name for case in result.cases]
+    refused: list[str] = []
     for case in select(load_cases(), names=names or ran):
         if case.name not in ran:
             raise InvalidInput(f"the run in {wish.run} does not have {case.name}; run it first")
-        _accept_case(case, result, wish)
+        try:
+            _accept_case(case, result, wish)
+        except InvalidInput as error:
+            refused.append(str(error))
+    if refused:
+        raise InvalidInput("\n".join(refused))
 
 
 def _accept_case(case: Case, result: RunResult, wish: Wish) -> None:
