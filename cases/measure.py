@@ -8,6 +8,7 @@ from cases.results import CostRecord, Curve, Quantity, Stage
 from cases.task import Sampling
 from contact import UNITS, ContactPath, Cost, HistoryPath, ImpactHistory, Solution, StageRecord
 
+_SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
 _IMPACT_SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 _ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth"}
 
@@ -30,7 +31,7 @@ def _quantity(solution: Solution, name: str, sampling: Sampling) -> Quantity:
     return Quantity(
         name=name,
         unit=UNITS.get(name, "1"),
-        scale=sampling.scales.get(name) or _size(values),
+        scale=sampling.scales.get(name) or _SCALES.get(name) or _size(values),
         values=tuple(values.tolist()),
         uncertainty=_uncertainty(solution, name, values.size),
     )
