@@ -4,7 +4,7 @@ import multiprocessing
 import signal
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from typing import ParamSpec, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 from contact import InvalidInput
 
@@ -43,15 +43,38 @@ def process_pool(jobs: int) -> Executor:
     return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_leave_interrupts)
 
 
+class DaskExecutor(Executor):
+    """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one."""
+
+    def __init__(self, address: str) -> None:
+        from distributed import Client  # noqa: PLC0415 - an optional extra
+
+        self._client = Client(address, set_as_default=False)  # type: ignore[no-untyped-call]  # ships no types
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Send ``fn`` to the cluster and return its future."""
+        future: Future[T] = Future()
+
+        def deliver(remote: Any) -> None:  # a future of the cluster; ``result`` waits if its worker died meanwhile
+            try:
+                future.set_result(remote.result())
+            except Exception as error:  # a future carries its error
+                future.set_exception(error)
+
+        remote = self._client.submit(fn, *args, pure=False, retries=2, **kwargs)
+        remote.add_done_callback(deliver)  # type: ignore[no-untyped-call]  # ships no types
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Leave the cluster; it stays up for others."""
+        self._client.close()  # type: ignore[no-untyped-call]  # ships no types
+
+
 def dask_cluster(address: str) -> ExecutorFactory:
     """Return a factory of executors on the Dask scheduler at ``address`` (optional extra ``cluster``)."""
 
     def factory(jobs: int) -> Executor:
-        from distributed import Client  # noqa: PLC0415 - an optional extra
-
-        client = Client(address, set_as_default=False)  # type: ignore[no-untyped-call]  # distributed ships no types
-        executor: Executor = client.get_executor(pure=False, retries=2)  # type: ignore[no-untyped-call]
-        return executor
+        return DaskExecutor(address)
 
     return factory
 

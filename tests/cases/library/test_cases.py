@@ -1,0 +1,59 @@
+"""Conformance of every case of the library, just by being listed."""
+
+import pytest
+
+from cases.registry import load_cases
+from cases.results import Kind, Origin
+
+CASES = load_cases()
+FAMILIES = {
+    "truncated_cone",
+    "flat_punch_stiffness",
+    "paraboloid",
+    "flat_punch_adhesion",
+    "paraboloid_adhesion",
+    "flat_punch_impact",
+    "sphere_impact",
+    "thin_layer_limits",
+    "half_space_limits",
+    "coated_pair",
+    "near_incompressible",
+}
+
+
+def test_every_family_is_there():
+    assert set(CASES) >= FAMILIES
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_a_case_asks_a_question_and_names_its_source(name):
+    case = CASES[name]
+    assert case.question.endswith("?")
+    assert case.equations
+    assert len(case.text) > 200
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_a_case_has_a_claim_that_no_own_output_decides(name):
+    case = CASES[name]
+    assert Origin.OWN_EARLIER_OUTPUT not in {claim.reason.origin for claim in case.claims}
+    assert {claim.kind for claim in case.claims} & {Kind.EXACT, Kind.AGREEMENT, Kind.ORDER}
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_an_independent_method_takes_part(name):
+    """Finite elements share nothing with MDR; a case without them would verify the kernel with itself."""
+    assert "fem" in {use.label for use in CASES[name].methods}
+    assert any(
+        "fem" in claim.labels(CASES[name], scene)
+        for claim in CASES[name].claims
+        for scene in claim.scenes_of(CASES[name])
+    )
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_every_task_can_be_planned_and_its_identity_is_unique_or_the_same_question(name):
+    tasks = {}
+    for task in CASES[name].tasks():
+        known = tasks.setdefault(task.identity, task)
+        assert (known.problem, known.solver, known.timed) == (task.problem, task.solver, task.timed), task.label
