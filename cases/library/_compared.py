@@ -24,7 +24,7 @@ FINITE_ELEMENTS = Reason(
 )
 BOUNDARY_ELEMENTS = Reason(
     because="the direct method solves the profile on a grid, without flat punches and without MDR",
-    derived_from="ten times the error of second-order boundary elements on 128 cells across the contact",
+    derived_from="twice the error that second-order boundary elements state on 128 cells across the contact",
     origin=Origin.INDEPENDENT_METHOD,
     source="FFT boundary elements; shares the layer kernel",
 )
@@ -49,6 +49,7 @@ def agreements(
     tolerances: Mapping[str, float],
     quantities: Iterable[str] = PATH_QUANTITIES,
     reason: Reason | None = None,
+    suffix: str = "",
 ) -> Iterator[Agreement]:
     """Yield the agreement of MDR with each method of ``tolerances`` on ``scenes`` in ``quantities``.
 
@@ -64,7 +65,7 @@ def agreements(
     for label, tolerance in tolerances.items():
         for quantity in quantities:
             yield Agreement(
-                name=f"{quantity.replace('_', ' ')}: MDR and {label}",
+                name=f"{quantity.replace('_', ' ')}: MDR and {label}{suffix}",
                 quantity=quantity,
                 scenes=names,
                 fast="mdr",

@@ -152,7 +152,8 @@ KENDALL = Reason(
 )
 MAXIMUM = Reason(
     because="under displacement control the contact holds until Delta l(a) is largest, Eq. (45)",
-    derived_from="six printed digits of a maximum found on a separate solution; finite elements add their 1e-4",
+    derived_from="six printed digits of a maximum found on a separate solution; finite elements add their 1e-4; "
+    "boundary elements let go cell by cell, with 59 cells across the contact that jumps",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, maximum of Eq. (42)",
 )
@@ -196,7 +197,7 @@ CLAIMS = (
             for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)
         },
         tolerance=3e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-2},
+        tolerances={"fem": 1e-3, "bem": 5e-2},
         reason=MAXIMUM,
     ),
     Exact(
