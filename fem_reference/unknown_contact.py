@@ -69,8 +69,11 @@ def edge_radius(radii: Array, pressure: Array) -> float:
     if last < 4:
         return float(radii[min(last + 1, len(radii) - 1)])
     near = slice(max(0, last - 5), last)
-    slope, offset = np.polyfit(radii[near], pressure[near] ** 2, 1)
-    return float(np.clip(-offset / slope if slope < 0 else beyond, 0.98 * radii[last], beyond))
+    r, squares = radii[near], pressure[near] ** 2
+    centre, level = float(r.mean()), float(squares.mean())
+    slope = float((r - centre) @ squares) / float((r - centre) @ (r - centre))
+    edge = centre - level / slope if slope < 0 else beyond
+    return float(min(max(edge, 0.98 * radii[last]), beyond))
 
 
 class ContactSearch:

@@ -43,6 +43,7 @@ Array = NDArray[np.float64]
 Settings = Mapping[str, bool | int | float | str | None]
 
 FITTINGS = 12
+LEAST_TRUNCATION = 1e-6  # far below the errors of cells and steps, and half the mesh of 1e-12
 
 
 @dataclass(frozen=True)
@@ -79,7 +80,7 @@ class Theatre:
         self.scene = scene
         self.relaxation = relaxation_of(scene)
         self.log = log
-        self._settings = settings
+        self._settings = replace(settings, truncation=max(settings.truncation, LEAST_TRUNCATION))
         self.resolution = resolution_of(settings)
         self._backend = backend
         moduli = self.relaxation.moduli
