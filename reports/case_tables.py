@@ -48,19 +48,26 @@ def answers(case: CaseResult) -> Table | None:
     shown = [run for run in case.runs if run.solved and run.scene in judged]
     if not shown:
         return None
-    names = tuple(dict.fromkeys(quantity.name for run in shown for quantity in run.quantities))
+    names = tuple(dict.fromkeys(quantity.name for run in shown for quantity in _final(run)))
     note = (
         "Digits in brackets: uncertainty of the last digits, stated by the method itself; (?) where it states none. "
-        "Histories and load paths show their last step; all steps, and scenes without a claim, are in results.json."
+        "Load paths show their last step, histories what they end with; all steps, and scenes without a claim, are in "
+        "results.json."
     )
     heads = ("scene", "method", *(name.replace("_", " ") for name in names), "time")
     return Table(title="Answers", note=note, heads=heads, rows=tuple(_answer_row(run, names) for run in shown), words=2)
 
 
 def _answer_row(run: SceneRun, names: Iterable[str]) -> tuple[str, ...]:
-    own = {quantity.name: quantity for quantity in run.quantities}
+    own = {quantity.name: quantity for quantity in _final(run)}
     numbers = (_last_value(own[name]) if name in own else "" for name in names)
     return run.scene, display_name(run.method), *numbers, duration(run.cost.wall_seconds) if run.cost else ""
+
+
+def _final(run: SceneRun) -> tuple[Quantity, ...]:
+    """Single numbers, such as a pull-off force, where an answer has any beside its path; else the whole path."""
+    single = tuple(quantity for quantity in run.quantities if len(quantity.values) == 1)
+    return single or run.quantities
 
 
 def _last_value(quantity: Quantity) -> str:

@@ -22,7 +22,8 @@ from reports.method_names import base_of, display_name
 from reports.plates import Plate
 from reports.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
 
-PANEL_HEIGHT, PANEL_WIDTH, NARROWEST, LEGEND_ROW = 2.75, 4.0, 4.6, 0.2  # inches
+PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 4.0, 0.2  # inches
+ALONE = 1.4  # times larger is a panel that stands alone
 HANDLE_WIDTH, LETTER_WIDTH = 0.62, 0.072  # inches, of a legend entry
 MOST_COLUMNS = 3
 NARROWEST_BAND = 1e-3
@@ -81,9 +82,12 @@ def draw(figure: Figure) -> Drawing:
     columns = _columns(figure.panels)
     rows = math.ceil(len(figure.panels) / columns)
     legend = _legend_entries(figure)
-    width = max(NARROWEST, PANEL_WIDTH * columns)
+    size = ALONE if len(figure.panels) == 1 else 1.0
+    width = size * PANEL_WIDTH * columns
     legend_rows = math.ceil(len(legend) / _entries_a_row(legend, width))
-    drawing = Drawing(figsize=(width, PANEL_HEIGHT * rows + LEGEND_ROW * legend_rows + 0.15), layout="constrained")
+    drawing = Drawing(
+        figsize=(width, size * PANEL_HEIGHT * rows + LEGEND_ROW * legend_rows + 0.15), layout="constrained"
+    )
     colours = _colours(figure)
     all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
     for axes, panel in zip(all_axes, figure.panels, strict=False):

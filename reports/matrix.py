@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import groupby
 
 from cases.results import CaseResult, Claim, Kind, RunResult
+from cases.status import Status
 from reports.method_names import display_name
 from reports.names import file_name
 from reports.outcomes import Outcome, case_outcomes, claim_outcome, severity
@@ -12,11 +13,12 @@ from reports.outcomes import Outcome, case_outcomes, claim_outcome, severity
 
 @dataclass(frozen=True, kw_only=True)
 class Cell:
-    """The word, the largest fraction of tolerance, how many checks it stands for, its colour class and reason."""
+    """The word, the largest fraction of tolerance, how many checks ran and were skipped, colour class and reason."""
 
     word: str
     fraction: str
     checks: int
+    skipped: int
     tone: str
     title: str
 
@@ -83,9 +85,14 @@ def _names(methods: Iterable[str]) -> str:
 
 
 def _cell(rows: Iterable[Outcome]) -> Cell | None:
+    """The worst of some checks; those that were skipped are counted apart, unless all were."""
     ordered = sorted(rows, key=severity)
     if not ordered:
         return None
-    worst = ordered[0]
+    ran = [row for row in ordered if row.status is not Status.SKIP] or ordered
+    worst = ran[0]
     title = f"{worst.name} ({worst.who}): {worst.message}" if worst.message else f"{worst.name} ({worst.who})"
-    return Cell(word=worst.word, fraction=worst.fraction_text, checks=len(ordered), tone=worst.tone, title=title)
+    skipped = len(ordered) - len(ran)
+    return Cell(
+        word=worst.word, fraction=worst.fraction_text, checks=len(ran), skipped=skipped, tone=worst.tone, title=title
+    )

@@ -18,8 +18,9 @@ COLUMNS = (
     "scale", "formal_order", "observed_order", "digits_per_refinement",
 )  # fmt: skip
 CAPTION = (
-    "Symbols: error against the reference, relative to the scale of the quantity. Bars: what the method itself "
-    "estimates from its own refinements (grid convergence index); a bar that reaches its symbol covers the error. "
+    "Symbols: distance to the reference, relative to the scale of the quantity; without a reference, distance to the "
+    "value extrapolated from the refinements, or to that of the finest grid where none was extrapolated. Bars: error "
+    "that the refinements themselves suggest (grid convergence index); a bar that reaches its symbol covers the error. "
     "Dashes: formal order. In brackets: observed order, or digits gained per refinement where convergence is spectral."
 )
 
@@ -68,12 +69,12 @@ def draw(panels: Sequence[Sequence[ConvergenceStudy]]) -> Drawing:
 def _draw_panel(axes: Axes, studies: Sequence[ConvergenceStudy]) -> None:
     first = studies[0]
     quantity = first.quantity.replace("_", " ")
-    axes.set(xscale="log", yscale="log", xlabel="discretisation length", ylabel=f"relative error of {quantity}")
+    axes.set(xscale="log", yscale="log", xlabel="relative discretisation length", ylabel=f"distance of {quantity}")
     axes.set_title(first.scene)
     for study in studies:
         _draw_study(axes, study)
     if not axes.lines:
-        axes.text(0.5, 0.5, "no error above round-off", transform=axes.transAxes, ha="center")
+        axes.text(0.5, 0.5, "all refinements give the same digits", transform=axes.transAxes, ha="center")
         return
     for study in studies:
         _draw_bars(axes, study)
@@ -84,15 +85,25 @@ def _draw_panel(axes: Axes, studies: Sequence[ConvergenceStudy]) -> None:
 
 def _draw_study(axes: Axes, study: ConvergenceStudy) -> None:
     look = look_of(study.method)
-    label = f"{display_name(study.method)}, {study.mesh_family} ({_speed(study)})"
-    shown = [(grid.length, grid.error / study.scale) for grid in study.grids if grid.error]
+    shown = distances(study)
     if not shown:
         return
     lengths, errors = zip(*shown, strict=True)
+    label = f"{display_name(study.method)} ({_speed(study)})"
     axes.plot(lengths, errors, color=look.colour, linestyle=":", linewidth=0.8, marker=look.marker, label=label)
     if study.formal_order is not None:
         line = [errors[0] * (length / lengths[0]) ** study.formal_order for length in lengths]
         axes.plot(lengths, line, color=GREY, linestyle="--", linewidth=1.0, zorder=1.5)
+
+
+def distances(study: ConvergenceStudy) -> list[tuple[float, float]]:
+    """Length and relative distance to the best value there is, finest first; a distance of zero has no logarithm."""
+    best = study.extrapolated if study.extrapolated is not None else study.grids[0].value
+    found = (
+        (grid.length, (abs(grid.value - best) if grid.error is None else grid.error) / study.scale)
+        for grid in study.grids
+    )
+    return [(length, distance) for length, distance in found if distance > 0.0]
 
 
 def _draw_bars(axes: Axes, study: ConvergenceStudy) -> None:

@@ -35,7 +35,9 @@ def test_headline_and_first_failure_stand_on_the_first_screen(measured):
 def test_a_failure_stands_on_the_first_screen_of_a_long_report_too(tmp_path):
     many = tuple(dataclasses.replace(failing_case(), name=f"failing_{i}") for i in range(12))
     page = write_report(dataclasses.replace(example_run(), cases=many), tmp_path)
-    assert measure(page)["worst"][3] < HEIGHT
+    seen = measure(page)
+    assert seen["worst"][3] < HEIGHT
+    assert seen["page_width"] <= WIDTH
 
 
 def test_no_label_of_a_figure_is_clipped(measured):

@@ -151,6 +151,17 @@ def test_convergence_data_equal_the_records_digit_for_digit():
     assert [(float(row["length"]), float(row["value"]), float(row["error"])) for row in table_of(plate)] == expected
 
 
+def test_convergence_without_a_reference_shows_distances_to_the_extrapolated_value():
+    study = passing_case().convergence[0]
+    grids = tuple(dataclasses.replace(grid, error=None) for grid in study.grids)
+    without = dataclasses.replace(study, grids=grids, reference=None)
+    # the fabricated study extrapolates to its reference
+    for shown, expected in zip(convergence.distances(without), convergence.distances(study), strict=True):
+        assert shown == pytest.approx(expected)
+    finest = convergence.distances(dataclasses.replace(without, extrapolated=None))
+    assert len(finest) == len(grids) - 1  # the finest is what the others are compared with
+
+
 def test_work_precision_data_equal_the_records_and_failures_keep_their_reason():
     (plate,) = work_precision.plates(passing_case(), "again")
     points = passing_case().work_precision[0].points
