@@ -170,7 +170,7 @@ def fitted(label: str) -> dict[str, tuple[float, ...]]:
 
 SEPARATE_SOLUTION = Reason(
     because="the Fredholm equation of the flat punch, solved radius by radius to 1e-12",
-    derived_from="twelve digits; finite elements ten times their accuracy; boundary elements and table ten times "
+    derived_from="twelve digits; finite elements three times their accuracy; boundary elements and table ten times "
     "what they state",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, separate code",

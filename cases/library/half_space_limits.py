@@ -114,8 +114,8 @@ def confinement(scene: Scene) -> float:
 
 SNEDDON = Reason(
     because="linear elasticity on the half-space, solved by Sneddon",
-    derived_from="MDR and the integral equation: quadrature to 1e-12; finite elements ten times their accuracy of "
-    "1e-6; boundary elements second order on 128 cells across the contact",
+    derived_from="MDR and the integral equation: quadrature to 1e-12; finite elements three times their accuracy "
+    "of 3e-6; boundary elements second order on 128 cells across the contact",
     origin=Origin.CLOSED_FORM,
     source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
 )

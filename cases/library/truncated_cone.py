@@ -39,7 +39,7 @@ HALF_SPACE_FLATS = (0.25, 0.5, 0.75, 0.9)
 RINGS = (0.0, 0.4, FLAT_FRACTION, 0.6, 0.8, 1.0)
 
 MDR = MethodUse(label="mdr")
-FEM = MethodUse(label="fem", settings={"accuracy": 1e-6})
+FEM = MethodUse(label="fem", settings={"accuracy": 3e-6})
 QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
 
 TEXT = """
@@ -218,19 +218,19 @@ def tabulated_forces() -> dict[str, tuple[float, ...]]:
 
 SNEDDON = Reason(
     because="linear elasticity on the half-space, solved by Sneddon",
-    derived_from="MDR: quadrature to 1e-12 with two digits to spare; FEM: ten times its accuracy of 1e-6",
+    derived_from="MDR: quadrature to 1e-12 with two digits to spare; FEM: three times its accuracy of 3e-6",
     origin=Origin.CLOSED_FORM,
     source="Popov, Hess, Willert: Handbook of Contact Mechanics (2019), truncated cone",
 )
 DIRECT_SOLUTION = Reason(
     because="the same Fredholm equation, solved radius by radius for the profile instead of factorised",
-    derived_from="half a unit of the sixth decimal over the smallest value, 0.33; FEM adds its 1e-6",
+    derived_from="half a unit of the sixth decimal over the smallest value, 0.33; FEM adds its 3e-6",
     origin=Origin.INDEPENDENT_METHOD,
     source="direct Nystrom solution with the rule split at r = b, twelve digits stable over the node count",
 )
 FINITE_ELEMENTS = Reason(
     because="both solve the same linear elastic layer; they share no input",
-    derived_from="ten times the finite element accuracy of 1e-6; MDR's own error is below 1e-9",
+    derived_from="three times the finite element accuracy of 3e-6; MDR's own error is below 1e-9",
     origin=Origin.INDEPENDENT_METHOD,
     source="axisymmetric mixed finite elements",
 )
@@ -252,7 +252,7 @@ DIMENSIONS = Reason(
 )
 UNBONDED_KERNEL = Reason(
     because="at given E* the kernel of the unbonded layer has no nu",
-    derived_from="MDR: the same equation; FEM: another problem with another nu, ten times its accuracy of 1e-6",
+    derived_from="MDR: the same equation; FEM: another problem with another nu, three times its accuracy of 3e-6",
     origin=Origin.CLOSED_FORM,
     source="Eq. (29)",
 )
@@ -282,7 +282,7 @@ EXACT = (
         quantity="indentation_depth",
         expected=tabulated_depths(),
         tolerance=1.6e-6,
-        tolerances={"fem": 3e-6},
+        tolerances={"fem": 5e-6},
         reason=DIRECT_SOLUTION,
     ),
     Exact(
@@ -290,7 +290,7 @@ EXACT = (
         quantity="normal_force",
         expected=tabulated_forces(),
         tolerance=1.6e-6,
-        tolerances={"fem": 3e-6},
+        tolerances={"fem": 5e-6},
         reason=DIRECT_SOLUTION,
     ),
 )
