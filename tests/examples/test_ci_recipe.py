@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from reports.command_line import run
+
 ROOT = Path(__file__).parents[2]
 RECIPE = ROOT / "examples" / "ci" / "verify.sh"
 WORKFLOW = ROOT / "examples" / "ci" / "github-actions.yml"
@@ -74,3 +76,10 @@ def test_workflow_runs_the_recipe_and_keeps_what_it_writes(tmp_path):
         assert (tmp_path / kept).exists(), kept
     assert "make setup" in workflow
     assert re.search(r"^setup:", (ROOT / "Makefile").read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def test_gate_line_of_the_readme_uses_options_that_exist(capsys):
+    readme = (ROOT / "examples" / "ci" / "README.md").read_text(encoding="utf-8")
+    (line,) = re.findall(r"^contact-verify (gate .*)$", readme, re.MULTILINE)
+    assert run([*line.split(), "--help"]) == 0
+    assert "--baseline" in capsys.readouterr().out
