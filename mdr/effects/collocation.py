@@ -26,11 +26,11 @@ Derivative: TypeAlias = Callable[[FloatArray], FloatArray]
 STAGES = 10
 _SWEEPS = 24  # a step that needs more is too long
 _SWEEP_TOLERANCE = 0.05  # of the tolerance of a step
-_SAFETY, _SHRINK, _GROW = 0.85, 0.25, 1.5
+_SAFETY, _SHRINK, _GROW = 0.85, 0.25, 1.3
 _ALMOST = 1.6  # an event that lies so little beyond a step is landed on at once
 _STIFF = 0.02  # a step this short should converge by sweeps; where it does not, Newton's method takes over
 _DIFFERENCE = 1e-7  # of a state: to differentiate its slopes
-_PATIENCE, _SLOW = 4, 0.5  # after four sweeps, a lane whose change shrinks by less than this factor is given up
+_PATIENCE, _SLOW = 6, 0.6  # after six sweeps, a lane whose change shrinks by less than this factor is given up
 
 _POINTS, _GAUSS_WEIGHTS = legendre.leggauss(STAGES)
 _ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(_POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T

@@ -15,7 +15,7 @@ from mdr.effects.impact_memory import Memory, memory_of
 TURN, SECTION_END = 0, 1  # the events that end a section of the way in
 
 
-_FIRST_STEP = 0.5  # of the way that an elastic impact of the same energy goes
+_FIRST_STEP = 0.4  # of the way that an elastic impact of the same energy goes
 
 _AT_ONCE = 1e6  # back through an earlier step of the way in: try it in one step
 _AFTER_TURN = 0.4  # of the step before it; the front leaves its turn faster than it came

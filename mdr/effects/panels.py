@@ -120,7 +120,8 @@ class Piecewise:
     def __call__(self, y: FloatArray, rows: slice, first: int = 0, last: int | None = None) -> FloatArray:
         """Some of the functions at y of any shape, by the panels from `first` to before `last` only."""
         end = self.centres.size if last is None else last
-        panel = np.minimum(np.maximum(np.searchsorted(self.edges, y, side="right") - 1, first), end - 1)
+        inner = self.edges[first + 1 : end]  # panels are found by the edges between them: none lies outside
+        panel = inner.searchsorted(y, side="right") + first
         z = (y - self.centres.take(panel)) * self.scales.take(panel)
         ladder, powers = chebyshev.powers(z, self.powers.shape[0]), self.powers[:, rows].take(panel, axis=2)
         return np.asarray(np.einsum("kr...,k...->r...", powers, ladder))

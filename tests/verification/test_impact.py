@@ -287,7 +287,7 @@ def test_an_indenter_that_stays_is_refused():
     scene = Scene(
         layer=layer, indenter=FlatPunch(radius=1e-3), loading=Impact(mass=1e-3, velocity=0.01), effects=(model,)
     )
-    with pytest.raises(NotConvergedError, match="does not rebound"):
+    with pytest.raises(NotConvergedError, match=r"does not rebound|did not end"):
         history(scene)
 
 
