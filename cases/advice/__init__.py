@@ -1,0 +1,12 @@
+"""Only what a scene calls for: what each effect costs and moves, and which could be dropped at a wanted accuracy.
+
+- ``ablation``: one solution without each effect, and without the finite thickness
+- ``numbers``: dimensionless numbers with their meaning and limit
+- ``advise``: both, as advice
+"""
+
+from cases.advice.ablation import Ablation, ablations
+from cases.advice.advise import Advice, advise
+from cases.advice.numbers import Number, numbers
+
+__all__ = ["Ablation", "Advice", "Number", "ablations", "advise", "numbers"]

@@ -1,0 +1,73 @@
+"""Which effects, and which finite thickness, a scene needs at a wanted accuracy: solved with and without."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cases.advice.ablation import Ablation, ablations, change_without
+from cases.advice.numbers import Number, numbers
+from contact import InvalidInput, Method, Scene
+
+
+@dataclass(frozen=True, kw_only=True)
+class Advice:
+    """What matters.
+
+    Attributes:
+        accuracy: Wanted relative accuracy.
+        needed: Parts of the scene that move a quantity by more than that.
+        droppable: Parts that may be left out, each by itself.
+        together: Largest relative change with all droppable parts left out at once; zero if there are none.
+        numbers: Dimensionless numbers of the scene, with their meaning.
+    """
+
+    accuracy: float
+    needed: tuple[Ablation, ...]
+    droppable: tuple[Ablation, ...]
+    together: float
+    numbers: tuple[Number, ...]
+
+    @property
+    def lines(self) -> list[str]:
+        """The advice in sentences."""
+        found = [f"needed at {self.accuracy:g}: {part.line}" for part in self.needed]
+        found += [f"may be dropped at {self.accuracy:g}: {part.line}" for part in self.droppable]
+        if len(self.droppable) > 1:
+            found.append(f"all of these dropped at once move a quantity by {100 * self.together:.2g} %")
+        found += [f"{number.name} = {number.value:.3g}: {number.meaning}" for number in self.numbers]
+        return found
+
+
+def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
+    """Solve the scene with and without each of its parts.
+
+    Args:
+        method: What to solve with.
+        scene: The whole scene.
+        accuracy: Largest relative change that does not matter.
+
+    Raises:
+        InvalidInput: If the accuracy is no relative error.
+        ContactError: If the method does not solve the whole scene.
+    """
+    if not 0.0 < accuracy < 1.0:
+        raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative change")
+    parts = ablations(method, scene)
+    droppable = tuple(part for part in parts if not part.matters(accuracy))
+    together, droppable = _together(method, scene, droppable, accuracy)
+    needed = tuple(part for part in parts if part not in droppable)
+    found = numbers(scene, method.solve(scene))
+    return Advice(accuracy=accuracy, needed=needed, droppable=droppable, together=together, numbers=tuple(found))
+
+
+def _together(
+    method: Method, scene: Scene, droppable: tuple[Ablation, ...], accuracy: float
+) -> tuple[float, tuple[Ablation, ...]]:
+    """Small changes may add up: as long as they do, the part that moves most is needed after all."""
+    while len(droppable) > 1:
+        change = change_without(method, scene, [part.part for part in droppable])
+        if change <= accuracy:
+            return change, droppable
+        most = max(droppable, key=lambda part: part.largest_change)
+        droppable = tuple(part for part in droppable if part is not most)
+    return max((part.largest_change for part in droppable), default=0.0), droppable

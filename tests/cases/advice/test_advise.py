@@ -1,0 +1,114 @@
+"""Advice agrees with solving with and without; what is dropped moves less than the accuracy."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import pytest
+
+from cases.advice import ablations, advise
+from contact import (
+    Adhesion,
+    ContactRadii,
+    Detachment,
+    Impact,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Paraboloid,
+    Scene,
+    StandardSolid,
+)
+from mdr import Mdr
+
+SOFT = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
+BALL = Paraboloid(radius_of_curvature=1e-2)
+
+
+def impact(relaxation_time):
+    solid = StandardSolid(long_term_shear_modulus=5e5, maxwell_shear_modulus=5e5, viscosity=5e5 * relaxation_time)
+    return Scene(layer=SOFT, indenter=BALL, loading=Impact(mass=1e-3, velocity=0.1), effects=(solid,))
+
+
+def part(advice, name):
+    return next(p for p in (*advice.needed, *advice.droppable) if p.part == name)
+
+
+def test_a_slow_relaxation_may_be_dropped_and_a_fast_one_not():
+    slow, fast = advise(Mdr(), impact(1e3), 1e-2), advise(Mdr(), impact(1e-3), 1e-2)
+    assert "StandardSolid" in {p.part for p in slow.droppable}
+    assert "StandardSolid" in {p.part for p in fast.needed}
+    assert part(fast, "StandardSolid").changes["coefficient_of_restitution"] > 0.1
+
+
+def test_the_changes_are_those_of_solving_with_and_without():
+    scene = impact(1e-3)
+    change = ablations(Mdr(), scene)[0].changes["peak_force"]
+    elastic = Mdr().solve(scene.replace(effects=()))
+    whole = Mdr().solve(scene)
+    assert change == pytest.approx(abs(whole.peak_force - elastic.peak_force) / whole.peak_force, rel=1e-12)
+
+
+@pytest.mark.parametrize(("ratio", "needed"), [(1e-3, False), (0.3, True)])
+def test_a_thick_layer_is_a_half_space(ratio, needed):
+    radius = ratio * SOFT.thickness
+    scene = Scene(layer=SOFT, indenter=BALL, loading=ContactRadii([radius]))
+    advice = advise(Mdr(), scene, 1e-2)
+    assert ("finite thickness" in {p.part for p in advice.needed}) is needed
+    assert advice.numbers[0].value == pytest.approx(ratio)
+
+
+def test_weak_adhesion_may_be_dropped():
+    weak, strong = (
+        advise(
+            Mdr(),
+            Scene(
+                layer=SOFT,
+                indenter=BALL,
+                loading=IndentationDepths([1e-5]),
+                effects=(Adhesion(work_of_adhesion=work),),
+            ),
+            1e-2,
+        )
+        for work in (1e-9, 1e-1)
+    )
+    assert "Adhesion" in {p.part for p in weak.droppable}
+    assert "Adhesion" in {p.part for p in strong.needed}
+
+
+def test_a_detachment_is_nothing_without_adhesion():
+    scene = Scene(layer=SOFT, indenter=BALL, loading=Detachment(), effects=(Adhesion(work_of_adhesion=0.1),))
+    assert "nothing pulls" in part(advise(Mdr(), scene, 0.5), "Adhesion").line
+
+
+def test_small_changes_that_add_up_are_not_dropped_together():
+    class TwoHalves:
+        """Moves the force by 0.8 % for either part left out, so by 1.6 % for both."""
+
+        name = "two halves"
+
+        def solve(self, scene):
+            path = Mdr().solve(scene.replace(effects=()))
+            missing = (not scene.effects) + scene.layer.is_half_space
+            whole = Mdr().solve(Scene(layer=SOFT, indenter=BALL, loading=ContactRadii([1e-6])))
+            return dataclasses.replace(
+                path,
+                indentation_depth=whole.indentation_depth,
+                normal_force=whole.normal_force * (1 + 0.008 * missing),
+            )
+
+    scene = Scene(layer=SOFT, indenter=BALL, loading=ContactRadii([1e-6]), effects=(Adhesion(work_of_adhesion=1e-9),))
+    advice = advise(TwoHalves(), scene, 1e-2)
+    assert len(advice.droppable) == len(advice.needed) == 1
+
+
+def test_every_number_comes_with_its_meaning():
+    advice = advise(Mdr(), impact(1e-3), 1e-2)
+    assert {n.name for n in advice.numbers} == {"a/h", "delta/min(a, h)", "tau/T", "inertia of the layer"}
+    assert all(number.meaning for number in advice.numbers)
+    assert any(line.startswith("needed at 0.01: ") for line in advice.lines)
+
+
+def test_an_accuracy_that_is_none_is_refused():
+    with pytest.raises(InvalidInput, match="must lie between 0 and 1"):
+        advise(Mdr(), impact(1.0), 2.0)
