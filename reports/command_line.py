@@ -181,11 +181,21 @@ def solve(
     scene: Annotated[Path, typer.Argument(help="Scene in TOML: tables layer, indenter, loading and effects.")],
     *,
     method: Annotated[
-        str, typer.Option(help="mdr, mdr_table, fem, bem, integral_equation, or a registered one.")
-    ] = "mdr",
+        str,
+        typer.Option(help="mdr (the default), mdr_table, fem, bem, integral_equation, or a registered one."),
+    ] = "",
     accuracy: Annotated[
         float | None,
-        typer.Option(help="Relative accuracy of the force: chooses the settings, and refuses an answer that is less."),
+        typer.Option(
+            help="Relative accuracy: chooses method and settings from measured evidence, and refuses an answer that is "
+            "less."
+        ),
+    ] = None,
+    within: Annotated[
+        float | None, typer.Option(metavar="SECONDS", help="Processor time that --accuracy may take.")
+    ] = None,
+    evidence: Annotated[
+        Path | None, typer.Option(help="Measurements of this machine from calibrate, in place of those shipped.")
     ] = None,
     write: Annotated[
         list[Path] | None,
@@ -199,7 +209,56 @@ def solve(
     """
     from reports.commands.solve import solve as run_command  # noqa: PLC0415
 
-    run_command(scene, method=method, accuracy=accuracy, outputs=write or [])
+    run_command(scene, method=method, accuracy=accuracy, outputs=write or [], within=within, evidence=evidence)
+
+
+@app.command()
+def advise(
+    scene: Annotated[Path, typer.Argument(help="Scene in TOML.")],
+    accuracy: Annotated[float, typer.Option(help="Relative change that does not matter.")] = 1e-2,
+    method: Annotated[str, typer.Option(help="Method that solves with and without.")] = "mdr",
+) -> None:
+    """Say which effects, and whether the layer's finite thickness, matter at an accuracy: solved with and without."""
+    from reports.commands.hard import advise as run_command  # noqa: PLC0415
+
+    run_command(scene, accuracy, method)
+
+
+@app.command()
+def ladders(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only ladders with such a name.")
+    ] = None,
+    method: Annotated[str, typer.Option(help="Method that climbs.")] = "mdr",
+) -> int:
+    """Walk hard parameters until something breaks: digits left, and the rung where a method gives up by name."""
+    from reports.commands.hard import ladders as run_command  # noqa: PLC0415
+
+    return run_command(names or [], method)
+
+
+@app.command()
+def calibrate(
+    out: Annotated[Path, typer.Argument(help="File for the measurements, JSON.")],
+    seed: Annotated[int, typer.Option(help="Of the random scenes.")] = 1,
+) -> None:
+    """Measure on this machine how accurate and how fast the settings are; takes some minutes, alone on the machine."""
+    from reports.commands.hard import calibrate as run_command  # noqa: PLC0415
+
+    run_command(out, seed)
+
+
+@app.command()
+def campaign(
+    family: Annotated[str, typer.Argument(help="elastic, adhesive, impact or history.")] = "elastic",
+    method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
+    count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
+    seed: Annotated[int, typer.Option(help="Of the scenes.")] = 1,
+) -> int:
+    """Solve random scenes and check each answer: within its stated error of an independent one, or refused by name."""
+    from reports.commands.hard import campaign as run_command  # noqa: PLC0415
+
+    return run_command(method, family, count, seed)
 
 
 @app.command()

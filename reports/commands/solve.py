@@ -6,15 +6,26 @@ from pathlib import Path
 import numpy as np
 
 from cases.methods import build, load
-from contact import InvalidInput, Method, NotConvergedError, Solution, load_scene
+from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
+from reports.numbers import duration
 from reports.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal import console, show_facts, show_table
 
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG"}
 
 
-def solve(scene_file: Path, *, method: str, accuracy: float | None, outputs: list[Path]) -> None:
+def solve(
+    scene_file: Path,
+    *,
+    method: str,
+    accuracy: float | None,
+    outputs: list[Path],
+    within: float | None = None,
+    evidence: Path | None = None,
+) -> None:
     """Solve the scene of a TOML file, print the answer and write it to `outputs`, whose endings choose the format.
+
+    With an accuracy and no method, both method and settings come from measured evidence.
 
     Raises:
         InvalidInput: for a wrong scene, method or ending; before anything is solved.
@@ -22,15 +33,37 @@ def solve(scene_file: Path, *, method: str, accuracy: float | None, outputs: lis
     for path in outputs:
         _check_ending(path)
     scene = load_scene(scene_file)
-    solution = _solver(method, accuracy).solve(scene)
+    facts: list[tuple[str, str]] = []
+    if accuracy is not None and not method:
+        solution, facts = _by_evidence(scene, accuracy, within, evidence)
+    else:
+        solution = _solver(method or "mdr", accuracy).solve(scene)
     if accuracy is not None:
         _refuse_less(solution, accuracy)
     terminal = console()
     show_table(solution_table(solution), on=terminal)
-    show_facts(solution_facts(solution), on=terminal)
+    show_facts(solution_facts(solution) + facts, on=terminal)
     for path in outputs:
         _write(solution, path)
         terminal.print(f"written: {path}")
+
+
+def _by_evidence(
+    scene: Scene, accuracy: float, within: float | None, file: Path | None
+) -> tuple[Solution, list[tuple[str, str]]]:
+    """The answer with measured settings, and what was expected of them."""
+    from cases.evidence import solve_to_accuracy  # noqa: PLC0415 - only where it is asked for
+    from cases.evidence.records import read  # noqa: PLC0415 - as above
+
+    found = solve_to_accuracy(scene, accuracy, within=within, evidence=None if file is None else read(file))
+    choice = found.choice
+    settings = ", ".join(f"{name} = {value}" for name, value in choice.settings.items())
+    expected = f"error {choice.expected_error:.1e} in {duration(choice.expected_seconds)}"
+    return found.answer, [
+        ("chosen", f"{choice.method} ({settings}), measured on {choice.evidence.scenes} scenes"),
+        ("expected", expected),
+        ("achieved", f"stated error {found.stated_error:.1e} in {duration(found.seconds)} of processor time"),
+    ]
 
 
 def _solver(name: str, accuracy: float | None) -> Method:

@@ -18,7 +18,22 @@ from reports.commands.run import only_methods
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 
-COMMANDS = ("list", "show", "validate", "run", "report", "solve", "schema", "explain", "gate", "accept")
+COMMANDS = (
+    "list",
+    "show",
+    "validate",
+    "run",
+    "report",
+    "solve",
+    "schema",
+    "explain",
+    "gate",
+    "accept",
+    "advise",
+    "ladders",
+    "calibrate",
+    "campaign",
+)
 HERTZ = """
 [layer]
 half_space = true

@@ -1,0 +1,193 @@
+"""Measure accuracy and time of settings on random scenes of each kind, on this machine."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from cases.evidence.kinds import BANDS, kind_of, rough_radius
+from cases.evidence.records import Evidence, Measurement
+from cases.methods import build
+from cases.stability.campaign import IMPACT_NUMBERS
+from cases.stability.random_scenes import Family, random_scene
+from cases.stability.second_opinion import second_opinion
+from contact import ContactError, ContactPath, ImpactHistory, Method, Scene, Solution
+from contact.validation import FloatArray
+
+FAMILIES: Final[Mapping[str, Family]] = {
+    "radii": "elastic",
+    "equilibrium": "elastic",
+    "detachment": "adhesive",
+    "impact": "impact",
+    "history": "history",
+}
+SMALLEST_RATIO: Final = 1e-3
+SAMPLE: Final = 16
+_FINE_REFERENCE: Final = 1e-10
+_LEAST_BOUND: Final = 1e-15
+_MOST_DRAWS: Final = 60  # for each scene of a sample
+
+
+@dataclass(frozen=True, kw_only=True)
+class Candidate:
+    """A setting worth measuring: of a method, for some kinds of scenes, on a sample of some size."""
+
+    method: str
+    settings: Mapping[str, bool | int | float | str]
+    kinds: tuple[str, ...]
+    sample: int = SAMPLE
+
+
+_STATIC: Final = ("radii", "equilibrium")
+_IN_TIME: Final = ("impact", "history")
+CANDIDATES: Final[tuple[Candidate, ...]] = (
+    *(
+        Candidate(method="mdr", settings={"nodes": nodes}, kinds=_STATIC)
+        for nodes in (12, 14, 16, 20, 24)  # fewer are slower: the profile is resolved with as many on a piece
+    ),
+    *(Candidate(method="mdr", settings={"nodes": nodes}, kinds=("detachment",), sample=8) for nodes in (12, 16, 24)),
+    *(
+        Candidate(method="mdr", settings={"accuracy": accuracy}, kinds=_IN_TIME, sample=8)
+        for accuracy in (1e-5, 1e-7, 1e-9, 1e-11)
+    ),
+    *(
+        Candidate(method="fem", settings={"accuracy": accuracy}, kinds=("radii",), sample=4)
+        for accuracy in (1e-2, 1e-3, 1e-4, 1e-5)
+    ),
+)
+
+
+class CoarseReference(Exception):
+    """The reference knows a scene too poorly to measure anything with it: a contact that hardly leaves its flat end."""
+
+
+def calibrate(
+    *,
+    seed: int,
+    candidates: Iterable[Candidate] = CANDIDATES,
+    bands: tuple[float, ...] = BANDS,
+    revision: str = "unknown",
+    progress: Callable[[str], None] = lambda _: None,
+) -> Evidence:
+    """Measure each candidate on samples of scenes; seconds are processor time of a first solution.
+
+    Args:
+        seed: Of the scenes.
+        candidates: What is measured.
+        bands: Upper ends of a/h.
+        revision: Of the source, for the record.
+        progress: Called with one line for each measurement.
+    """
+    found = []
+    runs = ((candidate, kind, band) for candidate in candidates for kind in candidate.kinds for band in bands)
+    for candidate, kind, band in runs:
+        measurement = measure(candidate, kind, band, sample_of(seed, kind, band, candidate.sample))
+        if measurement is not None:
+            progress(f"{candidate.method} {dict(candidate.settings)} {kind} a/h <= {band:g}: {measurement.bound:.1e}")
+            found.append(measurement)
+    machine = platform.processor() or platform.machine()
+    return Evidence(machine=machine, revision=revision, seed=seed, measurements=tuple(found))
+
+
+def sample_of(seed: int, kind: str, band: float, count: int) -> list[Scene]:
+    """Scenes of one kind whose rough a/h lies in one band."""
+    return list(_drawn(seed, kind, band, count))
+
+
+def _drawn(seed: int, kind: str, band: float, count: int) -> Iterator[Scene]:
+    lower = max((b for b in BANDS if b < band), default=SMALLEST_RATIO)
+    left = count
+    for number in range(_MOST_DRAWS * count):
+        scene = random_scene(np.random.default_rng([seed, number]), FAMILIES[kind], (lower, band))
+        if kind_of(scene) != kind or not rough_radius(scene) <= band * scene.layer.thickness:
+            continue
+        yield scene
+        left -= 1
+        if left == 0:
+            return
+
+
+def measure(candidate: Candidate, kind: str, band: float, scenes: list[Scene]) -> Measurement | None:
+    """The largest U, or stated error, and the median time over the scenes; None if all were refused."""
+    bounds, seconds, refused = [], [], 0
+    for scene in scenes:
+        try:
+            answer, spent = _first_solution(build(candidate.method, candidate.settings), scene)
+            bounds.append(max(error_bound(answer), largest_stated_error(answer)))  # a user sees the stated one
+            seconds.append(spent)
+        except ContactError:
+            refused += 1
+        except CoarseReference:
+            continue
+    if not bounds:
+        return None
+    return Measurement(
+        kind=kind,
+        band=band,
+        method=candidate.method,
+        settings=dict(candidate.settings),
+        bound=max(*bounds, _LEAST_BOUND),
+        seconds=float(np.median(seconds)),
+        scenes=len(bounds) + refused,
+        refused=refused,
+    )
+
+
+def _first_solution(method: Method, scene: Scene) -> tuple[Solution, float]:
+    """Answer and processor time without anything cached from earlier scenes."""
+    forget()
+    start = time.process_time()
+    answer = method.solve(scene)
+    return answer, time.process_time() - start
+
+
+def forget() -> None:
+    """Empty the caches of flat-punch data, so that a first solution is timed."""
+    from bem import integral_equation  # noqa: PLC0415 - only where it is measured
+
+    integral_equation._solution.cache_clear()
+
+
+def largest_stated_error(answer: Solution) -> float:
+    """The largest relative error the answer states for any of its quantities."""
+    return max((float(np.max(error)) for error in answer.error_estimate.values()), default=0.0)
+
+
+def error_bound(answer: Solution) -> float:
+    """U = error + reference uncertainty of the worst quantity, relative.
+
+    The reference is the second opinion for elastic paths, otherwise the fast method at its finest.
+    """
+    if isinstance(answer, ContactPath):
+        opinion = second_opinion(answer)
+        if opinion.uncertainty.max() > _FINE_REFERENCE:
+            raise CoarseReference
+        return max(
+            float(np.max(np.abs(getattr(answer, q) / value - 1.0) + opinion.uncertainty))
+            for q, value in opinion.values.items()
+        )
+    finest = build("mdr", {"accuracy": 1e-12, "nodes": 32}).solve(answer.scene)
+    names = IMPACT_NUMBERS if isinstance(answer, ImpactHistory) else _common(answer, finest)
+    return max(_distance(answer, finest, q) for q in names)
+
+
+def _common(answer: Solution, finest: Solution) -> tuple[str, ...]:
+    """Stated quantities; along a detachment's branch only its critical numbers stand at the same state."""
+    names = answer.SCALARS or tuple(answer.error_estimate)
+    return tuple(
+        q for q in names if q in answer.error_estimate and np.shape(_of(answer, q)) == np.shape(_of(finest, q))
+    )
+
+
+def _of(answer: Solution, quantity: str) -> FloatArray:
+    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
+
+
+def _distance(answer: Solution, finest: Solution, quantity: str) -> float:
+    expected, uncertainty = _of(finest, quantity), float(np.max(finest.error_estimate.get(quantity, 0.0)))
+    return float(np.max(np.abs(_of(answer, quantity) - expected)) / np.max(np.abs(expected))) + uncertainty

@@ -1,0 +1,92 @@
+"""Scenes that cost alike: what is prescribed, and how thin the layer is against the contact."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from cases.stability.half_space_forms import equivalent_profile
+from contact import (
+    ContactRadii,
+    DepthHistory,
+    Detachment,
+    FlatPunch,
+    ForceHistory,
+    Impact,
+    InvalidInput,
+    NormalForces,
+    Scene,
+)
+from contact.validation import FloatArray
+
+BANDS: Final = (1.0, 10.0, 25.0)  # upper ends of a/h; evidence reaches as far as an independent reference
+_TRIALS: Final = np.geomspace(1e-9, 1e9, 400)  # radii in units of a length of the scene
+
+
+def kind_of(scene: Scene) -> str:
+    """The kind of loading: "radii", "equilibrium", "detachment", "impact" or "history"."""
+    match scene.loading:
+        case ContactRadii():
+            return "radii"
+        case Detachment():
+            return "detachment"
+        case Impact():
+            return "impact"
+        case DepthHistory() | ForceHistory():
+            return "history"
+        case _:
+            return "equilibrium"
+
+
+def band_of(scene: Scene) -> float:
+    """The upper end of the band that a/h lies in, from the half-space's radius where it is not prescribed.
+
+    Raises:
+        InvalidInput: If the layer is thinner against the contact than anything that was measured.
+    """
+    ratio = rough_radius(scene) / scene.layer.thickness
+    for band in BANDS:
+        if ratio <= band * (1 + 1e-9):
+            return band
+    raise InvalidInput(
+        f"a/h is about {ratio:.3g}, but accuracy was measured up to a/h = {BANDS[-1]:g}; solve without --accuracy and "
+        "read the stated errors"
+    )
+
+
+def rough_radius(scene: Scene) -> float:
+    """Contact radius [m]: the prescribed one, or the half-space's under the largest load."""
+    if isinstance(scene.indenter, FlatPunch):
+        return scene.indenter.radius
+    if isinstance(scene.loading, ContactRadii):
+        return float(scene.loading.values[-1])
+    radii = _trial_radii(scene)
+    g = equivalent_profile(scene.indenter, radii)
+    load = 2 * (radii * g - np.concatenate([[0.0], np.cumsum(np.diff(radii) * (g[1:] + g[:-1]) / 2)]))  # F / E*
+    measure, wanted = _wanted(scene, g, load, radii)
+    return float(np.interp(wanted, measure, radii))
+
+
+def _trial_radii(scene: Scene) -> FloatArray:
+    flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
+    scale = scene.layer.thickness if np.isfinite(scene.layer.thickness) else flat or 1.0
+    radii: FloatArray = flat + scale * _TRIALS
+    return radii[radii < end] if np.isfinite(end) else radii
+
+
+def _wanted(scene: Scene, g: FloatArray, load: FloatArray, radii: FloatArray) -> tuple[FloatArray, float]:
+    """A growing measure of the contact, and its value at the largest contact of the scene."""
+    modulus, loading = scene.layer.contact_modulus, scene.loading
+    match loading:
+        case NormalForces(values=values) | ForceHistory(force=values):
+            return load, float(values.max()) / modulus
+        case Impact(mass=mass, velocity=velocity):
+            energy = np.concatenate([[0.0], np.cumsum(np.diff(g) * (load[1:] + load[:-1]) / 2)])
+            return energy, 0.5 * mass * velocity**2 / modulus
+        case Detachment(initial_contact_radius=start):
+            return radii, radii[0] if start is None else start
+        case DepthHistory(depth=values):
+            return g, float(values.max())
+        case _:
+            return g, float(np.max(getattr(loading, "values", 0.0)))

@@ -1,0 +1,101 @@
+"""What was measured: how accurate and how fast each setting was on random scenes of one kind."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic.dataclasses import dataclass
+
+from cases.results_files import write_whole
+from contact import InvalidInput
+from contact.record import shown
+
+_RECORD = ConfigDict(extra="forbid")
+_Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Measurement:
+    """One setting on a sample of scenes.
+
+    Attributes:
+        kind: Of scenes.
+        band: Largest a/h of the sample.
+        method: Name in the method table.
+        settings: Of the method.
+        bound: Largest of U = error + reference uncertainty and of the stated error, relative, over all quantities.
+        seconds: Median processor time of a first solution [s].
+        scenes: Size of the sample.
+        refused: How many of them the method refused by name.
+    """
+
+    kind: str
+    band: _Positive
+    method: str
+    settings: dict[str, bool | int | float | str]
+    bound: _Positive
+    seconds: _Positive
+    scenes: int
+    refused: int = 0
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class Evidence:
+    """All measurements of one machine.
+
+    Attributes:
+        machine: Processor.
+        revision: Of the source that was measured.
+        seed: Of the scenes.
+        measurements: In any order.
+    """
+
+    machine: str
+    revision: str
+    seed: int
+    measurements: tuple[Measurement, ...]
+
+
+_ADAPTER: TypeAdapter[Evidence] = TypeAdapter(Evidence)
+
+
+@cache
+def shipped() -> Evidence:
+    """The evidence that comes with the package."""
+    return _parsed(files("cases.evidence").joinpath("measured.json").read_text(encoding="utf-8"), "measured.json")
+
+
+def read(path: Path) -> Evidence:
+    """Evidence from a file that `write` wrote.
+
+    Raises:
+        InvalidInput: If the file is none.
+    """
+    try:
+        return _parsed(path.read_text(encoding="utf-8"), str(path))
+    except (OSError, UnicodeDecodeError) as error:
+        raise InvalidInput(
+            f"{path}: cannot be read ({error!s:.160}); measure it with contact-verify calibrate"
+        ) from None
+
+
+def write(path: Path, evidence: Evidence) -> None:
+    """Write evidence as JSON, whole or not at all."""
+    write_whole(path, json.dumps(_ADAPTER.dump_python(evidence, mode="json"), indent=1, sort_keys=True) + "\n")
+
+
+def _parsed(text: str, place: str) -> Evidence:
+    try:
+        tree: Any = json.loads(text)
+        return _ADAPTER.validate_python(tree)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        raise InvalidInput(f"{place}: {where:.200}: {first['msg']}, got {shown(first['input'])}") from None
+    except ValueError as error:
+        raise InvalidInput(f"{place}: not readable as JSON ({error!s:.160})") from None

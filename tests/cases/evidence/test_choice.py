@@ -1,0 +1,115 @@
+"""Settings come from measurements: the cheapest that is good enough, or a refusal that says what is reachable."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from cases.evidence import Evidence, Measurement, choose, shipped, solve_to_accuracy
+from cases.evidence.calibrate import Candidate, calibrate, error_bound, sample_of
+from cases.evidence.kinds import BANDS, band_of, kind_of, rough_radius
+from cases.evidence.records import read, write
+from cases.stability.second_opinion import second_opinion
+from contact import ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, NormalForces, Paraboloid, Scene
+
+LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+SCENE = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=5.0), loading=ContactRadii([0.5]))
+
+
+def measured(bound, seconds, *, nodes, refused=0, kind="radii", band=1.0):
+    return Measurement(
+        kind=kind, band=band, method="mdr", settings={"nodes": nodes}, bound=bound, seconds=seconds, scenes=10,
+        refused=refused,
+    )  # fmt: skip
+
+
+EVIDENCE = Evidence(
+    machine="none",
+    revision="none",
+    seed=0,
+    measurements=(
+        measured(1e-6, 0.01, nodes=12),
+        measured(1e-9, 0.02, nodes=16),
+        measured(1e-12, 0.04, nodes=24),
+        measured(1e-13, 0.001, nodes=20, refused=5),  # too often refused to be relied on
+        measured(1e-13, 0.001, nodes=20, band=10.0),  # of other scenes
+    ),
+)
+
+
+@pytest.mark.parametrize(("accuracy", "nodes"), [(1e-2, 12), (2e-6, 12), (1.9e-6, 16), (1e-8, 16), (1e-11, 24)])
+def test_the_cheapest_that_is_good_enough(accuracy, nodes):
+    assert choose(SCENE, accuracy, evidence=EVIDENCE).settings == {"nodes": nodes}
+
+
+@pytest.mark.parametrize(("accuracy", "within"), [(1e-13, None), (1e-8, 0.015)])
+def test_beyond_the_evidence_it_says_what_is_reachable(accuracy, within):
+    with pytest.raises(
+        InvalidInput, match=r"the finest reaches 2\.0e-12 in 0\.04 s \(mdr\), the fastest 2\.0e-06 in 0\.01"
+    ):
+        choose(SCENE, accuracy, within=within, evidence=EVIDENCE)
+
+
+@pytest.mark.parametrize("accuracy", [0.0, 1.0, -1e-3, float("nan")])
+def test_an_accuracy_that_is_none_is_refused(accuracy):
+    with pytest.raises(InvalidInput, match="must lie between 0 and 1"):
+        choose(SCENE, accuracy, evidence=EVIDENCE)
+
+
+def test_a_layer_thinner_than_all_that_was_measured_is_refused():
+    thin = SCENE.replace(loading=ContactRadii([100.0]))
+    with pytest.raises(InvalidInput, match="accuracy was measured up to a/h = 25"):
+        choose(thin, 1e-3, evidence=EVIDENCE)
+
+
+def test_the_rough_radius_is_the_half_space_s():
+    half_space = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # E* = 4
+    ball = Paraboloid(radius_of_curvature=2.0)
+    depth = Scene(layer=half_space, indenter=ball, loading=IndentationDepths([0.125]))
+    force = Scene(layer=half_space, indenter=ball, loading=NormalForces([4 / 3 * 4.0 * 0.5**3 / 2.0]))  # Hertz, a = 0.5
+    assert rough_radius(depth) == pytest.approx(0.5, rel=0.01)  # interpolated between trial radii 11 % apart
+    assert rough_radius(force) == pytest.approx(0.5, rel=0.02)
+    assert rough_radius(depth.replace(indenter=FlatPunch(radius=0.3))) == 0.3
+    assert kind_of(depth) == kind_of(force) == "equilibrium"
+    assert band_of(depth) == BANDS[0]
+
+
+def test_the_answer_comes_with_what_was_expected_and_achieved():
+    found = solve_to_accuracy(SCENE, 1e-8, evidence=EVIDENCE)
+    assert found.choice.expected_error == 2e-9
+    assert found.stated_error == max(error.max() for error in found.answer.error_estimate.values())
+    opinion = second_opinion(found.answer).values["normal_force"]
+    np.testing.assert_allclose(found.answer.normal_force, opinion, rtol=1e-8)
+
+
+def test_calibration_measures_what_it_says(tmp_path):
+    candidates = [Candidate(method="mdr", settings={"nodes": n}, kinds=("radii",), sample=3) for n in (12, 24)]
+    found = calibrate(seed=3, candidates=candidates, bands=(1.0,))
+    coarse, fine = found.measurements
+    assert fine.bound < 1e-11 < coarse.bound < 1e-4
+    write(tmp_path / "measured.json", found)
+    assert read(tmp_path / "measured.json") == found
+
+
+def test_a_sample_is_of_its_kind_and_band():
+    for scene in sample_of(1, "equilibrium", 10.0, 5):
+        assert kind_of(scene) == "equilibrium"
+        assert rough_radius(scene) <= 10.0 * scene.layer.thickness
+
+
+def test_the_bound_counts_error_and_reference():
+    answer = solve_to_accuracy(SCENE, 1e-8, evidence=EVIDENCE).answer
+    assert error_bound(answer) >= second_opinion(answer).uncertainty.max()
+
+
+@pytest.mark.parametrize("text", ["", "{}", '{"machine": 1}', "[1, 2", '{"machine": "x", "revision": "x", "seed": 0}'])
+def test_a_damaged_file_is_refused(tmp_path, text):
+    (tmp_path / "measured.json").write_text(text)
+    with pytest.raises(InvalidInput, match=r"measured\.json"):
+        read(tmp_path / "measured.json")
+
+
+def test_what_is_shipped_serves_static_scenes_from_a_hundredth_to_ten_digits():
+    assert {m.kind for m in shipped().measurements} >= {"radii", "equilibrium"}
+    for accuracy in (1e-2, 1e-6, 1e-9):
+        assert choose(SCENE, accuracy).expected_error <= accuracy
