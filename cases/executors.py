@@ -1,7 +1,9 @@
 """Where tasks run, behind ``concurrent.futures.Executor``: in this process, in a pool of processes, on a cluster."""
 
 import multiprocessing
+import os
 import signal
+import threading
 from collections.abc import Callable
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from typing import Any, ParamSpec, TypeVar
@@ -40,7 +42,7 @@ def process_pool(jobs: int) -> Executor:
     """
     if jobs < 1:
         raise InvalidInput(f"jobs must be at least 1, got {jobs}")
-    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_leave_interrupts)
+    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_follow_parent)
 
 
 class DaskExecutor(Executor):
@@ -94,6 +96,15 @@ def by_name(name: str) -> ExecutorFactory:
     raise InvalidInput(f"executor {name!r} is neither processes, serial nor the address of a Dask scheduler")
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C is for the parent: it decides what becomes of the run."""
+def _follow_parent() -> None:
+    """Leave Ctrl-C to the parent, which decides what becomes of the run; end with it, however it ends."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent's death: a killed run must not leave processes that go on computing."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)
