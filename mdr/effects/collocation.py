@@ -229,7 +229,11 @@ class _Walk:
     def step(self) -> None:
         """One trial step of every active lane, onto an event where a plain step would reach one."""
         start, size = self.state[:, self.active], self.size[self.active]
-        slope = self.derivative(start[:, None])[:, 0]
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused by name in the next line
+            slope = self.derivative(start[:, None])[:, 0]
+        if not np.isfinite(slope).all():
+            lost = int(self.active[np.flatnonzero(~np.isfinite(slope).all(axis=0))[0]])
+            raise NotConvergedError(f"motion {lost} left all bounds: a relaxation time is far below its duration")
         due = self.due[self.active]
         due = np.where(due < 0, self._first_event(self.active, start, start + _ALMOST * size * slope), due)
         for move, chosen in ((self._walk, due < 0), (self._land, due >= 0)):

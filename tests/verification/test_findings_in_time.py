@@ -14,6 +14,7 @@ from contact import (
     NotConvergedError,
     Paraboloid,
     Scene,
+    StandardSolid,
     Tabulated,
 )
 from mdr import Mdr
@@ -50,3 +51,20 @@ def test_the_contact_time_of_a_damped_impact_is_within_its_stated_error(viscosit
     answer, finer = Mdr().solve(scene), Mdr(accuracy=1e-12).solve(scene)
     distance = abs(answer.contact_time / finer.contact_time - 1.0)
     assert distance <= answer.error_estimate["contact_time"].max() + finer.error_estimate["contact_time"].max()
+
+
+@pytest.mark.parametrize("time", [1e-3, 1e-4, 1e-6])
+def test_a_relaxation_far_faster_than_the_impact_is_an_answer_or_a_named_refusal(time):
+    effect = StandardSolid(long_term_shear_modulus=0.1, maxwell_shear_modulus=0.9, viscosity=0.9 * time)
+    scene = Scene(
+        layer=SOFT,
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=Impact(mass=0.05, velocity=0.1),
+        effects=(effect,),
+    )
+    try:
+        restitution = Mdr().solve(scene).coefficient_of_restitution
+    except NotConvergedError:
+        return
+    # limit tau -> 0: an elastic layer of modulus G_inf; the loss is of the order tau G_1 / (G_inf T), T about 0.3 s
+    assert 1.0 - 9.0 * np.pi * time / 0.3 < restitution <= 1.0
