@@ -63,9 +63,10 @@ class Change:
     @property
     def loosens(self) -> bool:
         """Whether later runs may differ more than before, or differ unseen."""
-        if self.old is None:
-            return False
-        return self.new is None or _relative_width(self.new) > (1 + 1e-9) * _relative_width(self.old)
+        if self.old is None or self.new is None:
+            return self.old is not None
+        wider = _relative_width(self.new) > (1 + 1e-9) * _relative_width(self.old)
+        return self.new.tolerance > self.old.tolerance or (self.new.scale > self.old.scale and wider)
 
     @property
     def is_nothing(self) -> bool:

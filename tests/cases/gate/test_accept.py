@@ -116,6 +116,11 @@ def test_a_larger_declared_scale_is_a_loosening_too(tmp_path):
     assert any("tolerance of normal_force" in line for line in refused(tmp_path, run))
 
 
+def test_a_smaller_value_of_the_same_scale_is_no_loosening(tmp_path):
+    accepted(tmp_path)
+    assert not refused(tmp_path, with_force("mdr", scaled(0.01)))
+
+
 def test_withdrawing_a_record_or_a_counter_is_a_loosening(tmp_path):
     accepted(tmp_path)
     assert any("no longer be watched" in line for line in refused(tmp_path, with_force("mdr", lambda _: None)))
