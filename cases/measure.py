@@ -6,7 +6,7 @@ import numpy as np
 
 from cases.results import CostRecord, Curve, Quantity, Stage
 from cases.task import Sampling
-from contact import UNITS, ContactPath, Cost, HistoryPath, ImpactHistory, Solution, StageRecord
+from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
 _IMPACT_SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
@@ -53,9 +53,13 @@ def _uncertainty(solution: Solution, name: str, size: int) -> tuple[float, ...]:
 
 
 def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:
-    """A critical point lies on the branch and is as uncertain as the branch at its worst."""
+    """A critical point lies on the branch and is as uncertain as the state of the branch nearest to it."""
     branch = _ON_BRANCH.get(name, "")
-    return (float(np.max(solution.uncertainty(branch))),) if branch in solution.error_estimate else ()
+    if branch not in solution.error_estimate or not isinstance(solution, DetachmentPath):
+        return ()
+    nearest = np.argmin(np.abs(solution.contact_radius - solution.pull_off_contact_radius))
+    stated = np.broadcast_to(np.abs(solution.uncertainty(branch)), solution.contact_radius.shape)
+    return (float(stated[nearest]),)
 
 
 def _size(values: np.typing.NDArray[np.float64]) -> float:

@@ -32,8 +32,10 @@ def case_scene(label: str, control: str, body: Layer) -> CaseScene:
         loading=Detachment(control="force" if control == "force" else "displacement"),
         effects=(Adhesion(work_of_adhesion=WORK_OF_ADHESION),),
     )
-    # finite elements solve the whole branch whatever the control: one control a layer is enough
-    methods = () if control == "force" else (MDR, BEM)
+    # finite elements solve the whole branch whatever the control; boundary elements have their closed form here
+    finite_elements = (QUICK_FEM,) if control == "force" else ()
+    boundary_elements = (BEM,) if body.is_half_space else ()
+    methods = (MDR, *finite_elements, *boundary_elements)
     return CaseScene(
         name=f"{label}, {control}", parameters={"layer": label, "control": control}, scene=scene, methods=methods
     )
@@ -44,7 +46,7 @@ HALF_SPACE = tuple(case_scene("half-space", control, half_space()) for control i
 ON_LAYERS = tuple(
     case_scene(label, control, layer(label)) for label in ("unbonded", "bonded nu=0.5") for control in CONTROLS
 )
-ELASTIC = tuple(scene for scene in (*HALF_SPACE, *ON_LAYERS) if not scene.methods)
+BY_FORCE = tuple(scene for scene in (*HALF_SPACE, *ON_LAYERS) if scene.parameters["control"] == "force")
 
 
 def control_of(scene: Scene) -> str:
@@ -74,7 +76,7 @@ def jkr_depth(scene: Scene) -> list[float]:
 JKR = Reason(
     because="Johnson, Kendall and Roberts: energy release rate equals the work of adhesion",
     derived_from="MDR: turning points of an analytic branch; finite elements ten times their accuracy of 1e-4; "
-    "boundary elements let go cell by cell, within 1 %",
+    "boundary elements let go cell by cell: 2 % in the force, and five times that in the depth where the force is flat",
     origin=Origin.CLOSED_FORM,
     source="Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971) 301",
 )
@@ -98,16 +100,16 @@ CLAIMS = (
         )
         for quantity, closed_form, tolerance, tolerances, reason in (
             ("pull_off_force", jkr_force, 1e-9, {"fem": 1e-3, "bem": 2e-2}, JKR),
-            ("pull_off_depth", jkr_depth, 1e-9, {"fem": 1e-3, "bem": 3e-2}, JKR),
+            ("pull_off_depth", jkr_depth, 1e-9, {"fem": 1e-3, "bem": 1e-1}, JKR),
             ("pull_off_contact_radius", jkr_radius, 1e-6, {"fem": 1e-2, "bem": 1e-1}, FOLD),
         )
     ),
     *agreements(
-        ELASTIC,
-        {"fem": 1e-2},
+        BY_FORCE,
+        {"fem": 2e-2},
         ("pull_off_force", "pull_off_depth"),
         reason=with_reason(
-            FINITE_ELEMENTS, "errors of 1e-4 of the largest force on the branch, which is fifty times the pull-off"
+            FINITE_ELEMENTS, "errors of 1e-4 of the largest force on the branch, which is a hundred times the pull-off"
         ),
     ),
 )
