@@ -10,6 +10,8 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cache
+from signal import SIGPIPE, getsignal, signal
+from threading import current_thread, main_thread
 from typing import Any
 
 import numpy as np
@@ -71,7 +73,10 @@ def _gmsh() -> Any:
         import gmsh  # noqa: PLC0415 - a missing system library shall give one clear message, at first use
     except OSError as reason:
         raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
+    handler = getsignal(SIGPIPE)
     gmsh.initialize([], interruptible=False)
+    if current_thread() is main_thread():  # the only one that may set signals
+        signal(SIGPIPE, handler)  # gmsh lets a broken pipe end the process: a pool would die with any of its workers
     for option, value in {
         "General.Terminal": 0,
         "General.NumThreads": 1,

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import subprocess
+import sys
+
 import numpy as np
 import pytest
 
@@ -52,3 +55,19 @@ def test_strip_has_cells_of_one_size():
 def test_a_section_of_a_hundred_million_radii_is_meshed():
     mesh = layer_mesh(1e8, 1e9, Grading(points=((1.0, 1e-7),), growth=0.5, max_cell=5e7)).mesh
     assert mesh.t.shape[1] < 3000
+
+
+def test_gmsh_does_not_let_a_broken_pipe_end_the_process():
+    code = (
+        "import os\n"
+        "from fem_reference.geometry import _gmsh\n"
+        "_gmsh()\n"
+        "reader, writer = os.pipe()\n"
+        "os.close(reader)\n"
+        "try:\n"
+        "    os.write(writer, b'x')\n"
+        "except BrokenPipeError:\n"
+        "    print('alive')\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    assert done.stdout == "alive\n"
