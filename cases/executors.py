@@ -51,7 +51,7 @@ class DaskExecutor(Executor):
     def __init__(self, address: str) -> None:
         from distributed import Client  # noqa: PLC0415 - an optional extra
 
-        self._client = Client(address, set_as_default=False)  # type: ignore[no-untyped-call]  # ships no types
+        self._client = Client(address, set_as_default=False)
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Send ``fn`` to the cluster and return its future."""
@@ -64,12 +64,12 @@ class DaskExecutor(Executor):
                 future.set_exception(error)
 
         remote = self._client.submit(fn, *args, pure=False, retries=2, **kwargs)
-        remote.add_done_callback(deliver)  # type: ignore[no-untyped-call]  # ships no types
+        remote.add_done_callback(deliver)
         return future
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; it stays up for others."""
-        self._client.close()  # type: ignore[no-untyped-call]  # ships no types
+        self._client.close()
 
 
 def dask_cluster(address: str) -> ExecutorFactory:
