@@ -1,8 +1,12 @@
-"""What holds for every test: a terminal width of the environment changes nothing."""
+"""What holds for every test: no width of a terminal, no random examples."""
 
 from __future__ import annotations
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("repeatable", derandomize=True, deadline=None)  # the same examples on every machine
+settings.load_profile("repeatable")
 
 
 @pytest.fixture(autouse=True)

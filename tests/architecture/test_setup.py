@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import subprocess
 import tomllib
 from pathlib import Path
 
@@ -46,14 +47,12 @@ def test_ci_runs_exactly_the_two_commands():
 
 
 def test_no_tracked_text_names_an_index_host_or_a_machine_path():
-    suspicious = re.compile(r"(pypi\.org|files\.pythonhosted|--index-url|--extra-index|/home/|/root/|/work/)")
-    for pattern in ("*.py", "*.toml", "*.txt", "*.md", "Makefile", "*.sh", "*.yml", "*.html"):
-        for file in ROOT.rglob(pattern):
-            relative = file.relative_to(ROOT)
-            if (
-                relative.parts[0].startswith(".venv")
-                or relative.parts[0] in {"build", ".git"}
-                or file == Path(__file__)
-            ):
-                continue
-            assert not suspicious.search(file.read_text(encoding="utf-8")), relative
+    suspicious = re.compile(r"pypi\.org|files\.pythonhosted|--index-url|--extra-index|(?<![\w.])/(home|root|work)/")
+    listed = subprocess.run(["git", "ls-files"], cwd=ROOT, capture_output=True, text=True, check=False)
+    if listed.returncode:
+        pytest.skip("not a git checkout")
+    texts = (".py", ".toml", ".txt", ".md", ".sh", ".yml", ".html", "Makefile")
+    files = [ROOT / name for name in listed.stdout.splitlines() if name.endswith(texts)]
+    assert len(files) > 100
+    guilty = [f for f in files if f != Path(__file__) and suspicious.search(f.read_text(encoding="utf-8"))]
+    assert guilty == []
