@@ -28,6 +28,7 @@ class Discretisation:
         growth: increase of cell size per distance from a graded point; also the largest cell per thickness.
         truncation: relative change of the stiffness allowed to the outer edge.
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` asks at this nu.
     """
 
     order: int = 4
@@ -35,6 +36,7 @@ class Discretisation:
     growth: float = 0.5
     truncation: float = 1e-8
     half_space_thickness: float = 1e8
+    outer_distance: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges."""
@@ -49,6 +51,8 @@ class Discretisation:
         for name, (low, high) in bounds.items():
             if not low <= getattr(self, name) <= high:
                 raise InvalidInput(f"{name} must lie in [{low:g}, {high:g}], got {getattr(self, name)}")
+        if self.outer_distance is not None and not 1.0 <= self.outer_distance <= 100.0:
+            raise InvalidInput(f"outer_distance must lie in [1, 100] thicknesses, got {self.outer_distance}")
 
     @property
     def pair(self) -> ElementPair:
@@ -69,17 +73,20 @@ class Discretisation:
         """h / a, or its stand-in for a half-space."""
         return self.half_space_thickness if layer.is_half_space else layer.thickness / contact_radius
 
+    def distance(self, layer: Layer) -> float:
+        """From contact edge to outer edge, in thicknesses."""
+        return self.outer_distance or outer_distance(layer.poissons_ratio, layer.support, self.truncation)
+
 
 def contact_mesh(layer: Layer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
     """The graded section, lengths by the contact radius, with vertices at the edge and at every kink and breakpoint."""
     thickness = settings.thickness(layer, indenter.contact_radius)
-    outer_radius = 1 + thickness * outer_distance(layer.poissons_ratio, layer.support, settings.truncation)
     grading = Grading(
         points=graded_points(thickness, indenter, settings),
         growth=settings.growth,
         max_cell=settings.growth * thickness,
     )
-    return layer_mesh(thickness, outer_radius, grading)
+    return layer_mesh(thickness, 1 + thickness * settings.distance(layer), grading)
 
 
 def graded_points(

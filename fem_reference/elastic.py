@@ -14,6 +14,7 @@ from fem_reference.surface_fields import FemFields, SurfaceState
 
 Array = NDArray[np.float64]
 
+OWN_CHECKS = ("energy_defect", "patch_defect")  # residuals published beside the error estimates
 ContactSolver = Callable[[float], CertifiedContact]  # of a contact radius [m]
 
 
@@ -111,6 +112,7 @@ def contact_path(
     force = modulus * radius**2 * np.array([state.force for state in equilibria])
     depth = radius * np.array([state.depth for state in equilibria])
     errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
+    own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
     if scene.effects:  # depth and force may cross zero: their errors refer to the largest along the path
         errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
         errors["normal_force"] *= np.abs(force) / np.abs(force).max()
@@ -119,7 +121,7 @@ def contact_path(
         scene=scene,
         method="fem",
         settings={**settings, "mesh": meshes},
-        error_estimate=errors,
+        error_estimate=errors | own_checks,
         cost=log.cost(unknowns=max(state.contact.answer.unknowns for state in equilibria)),
         stages=log.records,
         notes=notes,

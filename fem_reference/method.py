@@ -48,6 +48,8 @@ class Fem:
         growth: growth of cells per distance, and largest cell per thickness.
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        outer_distance: from contact edge to outer edge, in thicknesses, so that layers of different nu share a mesh;
+            None for what ``truncation`` asks.
         solver: "superlu", "superlu-pivoting" or "mumps".
     """
 
@@ -59,6 +61,7 @@ class Fem:
     growth: float = 0.5
     truncation: float = 1e-8
     half_space_thickness: float = 1e8
+    outer_distance: float | None = None
     solver: str = "superlu"
 
     def __post_init__(self) -> None:
@@ -80,6 +83,7 @@ class Fem:
             growth=self.growth,
             truncation=self.truncation,
             half_space_thickness=self.half_space_thickness,
+            outer_distance=self.outer_distance,
         )
 
     def supports(self, scene: Scene) -> Supported | Unsupported:

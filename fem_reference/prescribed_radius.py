@@ -23,6 +23,7 @@ from fem_reference.geometry import LayerMesh
 from fem_reference.indenter import ScaledIndenter
 from fem_reference.layer_problem import LayerProblem
 from fem_reference.material import Moduli
+from fem_reference.patch import patch_defect
 from fem_reference.shape_derivative import cut_off, energy_shape_derivative
 from fem_reference.trace import TraceSpace
 
@@ -30,6 +31,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 ENERGY_AGREEMENT = 1e-8
+PATCH_AGREEMENT = 1e-11
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,6 +50,7 @@ class PrescribedContact:
         top_trace: polynomials on the whole top.
         displacements: u_z of u_1 and u_2 at its nodes, shape (node, 2).
         energy_defect: |energy stiffness / reaction stiffness - 1|.
+        patch_defect: of `patch.patch_defect`.
         layer_mesh: the section.
         pair: element pair.
         moduli: shear modulus and compressibility at E* = 1.
@@ -65,6 +68,7 @@ class PrescribedContact:
     top_trace: TraceSpace
     displacements: Array
     energy_defect: float
+    patch_defect: float
     layer_mesh: LayerMesh
     pair: ElementPair
     moduli: Moduli
@@ -101,7 +105,7 @@ def solve_prescribed_contact(problem: LayerProblem, indenter: ScaledIndenter, lo
     """Solve the contact of radius one on a mesh with a vertex there.
 
     Raises:
-        NotConvergedError: the linear solve is inaccurate, or energy and reactions disagree.
+        NotConvergedError: the linear solve is inaccurate, energy and reactions disagree, or the patch test fails.
     """
     contact = problem.top_nodes(1.0)
     radii = problem.positions[0, contact]
@@ -129,6 +133,9 @@ def _evaluate(
     defect = abs(energies.total[0, 0] / stiffness - 1)
     if not defect < ENERGY_AGREEMENT:
         raise NotConvergedError("energy and reactions give different stiffnesses", {"energy_defect": defect})
+    patch = patch_defect(problem)
+    if not patch < PATCH_AGREEMENT:
+        raise NotConvergedError("a constant strain is not in equilibrium on this mesh", {"patch_defect": patch})
     derivative, moving_slope = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact])
     profile_force_slope = derivative[0, 1] - reactions[:, 0] @ moving_slope
     top, degree = problem.top_nodes(np.inf), problem.pair.degree
@@ -145,6 +152,7 @@ def _evaluate(
         top_trace=TraceSpace(problem.positions[0, top], degree),
         displacements=solutions[2 * top + 1],
         energy_defect=float(defect),
+        patch_defect=patch,
         layer_mesh=problem.layer_mesh,
         pair=problem.pair,
         moduli=problem.moduli,

@@ -18,7 +18,6 @@ from fem_reference.elements import taylor_hood
 from fem_reference.geometry import Grading, LayerMesh, layer_mesh
 from fem_reference.layer_problem import LayerProblem
 from fem_reference.trace import TraceSpace
-from fem_reference.truncation import outer_distance
 
 Array = NDArray[np.float64]
 
@@ -61,7 +60,7 @@ def strip_mesh(
     """A section with ``cells`` equal cells on the strip of ``radius`` [m], lengths by that radius."""
     thickness = settings.thickness(layer, radius)
     cell = 1 / cells
-    outer = 1 + thickness * outer_distance(layer.poissons_ratio, layer.support, settings.truncation)
+    outer = 1 + thickness * settings.distance(layer)
     points = (*((r / radius, cell) for r in kinks if r < radius), (1.0, cell))
     growth = min(settings.growth, 0.3)
     grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))

@@ -9,6 +9,7 @@ from fem_reference.elements import PAIRS
 from fem_reference.fields import point_fields
 from fem_reference.geometry import Grading, layer_mesh
 from fem_reference.layer_problem import LayerProblem, facet_nodes
+from fem_reference.patch import patch_defect
 from fem_reference.trace import TraceSpace
 
 MESH = layer_mesh(1.0, 2.0, Grading(points=((1.0, 0.02),), growth=0.5, max_cell=0.4))
@@ -64,3 +65,17 @@ def test_a_wrong_hoop_strain_fails_the_patch_test():
     held = np.concatenate([2 * boundary, 2 * boundary + 1])
     solution = problem.solver(held).solve_displaced(exact[held][:, None])
     assert np.abs(solution[:, 0] - exact).max() > 1e-6
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_the_patch_defect_of_a_mesh_is_rounding(nu, support):
+    for pair in STABLE:
+        if nu < 0.5 or pair.is_mixed:
+            assert patch_defect(LayerProblem(MESH, pair, nu, support)) < 1e-13
+
+
+def test_a_wrong_hoop_strain_is_a_patch_defect():
+    problem = LayerProblem(MESH, PAIRS["P3P2"], 0.3, "bonded")
+    problem.space.__dict__["strains"] = problem.space.strains * np.array([1, 1, 1 + 1e-9, 1])[:, None]
+    assert patch_defect(problem) > 1e-11
