@@ -146,7 +146,7 @@ def svg_text(figure: Figure, *, key: str) -> str:
 def _compact(svg: str, key: str) -> str:
     """What a page needs of Matplotlib's SVG: no prologue, no unused ids, each thing said once."""
     svg = svg[svg.index("<svg") :]  # an inline figure has no XML declaration and no document type
-    svg = re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", svg)
+    svg = re.sub(r"<[^>]*>", lambda tag: _two_decimals(tag[0]), svg)  # places only: the words keep their numbers
     referenced = set(re.findall(r"#([\w.-]+)", svg))
     svg = re.sub(r' id="([^"]*)"', lambda name: f' id="{key}-{name[1]}"' if name[1] in referenced else "", svg)
     svg = re.sub(r'(xlink:href="#|url\(#)', rf"\g<1>{key}-", svg)
@@ -155,6 +155,10 @@ def _compact(svg: str, key: str) -> str:
     svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r"\s+", " ", svg).replace("> <", "><")  # between the letters of a formula a line end would be a space
     return re.sub(r"><(g|path|use|defs)\b", r">\n<\1", svg).strip() + "\n"
+
+
+def _two_decimals(tag: str) -> str:
+    return re.sub(r"-?\d+\.\d{3,}", lambda number: f"{float(number[0]):.2f}", tag)
 
 
 def png_bytes(figure: Figure) -> bytes:
