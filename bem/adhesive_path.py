@@ -1,24 +1,26 @@
-"""The detachment of an adhering indenter as a path: where it starts, its grid, its stability and its errors."""
+"""Adhering contacts that let go cell by cell, as paths: where they start, their grid, stability and errors."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
 from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
+from bem.adhesive_branch import SCOUT_CELLS, AdhesiveBranch, long_enough
+from bem.adhesive_withdrawal import Withdrawal
 from bem.contact_edge import AREA_SCATTER
-from bem.detachment import FOLD, AdheringIndenter, AdheringState, strength
-from bem.grid import Grid, first_radius
+from bem.detachment import FOLD, LOST, AdheringIndenter, AdheringState, strength
+from bem.grid import Grid
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import FILL, disc, measured_disc
-from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, NotConvergedError, Scene, StageLog
+from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, Scene, StageLog
 from contact.validation import FloatArray
 
-SCOUT_CELLS: Final = 64
 AHEAD: Final = 1.2  # start radius over that of the least force; nearer, and the grid would resolve it better still
+LARGEST_EXPONENT: Final = 4.0  # of k_N over a, on a thin incompressible layer
+ROOM: Final = 1.05  # radius of the grid's disc over the largest contact
 PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "contact_radius": "pull_off_contact_radius"}
 
 
@@ -65,8 +67,9 @@ def detachment_branch(
     scene: Scene, start_radius: float, cells: int, threads: int, log: StageLog, *, to_least_force: bool = False
 ) -> Branch:
     """The stable branch from a contact radius to pull-off, or to just beyond the least force, on one grid."""
-    indenter, start = _on_grid(scene, start_radius, cells, threads, log)
-
+    indenter, first = _on_grid(scene, start_radius, cells, threads, log)
+    settled = None if isinstance(scene.indenter, FlatPunch) else indenter.settle(first, first.indentation_depth)
+    start = first if settled is None else settled
     enough = indenter.is_past_least_force if to_least_force else lambda _: False
     states = indenter.unload(start, enough)
     return Branch(
@@ -77,25 +80,88 @@ def detachment_branch(
     )
 
 
-def start_radius(scene: Scene, threads: int, log: StageLog) -> float:
-    """Where the detachment starts [m]: the punch's radius, the one prescribed, or ahead of the least force.
+@dataclass(frozen=True)
+class CellHistory:
+    """Given depths followed cell by cell on one grid, from out of contact.
 
-    The scouting run begins where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*).
+    Attributes:
+        contact_radius: a [m], zero where there is no contact, shape (n,).
+        normal_force: F_N [N], shape (n,).
+        cell_size: s [m].
     """
+
+    contact_radius: FloatArray
+    normal_force: FloatArray
+    cell_size: float
+
+    @classmethod
+    def of_depths(cls, scene: Scene, depths: FloatArray, cells: int, threads: int, log: StageLog) -> CellHistory:
+        """Snap-in at the first touch, the same contact as long as it holds, and nothing beyond pull-off."""
+        indenter, first = _on_grid(scene, _radius_at(scene, depths, threads), cells, threads, log)
+        held: AdheringState | None = None
+        radius, force = np.zeros(depths.size), np.zeros(depths.size)
+        for i, depth in enumerate(depths.tolist()):
+            held = _next(indenter, first, held, depth)
+            if held is not None:
+                radius[i], force[i] = indenter.contact_radius(held), indenter.normal_force(held)
+        return cls(radius, force, indenter.grid.cell_size)
+
+    def errors(self, coarse: CellHistory) -> dict[str, FloatArray]:
+        """Differences of two grids and the cell by which the rim may lag, relative to the largest magnitudes."""
+        radius, force = self.contact_radius, self.normal_force
+        lag = 2.0 * self.cell_size / np.maximum(np.max(radius), self.cell_size) * (radius > 0.0)
+        shrunk = np.abs(radius - coarse.contact_radius) / max(float(np.max(radius)), self.cell_size) + lag
+        largest = float(np.max(np.abs(force))) or 1.0
+        return {
+            "indentation_depth": np.zeros(radius.size),
+            "contact_radius": shrunk,
+            "contact_stiffness": LARGEST_EXPONENT * shrunk,
+            "normal_force": np.abs(force - coarse.normal_force) / largest + lag,
+        }
+
+
+def _next(
+    indenter: AdheringIndenter, first: AdheringState, held: AdheringState | None, depth: float
+) -> AdheringState | None:
+    """The contact at the next depth; `first` covers all cells that may ever touch."""
+    if held is None:
+        return indenter.settle(first, depth, LOST) if depth >= 0.0 else None
+    if depth < held.indentation_depth:
+        return indenter.settle(held, depth, LOST)
+    return indenter.load(held, np.array([depth]), first.contact)[-1]
+
+
+def _radius_at(scene: Scene, depths: FloatArray, threads: int) -> float:
+    """A contact radius [m] beyond that of the largest depth."""
+    if isinstance(scene.indenter, FlatPunch):
+        return scene.indenter.radius
+    largest = max(float(depths.max()), 0.0)
+
+    def enough(branch: AdhesiveBranch) -> bool:
+        return bool(branch.depth(np.array([branch.largest_radius]))[0] > largest)
+
+    longest = long_enough(scene, threads, enough)
+    found = AdhesiveBranch.up_to(longest, scene, SCOUT_CELLS, threads).crossing(
+        "indentation_depth", largest, (scene.indenter.flat_radius, longest), inmost=False
+    )
+    return min(ROOM * found if found is not None else longest, scene.indenter.max_radius)
+
+
+def start_radius(scene: Scene, threads: int) -> float:
+    """Where cells begin to let go [m]: the punch's radius, the one prescribed, or ahead of the least force."""
     prescribed = _detachment(scene).initial_contact_radius
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
     if prescribed is not None:
         return prescribed
-    radius = _balance_radius(scene)
-    for _ in range(12):
-        scout = detachment_branch(scene, radius, SCOUT_CELLS, threads, log)
-        found = float(scout.contact_radius[scout.least_force])
-        wanted = max(AHEAD * found, found + scene.indenter.flat_radius / 10.0)
-        if scout.least_force > 0 and radius / 3.0 < wanted < radius * 1.2:
-            return min(wanted, scene.indenter.max_radius)
-        radius = min(1.5 * radius if scout.least_force == 0 else wanted, scene.indenter.max_radius)
-    raise NotConvergedError("no least force was found; prescribe Detachment.initial_contact_radius")
+    radius = long_enough(scene, threads, lambda branch: least_force(branch) < branch.largest_radius / AHEAD)
+    found = least_force(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads))
+    return min(max(AHEAD * found, found + scene.indenter.flat_radius / 10.0), scene.indenter.max_radius)
+
+
+def least_force(branch: AdhesiveBranch) -> float:
+    """The radius [m] of the strongest tension."""
+    return Withdrawal(branch, branch.largest_radius).loss("force")
 
 
 def branch_errors(fine: Branch, coarse: Branch, control: str) -> dict[str, FloatArray | float]:
@@ -138,7 +204,7 @@ def stable_under_force(branch: Branch) -> npt.NDArray[np.bool_]:
 def _on_grid(
     scene: Scene, radius: float, cells: int, threads: int, log: StageLog
 ) -> tuple[AdheringIndenter, AdheringState]:
-    """The indenter on a grid that its first contact fills, and that contact as it begins to let go."""
+    """The indenter on a grid that a disc of this radius fills, and that contact as it begins to let go."""
     measured = measured_disc(cells, False).radius  # a disc of cells acts as a punch of this radius, in cell sizes
     grid = Grid(cells, radius / measured)
     adhesion = scene.effect(Adhesion)
@@ -148,26 +214,12 @@ def _on_grid(
     height = np.zeros(contact.shape) if isinstance(scene.indenter, FlatPunch) else _finite_height(scene, grid)
     tension = strength(scene.layer.contact_modulus, work, grid.cell_size)
     indenter = AdheringIndenter(operator, grid, height, tension, log)
-    start = indenter.first_state(contact)
-    settled = None if isinstance(scene.indenter, FlatPunch) else indenter.settle(start, start.indentation_depth)
-    return indenter, start if settled is None else settled
+    return indenter, indenter.first_state(contact)
 
 
 def _finite_height(scene: Scene, grid: Grid) -> FloatArray:
     height = scene.indenter.height(grid.radius)
     return np.where(np.isfinite(height), height, np.max(height[np.isfinite(height)]))
-
-
-def _balance_radius(scene: Scene) -> float:
-    """a where f(a)^2 = 2 pi dgamma a / E*, by bisection."""
-    adhesion = scene.effect(Adhesion)
-    work = adhesion.work_of_adhesion if adhesion is not None else 0.0
-
-    def outgrown(radius: float) -> bool:
-        balance = 2.0 * pi * work * radius / scene.layer.contact_modulus
-        return float(scene.indenter.height(np.array([radius]))[0]) ** 2 >= balance
-
-    return first_radius(outgrown, scene.indenter.max_radius)
 
 
 def _detachment(scene: Scene) -> Detachment:

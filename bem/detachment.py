@@ -20,7 +20,8 @@ half-space, so the constant serves layers too as long as s is small against the 
 The path follows a decreasing depth: at each depth all cells of the rim beyond tau_c let go and the pressure is solved
 anew until none is beyond it. Removing a cell raises the tension of its neighbours, so the order does not matter and
 the largest contact in equilibrium is found. Where no contact is left in equilibrium, the indenter has pulled off; the
-depth is found by halving the step. A force-controlled indenter pulls off earlier, at the least force of this path.
+depth is found by smaller steps. A force-controlled indenter pulls off earlier, at the least force of this path. On
+the way back in, cells of the rim join as long as they stay.
 """
 
 from __future__ import annotations
@@ -136,13 +137,16 @@ class AdheringIndenter:
             states += [landed] if landed is not None else []
         return states
 
-    def load(self, start: AdheringState, depths: FloatArray) -> list[AdheringState]:
-        """States at increasing depth: rings of cells join while they stay, which is the same equilibrium branch."""
+    def load(self, start: AdheringState, depths: FloatArray, within: BoolArray | bool = True) -> list[AdheringState]:
+        """States at increasing depth: rings of cells join while they stay, which is the same equilibrium branch.
+
+        Cells join only `within` the indenter's end.
+        """
         states = [start]
         for depth in depths:
             state = states[-1]
             while True:
-                wider = AdheringState(dilated(state.contact, 3), state.pressure, float(depth))
+                wider = AdheringState(dilated(state.contact, 3) & within, state.pressure, float(depth))
                 settled = self.settle(wider, float(depth))
                 if settled is None:
                     raise NotConvergedError(f"no adhering contact at a depth of {depth:g} m; load from a larger one")

@@ -9,7 +9,8 @@ from typing import ClassVar, Final, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from bem.adhesive_path import branch_errors, detachment_branch, stable_under_force, start_radius
+from bem.adhesive_discs import AdheringDiscs
+from bem.adhesive_path import CellHistory, branch_errors, detachment_branch, stable_under_force, start_radius
 from bem.grid import LEAST_CELLS, Grid
 from bem.pixel_disc import THIN, PixelDisc, PunchSolution, measured_disc
 from bem.pressed_state import Boundary, Prescribed, Press, PressedState
@@ -47,11 +48,14 @@ class Bem(Record):
         boundary: "free" space, or "periodic" with 16 thicknesses between images (thin layers; no half-space).
         tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
         threads: Threads of FFTW.
+        adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, whose intensity the half-space
+            measures (`adhering_disc`), or single "cells" beyond a stress that depends on their size (`detachment`).
 
     Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
     what the contact radius may be off. The method converges with second order in the cell size. A flat punch is a disc
     of cells measured by the half-space (`pixel_disc`), so that on the half-space itself its stiffness is exact by
-    construction. Detachment converges with about first order (`detachment`).
+    construction. Adhesive contacts on discs converge with about order 1.5, detachment by cells with about first order.
+    Adhesive depths and forces are followed in their order, from out of contact (`adhesive_history`).
 
     Raises:
         InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, or the tolerance is
@@ -64,6 +68,7 @@ class Bem(Record):
     boundary: Boundary = "free"
     tolerance: float = 1e-7
     threads: int = Field(default=1, ge=1)
+    adhesion: Literal["discs", "cells"] = "discs"
 
     def __post_init__(self) -> None:
         """Refuse settings that cannot be solved."""
@@ -73,20 +78,18 @@ class Bem(Record):
             raise InvalidInput(f"tolerance must lie in (0, 0.01], got {self.tolerance:g}")
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
-        """Elastic contact under prescribed radii, depths or forces, and detachment with adhesion."""
+        """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
         others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
         if others:
             return Unsupported(reason=f"bem models adhesion only, not {others[0]}; ask mdr or fem")
-        if self.boundary == "periodic" and scene.layer.is_half_space:
-            return Unsupported(reason='a half-space has no periodic answer; use boundary="free"')
-        if isinstance(scene.loading, Detachment):
-            free = self.boundary == "free"
-            return (
-                Supported() if free else Unsupported(reason='detachment is followed in free space; use boundary="free"')
-            )
-        if scene.effects or type(scene.loading) not in PRESCRIBED:
-            what = "with adhesion, a Detachment" if scene.effects else "radii, depths or forces"
-            return Unsupported(reason=f"bem follows {what}, not {type(scene.loading).__name__}; ask mdr")
+        if not isinstance(scene.loading, Detachment) and type(scene.loading) not in PRESCRIBED:
+            what = f"radii, depths, forces or a detachment, not {type(scene.loading).__name__}"
+            return Unsupported(reason=f"bem follows {what}; ask mdr")
+        if self.boundary == "periodic" and (scene.layer.is_half_space or scene.effects):
+            what = "adhesion" if scene.effects else "a half-space"
+            return Unsupported(reason=f'{what} has no periodic answer; use boundary="free"')
+        if self.adhesion == "cells" and scene.effects and not isinstance(scene.loading, Detachment | IndentationDepths):
+            return Unsupported(reason='single cells let go at given depths or in a detachment; use adhesion="discs"')
         return Supported()
 
     def refined(self) -> Self:
@@ -104,9 +107,17 @@ class Bem(Record):
         if isinstance(answer, Unsupported):
             raise UnsupportedSceneError(answer.reason)
         log = StageLog()
+        adhesion = scene.effect(Adhesion)
+        if adhesion is None:
+            return self._press(scene, log)
+        if adhesion.work_of_adhesion == 0.0 and not isinstance(scene.loading, Detachment):
+            return dataclasses.replace(self._press(scene.replace(effects=()), log), scene=scene)
+        if self.adhesion == "cells":
+            return self._let_go(scene, log)
+        discs = AdheringDiscs(scene, self.points, self.threads, dataclasses.asdict(self), log)
         if isinstance(scene.loading, Detachment):
-            return self._detach(scene, scene.loading.control, log)
-        return self._press(scene, log)
+            return discs.detachment(scene.loading.control)
+        return discs.equilibria()
 
     def _press(self, scene: Scene, log: StageLog) -> ContactPath:
         step = self._punch_step if isinstance(scene.indenter, FlatPunch) else self._smooth_step
@@ -127,9 +138,34 @@ class Bem(Record):
             contact_stiffness=arrays["contact_stiffness"],
         )
 
+    def _let_go(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath:
+        """By single cells."""
+        if isinstance(scene.loading, Detachment):
+            return self._detach(scene, scene.loading.control, log)
+        _, depths = _prescription(scene)
+        with log.stage("history"):
+            fine, coarse = (
+                CellHistory.of_depths(scene, depths, cells, self.threads, log)
+                for cells in (self.points, self.points // 2)
+            )
+        stiffness = [contact_stiffness(scene, a, 64) if a > 0.0 else 0.0 for a in fine.contact_radius.tolist()]
+        return ContactPath(
+            scene=scene,
+            method=self.name,
+            settings=dataclasses.asdict(self),
+            cost=log.cost(unknowns=self.points**2 // 4),
+            stages=log.records,
+            notes=("depths are followed in their order, from out of contact",),
+            error_estimate=fine.errors(coarse),
+            contact_radius=fine.contact_radius,
+            indentation_depth=depths,
+            normal_force=fine.normal_force,
+            contact_stiffness=np.array(stiffness),
+        )
+
     def _detach(self, scene: Scene, control: Literal["displacement", "force"], log: StageLog) -> DetachmentPath:
         with log.stage("first_guess"):
-            start = start_radius(scene, self.threads, log)
+            start = start_radius(scene, self.threads)
         with log.stage("detachment"):
             fine, coarse = (
                 detachment_branch(scene, start, cells, self.threads, log, to_least_force=control == "force")

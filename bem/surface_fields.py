@@ -14,10 +14,11 @@ from typing import Final, Protocol
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from bem.adhering_disc import AdheringDisc
 from bem.grid import Grid
 from bem.influence import REACH, correction_function
 from bem.pressed_state import PressedState
-from contact import Layer, Profile
+from contact import Layer, Profile, Scene
 from contact.validation import FloatArray
 
 EDGE_CELLS: Final = 2.5  # cells inside the edge that the grid does not resolve
@@ -118,13 +119,78 @@ class FlatPunchFields:
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
         """w(r) [m]: the depth under the punch, direct summation outside."""
+        outside = radius > self.radius
         w = np.full(radius.shape, self.indentation_depth)
-        outside = radius > self.radius + self.grid.cell_size
-        w[outside] = summed_displacement(self.layer, self.grid, self.cell_pressure, radius[outside])
-        near = (radius > self.radius) & ~outside  # w falls from the depth like the root of the distance
-        first = np.array([self.radius + self.grid.cell_size])
-        drop = self.indentation_depth - summed_displacement(self.layer, self.grid, self.cell_pressure, first)[0]
-        w[near] -= drop * np.sqrt((radius[near] - self.radius) / self.grid.cell_size)
+        rim = Rim(self.layer, self.grid, self.cell_pressure, self.radius, self.indentation_depth)
+        w[outside] = rim.displacement_outside(radius[outside])
+        return w
+
+
+@dataclass(frozen=True, eq=False)
+class AdheringFields:
+    """Fields of an adhering contact of radius a (zero: none) under a depth, solved when they are first asked for."""
+
+    scene: Scene
+    contact_radius: float
+    indentation_depth: float
+    cells: int
+    threads: int
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa]; at the edge itself, where it is infinite, the value half a cell inside stands."""
+        a = self.contact_radius
+        if a == 0.0:
+            return np.zeros(radius.shape)
+        r = np.minimum(radius, a - 0.5 * self._disc.grid.cell_size)
+        unit = self.scene.layer.contact_modulus / np.pi
+        return np.where(radius <= a, unit * self._density(r) / np.sqrt(a**2 - r**2), 0.0)
+
+    def surface_displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m]: delta - f under the indenter, direct summation outside; without contact none."""
+        if self.contact_radius == 0.0:
+            return np.zeros(radius.shape)
+        a, layer, outside = self.contact_radius, self.scene.layer, radius > self.contact_radius
+        w = np.asarray(self.indentation_depth - self.scene.indenter.height(np.minimum(radius, a)))
+        edge = self.indentation_depth - float(self.scene.indenter.height(a))
+        rim = Rim(layer, self._disc.grid, layer.contact_modulus * self._pressure, a, edge)
+        w[outside] = rim.displacement_outside(radius[outside])
+        return w
+
+    @cached_property
+    def _disc(self) -> AdheringDisc:
+        return AdheringDisc.solved(self.scene.layer, self.scene.indenter, self.contact_radius, self.cells, self.threads)
+
+    @property
+    def _pressure(self) -> FloatArray:
+        """p/E* on the quadrant."""
+        return np.asarray(self.indentation_depth * self._disc.flat - self._disc.risen)
+
+    @cached_property
+    def _density(self) -> PchipInterpolator:
+        """p over that of the half-space under a unit depth [m]: smooth up to the edge."""
+        disc = self._disc
+        r, quotient = disc.grid.radius[disc.disc.contact], disc.quotient(self._pressure)
+        inside = r < self.contact_radius - EDGE_CELLS * disc.grid.cell_size
+        return _ring_interpolator(r[inside], quotient[inside], disc.grid.cell_size)
+
+
+@dataclass(frozen=True, eq=False)
+class Rim:
+    """The edge of a contact with a singular pressure, and what causes displacements beyond it."""
+
+    layer: Layer
+    grid: Grid
+    pressure: FloatArray
+    radius: float
+    displacement: float
+
+    def displacement_outside(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m] at r > a; over the first cell it leaves the edge's value like the root of the distance."""
+        first = self.radius + self.grid.cell_size
+        w = summed_displacement(self.layer, self.grid, self.pressure, np.maximum(radius, first))
+        near = radius < first
+        share = np.sqrt((radius[near] - self.radius) / self.grid.cell_size)
+        w[near] = (1.0 - share) * self.displacement + share * w[near]
         return w
 
 

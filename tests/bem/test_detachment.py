@@ -14,7 +14,9 @@ from contact import (
     Adhesion,
     Detachment,
     FlatPunch,
+    IndentationDepths,
     Layer,
+    NormalForces,
     NotConvergedError,
     Paraboloid,
     Scene,
@@ -39,7 +41,7 @@ def scene(layer, indenter, control="displacement", start=None):
 
 @lru_cache
 def detached(layer, indenter, control):
-    return Bem(points=96).solve(scene(layer, indenter, control))
+    return Bem(points=96, adhesion="cells").solve(scene(layer, indenter, control))
 
 
 def test_the_constant_is_the_energy_of_a_uniformly_loaded_cell():
@@ -145,13 +147,35 @@ def test_loading_follows_the_unloading_branch():
 
 def test_a_wrong_constant_is_seen(monkeypatch):
     monkeypatch.setattr("bem.detachment.CELL_ENERGY", 2.0 * CELL_ENERGY)
-    path = Bem(points=96).solve(scene(HALF_SPACE, FlatPunch(radius=1e-3)))
+    path = Bem(points=96, adhesion="cells").solve(scene(HALF_SPACE, FlatPunch(radius=1e-3)))
     assert path.pull_off_force != pytest.approx(-np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9), rel=0.2)
+
+
+@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER], ids=["half-space", "layer"])
+def test_cells_snap_in_at_first_touch_hold_on_the_way_out_and_let_go(layer):
+    depths = np.array([-3e-6, 2e-6, 8e-6, 2e-6, -3e-6, -9e-6, -3e-6, 1e-6])
+    loaded = scene(layer, SPHERE).replace(loading=IndentationDepths(depths))
+    path = Bem(points=96, adhesion="cells").solve(loaded)
+    held = np.array([False, True, True, True, True, False, False, True])
+    np.testing.assert_array_equal(path.contact_radius > 0.0, held)
+    exact = Mdr().solve(loaded.replace(loading=IndentationDepths(depths[held])))
+    for name in ("contact_radius", "normal_force", "contact_stiffness"):
+        error = np.abs(getattr(path, name)[held] - getattr(exact, name)) / np.max(np.abs(getattr(exact, name)))
+        assert np.all(error < path.error_estimate[name][held]), name
+        assert np.all(error < 0.05), name
+
+
+def test_cells_follow_no_forces():
+    assert "discs" in Bem(adhesion="cells").supports(scene(LAYER, SPHERE).replace(loading=NormalForces([0.0]))).reason
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
-def test_pull_off_force_within_one_per_cent_at_512(layer):
+def test_pull_off_force_by_cells_converges_to_one_per_cent_at_512(layer):
     exact = Mdr().solve(scene(layer, SPHERE, "force")).pull_off_force
-    path = Bem(points=512).solve(scene(layer, SPHERE, "force"))
-    assert path.pull_off_force == pytest.approx(exact, rel=0.01)
+    errors = [
+        abs(Bem(points=n, adhesion="cells").solve(scene(layer, SPHERE, "force")).pull_off_force / exact - 1.0)
+        for n in (128, 512)
+    ]
+    assert errors[1] < 0.01
+    assert errors[1] < errors[0] / 2.0  # about first order

@@ -165,7 +165,8 @@ def test_a_contact_beyond_the_indenter_is_refused():
 
 
 @pytest.mark.parametrize(
-    "bad", [{"points": 90}, {"points": 130}, {"boundary": "open"}, {"tolerance": 0.0}, {"threads": 0}]
+    "bad",
+    [{"points": 90}, {"points": 130}, {"boundary": "open"}, {"tolerance": 0.0}, {"threads": 0}, {"adhesion": "glue"}],
 )
 def test_bad_settings_are_refused(bad):
     with pytest.raises(InvalidInput):
@@ -180,9 +181,7 @@ def test_scenes_it_does_not_model_are_refused_with_a_reason():
         effects=(KelvinVoigt(shear_modulus=1e6, viscosity=1.0),),
     )
     impact = Scene(layer=LAYER, indenter=PARABOLOID, loading=Impact(mass=1.0, velocity=0.1))
-    sticky = Scene(
-        layer=LAYER, indenter=PARABOLOID, loading=NormalForces([1.0]), effects=(Adhesion(work_of_adhesion=0.1),)
-    )
+    sticky = impact.replace(effects=(Adhesion(work_of_adhesion=0.1),))
     periodic = Scene(layer=HALF_SPACE, indenter=PARABOLOID, loading=NormalForces([1.0]))
     detaching = Scene(layer=LAYER, indenter=PARABOLOID, loading=Detachment(), effects=(Adhesion(work_of_adhesion=0.1),))
     wrapped = Bem(boundary="periodic")

@@ -1,0 +1,188 @@
+"""Equilibria of an adhering indenter over the contact radius: stable and unstable ones, and their turning points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import pairwise
+from math import pi
+from typing import Final, Literal
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.optimize import brentq, minimize_scalar
+
+from bem.adhering_disc import AdheringDisc
+from bem.grid import first_radius
+from contact import Adhesion, FlatPunch, Scene
+from contact.validation import FloatArray
+
+NODES: Final = 16  # contact radii solved on each piece of the branch
+SCOUT_CELLS: Final = 64
+SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
+GROWTH: Final = 1.6  # of the largest radius while the branch is too short
+
+Quantity = Literal["indentation_depth", "normal_force"]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
+
+    In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end.
+    """
+
+    inner: float
+    outer: float
+    series: FloatArray
+
+    @classmethod
+    def through(cls, inner: float, outer: float, solve: Callable[[float], AdheringDisc]) -> Piece:
+        """Through solutions at Chebyshev points."""
+        t = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
+        discs = [solve(inner + (outer - inner) * float(x) ** 2) for x in t]
+        values = [[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in discs]
+        return cls(inner, outer, chebyshev.chebfit(2.0 * t - 1.0, np.array(values), NODES - 1))
+
+    def at(self, radius: FloatArray) -> FloatArray:
+        """The four at radii of this piece, shape (4, n)."""
+        t = np.sqrt(np.clip((radius - self.inner) / (self.outer - self.inner), 0.0, 1.0))
+        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series))
+
+    @property
+    def truncation(self) -> float:
+        """What the last two orders contribute, relative to the largest value."""
+        size = np.abs(self.series)
+        return float(np.max(size[-2:].sum(axis=0) / np.maximum(size.max(axis=0), np.finfo(float).tiny)))
+
+
+@dataclass(frozen=True, eq=False)
+class AdhesiveBranch:
+    """delta and F_N of the equilibria, Eq. (40), on 0 < a <= `largest_radius`.
+
+    Attributes:
+        scene: Layer, indenter and work of adhesion.
+        cells: Grid cells across the contact's box.
+        pieces: Between axis, rim of the flat end, and the largest radius.
+    """
+
+    scene: Scene
+    cells: int
+    pieces: tuple[Piece, ...]
+
+    @classmethod
+    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> AdhesiveBranch:
+        """The branch from the axis to a radius [m]."""
+
+        def solve(a: float) -> AdheringDisc:
+            return AdheringDisc.solved(scene.layer, scene.indenter, a, cells, threads)
+
+        flat = scene.indenter.flat_radius
+        ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
+        return cls(scene, cells, tuple(Piece.through(low, high, solve) for low, high in pairwise(ends)))
+
+    @property
+    def largest_radius(self) -> float:
+        """Where the branch ends [m]."""
+        return self.pieces[-1].outer
+
+    @property
+    def truncation(self) -> float:
+        """Relative error of the polynomials."""
+        return max(piece.truncation for piece in self.pieces)
+
+    def stiffness(self, radius: FloatArray) -> FloatArray:
+        """k_N [N/m]."""
+        return np.asarray(self.scene.layer.contact_modulus * self._at(radius)[2])
+
+    def depth(self, radius: FloatArray) -> FloatArray:
+        """delta [m] where phi = -sqrt(2 pi dgamma a/E*): Eq. (40)."""
+        flat, risen, _, _ = self._at(radius)
+        return np.asarray((risen - np.sqrt(2.0 * pi * adhesive_length(self.scene) * radius)) / flat)
+
+    def force(self, radius: FloatArray, depth: FloatArray | None = None) -> FloatArray:
+        """F_N [N], in equilibrium or at another depth."""
+        _, _, stiffness, moment = self._at(radius)
+        delta = self.depth(radius) if depth is None else depth
+        return np.asarray(self.scene.layer.contact_modulus * (stiffness * delta - moment))
+
+    def value(self, quantity: Quantity, radius: FloatArray) -> FloatArray:
+        """Depth or force."""
+        return self.depth(radius) if quantity == "indentation_depth" else self.force(radius)
+
+    def samples(self) -> FloatArray:
+        """Radii along the branch, increasing, the ends of its pieces among them."""
+        t = np.arange(1, SAMPLES + 1) / SAMPLES
+        return np.concatenate([p.inner + (p.outer - p.inner) * t**2 for p in self.pieces])
+
+    def turning_points(self, quantity: Quantity) -> list[tuple[float, bool]]:
+        """Radii where the quantity is stationary, and whether it is least there."""
+        radii = self.samples()
+        rising = np.diff(self.value(quantity, radii)) > 0.0
+        places = np.flatnonzero(np.diff(rising.astype(int))) + 1
+        return [(self._refined(quantity, radii, int(i), bool(rising[i])), bool(rising[i])) for i in places]
+
+    def _refined(self, quantity: Quantity, radii: FloatArray, i: int, least: bool) -> float:
+        """The extremum near sample i; at the rim of a flat end it is a kink, which bounded minimisation finds too."""
+        sign = 1.0 if least else -1.0
+        found = minimize_scalar(
+            lambda a: sign * float(self.value(quantity, np.array([a]))[0]),
+            bounds=(radii[i - 1], radii[i + 1]),
+            method="bounded",
+            options={"xatol": 1e-9 * radii[i]},
+        )
+        return float(found.x)
+
+    def crossing(self, quantity: Quantity, value: float, within: tuple[float, float], *, inmost: bool) -> float | None:
+        """The first or last radius in an interval at which the quantity grows with the radius through a value."""
+        radii = self.samples()
+        radii = np.concatenate([[within[0]], radii[(radii > within[0]) & (radii < within[1])], [within[1]]])
+        excess = self.value(quantity, radii) - value
+        places = np.flatnonzero((excess[:-1] < 0.0) & (excess[1:] >= 0.0))
+        if not places.size:
+            return None
+        i = places[0 if inmost else -1]
+        return float(
+            brentq(
+                lambda a: float(self.value(quantity, np.array([a]))[0]) - value,
+                radii[i],
+                radii[i + 1],
+                xtol=1e-14 * radii[i + 1],
+            )
+        )
+
+    def _at(self, radius: FloatArray) -> FloatArray:
+        answer = self.pieces[0].at(radius)
+        for piece in self.pieces[1:]:
+            answer = np.where(radius > piece.inner, piece.at(radius), answer)
+        return answer
+
+
+def adhesive_length(scene: Scene) -> float:
+    """dgamma/E* [m]."""
+    adhesion = scene.effect(Adhesion)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion / scene.layer.contact_modulus
+
+
+def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], bool]) -> float:
+    """A largest radius [m] with which a branch is long enough, or the indenter's end; looked for on a coarse grid.
+
+    It grows from where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*).
+    """
+    indenter = scene.indenter
+    if isinstance(indenter, FlatPunch):
+        return indenter.radius
+    radius = GROWTH * max(_balance_radius(scene), indenter.flat_radius)
+    while radius < indenter.max_radius:
+        if enough(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads)):
+            return radius
+        radius *= GROWTH
+    return indenter.max_radius
+
+
+def _balance_radius(scene: Scene) -> float:
+    def outgrown(radius: float) -> bool:
+        height = float(scene.indenter.height(np.array([radius]))[0])
+        return height**2 >= 2.0 * pi * adhesive_length(scene) * radius
+
+    return first_radius(outgrown, scene.indenter.max_radius)

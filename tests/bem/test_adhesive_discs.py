@@ -1,0 +1,160 @@
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from bem.adhering_disc import AdheringDisc
+from bem.direct import Bem
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    TruncatedCone,
+)
+from mdr import Mdr
+
+WORK = 0.1
+HALF_SPACE = Layer.half_space(youngs_modulus=0.75e6, poissons_ratio=0.5)  # E* = 1 MPa
+LAYER = Layer(thickness=1e-3, youngs_modulus=0.75e6, poissons_ratio=0.5, support="bonded")
+SPHERE, CONE = Paraboloid(radius_of_curvature=0.01), TruncatedCone(flat_radius=2e-4, slope=0.1)
+PUNCH = FlatPunch(radius=1e-3)
+LAYERS = {"half-space": HALF_SPACE, "bonded": LAYER, "unbonded": LAYER.replace(poissons_ratio=0.3, support="unbonded")}
+ALL_LAYERS = pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
+WAY_IN_AND_OUT = np.array([-3e-6, 2e-6, 8e-6, 2e-6, -3e-6, -9e-6, -3e-6, 1e-6])
+
+
+def scene(layer, indenter, loading):
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=(Adhesion(work_of_adhesion=WORK),))
+
+
+@lru_cache
+def detached(layer, indenter, control, points=96):
+    return Bem(points=points).solve(scene(layer, indenter, Detachment(control=control)))
+
+
+@ALL_LAYERS
+@pytest.mark.parametrize("control", ["displacement", "force"])
+@pytest.mark.parametrize("indenter", [SPHERE, PUNCH, CONE, Cone(slope=0.1)], ids=lambda i: type(i).__name__)
+def test_stated_errors_of_pull_off_cover_the_difference_to_mdr(layer, indenter, control):
+    exact = Mdr().solve(scene(layer, indenter, Detachment(control=control)))
+    path = detached(layer, indenter, control)
+    for name in path.SCALARS:
+        assert abs(getattr(path, name) / getattr(exact, name) - 1.0) < path.error_estimate[name][0], name
+
+
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_sphere_on_the_half_space_pulls_off_as_jkr(control):
+    # Johnson, Kendall and Roberts (1971): F = -1.5 pi R dgamma, a^3 = (1 or 9)/8 pi dgamma R^2/E*
+    path = detached(HALF_SPACE, SPHERE, control)
+    radius = np.cbrt({"displacement": 1, "force": 9}[control] / 8 * np.pi * WORK * 1e-4 / 1e6)
+    assert path.pull_off_force == pytest.approx(-1.5 * np.pi * 0.01 * WORK, rel=3e-3)
+    assert path.pull_off_contact_radius == pytest.approx(radius, rel=2e-3)
+    assert path.pull_off_depth == pytest.approx(radius**2 / 0.01 - np.sqrt(2 * np.pi * WORK * radius / 1e6), rel=2e-3)
+
+
+def test_the_branch_is_that_of_mdr_stable_and_unstable():
+    path, control = detached(LAYER, SPHERE, "displacement"), "displacement"
+    inner = path.contact_radius < 0.9 * path.pull_off_contact_radius
+    assert not path.stable_displacement_control[inner].any()
+    assert path.stable_displacement_control[path.contact_radius > 1.1 * path.pull_off_contact_radius].all()
+    radii = path.contact_radius[::-1][20:]
+    exact = Mdr().solve(scene(LAYER, SPHERE, ContactRadii(radii)))
+    for name in ("indentation_depth", "normal_force"):
+        error = np.abs(getattr(path, name)[::-1][20:] - getattr(exact, name)) / np.max(np.abs(getattr(exact, name)))
+        assert np.all(error < path.error_estimate[name][::-1][20:]), name
+    kinds = {(point.control, point.kind) for point in path.critical_points}
+    assert {(control, "pull-off"), ("force", "pull-off")} <= kinds
+
+
+def test_kendalls_punch_lets_go_at_once():
+    # F = -sqrt(8 pi E* dgamma a^3), exact because it is the measure
+    path = detached(HALF_SPACE, PUNCH, "displacement")
+    assert path.pull_off_force == pytest.approx(-np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9), rel=1e-5)
+    assert path.pull_off_contact_radius == pytest.approx(1e-3, rel=1e-12)
+
+
+def test_a_punch_on_an_incompressible_layer_peels_to_the_maximum_of_the_elongation():
+    # Eq. (45): a/h = 0.461904, elongation 0.392203, from the Fredholm equation
+    path = detached(LAYER, PUNCH, "displacement")
+    assert path.pull_off_contact_radius == pytest.approx(0.461904e-3, rel=3e-3)
+    assert path.pull_off_depth == pytest.approx(-0.392203 * np.sqrt(2 * np.pi * WORK * 1e-3 / 1e6), rel=5e-4)
+
+
+@ALL_LAYERS
+@pytest.mark.parametrize("indenter", [SPHERE, CONE, PUNCH], ids=lambda i: type(i).__name__)
+def test_depths_are_followed_in_and_out(layer, indenter):
+    # snap-in at the first touch; at -3 um nothing on the way in and a contact on the way out
+    path = Bem(points=96).solve(scene(layer, indenter, IndentationDepths(WAY_IN_AND_OUT)))
+    held = path.contact_radius > 0.0
+    assert not held[0]
+    assert held[1:5].all()
+    assert not path.normal_force[~held].any()
+    exact = Mdr().solve(scene(layer, indenter, IndentationDepths(WAY_IN_AND_OUT[held])))
+    for name in path.ARRAYS:
+        error = np.abs(getattr(path, name)[held] - getattr(exact, name)) / np.max(np.abs(getattr(exact, name)))
+        assert np.all(error <= path.error_estimate[name][held] + 1e-11), name
+
+
+def test_hysteresis_of_the_jkr_sphere_is_the_closed_form():
+    # snap-in at delta = 0: a^3 = 2 pi dgamma R^2/E*, F = -(4/3) pi R dgamma; pull-off at the fold (JKR)
+    fold = -0.75 * np.cbrt(np.pi**2 * WORK**2 * 0.01 / 1e12)
+    path = Bem(points=128).solve(scene(HALF_SPACE, SPHERE, IndentationDepths([-1e-9, 0.0, 0.99 * fold, 1.01 * fold])))
+    assert path.contact_radius[1] == pytest.approx(np.cbrt(2 * np.pi * WORK * 1e-4 / 1e6), rel=2e-3)
+    assert path.normal_force[1] == pytest.approx(-4 / 3 * np.pi * 0.01 * WORK, rel=3e-3)
+    np.testing.assert_array_equal(path.contact_radius > 0.0, [False, True, True, False])
+
+
+def test_forces_are_followed_and_too_strong_a_pull_is_refused():
+    forces = NormalForces([1e-3, 5e-3, 0.0, -4e-3])
+    path, exact = (m.solve(scene(LAYER, SPHERE, forces)) for m in (Bem(points=96), Mdr()))
+    for name in path.ARRAYS:
+        error = np.abs(getattr(path, name) - getattr(exact, name)) / np.max(np.abs(getattr(exact, name)))
+        assert np.all(error <= path.error_estimate[name] + 1e-11), name
+    for bad in ([-1e-3], [1e-3, -5e-3]):
+        with pytest.raises(InvalidInput, match="press first"):
+            Bem(points=96).solve(scene(LAYER, SPHERE, NormalForces(bad)))
+
+
+def test_pressure_and_displacement_are_those_of_mdr():
+    path, exact = (m.solve(scene(LAYER, SPHERE, IndentationDepths([-1e-6, 5e-6]))) for m in (Bem(points=256), Mdr()))
+    a = path.contact_radius[1]
+    inside, outside = a * np.linspace(0.0, 0.95, 20), a * np.array([1.05, 1.5, 3.0, 6.0])
+    np.testing.assert_allclose(path.pressure(inside, 1), exact.pressure(inside, 1), atol=0.01 * exact.pressure(0.0, 1))
+    np.testing.assert_allclose(path.surface_displacement(outside, 1), exact.surface_displacement(outside, 1), atol=4e-8)
+    assert not path.pressure(inside, 0).any()
+    assert not path.surface_displacement(inside, 0).any()
+
+
+def test_nothing_adheres_without_work_of_adhesion():
+    scenes = [
+        Scene(layer=LAYER, indenter=SPHERE, loading=IndentationDepths([1e-6]), effects=effects)
+        for effects in ((), (Adhesion(work_of_adhesion=0.0),))
+    ]
+    bare, listed = (Bem(points=96).solve(s) for s in scenes)
+    np.testing.assert_array_equal(bare.normal_force, listed.normal_force)
+    with pytest.raises(InvalidInput, match="nothing to detach"):
+        Bem(points=96).solve(scenes[1].replace(loading=Detachment()))
+
+
+def test_a_wrong_edge_value_is_seen(monkeypatch):
+    right = AdheringDisc.edge_flat.fget
+    monkeypatch.setattr(AdheringDisc, "edge_flat", property(lambda disc: 1.1 * right(disc)))
+    path = Bem(points=96).solve(scene(HALF_SPACE, SPHERE, Detachment(control="force")))
+    assert path.pull_off_force != pytest.approx(-1.5 * np.pi * 0.01 * WORK, rel=0.02)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
+def test_pull_off_force_converges_to_a_part_in_a_thousand_at_512(layer):
+    exact = Mdr().solve(scene(layer, SPHERE, Detachment(control="force"))).pull_off_force
+    errors = [abs(detached(layer, SPHERE, "force", points).pull_off_force / exact - 1.0) for points in (128, 256, 512)]
+    assert errors[2] < 3e-4
+    assert errors[2] < errors[0] / 4.0  # order above one
