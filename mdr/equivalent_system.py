@@ -65,18 +65,26 @@ class EquivalentSystem:
 
     def mdr_profile(self, x: ArrayLike) -> FloatArray:
         """g(x; h) [m], zero within the flat radius."""
-        excess = self._excess(x)
-        return np.where(excess > 0, self.length_unit * self.profile(np.maximum(excess, 0.0)), 0.0)
+        return self.profile_beyond(np.asarray(x, dtype=float) - self.flat_radius)
 
     def mdr_profile_slope(self, x: ArrayLike) -> FloatArray:
         """dg/dx [-], infinite at a flat end with a sharp rim."""
-        excess = self._excess(x)
-        return np.where(excess >= 0, self.profile.derivative(np.maximum(excess, 0.0)), 0.0)
+        excess = np.asarray(x, dtype=float) - self.flat_radius
+        return np.where(excess >= 0, self.profile.derivative(self._beyond(excess)), 0.0)
+
+    def profile_beyond(self, excess: FloatArray) -> FloatArray:
+        """g [m] at an excess x - b [m] over the flat radius, which says more than the rounded x close to it."""
+        inside = self._beyond(excess)
+        return np.where(inside > 0, self.length_unit * self.profile(inside), 0.0)
 
     def profile_moment(self, contact_radius: ArrayLike) -> FloatArray:
         """2 int_0^a c_N g dx [N]: what the profile takes away from the force of a flat punch, Eq. (4)."""
-        excess = self._excess(contact_radius)
-        return np.where(excess > 0, self._force_unit * self.moment(np.maximum(excess, 0.0)), 0.0)
+        return self.moment_beyond(np.asarray(contact_radius, dtype=float) - self.flat_radius)
+
+    def moment_beyond(self, excess: FloatArray) -> FloatArray:
+        """The same at an excess a - b [m]."""
+        inside = self._beyond(excess)
+        return np.where(inside > 0, self._force_unit * self.moment(inside), 0.0)
 
     def force(self, contact_radius: ArrayLike, indentation_depth: ArrayLike) -> FloatArray:
         """F_N [N] of springs within a under a depth delta that need not belong to a (adhesion), Eq. (4)."""
@@ -129,11 +137,10 @@ class EquivalentSystem:
         ratio: FloatArray = np.minimum(x, self.max_radius) / self.length_unit
         return ratio
 
-    def _excess(self, x: ArrayLike) -> FloatArray:
-        """(x - b) in units of length_unit; the difference is formed first, since it is exact where it is small."""
-        self._ratio(x)
-        excess: FloatArray = (np.asarray(x, dtype=float) - self.flat_radius) / self.length_unit
-        return excess
+    def _beyond(self, excess: FloatArray) -> FloatArray:
+        """The excess in units of length_unit, zero within the flat radius."""
+        self._ratio(self.flat_radius + excess)
+        return np.maximum(excess / self.length_unit, 0.0)
 
     def _position(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """x in units of length_unit."""

@@ -27,6 +27,7 @@ from contact.solution import Setting
 from contact.validation import FloatArray
 from mdr.assembly import equivalent_system
 from mdr.effects.adhesive_branch import DEPTH, FORCE, AdhesiveBranch, adhesive_branch, critical_elongation
+from mdr.effects.adhesive_errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.effects.detachment_route import CONTROLS, Route
 from mdr.effects.reference_springs import bisected, growing_radii, power_law, upper
 from mdr.elastic import PathFields, solve_elastic
@@ -50,33 +51,39 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
     if not isinstance(loading, Detachment):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")
     with log.stage("adhesion"):
-        system, route = _withdrawal(scene, loading, flat_punch)
-        radius, depth, force, stable = _states(route, system)
+        route, bounds, uncertain = _withdrawal(scene, loading, flat_punch)
+        system = bounds.system
+        radius, values, errors, stable = _states(route, bounds, uncertain)
         control = CONTROLS.index(loading.control)
-        lost_radius, lost_depth, _ = route.state(route.loss(control))
-        tension = route.largest_tension(control)
-        critical_points = route.critical_points()
-    error = system.relative_error["normal_force"] + route.branch.error
+        loss, tension = route.loss(control), route.largest_tension(control)
+        lost_radius, lost_depth, _ = route.state(loss)
+        lost, torn = (bounds.of_point(y, uncertain) for y in (loss, tension))
+        force = route.state(tension)[2]
+    depth_scale, force_scale = np.abs(values).max(axis=1)
     return DetachmentPath(
         scene=scene,
         method="mdr",
         settings=settings,
         error_estimate={
-            name: np.full(radius.size, error)
-            for name in ("indentation_depth", "normal_force", "pull_off_force", "pull_off_depth")
+            "contact_radius": errors[RADIUS] / radius.max(),
+            "indentation_depth": errors[DEPTH] / depth_scale,
+            "normal_force": errors[FORCE] / force_scale,
+            "pull_off_force": _relative(torn[FORCE], force),
+            "pull_off_depth": _relative(lost[DEPTH], lost_depth),
+            "pull_off_contact_radius": _relative(lost[RADIUS], lost_radius),
         },
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
         notes=_notes(scene, system, radius[0]),
         contact_radius=radius,
-        indentation_depth=depth,
-        normal_force=force,
+        indentation_depth=values[DEPTH],
+        normal_force=values[FORCE],
         stable_displacement_control=stable[DEPTH],
         stable_force_control=stable[FORCE],
-        pull_off_force=tension,
+        pull_off_force=force,
         pull_off_depth=lost_depth,
         pull_off_contact_radius=lost_radius,
-        critical_points=critical_points,
+        critical_points=route.critical_points(),
     )
 
 
@@ -92,15 +99,23 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
     log = StageLog()
     with log.stage("adhesion"):
-        system, radius, depth = _prescribed(scene, flat_punch)
+        system, radius, depth, errors = _prescribed(scene, flat_punch)
         force = np.asarray(system.force(radius, depth))
+        if isinstance(scene.loading, NormalForces):
+            force = scene.loading.values
         stiffness = np.asarray(system.contact_stiffness(radius))
-    error = np.full(radius.size, system.relative_error["normal_force"])
+        springs = 2.0 * system.spring_stiffness(radius)
+    relative = system.relative_errors(radius)["contact_stiffness"]
     return ContactPath(
         scene=scene,
         method="mdr",
         settings=settings,
-        error_estimate=dict.fromkeys(("indentation_depth", "normal_force", "contact_stiffness"), error),
+        error_estimate={
+            "contact_radius": _relative(errors[RADIUS], radius),
+            "indentation_depth": _relative(errors[DEPTH], depth),
+            "normal_force": _relative(errors[FORCE], force),
+            "contact_stiffness": _relative(relative * stiffness + springs * errors[RADIUS], stiffness),  # Eq. (6)
+        },
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
         contact_radius=radius,
@@ -111,19 +126,27 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
     )
 
 
-def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, Route]:
-    """The equivalent system and the way from the first contact radius inwards."""
-    if isinstance(scene.indenter, FlatPunch):
-        system, branch = _branch(scene, scene.indenter.radius, flat_punch)
-        return system, Route(branch, float(branch.section_ends[-1]), pinned=True)
-    if loading.initial_contact_radius is not None:
-        system, branch = _branch(scene, loading.initial_contact_radius, flat_punch)
-        return system, Route(branch, float(branch.section_ends[-1]), pinned=False)
+def _relative(errors: FloatArray | float, values: FloatArray | float) -> FloatArray:
+    """Errors over the values' largest magnitude, as a path states them; what is exactly zero has no error."""
+    largest = np.abs(np.atleast_1d(values)).max()
+    return np.atleast_1d(errors) / (largest if largest > 0.0 else 1.0)
+
+
+def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) -> tuple[Route, BranchErrors, float]:
+    """The way from the first contact radius inwards, errors along it, and how uncertain its start is in y."""
+    is_punch = isinstance(scene.indenter, FlatPunch)
+    if is_punch or loading.initial_contact_radius is not None:
+        system, branch = _branch(scene, loading.initial_contact_radius or scene.indenter.max_radius, flat_punch)
+        return Route(branch, float(branch.section_ends[-1]), pinned=is_punch), BranchErrors(system, branch), 0.0
     if work_of_adhesion(scene) == 0.0:
         raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
     system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= _strength(b))
-    start = branch.solutions(FORCE, np.array([_strength(branch)]))[0]
-    return system, Route(branch, float(start if np.isfinite(start) else branch.section_ends[-1]), pinned=False)
+    bounds, start = BranchErrors(system, branch), branch.solutions(FORCE, np.array([_strength(branch)]))
+    if np.isnan(start[0]):
+        return Route(branch, float(branch.section_ends[-1]), pinned=False), bounds, 0.0
+    strongest = max(float(bounds.of_point(y, 0.0)[FORCE]) for y in branch.folds(FORCE))
+    uncertain = float(bounds.shift(FORCE, start, strongest)[0])
+    return Route(branch, float(start[0]), pinned=False), bounds, uncertain
 
 
 def _strength(branch: AdhesiveBranch) -> float:
@@ -167,15 +190,18 @@ def balance_radius(scene: Scene) -> float:
     return bisected(excess, indenter.flat_radius, upper(excess, indenter))
 
 
-def _prescribed(scene: Scene, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, FloatArray, FloatArray]:
-    """Contact radius and depth under prescribed radii, depths or forces."""
+def _prescribed(
+    scene: Scene, flat_punch: FlatPunchSource
+) -> tuple[EquivalentSystem, FloatArray, FloatArray, FloatArray]:
+    """Contact radius and depth under prescribed radii, depths or forces, and errors of depth, force and radius."""
     loading = scene.loading
     if isinstance(loading, ContactRadii):
         system = equivalent_system(scene.layer, scene.indenter, float(loading.values[-1]), flat_punch)
         depth = system.mdr_profile(loading.values) - critical_elongation(
             system, loading.values, work_of_adhesion(scene)
         )  # Eq. (41)
-        return system, loading.values, depth
+        errors = errors_at_radius(system, loading.values, depth)
+        return system, loading.values, depth, np.vstack([errors, np.zeros(depth.size)])
     if not isinstance(loading, IndentationDepths | NormalForces):
         raise UnsupportedSceneError(
             f"loading = {type(loading).__name__}: adhesion needs radii, depths, forces, Detachment"
@@ -187,20 +213,34 @@ def _prescribed(scene: Scene, flat_punch: FlatPunchSource) -> tuple[EquivalentSy
     system, branch = _reaching(scene, flat_punch, lambda b: bool(b.values(b.section_ends[-1:])[quantity, 0] >= largest))
     y = branch.solutions(quantity, loading.values)
     _refuse_missing(y, loading.values, branch, quantity)
-    return system, branch.radius(y), branch.values(y)[DEPTH]
+    depth = loading.values if quantity == DEPTH else branch.values(y)[DEPTH]
+    return system, branch.radius(y), depth, _errors_on_branch(system, branch, quantity, y)
+
+
+def _errors_on_branch(system: EquivalentSystem, branch: AdhesiveBranch, quantity: int, y: FloatArray) -> FloatArray:
+    """Errors of depth, force and radius of states with a prescribed quantity, which is exact."""
+    errors = BranchErrors(system, branch)
+    spread = errors.of_states(y, errors.shift(quantity, y))
+    spread[quantity] = 0.0
+    return spread
 
 
 def _on_punch(
     scene: Scene, radius: float, quantity: int, values: FloatArray, flat_punch: FlatPunchSource
-) -> tuple[EquivalentSystem, FloatArray, FloatArray]:
+) -> tuple[EquivalentSystem, FloatArray, FloatArray, FloatArray]:
     """A flat punch keeps its radius down to where the front sets off; then it peels, if it can do so stably."""
     system, branch = _branch(scene, radius, flat_punch)
     stiffness = float(system.contact_stiffness(radius))
     held = values >= branch.values(branch.section_ends[-1:])[quantity, 0]
     y = np.where(held, branch.section_ends[-1], branch.solutions(quantity, values))
     _refuse_missing(y, values, branch, quantity)
-    depth = np.where(held, values if quantity == DEPTH else values / stiffness, branch.values(y)[DEPTH])
-    return system, np.where(held, radius, branch.radius(y)), depth
+    depth = values if quantity == DEPTH else np.where(held, values / stiffness, branch.values(y)[DEPTH])
+    linear = system.relative_errors(np.full(values.size, radius))["contact_stiffness"] * np.abs(depth)
+    at_rest = np.stack([np.zeros(values.size), linear * stiffness, np.zeros(values.size)])  # Eq. (43)
+    if quantity == FORCE:
+        at_rest = np.stack([linear, *np.zeros((2, values.size))])
+    errors = np.where(held, at_rest, _errors_on_branch(system, branch, quantity, y))
+    return system, np.where(held, radius, branch.radius(y)), depth, errors
 
 
 def _refuse_missing(y: FloatArray, values: FloatArray, branch: AdhesiveBranch, quantity: int) -> None:
@@ -215,21 +255,18 @@ def _refuse_missing(y: FloatArray, values: FloatArray, branch: AdhesiveBranch, q
     )
 
 
-def _states(route: Route, system: EquivalentSystem) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
-    """Radius, depth, force and stability (by control), shape (n,) and (2, n), radius falling."""
-    y = route.start * np.linspace(1.0, 0.0, POINTS - _PINNED * route.pinned, endpoint=False)
-    depth, force = route.branch.values(y)
-    radius, stable = route.branch.radius(y), route.branch.slopes(y) > 0.0
-    if not route.pinned:
-        return radius, depth, force, stable
-    held = depth[0] * np.arange(_PINNED) / _PINNED  # from rest to where the front sets off
-    edge = np.full(_PINNED, radius[0])
-    return (
-        np.concatenate([edge, radius]),
-        np.concatenate([held, depth]),
-        np.concatenate([system.contact_stiffness(edge) * held, force]),  # Eq. (43)
-        np.concatenate([np.ones((2, _PINNED), dtype=np.bool_), stable], axis=1),
-    )
+def _states(
+    route: Route, bounds: BranchErrors, uncertain: float
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Radius, depth and force, their errors (as rows depth, force, radius) and stability by control, radius falling.
+
+    A pinned front comes first: from rest to where it sets off, depth and force are shares of what they are there.
+    """
+    held, branch = _PINNED if route.pinned else 0, route.branch
+    share = np.append(np.arange(held) / max(held, 1), np.ones(POINTS - held))
+    y = np.append(np.full(held, route.start), route.start * np.linspace(1.0, 0.0, POINTS - held, endpoint=False))
+    errors = share * bounds.of_states(y, uncertain * y / route.start)
+    return branch.radius(y), share * branch.values(y), errors, (branch.slopes(y) > 0.0) | (share < 1.0)
 
 
 def work_of_adhesion(scene: Scene) -> float:

@@ -28,14 +28,21 @@ _NEWTON_STEPS, _ROUNDING = 60, 1e-13  # a Newton step this short has squared its
 class AdheringSprings(Protocol):
     """What the branch asks of an equivalent system."""
 
+    @property
+    def flat_radius(self) -> float:
+        """b [m], where the profile begins to rise."""
+
     def spring_stiffness(self, x: FloatArray) -> FloatArray:
         """c_N(x) [Pa]."""
 
-    def mdr_profile(self, x: FloatArray) -> FloatArray:
-        """g(x) [m]."""
+    def contact_stiffness(self, contact_radius: FloatArray) -> FloatArray:
+        """k_N(a) [N/m]."""
 
-    def force(self, contact_radius: FloatArray, indentation_depth: FloatArray) -> FloatArray:
-        """F_N [N] of springs within a at depth delta, Eq. (4)."""
+    def profile_beyond(self, excess: FloatArray) -> FloatArray:
+        """g [m] at an excess x - b [m] over the flat radius."""
+
+    def moment_beyond(self, excess: FloatArray) -> FloatArray:
+        """2 int_0^a c_N g dx [N] at an excess a - b [m]."""
 
 
 def critical_elongation(springs: AdheringSprings, radius: FloatArray, work_of_adhesion: float) -> FloatArray:
@@ -48,28 +55,23 @@ class AdhesiveBranch:
     """Depth and force of all equilibria up to a largest radius.
 
     Attributes:
-        functions: delta, F, d(delta)/dy, dF/dy of y.
+        functions: delta, F, and their first and second derivatives by y.
         coefficients: Chebyshev coefficients of the two slopes, shape (count, 2, panels).
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
         section_radii: a [m] there.
-        error: Largest relative size of the coefficients left out.
+        truncation: What the polynomials leave out of delta [m] and F [N], shape (2,).
     """
 
     functions: Piecewise
     coefficients: FloatArray
     section_ends: FloatArray
     section_radii: FloatArray
-    error: float
+    truncation: FloatArray
 
     def radius(self, y: FloatArray) -> FloatArray:
         """a [m] at y."""
         section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
         return np.asarray(self.section_radii[section] + (y - self.section_ends[section]) ** 2)
-
-    def coordinate(self, radius: FloatArray) -> FloatArray:
-        """The y of a [m]."""
-        section = np.clip(np.searchsorted(self.section_radii, radius, side="right") - 1, 0, self.section_radii.size - 2)
-        return np.asarray(self.section_ends[section] + np.sqrt(np.maximum(radius - self.section_radii[section], 0.0)))
 
     def values(self, y: FloatArray) -> FloatArray:
         """delta [m] and F_N [N], shape (2, n)."""
@@ -78,6 +80,10 @@ class AdhesiveBranch:
     def slopes(self, y: FloatArray) -> FloatArray:
         """d(delta)/dy and dF/dy; a state is stable under prescribed depth, or force, where they are positive."""
         return self.functions(y, slice(2, 4))
+
+    def curvatures(self, y: FloatArray) -> FloatArray:
+        """Second derivatives of depth and force by y."""
+        return self.functions(y, slice(4, 6))
 
     def folds(self, quantity: int) -> FloatArray:
         """All y > 0 where the slope of depth or force changes sign, increasing."""
@@ -136,7 +142,7 @@ class AdhesiveBranch:
             excess, slope = both[quantity] - target, both[2 + quantity]
             left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)
             step = y - excess / np.where(slope > 0.0, slope, np.inf)
-            new = np.where((step > left) & (step < right) & (slope > 0.0), step, 0.5 * (left + right))
+            new = np.where((step >= left) & (step <= right) & (slope > 0.0), step, 0.5 * (left + right))
             if np.all(np.abs(new - y) <= _ROUNDING * high):
                 return np.asarray(new)
             y = new
@@ -163,15 +169,15 @@ def adhesive_branch(
     for start, low, high in zip(radii, ends, ends[1:], strict=False):
         panels += resolved_panels(_sampler(springs, start, low, work_of_adhesion), low, high)
     values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])  # (panels, 2, nodes)
-    halves = np.array([panel.half for panel in panels])
-    slopes = values @ chebyshev.differentiation(NODES).T / halves[:, None, None]
-    both = np.transpose(np.concatenate([values, slopes], axis=1), (2, 1, 0))
+    derivative = chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
+    slopes = values @ derivative
+    rows = np.transpose(np.concatenate([values, slopes, slopes @ derivative], axis=1), (2, 1, 0))
     return AdhesiveBranch(
-        functions=Piecewise.of(panels, both),
-        coefficients=both[:, 2:],
+        functions=Piecewise.of(panels, rows),
+        coefficients=rows[:, 2:4],
         section_ends=ends,
         section_radii=radii,
-        error=max(panel.tail for panel in panels),
+        truncation=np.max([panel.tails for panel in panels], axis=0),
     )
 
 
@@ -181,8 +187,9 @@ def _sampler(
     """Depth and force along the section that begins at the radius `start`, where y = low."""
 
     def sample(y: FloatArray) -> FloatArray:
-        radius = start + (y - low) ** 2
-        depth = springs.mdr_profile(radius) - critical_elongation(springs, radius, work_of_adhesion)  # Eq. (41)
-        return np.stack([depth, springs.force(radius, depth)])
+        way = (y - low) ** 2
+        radius, excess = start + way, (start - springs.flat_radius) + way
+        depth = springs.profile_beyond(excess) - critical_elongation(springs, radius, work_of_adhesion)  # Eq. (41)
+        return np.stack([depth, springs.contact_stiffness(radius) * depth - springs.moment_beyond(excess)])  # Eq. (4)
 
     return sample

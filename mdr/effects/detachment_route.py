@@ -45,15 +45,15 @@ class Route:
         return min(points, key=lambda y: self.state(y)[1 + control])
 
     def largest_tension(self, control: int) -> float:
-        """Smallest force on the way to the loss of contact.
+        """The y of the smallest force on the way to the loss of contact.
 
         A jump lands under less tension than it left with, since it drops springs that pull.
         """
         loss = self.loss(control)
         if control == FORCE:
-            return self.state(loss)[2]
+            return loss
         points = [loss, self.start, *(y for y in self._folds(FORCE) if y > loss)]
-        return min(self.state(y)[2] for y in points if self._is_met(y))
+        return min((y for y in points if self._is_met(y)), key=lambda y: self.state(y)[2])
 
     def critical_points(self) -> tuple[CriticalPoint, ...]:
         """Where the front sets off, all changes of stability on the way in, and where first touch lands."""

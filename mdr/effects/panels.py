@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact import NotConvergedError
 from contact.validation import FloatArray
@@ -28,13 +29,13 @@ class Panel:
         low: Left end.
         high: Right end.
         values: Shape (functions, nodes).
-        tail: Largest of the last coefficients over the function's largest value, over all functions.
+        tails: Size of each function's last Chebyshev coefficients, shape (functions,).
     """
 
     low: float
     high: float
     values: FloatArray
-    tail: float
+    tails: FloatArray
 
     @property
     def half(self) -> float:
@@ -64,16 +65,26 @@ def resolved_panels(sample: Callable[[FloatArray], FloatArray], low: float, high
     while waiting and len(waiting) + len(done) < _MOST_PANELS:
         values = _values(sample, waiting)
         sizes = np.abs(values).max(axis=(0, 2)) if sizes is None else sizes
-        tails = _tails(values, sizes)
-        panels = [Panel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails.tolist(), strict=True)]
+        tails = _tails(values)
+        unresolved = (tails / np.where(sizes > 0.0, sizes, 1.0)).max(axis=1)
+        panels = [Panel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails, strict=True)]
         room = len(done) + 2 * len(waiting) < _MOST_PANELS
         halvable = min(right - left for left, right in waiting) > _SMALLEST * (high - low)
-        allowed = _RESOLVED if room and halvable else _USABLE
-        done += [panel for panel in panels if panel.tail <= allowed]
-        waiting = [half for panel in panels if panel.tail > allowed for half in _halves(panel)]
+        fine = unresolved <= (_RESOLVED if room and halvable else _USABLE)
+        done += [panel for panel, enough in zip(panels, fine, strict=True) if enough]
+        waiting = [half for panel, enough in zip(panels, fine, strict=True) if not enough for half in _halves(panel)]
     if waiting:
-        raise NotConvergedError("the equivalent springs are too rough for a table", {"unresolved part": tails.max()})
+        raise NotConvergedError(
+            "the equivalent springs are too rough for a table", {"unresolved part": float(unresolved.max())}
+        )
     return sorted(done, key=lambda panel: panel.low)
+
+
+def relative_tail(panels: list[Panel]) -> float:
+    """The part of a function that its polynomials leave out, over its largest value: the worst function's."""
+    tails = np.max([panel.tails for panel in panels], axis=0)
+    sizes = np.max([np.abs(panel.values).max(axis=1) for panel in panels], axis=0)
+    return float(np.max(tails / np.where(sizes > 0.0, sizes, 1.0)))
 
 
 def _halves(panel: Panel) -> list[tuple[float, float]]:
@@ -88,10 +99,9 @@ def _values(sample: Callable[[FloatArray], FloatArray], waiting: list[tuple[floa
     return np.swapaxes(sample(points.ravel()).reshape(-1, *points.shape), 0, 1)
 
 
-def _tails(values: FloatArray, sizes: FloatArray) -> FloatArray:
-    """Size of the last three coefficients against the functions' sizes, the worst function of each panel."""
-    last = values @ chebyshev.analysis(NODES)[-3:].T
-    return np.asarray((np.abs(last).max(axis=2) / np.where(sizes > 0.0, sizes, 1.0)).max(axis=1))
+def _tails(values: FloatArray) -> FloatArray:
+    """Largest of the last three coefficients, shape (panels, functions)."""
+    return np.asarray(np.abs(values @ chebyshev.analysis(NODES)[-3:].T).max(axis=2))
 
 
 @dataclass(frozen=True)
@@ -119,9 +129,12 @@ class Piecewise:
 
     def __call__(self, y: FloatArray, rows: slice, first: int = 0, last: int | None = None) -> FloatArray:
         """Some of the functions at y of any shape, by the panels from `first` to before `last` only."""
-        end = self.centres.size if last is None else last
-        inner = self.edges[first + 1 : end]  # panels are found by the edges between them: none lies outside
-        panel = inner.searchsorted(y, side="right") + first
+        panel = self.panel(y, first, last)
         z = (y - self.centres.take(panel)) * self.scales.take(panel)
         ladder, powers = chebyshev.powers(z, self.powers.shape[0]), self.powers[:, rows].take(panel, axis=2)
         return np.asarray(np.einsum("kr...,k...->r...", powers, ladder))
+
+    def panel(self, y: FloatArray, first: int = 0, last: int | None = None) -> NDArray[np.intp]:
+        """The panel of each y, found by the edges between panels: none lies outside."""
+        end = self.centres.size if last is None else last
+        return np.asarray(self.edges[first + 1 : end].searchsorted(y, side="right") + first)

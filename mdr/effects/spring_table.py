@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contact.validation import FloatArray
 from mdr.effects import chebyshev
-from mdr.effects.panels import NODES, Panel, Piecewise, resolved_panels
+from mdr.effects.panels import NODES, Panel, Piecewise, relative_tail, resolved_panels
 
 PROFILE, SLOPE, STIFFNESS, STIFFENING, MOMENT, SECOND_MOMENT = range(6)  # g, dg/dy, k, dk/dy, P, Q
 
@@ -97,7 +97,7 @@ def spring_table(
         section_ends=ends,
         section_radii=radii,
         section_panels=np.concatenate([[0], np.cumsum([len(section) for section in sections])]),
-        error=error + max(panel.tail for panel in panels),
+        error=error + max(relative_tail(section) for section in sections),
     )
 
 

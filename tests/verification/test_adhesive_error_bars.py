@@ -1,0 +1,103 @@
+"""Stated errors of adhesive equilibria cover the true ones, whatever is prescribed."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from cases.stability.random_scenes import random_scenes
+from contact import (
+    Adhesion,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+)
+from mdr import Mdr
+from mdr.effects import adhesion
+
+QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+ROUNDING = 2.3e-16  # of the reference itself, once it is a double
+CURVATURE, WORK = 0.3, 2e-3
+HALF_SPACE = Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5)
+UNIT = (WORK * CURVATURE**2) ** (1 / 3)
+
+
+def jkr(a):
+    """Johnson, Kendall and Roberts 1971 with E* = 1: depth, force and stiffness, in 40 digits."""
+    elongation = mp.sqrt(2 * mp.pi * mp.mpf(WORK) * a)
+    depth = a**2 / mp.mpf(CURVATURE) - elongation
+    return depth, 2 * a * depth - 2 * a**3 / (3 * mp.mpf(CURVATURE)), 2 * a
+
+
+def states():
+    """Contact radii from just outside both folds to where adhesion hardly matters."""
+    return UNIT * np.array([1.6, 1.7, 1.8453, 1.846, 2.1, 3.0, 7.0, 20.0])  # zero depth at 1.8453
+
+
+def solve(loading):
+    scene = Scene(
+        layer=HALF_SPACE,
+        indenter=Paraboloid(radius_of_curvature=CURVATURE),
+        loading=loading,
+        effects=(Adhesion(work_of_adhesion=WORK),),
+    )
+    return Mdr().solve(scene)
+
+
+def prescribed(a, kind):
+    with mp.workdps(40):
+        if kind is ContactRadii:
+            return ContactRadii(values=np.array([a])), mp.mpf(a)
+        row = 0 if kind is IndentationDepths else 1
+        value = float(jkr(mp.mpf(a))[row])
+        return kind(values=np.array([value])), mp.findroot(lambda x: jkr(x)[row] - mp.mpf(value), mp.mpf(a))
+
+
+@pytest.mark.parametrize("kind", [ContactRadii, IndentationDepths, NormalForces])
+def test_stated_errors_cover_those_against_forty_digits(kind):
+    for a in states():
+        loading, radius = prescribed(a, kind)
+        path = solve(loading)
+        with mp.workdps(40):
+            exact = (radius, *jkr(radius))
+            for quantity, value in zip(QUANTITIES, exact, strict=True):
+                error = float(abs(mp.mpf(float(getattr(path, quantity)[0])) / value - 1))
+                assert error <= path.error_estimate[quantity][0] + ROUNDING
+            assert path.error_estimate["contact_radius"][0] < 1e-12
+
+
+def test_what_is_prescribed_is_exact_and_a_difference_of_equals_says_so():
+    depth = solve(ContactRadii(values=[UNIT * 1.84527]))  # close to zero depth: the condition number counts
+    plain = solve(ContactRadii(values=[UNIT * 7.0]))
+    assert depth.error_estimate["indentation_depth"][0] > 1e4 * plain.error_estimate["indentation_depth"][0]
+    assert plain.error_estimate["contact_radius"][0] == 0.0
+    assert solve(NormalForces(values=[0.0])).normal_force[0] == 0.0
+
+
+def test_an_error_without_its_condition_number_would_be_seen(monkeypatch):
+    """The planted fault is what once was stated: the error of the springs alone."""
+
+    def bare(system, radius, depth):
+        return np.stack([np.abs(depth), np.abs(system.force(radius, depth))]) * 1e-16
+
+    monkeypatch.setattr(adhesion, "errors_at_radius", bare)
+    with pytest.raises(AssertionError):
+        test_stated_errors_cover_those_against_forty_digits(ContactRadii)
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_stated_errors_of_random_scenes_cover_the_change_by_refinement(number):
+    scene = random_scenes(5, number + 1, "adhesive", (1e-3, 20.0))[number]
+    coarse, fine = Mdr().solve(scene), Mdr().refined().solve(scene)
+    rows = np.random.default_rng(number).choice(np.flatnonzero(coarse.stable_displacement_control), 3)
+    depths = IndentationDepths(values=coarse.indentation_depth[rows])
+    pairs = [(coarse, fine), tuple(m.solve(scene.replace(loading=depths)) for m in (Mdr(), Mdr().refined()))]
+    for one, other in pairs:
+        for quantity, stated in one.error_estimate.items():
+            change = np.abs(np.asarray(getattr(one, quantity)) - getattr(other, quantity)) / one.scale(quantity)
+            assert np.all(change <= stated + other.error_estimate[quantity] + 3e-15), quantity
+            if not isinstance(scene.indenter, FlatPunch):
+                assert np.all(stated < 1e-8)
