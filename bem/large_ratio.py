@@ -97,6 +97,12 @@ class LargeRatioSolution:
         Raises:
             InvalidInput: Beyond `near`, where only stiffnesses are known.
         """
+        ratio = self._covered(ratio)
+        if np.any(ratio > self.near.max_ratio):
+            raise InvalidInput(
+                f"a/h = {np.max(ratio):g}: pressures are known up to a/h = {self.near.max_ratio:g}; depth, force and "
+                f"stiffness up to {LARGEST_RATIO:g}"
+            )
         return self.near.smooth_pressure(rho, ratio)
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:

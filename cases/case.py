@@ -1,7 +1,7 @@
 """A case: a short paper that is also a test.  Pure description; nothing here solves anything."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 from cases.methods import MethodUse
@@ -10,6 +10,7 @@ from cases.task import Answers, Sampling, Task
 from contact import InvalidInput, Scene
 
 if TYPE_CHECKING:
+    from cases.advice.study import AblationStudy
     from cases.claims.declared import DeclaredClaim
     from cases.work.study import WorkStudy
 
@@ -50,6 +51,7 @@ class Case:
         methods: compared methods.
         claims: what must hold.
         work: what accuracy costs.
+        ablations: what each effect, and the finite thickness, costs and moves.
         figures: drawn from the finished answers.
     """
 
@@ -63,6 +65,7 @@ class Case:
     methods: tuple[MethodUse, ...]
     claims: "tuple[DeclaredClaim, ...]"
     work: "tuple[WorkStudy, ...]" = ()
+    ablations: "tuple[AblationStudy, ...]" = ()
     figures: tuple[Callable[["Case", Answers], Iterator[Figure]], ...] = field(default=())
 
     def __post_init__(self) -> None:
@@ -124,8 +127,19 @@ class Case:
                 yield self.task(scene, use)
         for claim in self.claims:
             yield from claim.tasks(self)
+        for ablation in self.ablations:
+            yield from ablation.tasks(self)
+        yield from self.cost_tasks()
+
+    def cost_tasks(self) -> Iterator[Task]:
+        """The tasks of the work studies alone."""
         for study in self.work:
             yield from study.tasks(self)
+
+    def in_suite(self, suite: str) -> "Case":
+        """Return the case with the settings that a suite times and the methods whose parts it leaves out."""
+        ablations = tuple(study.in_suite(suite) for study in self.ablations)
+        return replace(self, work=tuple(study.in_suite(suite) for study in self.work), ablations=ablations)
 
 
 def _refuse_empty(case: str, **fields: object) -> None:

@@ -45,6 +45,16 @@ def process_pool(jobs: int) -> Executor:
     return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_follow_parent)
 
 
+def fresh_processes(jobs: int) -> Executor:
+    """Return ``jobs`` processes that solve one task each: peak memory is the task's own.
+
+    They are forked from a server that has imported what every task needs and has solved nothing.
+    """
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["cases.solve"])
+    return ProcessPoolExecutor(jobs, mp_context=context, initializer=_follow_parent, max_tasks_per_child=1)
+
+
 class DaskExecutor(Executor):
     """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one."""
 

@@ -30,6 +30,7 @@ def key_parts(task: Task) -> dict[str, Any]:
         "settings": plain(task.solver),
         "sampling": plain(task.sampling),
         "timed": task.timed,
+        "forgetful": task.forgetful,
         "source": dict(closure.sources),
         "versions": dict(closure.versions),
     }

@@ -307,6 +307,7 @@ class WorkPoint:
     """One setting of one method, timed: relative error, its bound U = error + reference uncertainty, and the cost.
 
     A failed setting has no error and no bound; its ``reason`` says why, its ``seconds`` what it took to fail.
+    ``cold_seconds``: the first solution, which prepares what later ones of the same layer reuse.
     ``on_front``: no other setting of any method is at least as accurate and clearly faster.
     """
 
@@ -319,6 +320,7 @@ class WorkPoint:
     bound: NotNegative | None
     samples: tuple[NotNegative, ...]
     seconds: NotNegative
+    cold_seconds: NotNegative = 0.0
     lower_quartile: NotNegative
     upper_quartile: NotNegative
     unknowns: int
@@ -341,6 +343,7 @@ class CheapestRun:
     reached: bool
     label: str
     seconds: NotNegative | None
+    cold_seconds: NotNegative | None = None  # of the first solution with the same setting
     bound: NotNegative | None
     peak_memory_bytes: int | None
     speed_up: Positive | None  # over the reference method's T* at the same tolerance; None where either is missing
@@ -427,6 +430,39 @@ class Ladder:
     rungs: tuple[Rung, ...]
 
 
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class CoverageRecord:
+    """Stated against true errors of one quantity over random scenes.
+
+    Attributes:
+        method: name in the method table.
+        settings: numerical settings of the method.
+        family: kind of scenes.
+        quantity: whose errors.
+        scenes: how many were drawn.
+        refused: how many the method refused by name.
+        crashed: how many ended with an error that has no name.
+        checks: how many answers were compared with the referee's.
+        covered: share of them whose stated error holds.
+        decided: how many the referee could tell from its own uncertainty.
+        sharpness: median of stated over true error among those; None without any.
+        percentiles: stated over true error at 0, 2, .. 100 percent of those.
+    """
+
+    method: str
+    settings: Mapping
+    family: str
+    quantity: str
+    scenes: int
+    refused: int
+    crashed: int
+    checks: int
+    covered: NotNegative
+    decided: int
+    sharpness: NotNegative | None
+    percentiles: tuple[NotNegative, ...] = ()
+
+
 # -- figures: all numbers, no ink ----------------------------------------------------------------------------------
 
 
@@ -484,14 +520,36 @@ class SceneDescription:
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
 class EffectEntry:
-    """What a listed effect costs (share of the time) and what it moves (relative change without it)."""
+    """What a part of a scene costs and moves: the scene solved with it and without.
+
+    Attributes:
+        scene: name of the scene.
+        method: label of the method.
+        effect: "Adhesion", "StandardSolid", .., or "finite thickness".
+        seconds: processor time of a first solution of the whole scene.
+        seconds_without: the same without the part; None where the scene has no answer without it.
+        changes: relative change of each quantity without it, largest over the steps.
+        remark: why there is no answer without it, or "".
+    """
 
     scene: str
     method: str
     effect: str
-    share_of_time: NotNegative
-    quantity: str
-    change: Finite
+    seconds: NotNegative
+    seconds_without: NotNegative | None
+    changes: dict[str, NotNegative] = field(default_factory=dict)
+    remark: str = ""
+
+    @property
+    def share_of_time(self) -> float:
+        """How much of the time goes into the part, not below zero; all of it where nothing is left without it."""
+        if self.seconds_without is None:
+            return 1.0
+        return max(0.0, 1.0 - self.seconds_without / self.seconds) if self.seconds else 0.0
+
+    def may_be_dropped(self, accuracy: float) -> bool:
+        """Whether leaving the part out moves no quantity by more than the accuracy."""
+        return bool(self.changes) and max(self.changes.values()) <= accuracy
 
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
@@ -510,6 +568,7 @@ class CaseResult:
     work_precision: tuple[WorkPrecision, ...] = ()
     effects: tuple[EffectEntry, ...] = ()
     ladders: tuple[Ladder, ...] = ()
+    coverage: tuple[CoverageRecord, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property

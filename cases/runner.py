@@ -14,7 +14,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cases.case import Case
-from cases.executors import ExecutorFactory, process_pool, serial
+from cases.executors import ExecutorFactory, fresh_processes, process_pool, serial
 from cases.keys import content_key, key_parts
 from cases.progress import Event, Progress, silent
 from cases.results import CaseResult, RunResult, SceneRun
@@ -39,6 +39,7 @@ class RunOptions:
         resume: use finished tasks of an earlier run in the same folder whose keys are equal.
         time_limit: seconds a task may take; zero for no limit.
         timing: whether timing tasks run; without them there are no work-precision records.
+        only_costs: whether only the tasks of work studies run; no claim is then judged.
         progress: told of every event.
     """
 
@@ -49,6 +50,7 @@ class RunOptions:
     resume: bool = False
     time_limit: float = 0.0
     timing: bool = True
+    only_costs: bool = False
     progress: Progress = silent
 
 
@@ -97,7 +99,7 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> RunResult:
     An interrupt (Ctrl-C) ends the run early with ``complete`` False; every finished task is kept.
     """
     started, clock = datetime.now(UTC), time.perf_counter()
-    planned = plan(cases, timing=options.timing)
+    planned = plan(cases, timing=options.timing, only_costs=options.only_costs)
     run = _Run(options, TaskStore(options.out / "tasks"), total=len(planned))
     run.tell("planned", f"{len(cases)} cases")
     complete = True
@@ -117,11 +119,11 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> RunResult:
     return result
 
 
-def plan(cases: Iterable[Case], *, timing: bool = True) -> list[_Planned]:
+def plan(cases: Iterable[Case], *, timing: bool = True, only_costs: bool = False) -> list[_Planned]:
     """Return every task of ``cases`` once, with its key; timing tasks last."""
     tasks: dict[tuple[str, str, str, str], Task] = {}
     for case in cases:
-        for task in case.tasks():
+        for task in case.cost_tasks() if only_costs else case.tasks():
             tasks.setdefault(task.identity, task)
     wanted = [task for task in tasks.values() if timing or not task.timed]
     return [_planned(task) for task in sorted(wanted, key=lambda task: task.timed)]
@@ -133,7 +135,8 @@ def _planned(task: Task) -> _Planned:
 
 
 def _judged(run: _Run, case: Case, answers: Answers, *, complete: bool) -> CaseResult:
-    result = case_result(case, answers, complete=complete and run.options.timing)
+    whole = run.options.timing and not run.options.only_costs
+    result = case_result(case, answers, complete=complete and whole)
     run.tell("judged", case.name, result.status)
     return result
 
@@ -141,7 +144,7 @@ def _judged(run: _Run, case: Case, answers: Answers, *, complete: bool) -> CaseR
 def _carry_out(run: _Run, planned: list[_Planned]) -> None:
     waiting = [p for p in planned if not _reused(run, p)]
     _solve_in(run, run.options.executor, run.options.jobs, [p for p in waiting if not p.task.timed])
-    alone = serial if run.options.executor is serial else process_pool
+    alone = serial if run.options.executor is serial else fresh_processes
     _solve_in(run, alone, 1, [p for p in waiting if p.task.timed])
 
 

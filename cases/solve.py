@@ -1,6 +1,7 @@
 """Carry out one task.  Whatever happens becomes a row: a failed task never ends a run."""
 
 import time
+from collections import deque
 from collections.abc import Iterator
 from contextlib import contextmanager
 from signal import ITIMER_REAL, SIGALRM, setitimer, signal
@@ -14,7 +15,8 @@ from cases.methods import shared_inputs
 from cases.results import Scalar, SceneRun
 from cases.status import Status
 from cases.task import Task
-from cases.work.timing import SAMPLES, timed
+from cases.work.forgetting import forget
+from cases.work.timing import timed_warm
 from contact import NotConvergedError, Solution, UnsupportedSceneError
 
 
@@ -47,12 +49,14 @@ def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
 
 
 def _solved(task: Task, key: str) -> SceneRun:
+    if task.timed or task.forgetful:
+        task.solver.solve(task.problem)  # loads what the method imports on demand
+        forget()
     start = time.perf_counter()
-    solution = task.solver.solve(task.problem)
+    solutions = deque([task.solver.solve(task.problem)], maxlen=1)
     cold = time.perf_counter() - start
-    samples = timed(lambda: task.solver.solve(task.problem), samples=SAMPLES).samples if task.timed else ()
-    if task.timed:
-        solution = task.solver.solve(task.problem)  # the row shows the stages of a warm solve
+    samples = timed_warm(lambda: solutions.append(task.solver.solve(task.problem))).samples if task.timed else ()
+    solution = solutions[0]  # the row of a timing run shows the stages of a warm solve
     return SceneRun(
         key=key,
         scene=task.scene,

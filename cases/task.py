@@ -41,6 +41,7 @@ class Task:
         solver: the method with its settings.
         sampling: what is kept.
         timed: whether the solve is repeated for its time, alone on the machine.
+        forgetful: whether it is a first solution: imports are done before, caches are empty.
     """
 
     case: str
@@ -51,6 +52,7 @@ class Task:
     solver: Method
     sampling: Sampling = field(default_factory=Sampling)
     timed: bool = False
+    forgetful: bool = False
 
     @property
     def identity(self) -> tuple[str, str, str, str]:

@@ -52,5 +52,6 @@ def case_result(case: Case, answers: Answers, *, complete: bool = True) -> CaseR
         claims=tuple(record for claim in case.claims for record in there(claim.judge(case, answers))),
         convergence=tuple(study for order in orders for study in there(order.studies(case, answers))),
         work_precision=tuple(record for study in case.work for record in there(study.records(case, answers))),
+        effects=tuple(entry for study in case.ablations for entry in there(study.records(case, answers))),
         figures=tuple(figure for draw in case.figures for figure in there(draw(case, answers))),
     )

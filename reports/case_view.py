@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 
 from cases.results import CaseResult, WorkPrecision
-from reports import case_tables
-from reports.charts import agreement, convergence, ladder, work_precision
+from reports import case_tables, cost_tables, hard_tables
+from reports.charts import agreement, convergence, coverage, ladder, work_precision
 from reports.drawing import plate_of
 from reports.gallery import Gallery, Hung
 from reports.matrix import Matrix, case_matrix
@@ -19,11 +19,12 @@ class TimedView:
     drawn: Hung
     cheapest: Table
     prices: Table | None
+    settings: Table | None
 
 
 @dataclass(frozen=True, kw_only=True)
 class CaseView:
-    """A case on the page; `refusals` and `effects` are sentences, `outcomes` come worst first."""
+    """A case on the page; `refusals` are sentences, `outcomes` come worst first."""
 
     result: CaseResult
     claims: Table | None
@@ -34,8 +35,11 @@ class CaseView:
     convergence: tuple[Hung, ...]
     work: tuple[TimedView, ...]
     ladders: tuple[Hung, ...]
+    breakdowns: Table | None
+    coverage: tuple[Hung, ...]
+    covered: Table | None
     refusals: tuple[str, ...]
-    effects: tuple[str, ...]
+    effects: Table | None
     stages: Table | None
     outcomes: tuple[Outcome, ...]
 
@@ -52,6 +56,9 @@ def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
         convergence=gallery.hang(convergence.plates(case, command)),
         work=tuple(_timed(work, gallery, case.name, command) for work in case.work_precision),
         ladders=gallery.hang(ladder.plates(case, command)),
+        breakdowns=hard_tables.ladders(case),
+        coverage=gallery.hang(coverage.plates(case, command)),
+        covered=hard_tables.coverage(case),
         refusals=tuple(ladder.refusals(case)),
         effects=case_tables.effects(case),
         stages=case_tables.stages(case),
@@ -61,4 +68,9 @@ def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
 
 def _timed(work: WorkPrecision, gallery: Gallery, case: str, command: str) -> TimedView:
     (drawn,) = gallery.hang([work_precision.plate(work, case, command)])
-    return TimedView(drawn=drawn, cheapest=case_tables.cheapest(work), prices=case_tables.digit_prices(work))
+    return TimedView(
+        drawn=drawn,
+        cheapest=case_tables.cheapest(work),
+        prices=case_tables.digit_prices(work),
+        settings=cost_tables.settings(work),
+    )

@@ -128,6 +128,29 @@ def run_suite(
 
 
 @app.command()
+def cost(
+    cases: Cases = None,
+    *,
+    suite: Annotated[Suite, typer.Option(help="ci: two settings a method; nightly: all of them.")] = Suite.NIGHTLY,
+    out: Annotated[Path, typer.Option(help="Folder of the run: results.json, report.html, figures.")] = Path(
+        "build/cost"
+    ),
+    resume: Annotated[bool, typer.Option("--resume", help="Keep finished timings of an earlier run in OUT.")] = False,
+    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds for all repetitions of a setting.")] = 300.0,
+    quiet: Quiet = False,
+) -> int:
+    """Measure what accuracy costs in time: every method, from coarse to fine, one solution at a time.
+
+    Error against seconds with the Pareto front, shortest time to 1 %, 1e-4, 1e-6, 1e-8, price of a digit.
+    """
+    from cases.runner import RunOptions  # noqa: PLC0415
+    from reports.commands.cost import cost as run_command  # noqa: PLC0415
+
+    options = RunOptions(out=out, suite=suite, jobs=1, resume=resume, time_limit=time_limit)
+    return run_command(cases or [], options, quiet=quiet)
+
+
+@app.command()
 def gate(
     run: Annotated[Path, typer.Argument(help="Folder of a finished run.")] = Path("build/verification"),
     *,
@@ -229,12 +252,29 @@ def ladders(
     names: Annotated[
         list[str] | None, typer.Argument(metavar="[WORD]...", help="Only ladders with such a name.")
     ] = None,
-    method: Annotated[str, typer.Option(help="Method that climbs.")] = "mdr",
+    method: Annotated[
+        list[str] | None, typer.Option(help="Method that climbs; mdr if none is named. Repeatable.")
+    ] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for a report with all rungs.")] = None,
 ) -> int:
     """Walk hard parameters until something breaks: digits left, and the rung where a method gives up by name."""
     from reports.commands.hard import ladders as run_command  # noqa: PLC0415
 
-    return run_command(names or [], method)
+    return run_command(names or [], method or ["mdr"], out)
+
+
+@app.command()
+def coverage(
+    method: Annotated[list[str] | None, typer.Option(help="Only this method. Repeatable.")] = None,
+    *,
+    family: Annotated[list[str] | None, typer.Option(help="Only this kind of scenes. Repeatable.")] = None,
+    seed: Annotated[int, typer.Option(help="Of the random scenes.")] = 1,
+    out: Annotated[Path | None, typer.Option(help="Folder for a report with the figure.")] = None,
+) -> int:
+    """Compare stated with true errors over hundreds of random scenes: how often they hold, how much they give away."""
+    from reports.commands.hard import coverage as run_command  # noqa: PLC0415
+
+    return run_command(method or [], family or [], seed, out)
 
 
 @app.command()

@@ -11,6 +11,7 @@ import jinja2
 from cases.results import Acceptance, Kind, RunResult
 from cases.results_files import write_whole
 from cases.status import Status
+from reports import cost_tables
 from reports.case_view import CaseView, case_view
 from reports.gallery import Gallery
 from reports.matrix import run_matrix
@@ -48,6 +49,8 @@ def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
         worst=worst,
         more_failures=sum(row.tone != "skip" for row in notable) - len(worst),
         matrix=run_matrix(run),
+        costs=cost_tables.shortest_times(run),
+        speed_ups=cost_tables.speed_ups(run),
         cases=cases,
         notable=notable,
         tolerances=tolerance_history(run.acceptances),

@@ -70,10 +70,13 @@ def ablations(method: Method, scene: Scene) -> list[Ablation]:
         ContactError: If the method does not solve the whole scene.
     """
     whole = method.solve(scene)
-    parts = [type(effect).__name__ for effect in scene.effects]
-    if not scene.layer.is_half_space:
-        parts.append(THICKNESS)
-    return [_ablation(method, whole, part) for part in parts]
+    return [_ablation(method, whole, part) for part in parts_of(scene)]
+
+
+def parts_of(scene: Scene) -> tuple[str, ...]:
+    """What can be left out: each listed effect, and the finite thickness of a layer."""
+    effects = tuple(type(effect).__name__ for effect in scene.effects)
+    return effects if scene.layer.is_half_space else (*effects, THICKNESS)
 
 
 def change_without(method: Method, scene: Scene, parts: Sequence[str]) -> float:

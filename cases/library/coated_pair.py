@@ -9,6 +9,7 @@ from cases.claims.twin import Twin
 from cases.library._compared import BEM, EQUATION, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, prescribed_radii
 from cases.results import Origin
+from cases.work.settings import elastic_costs
 from contact import CoatedPair, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 
 RADIUS = 1e-2  # m, of both bodies in the symmetric pair
@@ -140,4 +141,5 @@ CASE = Case(
         ),
         *agreements(SYMMETRIC, {"fem": 1e-5, "bem": 2e-3, "integral_equation": 1e-9}),
     ),
+    work=elastic_costs(SYMMETRIC[0].name),
 )

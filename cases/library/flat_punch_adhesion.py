@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
@@ -11,6 +12,7 @@ from cases.library._compared import BEM, FINITE_ELEMENTS, MDR, QUICK_FEM, agreem
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, half_space
 from cases.results import Figure, Origin, Panel, SceneRun, Series
 from cases.task import Answers
+from cases.work.settings import detachment_costs
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
 
 WORK_OF_ADHESION = 0.05  # J/m^2
@@ -235,5 +237,7 @@ CASE = Case(
     scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT, *FIGURE_9, *FIGURE_8),
     methods=(MDR, QUICK_FEM, BEM),
     claims=CLAIMS,
+    ablations=(AblationStudy(scene=BEYOND_MAXIMUM[0].name, nightly=("fem", "bem")),),
+    work=detachment_costs(BEYOND_MAXIMUM[0].name),
     figures=(figure_8, figure_9),
 )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
@@ -12,6 +13,7 @@ from cases.claims.residual import Residual
 from cases.library._compared import FEM, FINITE_ELEMENTS, MDR, agreements, with_reason
 from cases.results import Figure, Origin, Panel, Series
 from cases.task import Answers
+from cases.work.settings import impact_costs
 from contact import FlatPunch, Impact, KelvinVoigt, Layer, Scene
 
 SHEAR_MODULUS = 1e6  # Pa
@@ -202,5 +204,7 @@ CASE = Case(
     scenes=(*HALF_SPACE, *ON_LAYERS, *FIGURE_11),
     methods=(MDR, FEM),
     claims=CLAIMS,
+    ablations=(AblationStudy(scene=ON_LAYERS[0].name, nightly=("fem",)),),
+    work=impact_costs(ON_LAYERS[0].name),
     figures=(figure_11,),
 )

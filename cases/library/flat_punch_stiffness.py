@@ -12,6 +12,7 @@ from cases.library._compared import BEM, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
 from cases.results import Figure, Origin, Panel, Series
 from cases.task import Answers, Sampling
+from cases.work.settings import elastic_costs
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 
 Array = NDArray[np.float64]
@@ -325,5 +326,6 @@ CASE = Case(
     scenes=(*PUNCHES, *HAYES_WALKS, *HERMANOWICZ_WALKS, *FIGURE_WALKS),
     methods=(MDR, FEM, BEM, TABLE),
     claims=CLAIMS,
+    work=elastic_costs("bonded nu=0.5 a/h=2", ("contact_stiffness",)),
     figures=(figure_3, figure_4, figure_5),
 )

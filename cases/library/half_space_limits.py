@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
@@ -11,6 +12,7 @@ from cases.claims.exact import Exact
 from cases.library._compared import BEM, EQUATION, FEM, MDR
 from cases.library._layers import LAYERS, THICKNESS, half_space, layer, prescribed_radii, scene_name
 from cases.results import Origin
+from cases.work.settings import elastic_costs
 from contact import (
     Cone,
     ContactRadii,
@@ -175,4 +177,6 @@ CASE = Case(
     scenes=(*CURVED, PUNCH, *THICK),
     methods=(MDR, FEM, BEM, EQUATION),
     claims=CLAIMS,
+    ablations=(AblationStudy(scene="bonded nu=0.3 a/h=0.01"),),
+    work=elastic_costs("half-space, paraboloid"),
 )

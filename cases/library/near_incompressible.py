@@ -11,6 +11,7 @@ from cases.library._compared import BEM, EQUATION, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS
 from cases.methods import MethodUse
 from cases.results import Origin
+from cases.work.settings import elastic_costs
 from contact import FlatPunch, IndentationDepths, Layer, Scene
 
 DEPTH = 1e-5  # m
@@ -120,4 +121,5 @@ CASE = Case(
             reason=REGULAR_LIMIT,
         ),
     ),
+    work=elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
 )

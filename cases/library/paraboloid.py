@@ -13,6 +13,7 @@ from cases.library._compared import BEM, EQUATION, FEM, FINITE_ELEMENTS, MDR, TA
 from cases.library._layers import LAYERS, THICKNESS, edges, in_millimetres, layer, scene_name
 from cases.results import Origin
 from cases.task import Sampling
+from cases.work.settings import elastic_costs
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
 
 RADIUS_OF_CURVATURE = 1e-2  # m
@@ -207,4 +208,5 @@ CASE = Case(
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
     methods=(MDR, FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,
+    work=elastic_costs(scene_name("bonded nu=0.5", 2.0)),
 )

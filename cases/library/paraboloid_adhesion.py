@@ -2,12 +2,14 @@
 
 import numpy as np
 
+from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.library._compared import BEM, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
 from cases.library._layers import half_space, layer
 from cases.results import Origin
+from cases.work.settings import detachment_costs
 from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
 
 RADIUS_OF_CURVATURE = 1e-2  # m
@@ -124,4 +126,6 @@ CASE = Case(
     scenes=(*HALF_SPACE, *ON_LAYERS),
     methods=(MDR, QUICK_FEM, BEM),
     claims=CLAIMS,
+    ablations=(AblationStudy(scene="bonded nu=0.5, force", nightly=("fem",)),),
+    work=detachment_costs("bonded nu=0.5, force"),
 )

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
@@ -14,6 +15,7 @@ from cases.library._compared import FINITE_ELEMENTS, MDR, agreements, with_reaso
 from cases.methods import MethodUse
 from cases.results import Curve, Figure, Origin, Panel, SceneRun, Series
 from cases.task import Answers
+from cases.work.settings import impact_costs
 from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
 
 Array = NDArray[np.float64]
@@ -244,5 +246,7 @@ CASE = Case(
     scenes=(HALF_SPACE, *ON_LAYERS),
     methods=(MDR, FEM),
     claims=CLAIMS,
+    ablations=(AblationStudy(scene=name_of(2e-3), nightly=("fem",)),),
+    work=impact_costs(name_of(2e-3)),
     figures=(figure_12,),
 )

@@ -10,6 +10,7 @@ from cases.claims.declared import Reason
 from cases.library._compared import FEM, MDR, agreements
 from cases.library._layers import THICKNESS, layer, prescribed_radii, scene_name
 from cases.results import Origin
+from cases.work.settings import elastic_costs
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
 LABELS = ("unbonded", "bonded nu=0.3", "bonded nu=0.45", "bonded nu=0.5")
@@ -135,4 +136,5 @@ CASE = Case(
         *approach("force of the truncated cone", "normal_force", cone, cone_force),
         *agreements(CHECKED, {"fem": 1e-5}),
     ),
+    work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.agreement import Agreement
 from cases.claims.declared import Reason
@@ -31,7 +32,7 @@ from cases.library._truncated_cone_limits import pressure_limits, profile_limits
 from cases.methods import MethodUse
 from cases.results import Figure, Origin, Panel, SceneRun, Series
 from cases.task import Answers, Sampling
-from cases.work.study import WorkStudy
+from cases.work.settings import elastic_costs
 from contact import ContactRadii, Scene, TruncatedCone
 
 SLOPE = 0.1
@@ -459,21 +460,6 @@ ORDERS = (
     ),
 )
 
-COST = WorkStudy(
-    scene=scene_name("bonded nu=0.45", 2.0),
-    quantity="normal_force",
-    ladder=(
-        *(MethodUse(label=f"{nodes} nodes", method="mdr", settings={"nodes": nodes}) for nodes in (8, 12, 16, 24)),
-        *(
-            MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
-            for accuracy in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-        ),
-    ),
-    reference=MethodUse(label="32 nodes", method="mdr", settings={"nodes": 32}),
-    fast_method="mdr",
-    baseline_method="fem",
-)
-
 CASE = Case(
     name="truncated_cone",
     title="Indentation by a truncated cone",
@@ -484,6 +470,7 @@ CASE = Case(
     scenes=(*LAYER_SCENES, *PATH_SCENES, *HALF_SPACE_SCENES, *FIGURE_SCENES),
     methods=(MDR, FEM),
     claims=(*EXACT, *AGREEMENTS, *INVARIANTS, *ORDERS),
-    work=(COST,),
+    ablations=(AblationStudy(scene=scene_name("bonded nu=0.45", 2.0), nightly=("fem",)),),
+    work=elastic_costs(scene_name("bonded nu=0.45", 2.0), in_ci=True),
     figures=(figure_7,),
 )

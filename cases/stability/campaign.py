@@ -1,8 +1,8 @@
 """Random scenes by the thousand: every answer within its stated error of an independent one, or a named refusal.
 
 The referee of elastic scenes is `second_opinion` as far as it reaches; beyond, where a solution is costly, the method
-with half the discretisation length checks every eighth scene. For other loadings it checks every scene.
-Every solved scene is also solved in other units, where it must give the same answer.
+with half the discretisation length checks every eighth scene. For other loadings it checks every scene, or another
+method does. Every solved scene is also solved in other units, where it must give the same answer.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from contact import ContactError, ContactPath, HistoryPath, ImpactHistory, Metho
 from contact.validation import FloatArray
 
 End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
-Referee: TypeAlias = Literal["second opinion", "refinement", "other units", "none"]
+Referee: TypeAlias = Literal["second opinion", "refinement", "another method", "other units", "none"]
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
 IMPACT_NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
@@ -148,6 +148,8 @@ def campaign(
     family: Family = "elastic",
     ratio: tuple[float, float] = RATIO,
     numbers: Iterable[int] | None = None,
+    referee: Method | None = None,
+    other_units: bool = True,
 ) -> CampaignResult:
     """Draw scenes, let the method answer, and check each answer.
 
@@ -158,15 +160,26 @@ def campaign(
         family: Kind of scenes.
         ratio: Range of a/h.
         numbers: Only these of the scenes; all if None.
+        referee: Another method that checks what the second opinion cannot; the refined method itself if None.
+        other_units: Whether each scene is solved in other units as well.
     """
     scenes = random_scenes(seed, count, family, ratio)
     chosen = range(count) if numbers is None else numbers
-    return CampaignResult(seed=seed, trials=tuple(trial(method, scenes[n], n, family) for n in chosen))
+    jury = Jury(referee=referee, other_units=other_units)
+    return CampaignResult(seed=seed, trials=tuple(trial(method, scenes[n], n, family, jury) for n in chosen))
 
 
-def trial(method: Method, scene: Scene, number: int = 0, family: Family = "elastic") -> Trial:
+@dataclass(frozen=True, kw_only=True)
+class Jury:
+    """Who checks: another method beside the second opinion, and whether other units are tried."""
+
+    referee: Method | None = None
+    other_units: bool = True
+
+
+def trial(method: Method, scene: Scene, number: int = 0, family: Family = "elastic", jury: Jury | None = None) -> Trial:
     """Let the method answer one scene and check the answer; a warning counts as a crash."""
-    start = time.process_time()
+    start, jury = time.process_time(), jury or Jury()
     referee: Referee = "none"
     checks: tuple[Check, ...] = ()
     try:
@@ -174,8 +187,9 @@ def trial(method: Method, scene: Scene, number: int = 0, family: Family = "elast
             warnings.simplefilter("error")
             answer = method.solve(scene)
             seconds = time.process_time() - start
-            referee, checks = _refereed(method, answer, number)
-            wrong = [c for c in checks if not c.holds] + [c for c in _in_other_units(method, answer) if not c.holds]
+            referee, checks = _refereed(method, answer, number, jury.referee)
+            elsewhere = _in_other_units(method, answer) if jury.other_units else ()
+            wrong = [c for c in (*checks, *elsewhere) if not c.holds]
         end: End = "beyond" if wrong else "within"
         message = "; ".join(f"{c.quantity} is off by {c.error:.1e}, stated {c.stated:.1e}" for c in wrong)
     except ContactError as error:
@@ -194,7 +208,7 @@ def trial(method: Method, scene: Scene, number: int = 0, family: Family = "elast
     )
 
 
-def _refereed(method: Method, answer: Solution, number: int) -> tuple[Referee, tuple[Check, ...]]:
+def _refereed(method: Method, answer: Solution, number: int, other: Method | None) -> tuple[Referee, tuple[Check, ...]]:
     """Checks by the best referee there is."""
     scene = answer.scene
     if isinstance(answer, ContactPath) and not scene.effects:
@@ -206,10 +220,10 @@ def _refereed(method: Method, answer: Solution, number: int) -> tuple[Referee, t
         if number % _THIN_LAYERS_REFINED:
             return "other units", ()
     try:
-        finer = method.refined().solve(scene)
+        finer = (other or method.refined()).solve(scene)
     except NotConvergedError:
         return "none", ()
-    return "refinement", tuple(
+    return "another method" if other else "refinement", tuple(
         _check(answer, q, _values(finer, q), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
         for q in _comparable(answer, finer)
         if q in answer.error_estimate
@@ -221,7 +235,8 @@ def _comparable(answer: Solution, other: Solution) -> tuple[str, ...]:
     if isinstance(answer, ImpactHistory):
         return IMPACT_NUMBERS
     if isinstance(answer, HistoryPath):  # its contact radius jumps where contact is lost
-        return tuple(answer.error_estimate)
+        same = isinstance(other, HistoryPath) and np.array_equal(answer.time, other.time)
+        return tuple(answer.error_estimate) if same else ()
     names = (*answer.ARRAYS, *answer.SCALARS)
     return tuple(q for q in names if np.shape(getattr(other, q)) == np.shape(getattr(answer, q)))
 

@@ -12,6 +12,7 @@ from cases.stability.units import Units, in_units
 from contact import ContactPath, FlatPunch, ImpactHistory, Layer, Method, Scene, Solution
 
 _POINTS: Final = 400
+PRESSURE_REACH: Final = 160.0  # a/h up to which methods on flat punches know pressures
 
 
 def invariant_residuals(method: Method, answer: Solution) -> dict[str, float]:
@@ -46,7 +47,7 @@ def unbonded_layer_does_not_see_nu(method: Method, answer: Solution) -> float | 
 
 def pressure_carries_the_load(method: Method, answer: Solution) -> float | None:
     """F = 2 pi int p r dr, by the midpoint rule in r = a sin(theta), which is spectral up to the edge's root."""
-    if not isinstance(answer, ContactPath) or answer.fields is None or answer.scene.indenter.breakpoints:
+    if not isinstance(answer, ContactPath) or not _pressure_is_known(answer) or answer.scene.indenter.breakpoints:
         return None
     a = float(answer.contact_radius[-1])
     theta = (np.arange(_POINTS) + 0.5) * 0.5 * np.pi / _POINTS
@@ -57,7 +58,7 @@ def pressure_carries_the_load(method: Method, answer: Solution) -> float | None:
 
 def pressure_presses(method: Method, answer: Solution) -> float | None:
     """No tension without adhesion: the largest tensile over the largest pressure."""
-    if not isinstance(answer, ContactPath) or answer.fields is None or answer.scene.effects:
+    if not isinstance(answer, ContactPath) or not _pressure_is_known(answer) or answer.scene.effects:
         return None
     if isinstance(answer.scene.indenter, FlatPunch):  # singular at its edge
         return None
@@ -86,6 +87,11 @@ def force_of_an_independent_answer(method: Method, answer: Solution) -> float | 
     opinion = second_opinion(answer)
     distance = np.abs(answer.normal_force / opinion.values["normal_force"] - 1.0)
     return float(np.max(np.maximum(distance - opinion.uncertainty, 0.0)))
+
+
+def _pressure_is_known(answer: ContactPath) -> bool:
+    reach = PRESSURE_REACH * answer.scene.layer.thickness
+    return answer.fields is not None and bool(answer.contact_radius[-1] <= reach)
 
 
 def _within_reach(answer: ContactPath, scene: Scene) -> bool:

@@ -68,6 +68,22 @@ def detaching_punch(ratio: float, *, control: str) -> Scene:
     )
 
 
+def reversing_punch(nu: float) -> Scene:
+    """The same from a/h = 8, where stability reverses twice for nu between about 0.361 and 0.369."""
+    return Scene(
+        layer=_layer(nu),
+        indenter=FlatPunch(radius=8.0),
+        loading=Detachment(control="displacement"),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+
+
+def punch_on_layer(thickness: float) -> Scene:
+    """A flat punch of unit radius on an incompressible bonded layer."""
+    loading = IndentationDepths(values=np.array([0.01]))
+    return Scene(layer=_layer(0.5, thickness=thickness), indenter=FlatPunch(radius=1.0), loading=loading)
+
+
 def damped_punch(damping: float) -> Scene:
     """A flat punch hits a Kelvin-Voigt half-space with damping ratio D = eta sqrt(k/M)/(2 G), Eq. (50)."""
     layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8
@@ -165,6 +181,20 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
     ),
     _fold("displacement"),
     _fold("force"),
+    LadderPlan(
+        name="stability reverses",
+        parameter="nu",
+        values=(0.38, 0.37, 0.369, 0.368, 0.367, 0.366, 0.365, 0.364, 0.363, 0.362, 0.361, 0.36, 0.35),
+        scene=reversing_punch,
+        quantity="pull_off_depth",
+    ),
+    LadderPlan(
+        name="punch on a thinner and thinner layer",
+        parameter="h/a",
+        values=tuple(reversed(DECADES)),
+        scene=punch_on_layer,
+        quantity="contact_stiffness",
+    ),
     LadderPlan(
         name="damping ratio",
         parameter="D",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +31,7 @@ class LadderPlan:
         quantity: Whose last value is followed.
         method: The method of a rung, made from the method that climbs; by default that method itself.
         only: Names of methods that climb; empty means all.
+        spared: Names of methods that would take minutes for a rung.
     """
 
     name: str
@@ -41,6 +42,7 @@ class LadderPlan:
     quantity: str = "normal_force"
     method: Callable[[Method, float], Method] = lambda method, _: method
     only: tuple[str, ...] = ()
+    spared: tuple[str, ...] = ()
 
 
 def climb(plan: LadderPlan, method: Method, label: str | None = None) -> Ladder:
@@ -54,16 +56,6 @@ def climb(plan: LadderPlan, method: Method, label: str | None = None) -> Ladder:
         quantity=plan.quantity,
         rungs=rungs,
     )
-
-
-def climb_all(plans: Iterable[LadderPlan], methods: Mapping[str, Method]) -> list[Ladder]:
-    """Every plan by every method that supports its first rung; labels name the methods."""
-    return [
-        climb(plan, method, label)
-        for plan in plans
-        for label, method in methods.items()
-        if (not plan.only or method.name in plan.only) and method.supports(plan.scene(plan.values[0]))
-    ]
 
 
 def _rung(plan: LadderPlan, method: Method, value: float) -> Rung:

@@ -34,6 +34,7 @@ class WorkStudy:
         reference: the settings errors are measured against; its own stated uncertainty is u_ref.
         fast_method: the crossover asks how far down it wins.
         baseline_method: speed-ups are relative to it.
+        cheap: the settings that the ci suite times; empty for all.
     """
 
     scene: str
@@ -42,6 +43,11 @@ class WorkStudy:
     reference: MethodUse
     fast_method: str
     baseline_method: str
+    cheap: tuple[MethodUse, ...] = ()
+
+    def in_suite(self, suite: str) -> "WorkStudy":
+        """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
+        return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
 
     def tasks(self, case: "Case") -> Iterator[Task]:
         """Return the reference and every timed setting."""
@@ -111,6 +117,7 @@ class WorkStudy:
             bound=error_bound(error, u_ref),
             samples=timing.samples,
             seconds=timing.median,
+            cold_seconds=run.cold_seconds or 0.0,
             lower_quartile=timing.lower_quartile,
             upper_quartile=timing.upper_quartile,
             unknowns=run.cost.unknowns,
@@ -184,6 +191,7 @@ def _cheapest_row(points: list[WorkPoint], method: str, tolerance: float, baseli
         reached=best is not None,
         label=shown.label if shown else "",
         seconds=shown.seconds if shown else None,
+        cold_seconds=shown.cold_seconds if shown else None,
         bound=shown.bound if shown else None,
         peak_memory_bytes=shown.peak_memory_bytes if shown else None,
         speed_up=baseline.seconds / best.seconds if best and baseline else None,

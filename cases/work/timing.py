@@ -11,6 +11,7 @@ from contact import InvalidInput
 
 SAMPLES = 7
 SHORTEST = 0.1  # seconds; anything faster is looped
+LONG, FEW_SAMPLES = 2.0, 3  # calls of more seconds vary by less than what they are compared for
 _BOOTSTRAPS = 4000
 
 
@@ -51,9 +52,17 @@ def summed_up(samples: Sequence[float]) -> Timing:
 
 def timed(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> Timing:
     """Call once to warm up, then sample; a call faster than ``shortest`` seconds is looped within each sample."""
+    _seconds(call, 1)
+    return timed_warm(call, samples=samples, shortest=shortest)
+
+
+def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> Timing:
+    """Sample a call that has been warmed up; one of more than ``LONG`` seconds ``FEW_SAMPLES`` times only."""
     first = _seconds(call, 1)
-    warm = _seconds(call, 1) if first < shortest else first
-    loops = max(1, int(np.ceil(shortest / max(warm, 1e-9)))) if warm < shortest else 1
+    if first >= shortest:  # not looped: a sample already
+        left = (FEW_SAMPLES if first > LONG else samples) - 1
+        return summed_up([first, *(_seconds(call, 1) for _ in range(left))])
+    loops = int(np.ceil(shortest / max(first, 1e-9)))
     return summed_up([_seconds(call, loops) for _ in range(samples)])
 
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from cases.advice import advise as advice_on
 from cases.methods import build
+from cases.results import CaseResult
 from contact import InvalidInput, load_scene
 from reports.terminal import console
 
@@ -18,30 +20,46 @@ def advise(scene_file: Path, accuracy: float, method: str) -> None:
         console().print(line, markup=False, highlight=False)
 
 
-def ladders(names: list[str], method: str) -> int:
+def ladders(names: list[str], methods: list[str], out: Path | None) -> int:
     """Walk the ladders whose names contain one of the words; return 1 if a rung fails without a name.
 
     Raises:
         InvalidInput: If no ladder has such a name.
     """
-    from cases.stability.ladder_table import LADDERS  # noqa: PLC0415 - only this command needs it
-    from cases.stability.ladders import breakdown, climb_all, fewest_digits  # noqa: PLC0415
-    from cases.status import Status  # noqa: PLC0415
+    from cases.stability.ladder_study import CLIMBERS, chosen, ladder_case  # noqa: PLC0415 - only this command needs it
+    from cases.stability.ladder_table import LADDERS  # noqa: PLC0415
 
-    plans = [plan for plan in LADDERS if not names or any(word in plan.name for word in names)]
+    plans, climbers = chosen(LADDERS, names), {name: CLIMBERS.get(name, {}) for name in methods}
+    return published(lambda: ladder_case(plans, climbers, progress=_say), out)
+
+
+def coverage(methods: list[str], families: list[str], seed: int, out: Path | None) -> int:
+    """Compare stated with true errors over random scenes; return 1 if a method's are exceeded too often."""
+    from cases.stability.coverage import PLANS, coverage_case  # noqa: PLC0415 - only this command needs it
+
+    plans = [
+        plan for plan in PLANS if (not methods or plan.method in methods) and (not families or plan.family in families)
+    ]
     if not plans:
-        raise InvalidInput(f"no ladder called {names[0]!r}; there are {', '.join(plan.name for plan in LADDERS)}")
-    unnamed, out = 0, console()
-    for plan in plans:
-        for ladder in climb_all([plan], {method: build(method, {})}):
-            stop, digits = breakdown(ladder), fewest_digits(ladder)
-            end = "climbed to the end" if stop is None else f"stops at {ladder.parameter} = {stop:g}"
-            out.print(f"{ladder.name}: {end}, at least {0.0 if digits is None else digits:.1f} digits", markup=False)
-            for rung in ladder.rungs:
-                if rung.status is not Status.PASS:
-                    out.print(f"  {ladder.parameter} = {rung.value:g}: {rung.status}: {rung.reason}", markup=False)
-                unnamed += rung.status is Status.FAIL
-    return FAILED if unnamed else 0
+        raise InvalidInput(f"no such plan; methods are {', '.join(dict.fromkeys(plan.method for plan in PLANS))}")
+    return published(lambda: coverage_case(plans, seed, progress=_say), out)
+
+
+def published(study: Callable[[], CaseResult], out: Path | None) -> int:
+    """Carry out a study, write it as a run of its own if asked, and return 1 if it failed."""
+    from cases.studies import run_of  # noqa: PLC0415
+    from reports.commands.report import write_pages  # noqa: PLC0415
+
+    if out is None:
+        return FAILED if study().status.is_failure else 0
+    run = run_of((make() for make in [study]), out)
+    write_pages(run, out)
+    _say(f"report: {out / 'report.html'}")
+    return FAILED if any(status.is_failure for status in run.statuses) else 0
+
+
+def _say(line: str) -> None:
+    console().print(line, markup=False, highlight=False, soft_wrap=True)
 
 
 def calibrate(out: Path, seed: int) -> None:

@@ -36,7 +36,8 @@ def run(
     strict: bool,
 ) -> int:
     """Run cases and return the exit code."""
-    cases = [only_methods(case, methods) for case in select(load_cases(), names=names, suite=options.suite)]
+    chosen = select(load_cases(), names=names, suite=options.suite)
+    cases = [only_methods(case.in_suite(options.suite), methods) for case in chosen]
     terminal = console()
     with RunDisplay(terminal, quiet=quiet) as display:
         result = run_cases(cases, dataclasses.replace(options, executor=by_name(executor), progress=display))

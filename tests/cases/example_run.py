@@ -64,7 +64,12 @@ def passing_case() -> CaseResult:
         work_precision=(work_precision(),),
         effects=(
             EffectEntry(
-                scene=SCENE, method="mdr", effect="Adhesion", share_of_time=0.61, quantity="normal_force", change=2e-4
+                scene=SCENE,
+                method="mdr",
+                effect="Adhesion",
+                seconds=0.1,
+                seconds_without=0.039,
+                changes={"normal_force": 2e-4},
             ),
         ),
         ladders=(ladder("mdr", 14.0), ladder("fem", 9.0, breaks=True)),

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
+from cases.stability.coverage import QUICK_PLANS
 from reports.command_line import EXAMPLE_SCENE, run
 
 
@@ -21,7 +24,7 @@ def test_advice_names_what_matters(scene, capsys):
 
 def test_a_climbed_ladder_tells_its_digits(capsys):
     assert run(["ladders", "vanishing flat end"]) == 0
-    assert "vanishing flat end: climbed to the end, at least 1" in capsys.readouterr().out
+    assert "vanishing flat end, mdr: climbed to the end, at least 1" in capsys.readouterr().out
 
 
 def test_an_unknown_ladder_names_those_there_are(capsys):
@@ -37,3 +40,32 @@ def test_a_small_campaign_counts_its_ends(capsys):
 def test_an_unknown_family_names_those_there_are(capsys):
     assert run(["campaign", "plastic"]) == 4
     assert "elastic, adhesive, impact, history" in capsys.readouterr().err.replace("\n", " ")
+
+
+def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr("cases.stability.coverage.PLANS", (dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8),))
+    assert run(["coverage", "--method", "mdr", "--out", str(tmp_path)]) == 0
+    assert "100.0 % of 8 covered" in capsys.readouterr().out
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Coverage and sharpness" in page
+    assert (tmp_path / "figures" / "coverage-stated-over-true.csv").is_file()
+
+
+def test_coverage_of_an_unknown_method_names_those_there_are(capsys):
+    assert run(["coverage", "--method", "guess"]) == 4
+    assert "mdr, integral_equation" in capsys.readouterr().err.replace("\n", " ")
+
+
+def test_ladders_write_a_run_with_their_table(tmp_path):
+    assert run(["ladders", "vanishing flat end", "--out", str(tmp_path)]) == 0
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "Breakdown rungs and digits" in page
+    assert "climbed to the end" in page
+
+
+def test_the_cost_command_says_what_accuracy_costs(tmp_path, capsys):
+    assert run(["cost", "coated_pair", "--suite", "ci", "--out", str(tmp_path), "--quiet"]) == 0
+    assert "How much faster MDR is" in capsys.readouterr().out
+    page = (tmp_path / "report.html").read_text(encoding="utf-8")
+    assert 'id="costs"' in page
+    assert "true static scaling" in page

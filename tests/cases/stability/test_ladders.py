@@ -10,8 +10,9 @@ import pytest
 from cases.results import Ladder, Rung
 from cases.stability import ladders
 from cases.stability.invariants import LAWS, invariant_residuals
+from cases.stability.ladder_study import climbs, ladder_case, no_silent_failure
 from cases.stability.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
-from cases.stability.ladders import LadderPlan, breakdown, climb, climb_all, fewest_digits, worsened
+from cases.stability.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
 from cases.stability.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
 from cases.status import Status
 from contact import InvalidInput, NotConvergedError, Supported
@@ -114,13 +115,28 @@ def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
     assert "NotConvergedError: x, but 12.0 digits" in worsened(ladder(14.0, None, 9.0, None), accepted)[0]
 
 
-def test_a_method_climbs_only_what_it_supports():
+def test_a_method_climbs_only_what_it_supports_and_what_it_is_asked_to():
     class Elastic(Faulty):
         def supports(self, scene):
             return Supported() if not scene.effects else False
 
-    plans = (PLAN, LadderPlan(name="impact", parameter="D", values=(1.0,), scene=damped_punch))
-    assert [found.name for found in climb_all(plans, {"x": Elastic(lambda path: path)})] == ["test"]
+    method, plan = Elastic(lambda path: path), LadderPlan(name="t", parameter="b/a", values=(0.5,), scene=truncated)
+    impact = dataclasses.replace(plan, name="impact", parameter="D", scene=damped_punch)
+    only, spared = dataclasses.replace(plan, only=("fem",)), dataclasses.replace(plan, spared=("x",))
+    assert [climbs(p, "x", method) for p in (plan, impact, only, spared)] == [True, False, False, False]
+    assert climbs(only, "fem", method)
+
+
+def test_a_study_of_ladders_claims_that_nothing_fails_silently():
+    found = ladder_case([PLAN], {"mdr": {}})
+    assert [(claim.status, claim.scene, claim.observed) for claim in found.claims] == [(Status.PASS, "test", 0.0)]
+    assert found.ladders[0].method == "mdr"
+
+
+def test_a_silent_failure_fails_its_claim():
+    claim = no_silent_failure(climb(PLAN, Faulty(wrong), "faulty"))
+    assert (claim.status, claim.observed) == (Status.FAIL, 2.0)
+    assert "beyond its stated error" in claim.message
 
 
 def test_every_ladder_starts_with_a_scene_that_the_fast_method_supports():

@@ -1,0 +1,29 @@
+"""`contact-verify cost`: time the settings of every method, write the folder and the page of a run."""
+
+from dataclasses import replace
+
+from cases.registry import load_cases, select
+from cases.runner import RunOptions, run_cases
+from cases.status import Status
+from reports.commands.report import write_pages
+from reports.cost_tables import shortest_times, speed_ups
+from reports.progress import RunDisplay
+from reports.terminal import console, show_table
+
+FAILED = 1
+
+
+def cost(names: list[str], options: RunOptions, *, quiet: bool) -> int:
+    """Time the work studies of cases alone on the machine; return 1 if a reference broke down."""
+    chosen = (case.in_suite(options.suite) for case in select(load_cases(), names=names))
+    timed = [case for case in chosen if case.work]
+    terminal = console()
+    with RunDisplay(terminal, quiet=quiet) as display:
+        result = run_cases(timed, replace(options, only_costs=True, progress=display))
+    write_pages(result, options.out)
+    for table in (shortest_times(result), speed_ups(result)):
+        if table is not None:
+            show_table(table, on=terminal)
+    terminal.print(f"report: {options.out / 'report.html'}")
+    missing = [case for case in result.cases if not case.work_precision]
+    return FAILED if missing or any(s is Status.INVALID for s in result.statuses) else 0
