@@ -43,7 +43,8 @@ def test_an_unknown_family_names_those_there_are(capsys):
 
 
 def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("cases.stability.coverage.PLANS", (dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8),))
+    plan = dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8)
+    monkeypatch.setattr("cases.stability.coverage.PLANS", (plan,))
     assert run(["coverage", "--method", "mdr", "--out", str(tmp_path)]) == 0
     assert "100.0 % of 8 covered" in capsys.readouterr().out
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
