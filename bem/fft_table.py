@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from functools import lru_cache
+from math import ceil, log
 from typing import Final, Self
 
 import numpy as np
@@ -18,7 +19,7 @@ from contact.validation import FloatArray
 SMALLEST_RATIO: Final = 1e-3
 LARGEST_RATIO: Final = 1e3
 ERROR_FLOOR: Final = 5e-7  # conjugate gradients stop at 1e-7 of the displacement; q may be off by a few times that
-SPREAD: Final = 12  # rows either side over which the error's largest value counts: a difference may cross zero
+SPREAD: Final = 1.5  # factor in a/h either way over which the error's largest value counts: differences cross zero
 
 
 @record
@@ -30,8 +31,9 @@ class FftTable(Record):
         ratios: Number of log-spaced ratios a/h in [1e-3, 1e3]; only those up to the ratio asked for are solved.
         radii: Number of radii r/a, dense towards the edge.
 
-    Each table is built on `cells` and on half as many; the difference, its largest value over neighbouring ratios, is
-    the stated error. The method is of second order in cell size over thickness, so the difference exceeds the error.
+    Each table is built on `cells` and on half as many; the differences, their largest values over neighbouring ratios,
+    are the stated errors of stiffness and pressure. The method is of second order in cell size over thickness, so the
+    difference exceeds the error.
 
     Raises:
         InvalidInput: If `cells` is too small or no multiple of 4.
@@ -73,13 +75,12 @@ def _build(settings: FftTable, support: Support, poissons_ratio: float, rows: in
     ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
     fine = _on_grid(settings.cells, ratios, settings.radii, support, poissons_ratio)
     coarse = _on_grid(settings.cells // 2, ratios, settings.radii, support, poissons_ratio)
-    return dataclasses.replace(
-        fine, error=_difference(fine, coarse), provenance=_provenance(settings, support, poissons_ratio)
-    )
+    return dataclasses.replace(_with_errors(fine, coarse), provenance=_provenance(settings, support, poissons_ratio))
 
 
 def _on_grid(cells: int, ratios: FloatArray, radii: int, support: Support, poissons_ratio: float) -> FlatPunchTable:
-    """The table of one grid, its error still unknown."""
+    """The table of one grid, its errors still unknown."""
+    unknown = np.zeros(len(ratios))
     punches = _punches(cells, ratios, support, poissons_ratio)
     rho = chebyshev_radii(radii)
     q = np.array([np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, punch.shape) for punch in punches])
@@ -90,7 +91,9 @@ def _on_grid(cells: int, ratios: FloatArray, radii: int, support: Support, poiss
         radii=rho,
         stiffness=np.array([punch.stiffness for punch in punches]),
         pressure=np.maximum(q, 0.0) / np.sqrt(1.0 - rho**2),
-        error=np.zeros(len(ratios)),
+        error=unknown,
+        pressure_error=unknown,
+        mean_error=unknown,
     )
 
 
@@ -104,15 +107,25 @@ def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: f
     return punches
 
 
-def _difference(fine: FlatPunchTable, coarse: FlatPunchTable) -> FloatArray:
-    """Largest difference of k_bar, c_bar and q between two tables, over each row's neighbourhood."""
+def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable) -> FlatPunchTable:
+    """The fine table, its errors the differences to the coarse one: of k_bar or c_bar, of q, and of q in the mean."""
     xi = fine.ratios
     k = np.abs(coarse.stiffness / fine.stiffness - 1.0)
     c = np.abs(coarse.normalized_spring_stiffness(xi) / fine.normalized_spring_stiffness(xi) - 1.0)
-    root = np.sqrt(1.0 - fine.radii**2)
-    q = np.max(root * np.abs(coarse.pressure - fine.pressure), axis=1) / np.max(root * fine.pressure, axis=1)
-    worst = np.pad(np.maximum(np.maximum(k, c), q), SPREAD, mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(worst, 2 * SPREAD + 1)
+    root = np.sqrt(1.0 - fine.radii**2)  # the radii are equally spaced in arcsin(rho): sums are integrals over it
+    q, difference = root * fine.pressure, root * np.abs(coarse.pressure - fine.pressure)
+    return dataclasses.replace(
+        fine,
+        error=_largest_nearby(np.maximum(k, c), xi),
+        pressure_error=_largest_nearby(np.max(difference, axis=1) / np.max(q, axis=1), xi),
+        mean_error=_largest_nearby(np.sum(difference, axis=1) / np.sum(q, axis=1), xi),
+    )
+
+
+def _largest_nearby(difference: FloatArray, ratios: FloatArray) -> FloatArray:
+    """The largest value over each row's neighbourhood, and what conjugate gradients leave."""
+    reach = ceil(log(SPREAD) / log(ratios[1] / ratios[0]))  # rows
+    windows = np.lib.stride_tricks.sliding_window_view(np.pad(difference, reach, mode="edge"), 2 * reach + 1)
     return np.asarray(np.max(windows, axis=1) + ERROR_FLOOR)
 
 
@@ -124,5 +137,5 @@ def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> 
         "poissons_ratio": poissons_ratio,
         "cells": settings.cells,
         "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images",
-        "error": f"difference to {settings.cells // 2} cells, its largest value over {2 * SPREAD + 1} ratios",
+        "error": f"difference to {settings.cells // 2} cells, its largest value within a factor of {SPREAD:g} in a/h",
     }

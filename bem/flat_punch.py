@@ -36,7 +36,10 @@ class FlatPunchSolution(Protocol):
         """
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar, and of q relative to its largest value."""
+        """Bound of the relative error of k_bar and c_bar."""
+
+    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of integrals of q over arcsin(rho), as Eqs. (11) and (12) take them."""
 
 
 @runtime_checkable

@@ -35,7 +35,9 @@ class FlatPunchTable:
         radii: rho = r/a in [0, 1), increasing, shape (m,).
         stiffness: k_bar, shape (n,), Eq. (10).
         pressure: p_bar, shape (n, m), Eq. (10).
-        error: Bound of the relative error of k_bar, c_bar and q, shape (n,).
+        error: Bound of the relative error of k_bar and c_bar, shape (n,).
+        pressure_error: Bound of the error of q at any radius, relative to its largest value, shape (n,).
+        mean_error: Bound of the relative error of integrals of q over arcsin(rho), shape (n,).
         provenance: Where the numbers come from, in names and plain values.
 
     Raises:
@@ -49,6 +51,8 @@ class FlatPunchTable:
     stiffness: FloatArray
     pressure: FloatArray
     error: FloatArray
+    pressure_error: FloatArray
+    mean_error: FloatArray
     provenance: dict[str, str | int | float] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -58,7 +62,8 @@ class FlatPunchTable:
         rows, columns = len(self.ratios), len(self.radii)
         _check_values("stiffness k_bar", self.stiffness, (rows,))
         _check_values("pressure p_bar", self.pressure, (rows, columns))
-        _check_values("error", self.error, (rows,))
+        for name in ("error", "pressure_error", "mean_error"):
+            _check_values(name, getattr(self, name), (rows,))
 
     @property
     def max_ratio(self) -> float:
@@ -90,10 +95,21 @@ class FlatPunchTable:
         return np.asarray(0.5 + np.minimum(xi / first, 1.0) * (read - 0.5))
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar, and of q relative to its largest value."""
-        xi = self._checked(ratio)
-        place = np.searchsorted(self.ratios, xi)
-        return np.asarray(np.maximum(self.error[np.maximum(place - 1, 0)], self.error[place]))
+        """Bound of the relative error of k_bar and c_bar."""
+        return self._larger_neighbour(self.error, ratio)
+
+    def smooth_pressure_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the error of q at any radius, relative to its largest value."""
+        return self._larger_neighbour(self.pressure_error, ratio)
+
+    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of integrals of q over arcsin(rho)."""
+        return self._larger_neighbour(self.mean_error, ratio)
+
+    def _larger_neighbour(self, error: FloatArray, ratio: ArrayLike) -> FloatArray:
+        """The larger of the errors of the two rows around each ratio."""
+        place = np.searchsorted(self.ratios, self._checked(ratio))
+        return np.asarray(np.maximum(error[np.maximum(place - 1, 0)], error[place]))
 
     def _checked(self, ratio: ArrayLike) -> FloatArray:
         xi = np.asarray(ratio, dtype=np.float64)

@@ -32,3 +32,7 @@ class HalfSpaceFlatPunch:
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Exact."""
         return np.zeros(np.shape(ratio))
+
+    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+        """Exact."""
+        return np.zeros(np.shape(ratio))

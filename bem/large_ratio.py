@@ -111,6 +111,10 @@ class LargeRatioSolution:
         within = self.near.relative_error(np.minimum(ratio, self.near.max_ratio))
         return np.where(ratio <= self.near.max_ratio, within, self.error)
 
+    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+        """As that of the stiffnesses."""
+        return self.relative_error(ratio)
+
     @cached_property
     def near(self) -> IntegralEquationSolution:
         """Solution for smaller ratios."""

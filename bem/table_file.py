@@ -1,7 +1,7 @@
 """Flat-punch tables in HDF5 files: our own with provenance and hash, and others in the paper's supplementary layout.
 
 The layout of Forsbach (2023) is four arrays named `ratios` (a/h), `radii` (r/a), `k_bar` and `p_bar`, the last with one
-row for each ratio. Our own files hold the same four, the stated error, the kernel, and where the numbers come from.
+row for each ratio. Our own files hold the same four, the stated errors, the kernel, and where the numbers come from.
 """
 
 from __future__ import annotations
@@ -24,10 +24,11 @@ from contact.record import Record, record
 from contact.storage import read_tree, write_tree
 from contact.validation import FloatArray
 
-SCHEMA: Final = "contact-verification/flat-punch-table/1"
+SCHEMA: Final = "contact-verification/flat-punch-table/2"
 LIMIT_TOLERANCE: Final = 0.05  # a foreign table that misses a limit by more is of another kernel or normalisation
 THICK: Final = 0.05  # a/h below which k_bar = 1/(1 - c a/h) to 1e-4
 THIN: Final = 100.0  # a/h above which the thin-layer limits hold to 10 h/a, except for 0.45 < nu < 0.5
+ERRORS: Final = ("error", "pressure_error", "mean_error")
 NUMERICAL_LIBRARIES: Final = ("numpy", "scipy", "pyfftw")
 
 
@@ -55,7 +56,7 @@ def read_table(path: str | Path) -> FlatPunchTable:
     tree = read_tree(path)
     if tree.get("schema") != SCHEMA:
         raise InvalidInput(f"{path}: schema {tree.get('schema')!r}; this version reads {SCHEMA!r}")
-    kernel = {name: tree[name] for name in ("support", "poissons_ratio", "error", "provenance")}
+    kernel = {name: tree[name] for name in ("support", "poissons_ratio", "provenance", *ERRORS)}
     table = _table(path, tree, **kernel)
     if _digest(table) != tree["sha256"]:
         raise InvalidInput(
@@ -91,7 +92,8 @@ def read_foreign_table(
         place = table.ratios[falling[0]]
         raise InvalidInput(f"{path}: k_bar must grow with a/h, but falls after a/h = {place:g}")
     error = defect if relative_error is None else relative_error
-    return replace(table, error=np.full(len(table.ratios), error))
+    everywhere = np.full(len(table.ratios), error)
+    return replace(table, error=everywhere, pressure_error=everywhere, mean_error=everywhere)
 
 
 @record
@@ -146,7 +148,7 @@ def _arrays(table: FlatPunchTable) -> dict[str, FloatArray]:
         "radii": table.radii,
         "k_bar": table.stiffness,
         "p_bar": table.pressure,
-        "error": table.error,
+        **{name: getattr(table, name) for name in ERRORS},
     }
 
 
@@ -161,8 +163,8 @@ def _table(
     *,
     support: Support,
     poissons_ratio: float,
-    error: FloatArray | None = None,
     provenance: dict[str, str | int | float],
+    **errors: FloatArray,
 ) -> FlatPunchTable:
     missing = [name for name in ("ratios", "radii", "k_bar", "p_bar") if name not in tree]
     if missing:
@@ -178,8 +180,8 @@ def _table(
         radii=radii,
         stiffness=stiffness,
         pressure=pressure,
-        error=np.zeros(len(ratios)) if error is None else error,
         provenance=provenance,
+        **(dict.fromkeys(ERRORS, np.zeros(len(ratios))) | errors),
     )
 
 

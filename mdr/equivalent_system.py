@@ -115,8 +115,10 @@ class EquivalentSystem:
 
     def relative_errors(self, contact_radius: FloatArray) -> dict[str, FloatArray]:
         """Bounds of the relative errors of an elastic contact's quantities at each radius."""
-        stiffness = self.flat_punch.relative_error(self._ratio(contact_radius)) + ROUNDING
-        depth = 2 * stiffness + self.profile_error
+        ratio = self._ratio(contact_radius)
+        stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
+        moment = self.flat_punch.moment_error(ratio) + ROUNDING
+        depth = stiffness + np.maximum(stiffness, moment) + self.profile_error
         return {
             "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
             "indentation_depth": depth,

@@ -42,7 +42,16 @@ def test_stated_error_covers_the_true_error_of_pressure(pair):
     rho = np.linspace(0.0, 1.0, 60)
     q, expected = table.smooth_pressure(rho, RATIOS[:, None]), exact.smooth_pressure(rho, RATIOS[:, None])
     error = np.max(np.abs(q - expected), axis=1) / np.max(expected, axis=1)
-    assert np.all(error <= table.relative_error(RATIOS))
+    assert np.all(error <= table.smooth_pressure_error(RATIOS))
+    weight = np.gradient(np.arcsin(rho))
+    mean = np.abs((q - expected) @ weight) / (expected @ weight)
+    assert np.all(mean <= table.moment_error(RATIOS))
+
+
+def test_stiffness_is_stated_to_be_better_known_than_pressure(pair):
+    table, _ = pair
+    resolved = (table.ratios > 0.1) & (table.ratios < 1.0)
+    assert np.all(table.error[resolved] < 0.2 * table.pressure_error[resolved])
 
 
 def test_a_planted_error_escapes_the_stated_one(pair):
@@ -90,6 +99,8 @@ def test_tables_with_bad_arrays_are_refused():
         "stiffness": np.ones(8),
         "pressure": np.ones((8, 20)),
         "error": np.zeros(8),
+        "pressure_error": np.zeros(8),
+        "mean_error": np.zeros(8),
     }
     FlatPunchTable(**good)
     for name, bad in [

@@ -31,7 +31,7 @@ def supplementary(last_radius=1.0):
 def test_a_table_returns_from_its_file_without_loss(table, tmp_path):
     write_table(tmp_path / "table.h5", table)
     back = read_table(tmp_path / "table.h5")
-    for name in ("ratios", "radii", "stiffness", "pressure", "error"):
+    for name in ("ratios", "radii", "stiffness", "pressure", "error", "pressure_error", "mean_error"):
         np.testing.assert_array_equal(getattr(back, name), getattr(table, name))
     assert back.support == "bonded"
     assert back.provenance["cells"] == 64
