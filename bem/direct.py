@@ -9,10 +9,11 @@ from typing import ClassVar, Final, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from bem.adhesive_branch import SCOUT_CELLS
 from bem.adhesive_discs import AdheringDiscs
 from bem.adhesive_path import CellHistory, branch_errors, detachment_branch, stable_under_force, start_radius
 from bem.grid import LEAST_CELLS, Grid
-from bem.pixel_disc import THIN, PixelDisc, PunchSolution, measured_disc
+from bem.grid_punch import contact_stiffness, grid_punch
 from bem.pressed_state import Boundary, Prescribed, Press, PressedState
 from bem.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from contact import (
@@ -34,9 +35,15 @@ from contact import (
 from contact.record import Record, record
 from contact.validation import FloatArray
 
-STIFFNESS_CELLS: Final = 256  # grid of the flat punch behind k_N: its own error is below 1e-5
 PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
-LARGEST_EXPONENTS: Final = {"indentation_depth": 2.0, "normal_force": 6.0, "contact_stiffness": 4.0}
+LARGEST_EXPONENTS: Final = {  # of a, for smooth profiles on thick and thin layers
+    "contact_radius": 1.0,
+    "indentation_depth": 2.0,
+    "normal_force": 6.0,
+    "contact_stiffness": 4.0,
+}
+KINK_CELLS, KINK_ERROR = 6.0, 0.1  # nearer than so many cells to the edge, a kink costs this part of a cell
+SECOND_ORDER: Final = 0.1  # times (s/a)^2: differences of two grids may be smaller by chance
 
 
 @record
@@ -52,7 +59,8 @@ class Bem(Record):
             measures (`adhering_disc`), or single "cells" beyond a stress that depends on their size (`detachment`).
 
     Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
-    what the contact radius may be off. The method converges with second order in the cell size. A flat punch is a disc
+    what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. The method converges
+    with second order in the cell size. A flat punch is a disc
     of cells measured by the half-space (`pixel_disc`), so that on the half-space itself its stiffness is exact by
     construction. Adhesive contacts on discs converge with about order 1.5, detachment by cells with about first order.
     Adhesive depths and forces are followed in their order, from out of contact (`adhesive_history`).
@@ -148,7 +156,9 @@ class Bem(Record):
                 CellHistory.of_depths(scene, depths, cells, self.threads, log)
                 for cells in (self.points, self.points // 2)
             )
-        stiffness = [contact_stiffness(scene, a, 64) if a > 0.0 else 0.0 for a in fine.contact_radius.tolist()]
+        stiffness = [
+            contact_stiffness(scene.layer, a, SCOUT_CELLS) if a > 0.0 else 0.0 for a in fine.contact_radius.tolist()
+        ]
         return ContactPath(
             scene=scene,
             method=self.name,
@@ -195,21 +205,19 @@ class Bem(Record):
     def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
         press = Press(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
         fine, coarse = press.reach(kind, value, self.points)
-        with log.stage("contact_stiffness"):
-            stiffness = contact_stiffness(scene, fine.contact_radius, min(self.points, STIFFNESS_CELLS))
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
-        errors = _errors(kind, fine, coarse)
+        errors = _errors(kind, fine, coarse, _unresolved(scene, fine))
         errors["pressure"] = _pressure_difference(fields, other, fine)
         errors["pressure"] += LARGEST_EXPONENTS["normal_force"] * fine.radius_scatter / fine.contact_radius
-        return Step(_values(fine) | {"contact_stiffness": stiffness}, errors, fields)
+        return Step({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
 
     def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
         """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""
         a = scene.indenter.max_radius
         with log.stage("contact"):
-            punch, disc = grid_punch(scene, a, self.points)
-            coarse, _ = grid_punch(scene, a, self.points // 2)
+            punch, disc = grid_punch(scene.layer, a, self.points)
+            coarse, _ = grid_punch(scene.layer, a, self.points // 2)
         stiffness = 2.0 * scene.layer.contact_modulus * a * punch.stiffness  # Eq. (10)
         depth = value if kind == "depth" else value / stiffness
         scale = depth * stiffness / (np.pi * a**2)  # p = k_N delta / (pi a^2) p_bar, Eq. (10)
@@ -242,22 +250,6 @@ class Step:
     fields: AxisymmetricFields
 
 
-def contact_stiffness(scene: Scene, radius: float, cells: int) -> float:
-    """k_N(a) [N/m] of the flat punch with the contact's radius: what dF/d(delta) at fixed contact is, Eq. (5)."""
-    punch, _ = grid_punch(scene, radius, cells)
-    return 2.0 * scene.layer.contact_modulus * radius * punch.stiffness
-
-
-def grid_punch(scene: Scene, radius: float, cells: int) -> tuple[PunchSolution, PixelDisc]:
-    """The flat punch of this radius on the scene's layer, and the grid disc it was computed with."""
-    layer = scene.layer
-    ratio = radius / layer.thickness  # zero on a half-space
-    disc = measured_disc(cells, bool(ratio > THIN))
-    if layer.is_half_space:
-        return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
-    return disc.solve(ratio, layer.support, layer.poissons_ratio, None), disc
-
-
 def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
     """What is prescribed, and its values."""
     loading = scene.loading
@@ -266,25 +258,24 @@ def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
     return PRESCRIBED[type(loading)], loading.values
 
 
-def _values(state: PressedState) -> dict[str, float]:
-    return {
-        "contact_radius": state.contact_radius,
-        "indentation_depth": state.indentation_depth,
-        "normal_force": state.normal_force,
-    }
+def _unresolved(scene: Scene, state: PressedState) -> float:
+    """Relative error by a kink of the profile that lies within a few cells of the edge."""
+    cells = [(state.contact_radius - kink) / state.grid.cell_size for kink in scene.indenter.kinks]
+    near = any(0.0 < distance < KINK_CELLS for distance in cells)
+    return KINK_ERROR * state.grid.cell_size / state.contact_radius if near else 0.0
 
 
-def _errors(kind: str, fine: PressedState, coarse: PressedState) -> dict[str, float]:
-    """Relative errors: the difference to the coarser grid, and the contact radius's scatter where it enters."""
-    radius = (fine.radius_scatter + abs(fine.contact_radius - coarse.contact_radius)) / fine.contact_radius
-    errors = {"contact_radius": radius, "contact_stiffness": LARGEST_EXPONENTS["contact_stiffness"] * radius + 1e-5}
-    for name in ("indentation_depth", "normal_force"):
+def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: float) -> dict[str, float]:
+    """Relative errors: the difference to the coarser grid, and what the slope that tells the radius may be off."""
+    scatter, cell = fine.radius_scatter / fine.contact_radius, fine.grid.cell_size / fine.contact_radius
+    errors = {}
+    for name in ContactPath.ARRAYS:
         value = getattr(fine, name)
-        difference = abs(value - getattr(coarse, name)) / abs(value)
-        scatter = LARGEST_EXPONENTS[name] * fine.radius_scatter / fine.contact_radius if kind == "radius" else 0.0
-        errors[name] = difference + scatter + 1e-9
-    prescribed = {"depth": "indentation_depth", "force": "normal_force"}.get(kind)
-    return errors | ({prescribed: 0.0} if prescribed else {})
+        errors[name] = abs(1.0 - getattr(coarse, name) / value) + SECOND_ORDER * cell**2 + unresolved
+        if kind == "radius" or name in ("contact_radius", "contact_stiffness"):
+            errors[name] += LARGEST_EXPONENTS[name] * scatter
+    prescribed = {"depth": "indentation_depth", "force": "normal_force", "radius": "contact_radius"}[kind]
+    return errors | {prescribed: 0.0}
 
 
 def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: PressedState) -> float:

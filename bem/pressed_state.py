@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import log
+from math import exp, log
 from typing import Final, Literal
 
 import numpy as np
 
 from bem.conjugate_gradients import Equilibrium, solve_contact
-from bem.contact_edge import ContactRadius, area_radius, contact_radius
+from bem.contact_edge import SLOPE_SCATTER, STEP, area_radius, slope
 from bem.grid import Grid, first_radius, grid_sequence, prolonged
+from bem.grid_punch import contact_stiffness, radius_of_stiffness
 from bem.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog
 from contact.validation import FloatArray
@@ -25,7 +26,60 @@ FIRST_BOX: Final = (
 )
 FILL: Final = 0.88  # contact radius over half the box
 IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
-RADIUS_TOLERANCE: Final = 1e-6  # relative, of a prescribed contact radius, besides its scatter
+STIFFNESS_CELLS: Final = 256  # of the flat punch behind k_N: its own error is below 1e-5 for a < 5 h
+CLOSE: Final = 1e-3  # of ln(k_N): from here on one step of the secant is enough
+NEAR: Final = 3e-2  # of a first guess
+NOISE: Final = 5e-3  # of ln(k_N): smaller changes say nothing on the exponent
+COARSE_TOLERANCE: Final = 1e-5
+LARGEST_FILL: Final = 0.92  # contact radius over half a coarse box: room for a deeper contact
+LEAST_RADIUS: Final = 3.0  # cells
+END_SHARE: Final = 0.02  # of the indenter's end: over which it is continued by its last slope
+
+
+@dataclass(frozen=True, eq=False)
+class Bed:
+    """An indenter above a layer on one grid.
+
+    Attributes:
+        operator: K.
+        grid: The quadrant.
+        height: f at the cell centres [m].
+        tolerance: Of the complementarity problem.
+        log: Stage log; counts the iterations.
+    """
+
+    operator: Operator
+    grid: Grid
+    height: FloatArray
+    tolerance: float
+    log: StageLog
+
+    def at_depth(self, depth: float, start: FloatArray | None) -> Equilibrium:
+        """Under a depth [m]."""
+        return self._counted(
+            solve_contact(self.operator, self.height, depth=depth, start=start, tolerance=self.tolerance)
+        )
+
+    def under_force(self, force: float, start: FloatArray | None) -> Equilibrium:
+        """Under a force [N]."""
+        load = force / (4.0 * self.grid.cell_size**2)
+        return self._counted(
+            solve_contact(self.operator, self.height, load=load, start=start, tolerance=self.tolerance)
+        )
+
+    def force(self, state: Equilibrium) -> float:
+        """F_N [N]; the quadrant stands for four."""
+        return 4.0 * self.grid.cell_size**2 * float(state.pressure.sum())
+
+    def stiffness(self, state: Equilibrium) -> float:
+        """dF/d(delta) [N/m] about this state."""
+        depth = state.indentation_depth
+        less, more = (self.force(self.at_depth(depth * exp(step), state.pressure)) for step in (-STEP, STEP))
+        return slope(depth, self.force(state), less, more)
+
+    def _counted(self, answer: Equilibrium) -> Equilibrium:
+        self.log.count("iterations", answer.iterations)
+        return answer
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +92,7 @@ class PressedState:
         contact_radius: a [m], see `contact_edge`.
         radius_scatter: How far that may be off for want of cells [m].
         normal_force: F_N [N].
+        contact_stiffness: dF/d(delta) [N/m].
     """
 
     grid: Grid
@@ -45,6 +100,7 @@ class PressedState:
     contact_radius: float
     radius_scatter: float
     normal_force: float
+    contact_stiffness: float
 
     @property
     def indentation_depth(self) -> float:
@@ -77,148 +133,139 @@ class Press:
 
         Each grid starts from the answer of the one before; the first box is found on a coarse grid.
         """
-        guess = self._locate(prescribed, value)
-        radius = value if prescribed == "radius" else guess.contact_radius
-        states: list[PressedState] = []
+        if prescribed == "radius":
+            return self._reach_radius(value, points)
+        with self.log.stage("first_guess"):
+            guess = self._near_force(value) if prescribed == "force" else self._coarse(value)
+        radius = area_radius(guess.answer.pressure, guess.bed.grid.cell_size)
         start: FloatArray | None = None
-        depth = guess.indentation_depth
+        states: list[PressedState] = []
+        box = radius
         for cells in grid_sequence(points):
-            grid = self._grid(radius, cells)
-            with self.log.stage("operator"):
-                operator = self._operator(grid, self.boundary)
+            bed = self._bed(box, cells)
             with self.log.stage("contact"):
-                if prescribed == "depth":
-                    state = self._solve(operator, grid, depth=value, start=start)
-                elif prescribed == "force":
-                    state = self._solve(operator, grid, force=value, start=start)
-                else:
-                    state = self._at_radius(operator, grid, value, depth, start)
-            states.append(state)
-            depth, start = state.indentation_depth, prolonged(state.equilibrium.pressure)
+                solve = bed.at_depth if prescribed == "depth" else bed.under_force
+                answer = solve(value, start)
+            start = prolonged(answer.pressure)
+            if cells >= points // 2:
+                states.append(self._measured(bed, answer, radius))
+                radius = states[-1].contact_radius
+        return states[1], states[0]
+
+    def _reach_radius(self, radius: float, points: int) -> tuple[PressedState, PressedState]:
+        """The depth at which the contact is as stiff as the flat punch of this radius, Eq. (5)."""
+        with self.log.stage("contact_stiffness"):
+            stiffness = contact_stiffness(self.layer, radius, min(points, STIFFNESS_CELLS))
+        with self.log.stage("first_guess"):
+            guess, exponent = self._coarse_root(Coarse.stiffness, stiffness, self._depth_scale(radius))
+        depth, start = guess.answer.indentation_depth, None
+        states: list[PressedState] = []
+        for cells in grid_sequence(points):
+            bed = self._bed(radius, cells)
+            with self.log.stage("contact"):
+                answer, exponent = self._as_stiff(bed, stiffness, bed.at_depth(depth, start), exponent)
+            depth, start = answer.indentation_depth, prolonged(answer.pressure)
+            states.append(self._state(bed, answer, radius, stiffness))
         return states[-1], states[-2]
 
-    def _at_radius(
-        self, operator: Operator, grid: Grid, radius: float, depth: float, start: FloatArray | None
-    ) -> PressedState:
-        """Secant iteration in ln(depth) over ln(a): delta grows like a power of a."""
-        exponent = 1.5  # between 1 and 2 for all pointed profiles; corrected as soon as there are two points
-        state = self._solve(operator, grid, depth=depth, start=start)
-        for _ in range(8):
-            miss = log(radius / state.contact_radius)
-            if abs(miss) <= RADIUS_TOLERANCE + state.radius_scatter / radius:
-                return state
-            step = float(np.clip(exponent * miss, -0.3, 0.3))
-            depth *= np.exp(step)
-            after = self._solve(operator, grid, depth=depth, start=state.equilibrium.pressure)
-            moved = log(after.contact_radius / state.contact_radius)
-            if step * moved > 0.0:
-                exponent = float(np.clip(step / moved, 0.2, 20.0))
-            state = after
-        raise NotConvergedError("the prescribed contact radius was not met; use more points", {"radius": abs(miss)})
+    def _as_stiff(self, bed: Bed, stiffness: float, answer: Equilibrium, exponent: float) -> tuple[Equilibrium, float]:
+        """Secant method in ln(depth) over ln(k_N), which grows like a power of the depth; and that power's inverse."""
+        miss = log(stiffness / bed.stiffness(answer))
+        for _ in range(12):
+            step = float(np.clip(exponent * miss, -0.5, 0.5))
+            answer = bed.at_depth(answer.indentation_depth * exp(step), answer.pressure)
+            if abs(miss) < CLOSE:
+                return answer, exponent
+            before, miss = miss, log(stiffness / bed.stiffness(answer))
+            exponent = _updated(exponent, step, before - miss)
+        raise NotConvergedError(
+            "the prescribed contact radius was not met; use more points or prescribe depths", {"stiffness": abs(miss)}
+        )
 
-    def _locate(self, prescribed: Prescribed, value: float) -> PressedState:
-        """A coarse equilibrium near the one wanted: bisection in the radius where f equals the depth."""
-        measure: dict[Prescribed, Callable[[PressedState], float]] = {
-            "depth": lambda state: state.indentation_depth,
-            "force": lambda state: state.normal_force,
-            "radius": lambda state: state.contact_radius,
-        }
-        with self.log.stage("first_guess"):
-            if prescribed == "depth":
-                return self._coarse(value)
-            depth = self._depth_scale(value) if prescribed == "radius" else self._depth_of_force(value)
-            return self._coarse_root(measure[prescribed], value, depth)
+    def _near_force(self, force: float) -> Coarse:
+        """A coarse equilibrium near the force wanted."""
+        return self._coarse_root(Coarse.force, force, self._depth_of_force(force))[0]
 
-    def _coarse_root(self, measure: Callable[[PressedState], float], value: float, depth: float) -> PressedState:
-        """Secant in logarithms on the coarse grid, within 1 %."""
+    def _coarse_root(self, measure: Callable[[Coarse], float], value: float, depth: float) -> tuple[Coarse, float]:
+        """Secant in logarithms on coarse grids, within 3 %; and the exponent of the depth over what is measured."""
         exponent, state = 1.0, self._coarse(depth)
+        miss = log(value / measure(state))
         for _ in range(40):
-            miss = log(value / measure(state))
-            if abs(miss) < 0.01:
-                return state
+            if abs(miss) < NEAR:
+                return state, exponent
             step = float(np.clip(exponent * miss, -2.0, 2.0))
-            depth *= float(np.exp(step))
-            after = self._coarse(depth)
-            moved = log(measure(after) / measure(state))
-            if step * moved > 0.0:
-                exponent = float(np.clip(step / moved, 0.1, 10.0))
-            state = after
+            depth *= exp(step)
+            state = self._coarse(depth)
+            before, miss = miss, log(value / measure(state))
+            exponent = _updated(exponent, step, before - miss)
         raise NotConvergedError("no first guess of the contact was found", {"miss": miss})
 
-    def _coarse(self, depth: float) -> PressedState:
-        """Equilibrium on a coarse grid whose box grows until the contact lies inside."""
+    def _coarse(self, depth: float) -> Coarse:
+        """Equilibrium on a coarse grid whose box grows until the contact lies well inside."""
         radius = FIRST_BOX * self._geometric_radius(depth)
         for _ in range(40):
-            grid = self._grid(radius, COARSE_CELLS, "free")
-            thin = self.layer.thickness < 2.0 * grid.cell_size
-            operator = self._operator(grid, "periodic" if thin else "free")
+            thin = self.layer.thickness < 4.0 * radius / COARSE_CELLS
+            bed = self._bed(radius, COARSE_CELLS, "periodic" if thin else "free", COARSE_TOLERANCE)
             try:
-                equilibrium = solve_contact(operator, self._height(grid), depth=depth, tolerance=1e-4)
+                answer = bed.at_depth(depth, None)
             except NotConvergedError:  # a box that is all contact may have no equilibrium (bonded, nu = 1/2)
                 radius *= 1.3
                 continue
-            reached = area_radius(equilibrium.pressure, grid.cell_size)
-            if reached < 0.97 * grid.cell_size * COARSE_CELLS / 2:
-                return self._state(grid, equilibrium, ContactRadius(reached, grid.cell_size))
+            if area_radius(answer.pressure, bed.grid.cell_size) < LARGEST_FILL * bed.grid.cell_size * COARSE_CELLS / 2:
+                return Coarse(bed, answer)
             radius *= 1.3
         raise NotConvergedError(f"the contact at a depth of {depth:g} m outgrew every box")
 
-    def _solve(
-        self,
-        operator: Operator,
-        grid: Grid,
-        *,
-        depth: float | None = None,
-        force: float | None = None,
-        start: FloatArray | None = None,
-    ) -> PressedState:
-        load = None if force is None else force / (4.0 * grid.cell_size**2)
-        answer = solve_contact(
-            operator, self._height(grid), depth=depth, load=load, start=start, tolerance=self.tolerance
-        )
-        self.log.count("iterations", answer.iterations)
-        a = contact_radius(
-            answer.pressure,
-            grid.radius,
-            grid.cell_size,
-            smooth_beyond=self._last_kink(answer, grid),
-            thickness=self.layer.thickness,
-        )
-        self._check_inside(answer, grid, a.value)
-        return self._state(grid, answer, a)
+    def _measured(self, bed: Bed, answer: Equilibrium, near: float) -> PressedState:
+        """With the radius of the flat punch that is as stiff."""
+        with self.log.stage("contact_stiffness"):
+            stiffness = bed.stiffness(answer)
+            radius = radius_of_stiffness(self.layer, stiffness, near, min(bed.grid.cells, STIFFNESS_CELLS))
+        return self._state(bed, answer, radius, stiffness)
 
-    def _state(self, grid: Grid, answer: Equilibrium, radius: ContactRadius) -> PressedState:
-        force = 4.0 * grid.cell_size**2 * float(answer.pressure.sum())
-        return PressedState(grid, answer, radius.value, radius.scatter, force)
+    def _state(self, bed: Bed, answer: Equilibrium, radius: float, stiffness: float) -> PressedState:
+        self._check_inside(answer, bed.grid, radius)
+        if radius < LEAST_RADIUS * bed.grid.cell_size:
+            raise InvalidInput(
+                f"a contact of radius {radius:g} m spans too few of the {bed.grid.cells} cells of its box; "
+                'take more points, or boundary="free"'
+            )
+        scatter = SLOPE_SCATTER * bed.grid.cell_size
+        return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness)
 
     def _check_inside(self, answer: Equilibrium, grid: Grid, radius: float) -> None:
         """The contact is one circle that ends within the indenter and the box."""
-        if radius > self.indenter.max_radius - grid.cell_size:
+        if radius > self.indenter.max_radius:
             raise InvalidInput(f"the contact reaches the end of the indenter at {self.indenter.max_radius:g} m")
+        by_area = area_radius(answer.pressure, grid.cell_size)
         outermost = float(np.max(grid.radius[answer.pressure > 0.0]))
-        if abs(outermost - radius) > 4.0 * grid.cell_size:
+        if abs(outermost - by_area) > 4.0 * grid.cell_size:
             raise NotConvergedError(
-                f"the contact is not one circle: cells to {outermost:g} m, area of a radius of {radius:g} m"
+                f"the contact is not one circle: cells to {outermost:g} m, area of a radius of {by_area:g} m"
             )
 
-    def _last_kink(self, answer: Equilibrium, grid: Grid) -> float:
-        reached = area_radius(answer.pressure, grid.cell_size)
-        inside = [kink for kink in self.indenter.kinks if kink < reached - 3.0 * grid.cell_size]
-        return max([0.0, *inside])
+    def _bed(self, radius: float, cells: int, boundary: Boundary | None = None, tolerance: float | None = None) -> Bed:
+        """A grid that a contact of this radius fills well."""
+        kind = boundary or self.boundary
+        gap = IMAGE_GAP * self.layer.thickness if kind == "periodic" else 0.0
+        grid = Grid(cells, max(2.0 * radius / FILL, 2.0 * radius + gap) / cells)
+        make = PeriodicOperator if kind == "periodic" else FreeSpaceOperator
+        with self.log.stage("operator"):
+            operator = make(self.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=self.threads)
+        return Bed(operator, grid, self._height(grid), tolerance or self.tolerance, self.log)
 
     def _height(self, grid: Grid) -> FloatArray:
-        """f at the cell centres [m]; beyond the indenter's end far above the layer."""
-        height = self.indenter.height(grid.radius)
-        finite = np.isfinite(height)
-        return np.where(finite, height, 1e3 * np.max(height[finite]))
+        """f at the cell centres [m], continued beyond the indenter's end by its last slope.
 
-    def _grid(self, radius: float, cells: int, boundary: Boundary | None = None) -> Grid:
-        gap = IMAGE_GAP * self.layer.thickness if (boundary or self.boundary) == "periodic" else 0.0
-        return Grid(cells, max(2.0 * radius / FILL, 2.0 * radius + gap) / cells)
-
-    def _operator(self, grid: Grid, boundary: Boundary) -> Operator:
-        kind = PeriodicOperator if boundary == "periodic" else FreeSpaceOperator
-        return kind(self.layer, cell_size=grid.cell_size, cells=grid.cells, quarter=True, threads=self.threads)
+        So the stiffness of a contact that ends within the indenter is not disturbed.
+        """
+        end = self.indenter.max_radius
+        if end >= np.max(grid.radius):
+            return self.indenter.height(grid.radius)
+        inner, outer = self.indenter.height(end * np.array([1.0 - END_SHARE, 1.0]))
+        last_slope = (outer - inner) / (END_SHARE * end)
+        beyond = np.maximum(grid.radius - end, 0.0)
+        return np.asarray(self.indenter.height(np.minimum(grid.radius, end)) + last_slope * beyond)
 
     def _geometric_radius(self, depth: float) -> float:
         """Where f equals the depth [m]."""
@@ -234,3 +281,24 @@ class Press:
         stiffness = 2.0 * self.layer.contact_modulus
         radius = first_radius(lambda r: stiffness * r * self._depth_scale(r) >= force, self.indenter.max_radius)
         return self._depth_scale(radius * (1.0 - 1e-12))
+
+
+@dataclass(frozen=True)
+class Coarse:
+    """A first guess."""
+
+    bed: Bed
+    answer: Equilibrium
+
+    def force(self) -> float:
+        """F_N [N]."""
+        return self.bed.force(self.answer)
+
+    def stiffness(self) -> float:
+        """dF/d(delta) [N/m]."""
+        return self.bed.stiffness(self.answer)
+
+
+def _updated(exponent: float, step: float, moved: float) -> float:
+    """d ln(depth)/d ln(measure) from the last step, unless it is as small as the measure's noise."""
+    return float(np.clip(step / moved, 0.1, 10.0)) if step * moved > 0.0 and abs(moved) > NOISE else exponent

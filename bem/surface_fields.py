@@ -84,7 +84,7 @@ class SmoothIndenterFields:
     def _pressure_over_root(self) -> PchipInterpolator:
         state = self.state
         a, s = state.contact_radius, state.grid.cell_size
-        inside = state.grid.radius < a - EDGE_CELLS * s
+        inside = state.grid.radius < max(a - EDGE_CELLS * s, 0.6 * a)
         r = state.grid.radius[inside]
         ratio = state.equilibrium.pressure[inside] / np.sqrt(a**2 - r**2)
         return _ring_interpolator(r, ratio, s)
