@@ -69,7 +69,7 @@ def powers(z: FloatArray, count: int) -> FloatArray:
 def largest(coefficients: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
     """Largest value in z in [-1, 1] of many polynomials per lane.
 
-    The best of many samples is polished by Newton's method on that polynomial's slope.
+    The best sample of each is polished by Newton's method on its slope.
 
     Args:
         coefficients: Powers of z, shape (m, polynomials, lanes).
@@ -80,17 +80,15 @@ def largest(coefficients: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
     """
     samples = np.linspace(-1.0, 1.0, _SAMPLES)
     values = np.tensordot(powers(samples, coefficients.shape[0]).T, coefficients, 1)
-    flat = np.where(present, values, -np.inf).reshape(-1, present.shape[1])
-    best = flat.argmax(axis=0)
-    own = coefficients[:, best % present.shape[0], np.arange(best.size)]
-    first = own[1:] * np.arange(1.0, own.shape[0])[:, None]
-    second = first[1:] * np.arange(1.0, first.shape[0])[:, None]
-    z = samples[best // present.shape[0]]
+    first = coefficients[1:] * np.arange(1.0, coefficients.shape[0])[:, None, None]
+    second = first[1:] * np.arange(1.0, first.shape[0])[:, None, None]
+    z = samples[values.argmax(axis=0)]
     for _ in range(_NEWTON_STEPS):
         slope, curvature = horner(first, z), horner(second, z)
         concave = -curvature * _REACH > np.abs(slope)  # otherwise the maximum is an end, or already found
         z = np.clip(z - np.where(concave, slope / np.where(concave, curvature, 1.0), 0.0), -1.0, 1.0)
-    return np.asarray(np.maximum(flat.max(axis=0), horner(own, z)))
+    found = np.maximum(values.max(axis=0), horner(coefficients, z))
+    return np.asarray(np.where(present, found, -np.inf).max(axis=0))
 
 
 def _units(count: int) -> FloatArray:

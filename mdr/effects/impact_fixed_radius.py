@@ -7,12 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.validation import FloatArray
-from mdr.effects.collocation import Derivative, Lanes
+from mdr.effects.collocation_step import Derivative, Lanes
 
 
 @dataclass(frozen=True)
 class FlatPunchLanes:
-    """Flat-punch impacts in units of their elastic oscillation. State: f, t, delta, v, s_j, dissipated energy.
+    """Flat-punch impacts, each in its own unit of time T and depth v0 T. State: f, t, delta, v, s_j, dissipated energy.
 
     f is the force over the stiffness; it is a component of the state so that its return to zero is an event.
 
@@ -21,12 +21,14 @@ class FlatPunchLanes:
         viscosity: Dashpot eta / G_0 over the unit of time, shape (lanes,).
         weights: G_j / G_0, shape (branches, 1, lanes).
         rates: Unit of time over tau_j, shape (branches, 1, lanes).
+        inertia: k T^2 / M, shape (lanes,).
     """
 
     long_term: FloatArray
     viscosity: FloatArray
     weights: FloatArray
     rates: FloatArray
+    inertia: FloatArray
 
     @property
     def controlled(self) -> int:
@@ -41,17 +43,17 @@ class FlatPunchLanes:
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/dt."""
-        long_term, viscosity = self.long_term[lanes], self.viscosity[lanes]
+        long_term, viscosity, inertia = self.long_term[lanes], self.viscosity[lanes], self.inertia[lanes]
         weights, rates = self.weights[..., lanes], self.rates[..., lanes]
 
         def rhs(state: FloatArray) -> FloatArray:
             f, v, branches = state[0], state[3], state[4:-1]
             slopes = np.empty_like(state)
             slopes[1], slopes[2] = 1.0, v
-            slopes[3] = -f  # Eq. (48)
+            slopes[3] = -inertia * f  # Eq. (48)
             slopes[4:-1] = weights * v - rates * branches
             slopes[0] = long_term * v + viscosity * slopes[3] + np.add.reduce(slopes[4:-1])
-            slopes[-1] = viscosity * v**2 + np.add.reduce(rates / weights * branches**2)
+            slopes[-1] = inertia * (viscosity * v**2 + np.add.reduce(rates / weights * branches**2))
             return slopes
 
         return rhs

@@ -13,22 +13,24 @@ from contact.solution import Setting
 from contact.validation import FloatArray
 from mdr.assembly import equivalent_system
 from mdr.effects import chebyshev
-from mdr.effects.collocation import STAGES, Event, Trajectory, integrate, states
+from mdr.effects.collocation import Event, Trajectory, integrate, states
+from mdr.effects.collocation_step import STAGES
 from mdr.effects.impact_fixed_radius import FlatPunchLanes
 from mdr.effects.impact_history import ESTIMATED, distinct
 from mdr.effects.impact_results import ImpactResults, refuse_rest
 from mdr.effects.impact_units import impact_of, relaxation_of
 
-_FIRST_STEP = 0.5  # of the inverse of the elastic frequency
+_FIRST_STEP = 1.4  # of the unit of time, for a tolerance of one
 _Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))  # samples on each step, both ends among them
 
 
 @dataclass(frozen=True)
 class _Problem:
-    """Flat punches in the units of their elastic oscillation: depth v0/omega, time 1/omega."""
+    """Flat punches in units of depth v0 T, T the shorter of the elastic 1/omega and the dashpot's M/c."""
 
     lanes: FlatPunchLanes
-    frequency: FloatArray
+    time: FloatArray
+    stiffness: FloatArray
     velocity: FloatArray
     mass: FloatArray
     radius: FloatArray
@@ -53,7 +55,7 @@ def flat_punch_history(
     log.count("sweeps", motion.sweeps)
     outcome = _results(problem, motion)
     _, t, delta, v, *branches, lost = _samples(motion)
-    depth, force_unit = problem.velocity / problem.frequency, _force_unit(problem)
+    depth, force_unit = problem.velocity * problem.time, _force_unit(problem)
     energy = problem.mass * problem.velocity**2
     lanes = problem.lanes
     strain = [s**2 / weight for s, weight in zip(branches, lanes.weights[:, 0, 0], strict=True)]
@@ -65,13 +67,13 @@ def flat_punch_history(
         error_estimate=dict.fromkeys(ESTIMATED, np.full(t.size, outcome.relative_error[0])),
         cost=log.cost(unknowns=int(motion.final.shape[0])),
         stages=log.records,
-        time=t / problem.frequency,
+        time=t * problem.time,
         indentation_depth=delta * depth,
         velocity=v * problem.velocity,
         normal_force=force * force_unit,
         contact_radius=np.full(t.size, problem.radius[0]),
         kinetic_energy=0.5 * v**2 * energy,
-        stored_energy=0.5 * (lanes.long_term * delta**2 + sum(strain)) * energy,
+        stored_energy=0.5 * lanes.inertia * (lanes.long_term * delta**2 + sum(strain)) * energy,
         dissipated_energy=lost * energy,
         peak_force=float(outcome.peak_force[0]),
         peak_depth=float(outcome.peak_depth[0]),
@@ -84,38 +86,40 @@ def _problem(scenes: Sequence[Scene], flat_punch: FlatPunchSource) -> _Problem:
     systems = [equivalent_system(s.layer, s.indenter, s.indenter.max_radius, flat_punch) for s in scenes]
     stiffness = np.array([float(system.contact_stiffness(a)) for system, a in zip(systems, radius, strict=True)])
     mass = np.array([impact_of(scene).mass for scene in scenes])
-    frequency = np.sqrt(stiffness / mass)
     relaxations = [relaxation_of(scene) for scene in scenes]
     modulus = np.array([r.instantaneous_modulus for r in relaxations])
+    lag = np.array([r.viscosity for r in relaxations]) / modulus
+    time = 1.0 / (np.sqrt(stiffness / mass) + lag * stiffness / mass)
     lanes = FlatPunchLanes(
         long_term=np.array([r.long_term_modulus for r in relaxations]) / modulus,
-        viscosity=np.array([r.viscosity for r in relaxations]) / modulus * frequency,
+        viscosity=lag / time,
         weights=np.stack([r.moduli for r in relaxations], axis=1)[:, None] / modulus,
-        rates=1.0 / (frequency * np.stack([r.times for r in relaxations], axis=1)[:, None]),
+        rates=time / np.stack([r.times for r in relaxations], axis=1)[:, None],
+        inertia=stiffness * time**2 / mass,
     )
     velocity = np.array([impact_of(scene).velocity for scene in scenes])
     error = np.array([system.relative_error["contact_stiffness"] for system in systems])
-    return _Problem(lanes, frequency, velocity, mass, radius, error)
+    return _Problem(lanes, time, stiffness, velocity, mass, radius, error)
 
 
 def _motion(problem: _Problem, tolerance: float) -> Trajectory:
     """From first touch to the return of the force to zero."""
     lanes, count = problem.lanes, problem.mass.size
     released = Event(0, np.zeros(count), -1)
-    first_step = _FIRST_STEP / (1.0 + 2.0 * lanes.viscosity)
+    first_step = np.full(count, _FIRST_STEP * tolerance ** (1.0 / STAGES))
     return integrate(lanes, lanes.start(), (released,), tolerance=tolerance, first_step=first_step)
 
 
 def _force_unit(problem: _Problem) -> FloatArray:
-    return problem.mass * problem.velocity * problem.frequency
+    return problem.stiffness * problem.velocity * problem.time
 
 
 def _results(problem: _Problem, motion: Trajectory) -> ImpactResults:
     refuse_rest(motion.final[3], problem.lanes.long_term)
-    depth = problem.velocity / problem.frequency
+    depth = problem.velocity * problem.time
     return ImpactResults(
         coefficient_of_restitution=-motion.final[3],
-        contact_time=motion.final[1] / problem.frequency,
+        contact_time=motion.final[1] * problem.time,
         peak_force=_peak(motion, 0) * _force_unit(problem),
         peak_depth=_peak(motion, 2) * depth,
         peak_contact_radius=problem.radius.copy(),

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from contact import ImpactHistory, Scene, StageLog
 from contact.solution import Setting
 from contact.validation import FloatArray
-from mdr.effects.collocation import STAGES, states
+from mdr.effects.collocation import states
+from mdr.effects.collocation_step import STAGES
 from mdr.effects.impact_lanes import ImpactLanes, force, outline, remembered, stored
 from mdr.effects.impact_results import results
 from mdr.effects.impact_solver import Impacts, Leg

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.validation import FloatArray
-from mdr.effects.collocation import Derivative, Lanes
+from mdr.effects.collocation_step import Derivative, Lanes
 from mdr.effects.impact_memory import Memory
 from mdr.effects.spring_table import MOMENT, SECOND_MOMENT, STIFFNESS, SpringTable
 

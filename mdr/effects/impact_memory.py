@@ -8,7 +8,8 @@ import numpy as np
 
 from contact.validation import FloatArray
 from mdr.effects import chebyshev
-from mdr.effects.collocation import STAGES, Derivative, Lanes, Trajectory
+from mdr.effects.collocation import Trajectory
+from mdr.effects.collocation_step import STAGES, Derivative, Lanes
 
 _NODES = 16
 _NEWTON_STEPS = 5

@@ -8,16 +8,16 @@ import numpy as np
 
 from contact import NotConvergedError
 from contact.validation import FloatArray
-from mdr.effects.collocation import Event, Lanes, Problem, Trajectory, integrate
+from mdr.effects.collocation import Event, Problem, Trajectory, integrate
+from mdr.effects.collocation_step import STAGES, Course, Lanes
 from mdr.effects.impact_lanes import ImpactLanes, Pressing, Receding, outline
 from mdr.effects.impact_memory import Memory, memory_of
 
 TURN, SECTION_END = 0, 1  # the events that end a section of the way in
 
 
-_FIRST_STEP = 0.4  # of the way that an elastic impact of the same energy goes
+_FIRST_STEP = 1.4  # of the way that an elastic impact of the same energy goes, for a tolerance of one
 
-_AT_ONCE = 1e6  # back through an earlier step of the way in: try it in one step
 _AFTER_TURN = 0.4  # of the step before it; the front leaves its turn faster than it came
 _END_TO_STEP = 0.02  # a step's end is of twice the order of its inside; ten times what is seen
 _SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
@@ -82,13 +82,15 @@ class _Run:
 
     def __init__(self, lanes: ImpactLanes, tolerance: float) -> None:
         self.lanes, self.tolerance = lanes, tolerance
-        self.size = np.full(lanes.count, _FIRST_STEP)
+        self.size = np.full(lanes.count, _FIRST_STEP * tolerance ** (1.0 / STAGES))
+        self.course = Course.unknown(0, self.size)
 
     def press(self) -> tuple[tuple[Leg, ...], FloatArray, Lanes]:
         """The way in, section by section; the state at the turn and the section where each lane turned."""
         lanes, ends = self.lanes, self.lanes.table.section_ends
         state = np.zeros((4 + 3 * lanes.branches, lanes.count))
         state[2] = 1.0
+        self.course = Course.unknown(state.shape[0], self.size)
         turned_in, going, legs = np.full(lanes.count, ends.size - 1), np.arange(lanes.count), []
         for section in range(ends.size - 1):
             own = lanes.take(going)
@@ -108,6 +110,7 @@ class _Run:
         state[:2], state[4 : 4 + lanes.branches] = turn[:2], turn[outline(lanes.branches)[0]]
         state[-1] = turn[-1]
         self.size *= _AFTER_TURN
+        self.course = Course.unknown(state.shape[0], self.size)
         for leg in reversed(way_in):
             starting = np.flatnonzero(turned_in == leg.section)
             state[2, starting] = lanes.take(starting).springs(turn[:1, starting], leg.section, 1)[0, 0]
@@ -124,13 +127,20 @@ class _Run:
         target = memory.low[step] if memory else self.lanes.table.section_ends[leg.section] / own.units[6]
         problem = Receding(own, leg.section, memory, step)
         trajectory = self._integrate(problem, state, going, (Event(0, target, -1),))
-        self.size[going] = _AT_ONCE
         return Leg(going, leg.section, trajectory, memory, step)
 
     def _integrate(self, problem: Problem, state: FloatArray, going: Lanes, events: tuple[Event, ...]) -> Trajectory:
         """Advance some lanes to their events, in place."""
-        trajectory = integrate(problem, state[:, going], events, tolerance=self.tolerance, first_step=self.size[going])
+        trajectory = integrate(
+            problem,
+            state[:, going],
+            events,
+            tolerance=self.tolerance,
+            first_step=self.size[going],
+            course=self.course.take(going),
+        )
         state[:, going], self.size[going] = trajectory.final, trajectory.next_step
+        self.course.put(going, trajectory.course)
         return trajectory
 
     def _memory(self, trajectory: Trajectory) -> Memory | None:

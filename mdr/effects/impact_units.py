@@ -15,7 +15,9 @@ from mdr.effects.impact_lanes import ImpactLanes
 from mdr.effects.reference_springs import (
     Reference,
     contact_scale,
-    coordinate_at_energy,
+    coordinate_at,
+    elastic_energy,
+    elastic_force,
     reference,
     table_for_energy,
 )
@@ -85,25 +87,30 @@ def table_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Reference, Spri
 def scaled(scenes: Sequence[Scene], references: Sequence[Reference], table: SpringTable) -> ScaledImpacts:
     """The dimensionless impacts of scenes that share a table and a number of Prony branches.
 
-    The unit of depth is the depth that an elastic impact of the same energy would reach.
+    The unit of depth is the smaller of the depths at which an elastic impact of the same energy, and a body that only
+    dashpots slow down, come to rest: their impulse is eta/G times the elastic force there, since dF = k d(delta).
     """
     mass = np.array([impact_of(scene).mass for scene in scenes])
     velocity = np.array([impact_of(scene).velocity for scene in scenes])
     length, depth, stiffness = (
         np.array([getattr(r, name) for r in references]) for name in ("length", "depth", "stiffness")
     )
-    y = coordinate_at_energy(table, 0.5 * mass * velocity**2 / (stiffness * depth**2))
+    relaxations = [relaxation_of(scene) for scene in scenes]
+    modulus = np.array([r.instantaneous_modulus for r in relaxations])
+    lag = np.array([r.viscosity for r in relaxations]) / modulus
+    y = coordinate_at(elastic_energy, table, 0.5 * mass * velocity**2 / (stiffness * depth**2))
+    impulse = mass * velocity / (stiffness * depth)
+    force = np.divide(impulse, lag, out=np.full(lag.shape, np.inf), where=lag > 0.0)
+    y = np.minimum(y, coordinate_at(elastic_force, table, force))
     rows = table.evaluate(y)
     g, k = rows[PROFILE], rows[STIFFNESS]
     units = np.stack([g, g / y, k, k / y, k * g, k * g**2, y])
     time = depth * g / velocity
-    relaxations = [relaxation_of(scene) for scene in scenes]
-    modulus = np.array([r.instantaneous_modulus for r in relaxations])
     lanes = ImpactLanes(
         table=table,
         units=units,
         long_term=np.array([r.long_term_modulus for r in relaxations]) / modulus,
-        viscosity=np.array([r.viscosity for r in relaxations]) / (modulus * time),
+        viscosity=lag / time,
         weights=np.stack([r.moduli for r in relaxations], axis=1)[:, None] / modulus,
         rates=time / np.stack([r.times for r in relaxations], axis=1)[:, None],
         inertia=stiffness * k * (depth * g / velocity) ** 2 / mass,

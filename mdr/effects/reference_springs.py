@@ -179,9 +179,17 @@ def elastic_energy(table: SpringTable, y: FloatArray) -> FloatArray:
     return np.asarray(0.5 * ((k * g - 2.0 * moment) * g + second))
 
 
-def coordinate_at_energy(table: SpringTable, energy: FloatArray) -> FloatArray:
-    """y where the springs hold an energy, to a few per cent: a unit for an impact, not a result."""
+def elastic_force(table: SpringTable, y: FloatArray) -> FloatArray:
+    """Force of the springs when the front stands at y without adhesion, in the table's units."""
+    rows = table.evaluate(y, MOMENT + 1)
+    return np.asarray(rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT])
+
+
+def coordinate_at(
+    held: Callable[[SpringTable, FloatArray], FloatArray], table: SpringTable, target: FloatArray
+) -> FloatArray:
+    """y where the springs hold an energy, or a force, to a few per cent: a unit for an impact, not a result."""
     y = _SURVEY * table.section_ends[-1]
-    held = elastic_energy(table, y)
-    usable = held > 1e-14 * held[-1]  # below, the difference of moments is rounding
-    return np.asarray(np.exp(np.interp(np.log(energy), np.log(held[usable]), np.log(y[usable]))))
+    values = held(table, y)
+    usable = values > 1e-14 * values[-1]  # below, the difference of moments is rounding
+    return np.asarray(np.exp(np.interp(np.log(target), np.log(values[usable]), np.log(y[usable]))))

@@ -1,0 +1,289 @@
+"""One step of Gauss collocation for many lanes at once.
+
+Over a step the state is the polynomial that satisfies the equation at ten Gauss points (order 20 at the step's end, 10
+in between). The slopes there are found by fixed-point sweeps over all points and lanes at once, starting from the
+polynomial of the step before; where the step must end on an event, its length is corrected along with them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from contact.validation import FloatArray
+from mdr.effects.chebyshev import powers
+
+Lanes: TypeAlias = NDArray[np.intp]
+Derivative: TypeAlias = Callable[[FloatArray], FloatArray]
+
+STAGES = 10
+SWEEP_TOLERANCE = 0.05  # of the tolerance of a step
+_SWEEPS = 24  # a step that needs more is too long
+_PATIENCE, _SLOW = 6, 0.6  # after six sweeps, a lane whose change shrinks by less than this factor is given up
+_CARRIED = 8  # Legendre polynomials that go on into the next step, where higher ones magnify rounding
+_AIMS = 3  # Newton steps towards an event on the polynomial of the step before
+_NEAREST = 0.01  # share of a step at which an event is first looked for
+_LEAST, _MOST = 0.5, 1.5  # a sweep may change a length by
+_DIFFERENCE = 1e-7  # of a state: to differentiate its slopes
+
+_POINTS, _GAUSS_WEIGHTS = legendre.leggauss(STAGES)
+_ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(_POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
+_INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ _ANALYSIS
+_TO_STAGES = 0.5 * legendre.legvander(_POINTS, STAGES) @ _INTEGRALS  # from slopes to states, for a unit step
+_TO_END = 0.5 * _GAUSS_WEIGHTS
+_AT_END = np.ones(STAGES) @ _ANALYSIS  # the slope there: all Legendre polynomials are 1
+_POWERS = np.stack([np.pad(legendre.leg2poly(u), (0, STAGES - i)) for i, u in enumerate(np.eye(STAGES + 1))], axis=1)
+_CHANGE = 0.5 * _POWERS @ _INTEGRALS  # from slopes to powers of z of the change of state
+_WITHIN = _POWERS[:STAGES, :STAGES] @ _ANALYSIS  # from slopes to powers of z of themselves
+_ONWARD = _POWERS[:STAGES, :_CARRIED] @ _ANALYSIS[:_CARRIED]
+
+
+@dataclass(frozen=True)
+class Landing:
+    """Lanes that must end on an event.
+
+    Attributes:
+        lanes: Which of those that step, shape (n,).
+        component: Of the state, shape (n,).
+        span: How far the component must go, shape (n,).
+    """
+
+    lanes: Lanes
+    component: Lanes
+    span: FloatArray
+
+    def miss(self, size: FloatArray, slopes: FloatArray) -> FloatArray:
+        """How much longer the steps should be, by Newton's method, shape (n,)."""
+        own = slopes[self.component, :, self.lanes]
+        return np.asarray((self.span - size[self.lanes] * (own @ _TO_END)) / (own @ _AT_END))
+
+    def take(self, some: Lanes) -> Landing | None:
+        """Of some lanes only, numbered anew."""
+        place = {int(lane): number for number, lane in enumerate(some)}
+        here = [i for i, lane in enumerate(self.lanes) if int(lane) in place]
+        if not here:
+            return None
+        lanes = np.array([place[int(self.lanes[i])] for i in here], dtype=np.intp)
+        return Landing(lanes, self.component[here], self.span[here])
+
+
+@dataclass
+class Course:
+    """What an earlier step says about the next one.
+
+    Attributes:
+        slopes: Powers of that step's z in [-1, 1], shape (10, m, lanes).
+        size: Its length, shape (lanes,).
+        origin: The z where the next step starts: 1, or -1 where the step has to be repeated; shape (lanes,).
+    """
+
+    slopes: FloatArray
+    size: FloatArray
+    origin: FloatArray
+
+    @classmethod
+    def unknown(cls, components: int, size: FloatArray) -> Course:
+        """No earlier step: a first one starts with the slope at its beginning."""
+        return cls(np.full((STAGES, components, size.size), np.nan), size.copy(), np.full(size.size, -1.0))
+
+    def completed(self, derivative: Derivative, start: FloatArray) -> Course:
+        """A copy with constant slopes where there was no earlier step."""
+        found = replace(self, slopes=self.slopes.copy(), size=self.size.copy(), origin=self.origin.copy())
+        new = np.flatnonzero(np.isnan(self.slopes[0, 0]))
+        if new.size:
+            found.slopes[:, :, new] = 0.0
+            found.slopes[0, :, new] = derivative(start[:, None])[:, 0, new].T
+        return found
+
+    def take(self, lanes: Lanes) -> Course:
+        """Some of the lanes."""
+        return Course(self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes])
+
+    def put(self, lanes: Lanes, other: Course) -> None:
+        """Replace some lanes."""
+        self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes] = other.slopes, other.size, other.origin
+
+    def follow(self, step: Step, lanes: Lanes, *, ended: NDArray[np.bool_]) -> None:
+        """Remember a step of some lanes, which has ended or is to be repeated, unless it came to nothing."""
+        told = np.isfinite(step.error)
+        some = lanes[told]
+        matrix = np.where(ended[told], _ONWARD[..., None], _WITHIN[..., None])
+        self.slopes[:, :, some] = np.einsum("kjl,mjl->kml", matrix, step.slopes[:, :, told])
+        self.size[some], self.origin[some] = step.size[told], np.where(ended[told], 1.0, -1.0)
+
+    def guess(self, size: FloatArray) -> FloatArray:
+        """Slopes at the stages of a step of this length, shape (m, stages, lanes)."""
+        z = self.origin + size / self.size * (1.0 + _POINTS[:, None])
+        return np.asarray(np.einsum("kml,kjl->mjl", self.slopes, powers(z, STAGES)))
+
+    def mean(self, size: FloatArray) -> FloatArray:
+        """Mean slope over a step of this length, shape (m, lanes)."""
+        return np.asarray(np.einsum("kml,kl->ml", self.slopes, self._means(size)))
+
+    def aimed(self, size: FloatArray, landing: Landing | None) -> FloatArray:
+        """The length that lands where it should if the course holds; the given one where it need not."""
+        if landing is None:
+            return size
+        aimed, lanes = size.copy(), landing.lanes
+        own = Course(self.slopes[:, landing.component, lanes], self.size[lanes], self.origin[lanes])
+        share = landing.span / (size[lanes] * np.sum(own.slopes * own._means(size[lanes]), axis=0))
+        at = size[lanes] * np.clip(np.where(share > 0.0, share, 1.0), _NEAREST, 1.0)
+        for _ in range(_AIMS):
+            end = own.origin + 2.0 * at / own.size
+            slope = np.sum(own.slopes * powers(end, STAGES), axis=0)
+            at = _lengthened(at, (landing.span - at * np.sum(own.slopes * own._means(at), axis=0)) / slope)
+        aimed[lanes] = at
+        return aimed
+
+    def _means(self, size: FloatArray) -> FloatArray:
+        """Means of 1, z, z^2, ... over a step of this length, shape (10, lanes)."""
+        way = 2.0 * size / self.size
+        first, last = powers(self.origin, STAGES + 1)[1:], powers(self.origin + way, STAGES + 1)[1:]
+        return np.asarray((last - first) / way / np.arange(1.0, STAGES + 1.0)[:, None])
+
+
+@dataclass
+class Step:
+    """A trial step of some lanes.
+
+    Attributes:
+        start: State at the start, shape (m, lanes).
+        size: Length, shape (lanes,).
+        slopes: Derivatives at the stages, shape (m, stages, lanes).
+        error: Estimated error over the precision asked, infinite where the sweeps did not converge; shape (lanes,).
+        landing: Where it had to end.
+        sweeps: How many sweeps it took.
+    """
+
+    start: FloatArray
+    size: FloatArray
+    slopes: FloatArray
+    error: FloatArray
+    landing: Landing | None
+    sweeps: int
+
+    @property
+    def end(self) -> FloatArray:
+        """State at the end, exactly on its event where there is one."""
+        end = self.start + self.size * np.einsum("j,mjl->ml", _TO_END, self.slopes)
+        if self.landing is not None:
+            at = self.landing.component, self.landing.lanes
+            end[at] = self.start[at] + self.landing.span
+        return np.asarray(end)
+
+    def polynomial(self) -> FloatArray:
+        """Powers of z in [-1, 1] of the change of state, shape (11, m, lanes)."""
+        return np.asarray(np.einsum("kj,mjl->kml", _CHANGE, self.size * self.slopes))
+
+    def put(self, lanes: Lanes, other: Step) -> None:
+        """Replace some lanes."""
+        self.size[lanes], self.slopes[:, :, lanes], self.error[lanes] = other.size, other.slopes, other.error
+
+
+def swept_step(
+    derivative: Derivative,
+    start: FloatArray,
+    course: Course,
+    size: FloatArray,
+    precision: FloatArray,
+    landing: Landing | None,
+) -> Step:
+    """Sweep until no stage moves; a lane that has converged is left alone, so that no lane feels its neighbours.
+
+    Args:
+        derivative: From states (m, stages, lanes) to their slopes.
+        start: Initial states, shape (m, lanes).
+        course: Where the stages are looked for first.
+        size: Length of the step, shape (lanes,).
+        precision: Of the leading components, shape (watched, lanes).
+        landing: Where some of the lanes must end.
+    """
+    base, slopes, watched = start[:, None], course.guess(size), precision.shape[0]
+    moving, failed = np.ones(size.size, dtype=np.bool_), np.zeros(size.size, dtype=np.bool_)
+    before = np.full(size.size, np.inf)
+    for sweep in range(1, _SWEEPS + 1):
+        new = derivative(base + size * (_TO_STAGES @ slopes))
+        change = _largest(new[:watched] - slopes[:watched], precision / size)
+        slopes = new if moving.all() else np.where(moving, new, slopes)
+        if landing is not None:
+            size, missed = _corrected(landing, size, slopes, precision, moving)
+            change = np.maximum(change, missed)
+        moving = moving & ~(change <= SWEEP_TOLERANCE)
+        failed |= moving & ((sweep > _PATIENCE) & ~(change < _SLOW * before) | (sweep == _SWEEPS))
+        moving, before = moving & ~failed, change
+        if not moving.any():
+            break
+    return _judged(start, size, slopes, precision, failed, landing, sweep)
+
+
+def newton_step(
+    derivative: Derivative, start: FloatArray, size: FloatArray, precision: FloatArray, landing: Landing | None
+) -> Step:
+    """The same step by simplified Newton iteration, for slopes that answer fast: Gauss collocation is A-stable."""
+    components, lanes, watched = *start.shape, precision.shape[0]
+    base, count = start[:, None], components * STAGES
+    jacobian = _jacobian(derivative, start)
+    slopes, failed, sweep = np.repeat(derivative(base), STAGES, axis=1), np.full(lanes, True), 0
+    while failed.any() and sweep < _SWEEPS:
+        sweep += 1
+        residual = derivative(base + size * (_TO_STAGES @ slopes)) - slopes
+        if not np.all(np.isfinite(residual)):
+            break
+        coupling = np.einsum("l,ij,abl->laibj", size, _TO_STAGES, jacobian).reshape(lanes, count, count)
+        move = np.linalg.solve(np.eye(count) - coupling, np.moveaxis(residual, 2, 0).reshape(lanes, count, 1))
+        update = np.moveaxis(move.reshape(lanes, components, STAGES), 0, 2)
+        change = _largest(update[:watched], precision / size)
+        slopes = np.where(failed, slopes + update, slopes)  # a lane that has converged is left alone
+        if landing is not None:
+            size, missed = _corrected(landing, size, slopes, precision, failed)
+            change = np.maximum(change, missed)
+        failed = np.logical_and(failed, ~(change <= SWEEP_TOLERANCE))
+    return _judged(start, size, slopes, precision, failed, landing, sweep)
+
+
+def _corrected(
+    landing: Landing, size: FloatArray, slopes: FloatArray, precision: FloatArray, moving: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray]:
+    """Lengths nearer to the event, and what the correction moves in units of the precision."""
+    miss = np.where(moving[landing.lanes], landing.miss(size, slopes), 0.0)
+    corrected, missed = size.copy(), np.zeros(size.size)
+    corrected[landing.lanes] = _lengthened(size[landing.lanes], miss)
+    at_end = np.abs(np.einsum("j,mjl->ml", _AT_END, slopes[: precision.shape[0], :, landing.lanes]))
+    missed[landing.lanes] = np.max(at_end / precision[:, landing.lanes], axis=0) * np.abs(miss)
+    return corrected, missed
+
+
+def _lengthened(size: FloatArray, miss: FloatArray) -> FloatArray:
+    """Lengths after a correction that must not be wild."""
+    return np.where(np.isfinite(miss), np.clip(size + miss, _LEAST * size, _MOST * size), size)
+
+
+def _judged(
+    start: FloatArray,
+    size: FloatArray,
+    slopes: FloatArray,
+    precision: FloatArray,
+    failed: NDArray[np.bool_],
+    landing: Landing | None,
+    sweeps: int,
+) -> Step:
+    """The step with its error: the part that the last two of its polynomials have."""
+    tail = _largest(_ANALYSIS[-2:] @ slopes[: precision.shape[0]], precision / size)
+    return Step(start, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), landing, sweeps)
+
+
+def _jacobian(derivative: Derivative, start: FloatArray) -> FloatArray:
+    """d(slope a)/d(state b) by one-sided differences, shape (m, m, lanes)."""
+    step = _DIFFERENCE * np.maximum(1.0, np.abs(start))
+    shifted = start[:, None] + np.eye(start.shape[0])[:, :, None] * step[:, None]
+    return np.asarray((derivative(shifted) - derivative(start[:, None])) / step)
+
+
+def _largest(values: FloatArray, allowed: FloatArray) -> FloatArray:
+    """Largest magnitude over stages and components, in units of what is allowed; shape (lanes,)."""
+    return np.asarray(np.maximum.reduce(np.maximum.reduce(np.abs(values), axis=1) / allowed, axis=0))
