@@ -22,6 +22,7 @@ from mdr.effects.collocation_step import (
     Landing,
     Lanes,
     Step,
+    Task,
     newton_step,
     swept_step,
 )
@@ -84,13 +85,28 @@ class Trajectory:
     course: Course
     sweeps: int
 
+    def of(self, lane: int) -> Trajectory:
+        """One lane alone."""
+        own, count = np.array([lane]), int(self.counts[lane])
+        return Trajectory(
+            final=self.final[:, own],
+            ended_by=self.ended_by[own],
+            counts=self.counts[own],
+            starts=self.starts[:, :count, own],
+            steps=self.steps[:, :, :count, own],
+            error=self.error[own],
+            next_step=self.next_step[own],
+            course=self.course.take(own),
+            sweeps=self.sweeps,
+        )
+
 
 def integrate(
     problem: Problem,
     state: FloatArray,
     events: tuple[Event, ...],
     *,
-    tolerance: float,
+    tolerance: FloatArray,
     first_step: FloatArray,
     course: Course | None = None,
     max_steps: int = 2000,
@@ -101,7 +117,8 @@ def integrate(
         problem: The right-hand sides.
         state: Initial states, shape (m, lanes).
         events: Where a lane may end.
-        tolerance: Local error within a step allowed in each controlled component, relative to max(1, |component|).
+        tolerance: Local error within a step allowed in each controlled component relative to max(1, |component|), shape
+            (lanes,).
         first_step: Length of the first trial step, shape (lanes,).
         course: Slopes of an earlier step that ended in these states, if there was one.
         max_steps: Refuse a lane that needs more.
@@ -110,7 +127,7 @@ def integrate(
         NotConvergedError: If a lane reaches no event within `max_steps`.
     """
     course = course or Course.unknown(state.shape[0], first_step)
-    walk = _Walk(problem, state, events, tolerance, first_step, course)
+    walk = _Walk(problem, state, events, tolerance=tolerance, first_step=first_step, course=course)
     for _ in range(max_steps):
         if not walk.active.size:
             return walk.trajectory()
@@ -129,7 +146,8 @@ class _Walk:
         problem: Problem,
         state: FloatArray,
         events: tuple[Event, ...],
-        tolerance: float,
+        *,
+        tolerance: FloatArray,
         first_step: FloatArray,
         course: Course,
     ) -> None:
@@ -142,41 +160,50 @@ class _Walk:
         self.sweeps = 0
         self.active = np.arange(lanes)
         self.derivative = problem.derivative(self.active)
-        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused by name
-            self.course = course.completed(self.derivative, state)
+        self.course = course.copy()
 
     def step(self) -> None:
         """One trial step of every active lane, onto an event where the step is expected to reach one."""
         start, size = self.state[:, self.active], self.size[self.active]
-        course = self.course.take(self.active)
-        self._refuse_lost(course)
+        course = self._course(start)
         due = self.due[self.active]
         ahead = start + _ALMOST * size * course.mean(size)
         due = np.where(due < 0, self._first_event(self.active, start, ahead), due)
         landing = self._landing(due, start)
-        trial = self._tried(start, course, course.aimed(size, landing), landing)
-        self._settle(trial, due)
+        precision = self.tolerance[self.active] * np.maximum(1.0, np.abs(start[: self.problem.controlled]))
+        task = Task(start, course.aimed(size, landing), precision, landing)
+        self._settle(self._tried(task, course), due)
 
     def _settle(self, trial: Step, due: Lanes) -> None:
-        """Keep what is good and ends where it should; set the size of each lane's next trial."""
-        lanes, good = self.active, trial.error <= 1.0
-        passed = np.where(good, self._first_event(lanes, trial.start, trial.end, but=due), -1)
+        """Keep what is good and ends where it should; set the size of each lane's next trial.
+
+        After a failure the next trial is shorter than this one was anywhere, so that failures come to an end.
+        """
+        lanes, good, start = self.active, trial.error <= 1.0, trial.task.start
+        passed = np.where(good, self._first_event(lanes, start, trial.end, but=due), -1)
         kept = good & (passed < 0)
         self._keep(trial, np.flatnonzero(kept), lanes)
         self.ended_by[lanes] = np.where(kept, due, -1)
         self.due[lanes] = passed
         factor = np.clip(_SAFETY * np.maximum(trial.error, 1e-9) ** (-1.0 / STAGES), _SHRINK, _GROW)
-        next_size = np.where(passed < 0, factor, 1.0) * trial.size
+        shortest = np.minimum(factor, 1.0) * np.minimum(trial.task.size, trial.size)
+        next_size = np.where(good, np.where(passed < 0, factor, 1.0) * trial.size, shortest)
         self.size[lanes] = np.where(kept & (due >= 0), np.maximum(next_size, self.size[lanes]), next_size)
         self.course.follow(trial, lanes, ended=kept)
         if (self.ended_by[lanes] >= 0).any():
             self.active = lanes[self.ended_by[lanes] < 0]
             self.derivative = self.problem.derivative(self.active)
 
-    def _refuse_lost(self, course: Course) -> None:
-        if not np.isfinite(course.slopes).all():
-            lost = int(self.active[np.flatnonzero(~np.isfinite(course.slopes).all(axis=(0, 1)))[0]])
-            raise NotConvergedError(f"motion {lost} left all bounds: a relaxation time is far below its duration")
+    def _course(self, start: FloatArray) -> Course:
+        """Where the active lanes are heading."""
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused by name
+            course = self.course.take(self.active).completed(self.derivative, start)
+        lost = np.flatnonzero(~np.isfinite(course.slopes).all(axis=(0, 1)))
+        if lost.size:
+            raise NotConvergedError(
+                f"motion {self.active[lost[0]]} left all bounds: a relaxation time is far below its duration"
+            )
+        return course
 
     def _landing(self, due: Lanes, start: FloatArray) -> Landing | None:
         """Which component must end where; a lane on no event aims at nothing."""
@@ -187,24 +214,16 @@ class _Walk:
         target = np.stack([e.target for e in self.events])[due[here], self.active[here]]
         return Landing(here, component, target - start[component, here])
 
-    def _tried(self, start: FloatArray, course: Course, size: FloatArray, landing: Landing | None) -> Step:
+    def _tried(self, task: Task, course: Course) -> Step:
         """A step by sweeps, and by Newton's method for lanes that turn out to be stiff."""
-        precision = self.tolerance * np.maximum(1.0, np.abs(start[: self.problem.controlled]))
+        lanes = self.active
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # a wild trial has no finite error
-            trial = swept_step(self.derivative, start, course, size, precision, landing)
+            trial = swept_step(self.derivative, task, course)
             self.sweeps += trial.sweeps
-            lanes = self.active
-            self.stiff[lanes] |= ~np.isfinite(trial.error) & (size < _STIFF)
+            self.stiff[lanes] |= ~np.isfinite(trial.error) & (task.size < _STIFF)
             hard = np.flatnonzero(self.stiff[lanes] & ~np.isfinite(trial.error))
             if hard.size:
-                inner = self.problem.derivative(lanes[hard])
-                harder = newton_step(
-                    inner,
-                    start[:, hard],
-                    size[hard],
-                    precision[:, hard],
-                    landing.take(hard) if landing is not None else None,
-                )
+                harder = newton_step(self.problem.derivative(lanes[hard]), task.take(hard))
                 trial.put(hard, harder)
                 self.sweeps += harder.sweeps
         return trial
@@ -225,8 +244,8 @@ class _Walk:
 
     def _keep(self, trial: Step, kept: Lanes, lanes: Lanes) -> None:
         if kept.size:
-            self.pieces.append((lanes[kept], trial.start[:, kept], trial.polynomial()[:, :, kept]))
-            self.error[lanes[kept]] += self.tolerance * (trial.error[kept] + SWEEP_TOLERANCE)
+            self.pieces.append((lanes[kept], trial.task.start[:, kept], trial.polynomial()[:, :, kept]))
+            self.error[lanes[kept]] += self.tolerance[lanes[kept]] * (trial.error[kept] + SWEEP_TOLERANCE)
             self.state[:, lanes[kept]] = trial.end[:, kept]
 
     def trajectory(self) -> Trajectory:
@@ -241,7 +260,9 @@ class _Walk:
             starts[:, filled[lanes], lanes] = start
             steps[:, :, filled[lanes], lanes] = piece
             filled[lanes] += 1
-        return Trajectory(self.state, self.ended_by, counts, starts, steps, self.error, self.size, self.course, self.sweeps)
+        return Trajectory(
+            self.state, self.ended_by, counts, starts, steps, self.error, self.size, self.course, self.sweeps
+        )
 
 
 def states(trajectory: Trajectory, z: FloatArray) -> FloatArray:

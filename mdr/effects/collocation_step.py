@@ -8,7 +8,7 @@ polynomial of the step before; where the step must end on an event, its length i
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -92,13 +92,16 @@ class Course:
         return cls(np.full((STAGES, components, size.size), np.nan), size.copy(), np.full(size.size, -1.0))
 
     def completed(self, derivative: Derivative, start: FloatArray) -> Course:
-        """A copy with constant slopes where there was no earlier step."""
-        found = replace(self, slopes=self.slopes.copy(), size=self.size.copy(), origin=self.origin.copy())
+        """With constant slopes where there was no earlier step, in place."""
         new = np.flatnonzero(np.isnan(self.slopes[0, 0]))
         if new.size:
-            found.slopes[:, :, new] = 0.0
-            found.slopes[0, :, new] = derivative(start[:, None])[:, 0, new].T
-        return found
+            self.slopes[:, :, new], self.origin[new] = 0.0, -1.0
+            self.slopes[0, :, new] = derivative(start[:, None])[:, 0, new].T
+        return self
+
+    def copy(self) -> Course:
+        """Apart from the original."""
+        return Course(self.slopes.copy(), self.size.copy(), self.origin.copy())
 
     def take(self, lanes: Lanes) -> Course:
         """Some of the lanes."""
@@ -109,12 +112,11 @@ class Course:
         self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes] = other.slopes, other.size, other.origin
 
     def follow(self, step: Step, lanes: Lanes, *, ended: NDArray[np.bool_]) -> None:
-        """Remember a step of some lanes, which has ended or is to be repeated, unless it came to nothing."""
-        told = np.isfinite(step.error)
-        some = lanes[told]
-        matrix = np.where(ended[told], _ONWARD[..., None], _WITHIN[..., None])
-        self.slopes[:, :, some] = np.einsum("kjl,mjl->kml", matrix, step.slopes[:, :, told])
-        self.size[some], self.origin[some] = step.size[told], np.where(ended[told], 1.0, -1.0)
+        """Remember a step of some lanes, ended or to be repeated; one that came to nothing says nothing."""
+        matrix = np.where(ended, _ONWARD[..., None], _WITHIN[..., None])
+        slopes = np.einsum("kjl,mjl->kml", matrix, step.slopes)
+        self.slopes[:, :, lanes] = np.where(np.isfinite(step.error), slopes, np.nan)
+        self.size[lanes], self.origin[lanes] = step.size, np.where(ended, 1.0, -1.0)
 
     def guess(self, size: FloatArray) -> FloatArray:
         """Slopes at the stages of a step of this length, shape (m, stages, lanes)."""
@@ -147,33 +149,59 @@ class Course:
         return np.asarray((last - first) / way / np.arange(1.0, STAGES + 1.0)[:, None])
 
 
+@dataclass(frozen=True)
+class Task:
+    """A step to be found for some lanes.
+
+    Attributes:
+        start: State at the start, shape (m, lanes).
+        size: Length, to begin with where it must end on an event; shape (lanes,).
+        precision: Of the leading components, shape (watched, lanes).
+        landing: Where some of the lanes must end.
+    """
+
+    start: FloatArray
+    size: FloatArray
+    precision: FloatArray
+    landing: Landing | None
+
+    def take(self, lanes: Lanes) -> Task:
+        """Some of the lanes."""
+        landing = self.landing.take(lanes) if self.landing is not None else None
+        return Task(self.start[:, lanes], self.size[lanes], self.precision[:, lanes], landing)
+
+    def found(self, size: FloatArray, slopes: FloatArray, failed: NDArray[np.bool_], sweeps: int) -> Step:
+        """The step with its error: the part that the last two of its polynomials have."""
+        tail = _largest(_ANALYSIS[-2:] @ slopes[: self.precision.shape[0]], self.precision / size)
+        return Step(self, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweeps)
+
+
 @dataclass
 class Step:
     """A trial step of some lanes.
 
     Attributes:
-        start: State at the start, shape (m, lanes).
+        task: What was looked for.
         size: Length, shape (lanes,).
         slopes: Derivatives at the stages, shape (m, stages, lanes).
         error: Estimated error over the precision asked, infinite where the sweeps did not converge; shape (lanes,).
-        landing: Where it had to end.
         sweeps: How many sweeps it took.
     """
 
-    start: FloatArray
+    task: Task
     size: FloatArray
     slopes: FloatArray
     error: FloatArray
-    landing: Landing | None
     sweeps: int
 
     @property
     def end(self) -> FloatArray:
         """State at the end, exactly on its event where there is one."""
-        end = self.start + self.size * np.einsum("j,mjl->ml", _TO_END, self.slopes)
-        if self.landing is not None:
-            at = self.landing.component, self.landing.lanes
-            end[at] = self.start[at] + self.landing.span
+        start, landing = self.task.start, self.task.landing
+        end = start + self.size * np.einsum("j,mjl->ml", _TO_END, self.slopes)
+        if landing is not None:
+            at = landing.component, landing.lanes
+            end[at] = start[at] + landing.span
         return np.asarray(end)
 
     def polynomial(self) -> FloatArray:
@@ -182,52 +210,40 @@ class Step:
 
     def put(self, lanes: Lanes, other: Step) -> None:
         """Replace some lanes."""
+        self.size = self.size.copy()
         self.size[lanes], self.slopes[:, :, lanes], self.error[lanes] = other.size, other.slopes, other.error
 
 
-def swept_step(
-    derivative: Derivative,
-    start: FloatArray,
-    course: Course,
-    size: FloatArray,
-    precision: FloatArray,
-    landing: Landing | None,
-) -> Step:
+def swept_step(derivative: Derivative, task: Task, course: Course) -> Step:
     """Sweep until no stage moves; a lane that has converged is left alone, so that no lane feels its neighbours.
 
     Args:
         derivative: From states (m, stages, lanes) to their slopes.
-        start: Initial states, shape (m, lanes).
-        course: Where the stages are looked for first.
-        size: Length of the step, shape (lanes,).
-        precision: Of the leading components, shape (watched, lanes).
-        landing: Where some of the lanes must end.
+        task: The step.
+        course: Where its stages are looked for first.
     """
-    base, slopes, watched = start[:, None], course.guess(size), precision.shape[0]
+    base, size, watched = task.start[:, None], task.size, task.precision.shape[0]
+    slopes, before = course.guess(size), np.full(size.size, np.inf)
     moving, failed = np.ones(size.size, dtype=np.bool_), np.zeros(size.size, dtype=np.bool_)
-    before = np.full(size.size, np.inf)
     for sweep in range(1, _SWEEPS + 1):
         new = derivative(base + size * (_TO_STAGES @ slopes))
-        change = _largest(new[:watched] - slopes[:watched], precision / size)
+        change = _largest(new[:watched] - slopes[:watched], task.precision / size)
         slopes = new if moving.all() else np.where(moving, new, slopes)
-        if landing is not None:
-            size, missed = _corrected(landing, size, slopes, precision, moving)
-            change = np.maximum(change, missed)
+        size, missed = _corrected(task, size, slopes, moving)
+        change = np.maximum(change, missed)
         moving = moving & ~(change <= SWEEP_TOLERANCE)
         failed |= moving & ((sweep > _PATIENCE) & ~(change < _SLOW * before) | (sweep == _SWEEPS))
         moving, before = moving & ~failed, change
         if not moving.any():
             break
-    return _judged(start, size, slopes, precision, failed, landing, sweep)
+    return task.found(size, slopes, failed, sweep)
 
 
-def newton_step(
-    derivative: Derivative, start: FloatArray, size: FloatArray, precision: FloatArray, landing: Landing | None
-) -> Step:
+def newton_step(derivative: Derivative, task: Task) -> Step:
     """The same step by simplified Newton iteration, for slopes that answer fast: Gauss collocation is A-stable."""
-    components, lanes, watched = *start.shape, precision.shape[0]
-    base, count = start[:, None], components * STAGES
-    jacobian = _jacobian(derivative, start)
+    components, lanes, watched = *task.start.shape, task.precision.shape[0]
+    base, size, count = task.start[:, None], task.size, components * STAGES
+    jacobian = _jacobian(derivative, task.start)
     slopes, failed, sweep = np.repeat(derivative(base), STAGES, axis=1), np.full(lanes, True), 0
     while failed.any() and sweep < _SWEEPS:
         sweep += 1
@@ -237,44 +253,31 @@ def newton_step(
         coupling = np.einsum("l,ij,abl->laibj", size, _TO_STAGES, jacobian).reshape(lanes, count, count)
         move = np.linalg.solve(np.eye(count) - coupling, np.moveaxis(residual, 2, 0).reshape(lanes, count, 1))
         update = np.moveaxis(move.reshape(lanes, components, STAGES), 0, 2)
-        change = _largest(update[:watched], precision / size)
+        change = _largest(update[:watched], task.precision / size)
         slopes = np.where(failed, slopes + update, slopes)  # a lane that has converged is left alone
-        if landing is not None:
-            size, missed = _corrected(landing, size, slopes, precision, failed)
-            change = np.maximum(change, missed)
-        failed = np.logical_and(failed, ~(change <= SWEEP_TOLERANCE))
-    return _judged(start, size, slopes, precision, failed, landing, sweep)
+        size, missed = _corrected(task, size, slopes, failed)
+        failed = np.logical_and(failed, ~(np.maximum(change, missed) <= SWEEP_TOLERANCE))
+    return task.found(size, slopes, failed, sweep)
 
 
 def _corrected(
-    landing: Landing, size: FloatArray, slopes: FloatArray, precision: FloatArray, moving: NDArray[np.bool_]
-) -> tuple[FloatArray, FloatArray]:
+    task: Task, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray | float]:
     """Lengths nearer to the event, and what the correction moves in units of the precision."""
-    miss = np.where(moving[landing.lanes], landing.miss(size, slopes), 0.0)
-    corrected, missed = size.copy(), np.zeros(size.size)
-    corrected[landing.lanes] = _lengthened(size[landing.lanes], miss)
-    at_end = np.abs(np.einsum("j,mjl->ml", _AT_END, slopes[: precision.shape[0], :, landing.lanes]))
-    missed[landing.lanes] = np.max(at_end / precision[:, landing.lanes], axis=0) * np.abs(miss)
+    landing = task.landing
+    if landing is None:
+        return size, 0.0
+    lanes, corrected, missed = landing.lanes, size.copy(), np.zeros(size.size)
+    miss = np.where(moving[lanes], landing.miss(size, slopes), 0.0)
+    corrected[lanes] = _lengthened(size[lanes], miss)
+    at_end = np.abs(np.einsum("j,mjl->ml", _AT_END, slopes[: task.precision.shape[0], :, lanes]))
+    missed[lanes] = np.max(at_end / task.precision[:, lanes], axis=0) * np.abs(miss)
     return corrected, missed
 
 
 def _lengthened(size: FloatArray, miss: FloatArray) -> FloatArray:
     """Lengths after a correction that must not be wild."""
     return np.where(np.isfinite(miss), np.clip(size + miss, _LEAST * size, _MOST * size), size)
-
-
-def _judged(
-    start: FloatArray,
-    size: FloatArray,
-    slopes: FloatArray,
-    precision: FloatArray,
-    failed: NDArray[np.bool_],
-    landing: Landing | None,
-    sweeps: int,
-) -> Step:
-    """The step with its error: the part that the last two of its polynomials have."""
-    tail = _largest(_ANALYSIS[-2:] @ slopes[: precision.shape[0]], precision / size)
-    return Step(start, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), landing, sweeps)
 
 
 def _jacobian(derivative: Derivative, start: FloatArray) -> FloatArray:

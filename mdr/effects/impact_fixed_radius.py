@@ -35,6 +35,16 @@ class FlatPunchLanes:
         """All components."""
         return 5 + int(self.weights.shape[0])
 
+    def take(self, lanes: Lanes) -> FlatPunchLanes:
+        """Some of the lanes."""
+        return FlatPunchLanes(
+            self.long_term[lanes],
+            self.viscosity[lanes],
+            self.weights[..., lanes],
+            self.rates[..., lanes],
+            self.inertia[lanes],
+        )
+
     def start(self) -> FloatArray:
         """First touch at unit speed: only a bare dashpot pushes back at once."""
         state = np.zeros((self.controlled, self.viscosity.size))

@@ -16,8 +16,9 @@ from mdr.effects import chebyshev
 from mdr.effects.collocation import Event, Trajectory, integrate, states
 from mdr.effects.collocation_step import STAGES
 from mdr.effects.impact_fixed_radius import FlatPunchLanes
-from mdr.effects.impact_history import ESTIMATED, distinct
-from mdr.effects.impact_results import ImpactResults, refuse_rest
+from mdr.effects.impact_history import distinct, estimates
+from mdr.effects.impact_results import ImpactResults, fine_and_change, refuse_rest
+from mdr.effects.impact_solver import COARSER
 from mdr.effects.impact_units import impact_of, relaxation_of
 
 _FIRST_STEP = 1.4  # of the unit of time, for a tolerance of one
@@ -54,6 +55,7 @@ def flat_punch_history(
     log.count("steps", int(motion.counts.sum()))
     log.count("sweeps", motion.sweeps)
     outcome = _results(problem, motion)
+    motion = motion.of(0)
     _, t, delta, v, *branches, lost = _samples(motion)
     depth, force_unit = problem.velocity * problem.time, _force_unit(problem)
     energy = problem.mass * problem.velocity**2
@@ -64,7 +66,7 @@ def flat_punch_history(
         scene=scene,
         method="mdr",
         settings=settings,
-        error_estimate=dict.fromkeys(ESTIMATED, np.full(t.size, outcome.relative_error[0])),
+        error_estimate=estimates(outcome, float(motion.error[0]), t.size),
         cost=log.cost(unknowns=int(motion.final.shape[0])),
         stages=log.records,
         time=t * problem.time,
@@ -103,11 +105,14 @@ def _problem(scenes: Sequence[Scene], flat_punch: FlatPunchSource) -> _Problem:
 
 
 def _motion(problem: _Problem, tolerance: float) -> Trajectory:
-    """From first touch to the return of the force to zero."""
-    lanes, count = problem.lanes, problem.mass.size
-    released = Event(0, np.zeros(count), -1)
-    first_step = np.full(count, _FIRST_STEP * tolerance ** (1.0 / STAGES))
-    return integrate(lanes, lanes.start(), (released,), tolerance=tolerance, first_step=first_step)
+    """From first touch to the return of the force to zero, each impact once as asked and once more coarsely."""
+    count = problem.mass.size
+    lanes = problem.lanes.take(np.tile(np.arange(count), 2))
+    tolerances = np.repeat([tolerance, COARSER * tolerance], count)
+    released = Event(0, np.zeros(2 * count), -1)
+    return integrate(
+        lanes, lanes.start(), (released,), tolerance=tolerances, first_step=_FIRST_STEP * tolerances ** (1.0 / STAGES)
+    )
 
 
 def _force_unit(problem: _Problem) -> FloatArray:
@@ -115,15 +120,17 @@ def _force_unit(problem: _Problem) -> FloatArray:
 
 
 def _results(problem: _Problem, motion: Trajectory) -> ImpactResults:
-    refuse_rest(motion.final[3], problem.lanes.long_term)
-    depth = problem.velocity * problem.time
+    refuse_rest(motion.final[3, : problem.mass.size], problem.lanes.long_term)
+    radius = np.tile(problem.radius, 2)
+    both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
+    values, change = fine_and_change(both)
     return ImpactResults(
-        coefficient_of_restitution=-motion.final[3],
-        contact_time=motion.final[1] * problem.time,
-        peak_force=_peak(motion, 0) * _force_unit(problem),
-        peak_depth=_peak(motion, 2) * depth,
+        coefficient_of_restitution=values[0],
+        contact_time=values[1] * problem.time,
+        peak_force=values[2] * _force_unit(problem),
+        peak_depth=values[3] * problem.velocity * problem.time,
         peak_contact_radius=problem.radius.copy(),
-        relative_error=motion.error + problem.error,
+        relative_error=change + problem.error,
     )
 
 

@@ -13,7 +13,7 @@ from contact.validation import FloatArray
 from mdr.effects.collocation import states
 from mdr.effects.collocation_step import STAGES
 from mdr.effects.impact_lanes import ImpactLanes, force, outline, remembered, stored
-from mdr.effects.impact_results import results
+from mdr.effects.impact_results import ImpactResults, results
 from mdr.effects.impact_solver import Impacts, Leg
 from mdr.effects.impact_units import ScaledImpacts
 from mdr.effects.spring_table import PROFILE, STIFFNESS
@@ -21,18 +21,8 @@ from mdr.effects.spring_table import PROFILE, STIFFNESS
 _Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))  # samples on each step, both ends among them
 
 _SHORTEST = 1e-12  # of the contact time: between two samples
-ESTIMATED = (
-    "time",
-    "indentation_depth",
-    "velocity",
-    "normal_force",
-    "contact_radius",
-    "coefficient_of_restitution",
-    "contact_time",
-    "peak_force",
-    "peak_depth",
-    "peak_contact_radius",
-)
+_SERIES = ("time", "indentation_depth", "velocity", "normal_force", "contact_radius")
+_OUTCOMES = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 
 
 def history(
@@ -40,18 +30,17 @@ def history(
 ) -> ImpactHistory:
     """Samples of a single lane in SI units."""
     lanes = problem.lanes
-    legs = [_pressing(lanes, leg) for leg in motion.way_in] + [_receding(lanes, leg) for leg in motion.way_out]
+    legs = [_pressing(lanes, own) for leg in motion.way_in if (own := leg.of(0))]
+    legs += [_receding(lanes, own) for leg in motion.way_out if (own := leg.of(0))]
     samples = np.concatenate(legs, axis=1)
     t, delta, v, f, y, held, lost = samples[:, distinct(samples[0])]
     outcome = results(problem, motion)
     energy = float(problem.mass[0] * problem.velocity[0] ** 2)
-    error = np.full(t.size, outcome.relative_error[0])
-    leaving = np.abs(delta).max() / (np.abs(v[-1]) * t[-1])  # a slow departure hardly says when it is over
     return ImpactHistory(
         scene=scene,
         method="mdr",
         settings=settings,
-        error_estimate=dict.fromkeys(ESTIMATED, error) | {"contact_time": error * (1.0 + 5.0 * leaving)},
+        error_estimate=estimates(outcome, float(motion.within[0]), t.size),
         cost=log.cost(unknowns=int(motion.turn.shape[0])),
         stages=log.records,
         time=t * problem.time[0],
@@ -66,6 +55,13 @@ def history(
         peak_depth=float(outcome.peak_depth[0]),
         peak_contact_radius=float(outcome.peak_contact_radius[0]),
     )
+
+
+def estimates(outcome: ImpactResults, within: float, samples: int) -> dict[str, FloatArray]:
+    """Errors of a single impact: of its outcome, and of its samples, which lie within steps too."""
+    found = {name: outcome.relative_error[row] for row, name in enumerate(_OUTCOMES)}
+    worst = float(max(error[0] for name, error in found.items() if name != "contact_time"))
+    return found | dict.fromkeys(_SERIES, np.full(samples, worst + within))
 
 
 def distinct(time: FloatArray) -> NDArray[np.bool_]:

@@ -11,12 +11,15 @@ from contact import NotConvergedError
 from contact.validation import FloatArray
 from mdr.effects import chebyshev
 from mdr.effects.collocation import states
-from mdr.effects.impact_lanes import force, outline
+from mdr.effects.impact_lanes import ImpactLanes, force, outline
 from mdr.effects.impact_solver import Impacts, Leg
 from mdr.effects.impact_units import ScaledImpacts
 from mdr.effects.spring_table import PROFILE, STIFFNESS
 
+ROUNDING = 1e-14  # of results in units of the impact, added to what the tolerance changes
+_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
 _REST = 1e-10  # of the approach speed
+_TIME = 1  # row of the contact time
 _NODES = 14  # of the force on each step
 
 
@@ -30,7 +33,7 @@ class ImpactResults:
         peak_force: [N].
         peak_depth: [m].
         peak_contact_radius: [m].
-        relative_error: Estimate for all of them.
+        relative_error: Of these five, in this order, shape (5, n).
     """
 
     coefficient_of_restitution: FloatArray
@@ -47,22 +50,46 @@ def results(scaled: ScaledImpacts, impacts: Impacts) -> ImpactResults:
     Raises:
         NotConvergedError: If an indenter comes to rest in the layer.
     """
-    lanes = scaled.lanes
-    refuse_rest(impacts.end[3], lanes.long_term)
+    lanes = impacts.lanes
+    refuse_rest(impacts.end[3, : scaled.lanes.count], scaled.lanes.long_term)
     depth = np.empty(lanes.count)
     peak = np.zeros(lanes.count)
     for leg in impacts.way_in:
         own = lanes.take(leg.lanes)
         depth[leg.lanes] = own.springs(impacts.turn[:1, leg.lanes], leg.section, 1)[0, 0]
-        peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(scaled, leg))
+        peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
+    radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
+    both = np.stack([-impacts.end[3], impacts.end[1], peak, depth, radius])
+    values, change = fine_and_change(both)
+    change += _SPRINGS_TO_MOTION * lanes.table.error
+    change[_TIME] += _SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
     return ImpactResults(
-        coefficient_of_restitution=-impacts.end[3],
-        contact_time=impacts.end[1] * scaled.time,
-        peak_force=peak * scaled.stiffness * scaled.depth,
-        peak_depth=depth * scaled.depth,
-        peak_contact_radius=lanes.table.radius(impacts.turn[0] * lanes.units[6]) * scaled.length,
-        relative_error=impacts.error,
+        coefficient_of_restitution=values[0],
+        contact_time=values[1] * scaled.time,
+        peak_force=values[2] * scaled.stiffness * scaled.depth,
+        peak_depth=values[3] * scaled.depth,
+        peak_contact_radius=values[4] * scaled.length,
+        relative_error=change,
     )
+
+
+def fine_and_change(both: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
+
+    One number may agree by chance, so the largest change of all but the contact time counts for each.
+    """
+    fine, coarse = np.split(both, 2, axis=1)
+    change = np.abs(fine - coarse) / np.abs(fine) + ROUNDING
+    worst = np.delete(change, _TIME, axis=0).max(axis=0)
+    change += worst
+    change[_TIME] += worst * leaving(fine)
+    return fine, change
+
+
+def leaving(outcomes: FloatArray) -> FloatArray:
+    """How much relative errors of the depth count in the contact time: the peak depth over the way at leaving speed."""
+    restitution, time, _, depth, _ = outcomes
+    return np.asarray(depth / (restitution * time))
 
 
 def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
@@ -80,9 +107,9 @@ def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
         )
 
 
-def force_on_way_in(scaled: ScaledImpacts, leg: Leg, z: FloatArray) -> FloatArray:
+def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:
     """Dimensionless force at z in [-1, 1] on every step, shape (len(z), steps, lanes)."""
-    own = scaled.lanes.take(leg.lanes)
+    own = lanes.take(leg.lanes)
     state = states(leg.trajectory, z)
     shared, memory, _ = outline(own.branches)
     flat = state.reshape(state.shape[0], -1, state.shape[-1])
@@ -91,9 +118,9 @@ def force_on_way_in(scaled: ScaledImpacts, leg: Leg, z: FloatArray) -> FloatArra
     return force(own, springs, springs[PROFILE], flat[2], branches).reshape(state.shape[1:])
 
 
-def _peak_force(scaled: ScaledImpacts, leg: Leg) -> FloatArray:
+def _peak_force(lanes: ImpactLanes, leg: Leg) -> FloatArray:
     """Largest force of each lane. A viscous layer relaxes at the turn, so it never comes after it."""
-    values = force_on_way_in(scaled, leg, chebyshev.nodes(_NODES))
+    values = force_on_way_in(lanes, leg, chebyshev.nodes(_NODES))
     matrix = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
     present = np.arange(values.shape[1])[:, None] < leg.trajectory.counts
     return chebyshev.largest(np.tensordot(matrix, values, 1), present)
@@ -102,4 +129,5 @@ def _peak_force(scaled: ScaledImpacts, leg: Leg) -> FloatArray:
 def joined(parts: list[ImpactResults], order: NDArray[np.intp]) -> ImpactResults:
     """Several results as one, rearranged."""
     names = [field.name for field in fields(ImpactResults)]
-    return ImpactResults(**{name: np.concatenate([getattr(part, name) for part in parts])[order] for name in names})
+    columns = {name: np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in names}
+    return ImpactResults(**{name: column[..., order] for name, column in columns.items()})

@@ -19,8 +19,7 @@ TURN, SECTION_END = 0, 1  # the events that end a section of the way in
 _FIRST_STEP = 1.4  # of the way that an elastic impact of the same energy goes, for a tolerance of one
 
 _AFTER_TURN = 0.4  # of the step before it; the front leaves its turn faster than it came
-_END_TO_STEP = 0.02  # a step's end is of twice the order of its inside; ten times what is seen
-_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
+COARSER = 5.0  # the tolerance of the second run of each impact, from which the error of the first is known
 
 
 class TableTooShort(NotConvergedError):
@@ -37,24 +36,34 @@ class Leg:
     memory: Memory | None
     step: int = 0
 
+    def of(self, lane: int) -> Leg | None:
+        """The part of one lane, if it went there."""
+        here = np.flatnonzero(self.lanes == lane)
+        if not here.size:
+            return None
+        memory = self.memory.take(here) if self.memory else None
+        return Leg(np.zeros(1, dtype=np.intp), self.section, self.trajectory.of(int(here[0])), memory, self.step)
+
 
 @dataclass(frozen=True)
 class Impacts:
-    """Dimensionless impacts.
+    """Dimensionless impacts, each of them twice: n lanes as asked, and n with a coarser tolerance.
 
     Attributes:
+        lanes: All 2 n.
         way_in: Sections of the way in, in order.
         way_out: Sections of the way out, in order.
-        turn: State at the turn, shape (m, lanes).
-        end: State at the loss of contact, shape (m', lanes).
-        error: Estimated relative error, shape (lanes,).
+        turn: State at the turn, shape (m, 2 n).
+        end: State at the loss of contact, shape (m', 2 n).
+        within: Sum of the local errors within steps, shape (2 n,).
     """
 
+    lanes: ImpactLanes
     way_in: tuple[Leg, ...]
     way_out: tuple[Leg, ...]
     turn: FloatArray
     end: FloatArray
-    error: FloatArray
+    within: FloatArray
 
 
 def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
@@ -68,21 +77,22 @@ def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
         TableTooShort: If a front runs beyond the spring table.
         NotConvergedError: If an impact does not end.
     """
-    run = _Run(lanes, tolerance)
+    twice = lanes.take(np.tile(np.arange(lanes.count), 2))
+    run = _Run(twice, np.repeat([tolerance, COARSER * tolerance], lanes.count))
     way_in, turn, turned_in = run.press()
     way_out, end = run.recede(way_in, turn, turned_in)
-    error = np.full(lanes.count, _SPRINGS_TO_MOTION * lanes.table.error)
+    within = np.zeros(twice.count)
     for leg in way_in + way_out:
-        error[leg.lanes] += _END_TO_STEP * leg.trajectory.error
-    return Impacts(way_in, way_out, turn, end, error)
+        within[leg.lanes] += leg.trajectory.error
+    return Impacts(twice, way_in, way_out, turn, end, within)
 
 
 class _Run:
     """Lanes under way; `size` is each lane's next trial step."""
 
-    def __init__(self, lanes: ImpactLanes, tolerance: float) -> None:
+    def __init__(self, lanes: ImpactLanes, tolerance: FloatArray) -> None:
         self.lanes, self.tolerance = lanes, tolerance
-        self.size = np.full(lanes.count, _FIRST_STEP * tolerance ** (1.0 / STAGES))
+        self.size = _FIRST_STEP * tolerance ** (1.0 / STAGES)
         self.course = Course.unknown(0, self.size)
 
     def press(self) -> tuple[tuple[Leg, ...], FloatArray, Lanes]:
@@ -135,7 +145,7 @@ class _Run:
             problem,
             state[:, going],
             events,
-            tolerance=self.tolerance,
+            tolerance=self.tolerance[going],
             first_step=self.size[going],
             course=self.course.take(going),
         )

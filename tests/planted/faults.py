@@ -394,7 +394,7 @@ TIME_STEPPING = [
     Fault(
         "quadrature of first order at a step's end",
         "time stepping",
-        set_to("mdr.effects.collocation:_TO_END", np.full(10, 0.1)),
+        set_to("mdr.effects.collocation_step:_TO_END", np.full(10, 0.1)),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
