@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve, cholesky, solve_triangular
+from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg.lapack import dposv
 from scipy.optimize import nnls
 
 from contact import NotConvergedError
@@ -73,8 +74,9 @@ def _equality(compliance: Array, approach: Array, active: Mask) -> tuple[Array, 
     """Pressure with zero gap on the active set, and the gap elsewhere."""
     pressure = np.zeros_like(approach)
     if active.any():
-        block = compliance[np.ix_(active, active)]
-        pressure[active] = cho_solve(cho_factor(block), approach[active])
+        _, pressure[active], failed = dposv(compliance[np.ix_(active, active)], approach[active])
+        if failed:
+            raise NotConvergedError("the compliance is not positive definite", {"leading_minor": float(failed)})
     gap = np.where(active, 0.0, compliance @ pressure - approach)
     return pressure, gap
 

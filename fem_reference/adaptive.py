@@ -27,7 +27,7 @@ def settings_for(accuracy: float) -> Discretisation:
     return Discretisation(
         order=4,
         growth=float(np.clip(0.5 * (accuracy / ERROR_AT_HALF) ** (1 / ERROR_ORDER), 0.05, 1.2)),
-        edge_cell=float(np.clip(accuracy, 1e-11, 1e-3)),
+        edge_cell=float(np.clip(accuracy / 2, 1e-11, 1e-3)),
         truncation=float(np.clip(0.003 * accuracy, 1e-13, 1e-3)),  # on thin layers the force feels it 40-fold
         half_space_thickness=float(np.clip(100 / accuracy, 1e3, 1e12)),
     )

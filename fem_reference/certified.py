@@ -33,7 +33,11 @@ Array = NDArray[np.float64]
 
 QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "smooth_force")
 ESTIMATING_DEGREES = {2: (2, 3), 3: (2, 3), 4: (2, 3, 4)}  # by the degree of the answer
-EDGE_SHIFT = {2: 0.10, 3: 0.06, 4: 0.04}
+EDGE_SHIFT = {
+    2: 0.15,
+    3: 0.08,
+    4: 0.06,
+}  # measured: 0.02 (nu = 1/2) to 0.055 (nu = 0) for k = 4, rings next to the cell included
 HALF_SPACE_COEFFICIENT = 1.2
 UNBONDED_TRUNCATION = 5.0
 ROUND_OFF = 1e-12

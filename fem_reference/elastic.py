@@ -52,6 +52,7 @@ def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
             "positive there; prescribe a radius beyond its flat end"
         )
     reported = {
+        "contact_radius": 0.0,
         "indentation_depth": error["smooth_depth"],
         "normal_force": error["smooth_force"],
         "contact_stiffness": error["stiffness"],
@@ -63,6 +64,7 @@ def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
 def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibrium:
     """A flat punch at depth / a; its pressure error is measured with the weight (1 - r^2/a^2), which its edge needs."""
     reported = {
+        "contact_radius": 0.0,
         "indentation_depth": 0.0,
         "normal_force": contact.error["stiffness"],
         "contact_stiffness": contact.error["stiffness"],

@@ -114,14 +114,12 @@ class CheckedSolver:
 
     def _refine(self, rhs: Array) -> tuple[Array, float]:
         solution = self._factors.solve(rhs)
-        for _ in range(REFINEMENTS):
+        for left in reversed(range(REFINEMENTS + 1)):
             residual = rhs - self._matrix @ solution
             error = self._backward_error(residual, solution, rhs)
-            if error <= 1e-3 * BACKWARD_ERROR or not np.isfinite(error):
+            if error <= 1e-3 * BACKWARD_ERROR or not np.isfinite(error) or left == 0:
                 break
             solution = solution + self._factors.solve(residual)
-        residual = rhs - self._matrix @ solution
-        error = self._backward_error(residual, solution, rhs)
         return solution, error if np.isfinite(error) else np.inf
 
     def _backward_error(self, residual: Array, solution: Array, rhs: Array) -> float:

@@ -38,9 +38,8 @@ class TraceSpace:
 
     def basis(self, t: Array) -> Array:
         """The degree + 1 basis functions at local coordinates t in [0, 1], shape (..., node)."""
-        return np.asarray(np.vander(t.ravel(), self.degree + 1, increasing=True) @ _lagrange(self.degree)).reshape(
-            *t.shape, -1
-        )
+        values = np.vander(t.ravel(), self.degree + 1, increasing=True) @ _lagrange(self.degree)
+        return np.asarray(values).reshape(*t.shape, self.degree + 1)
 
     def evaluate(self, values: Array, radius: Array) -> Array:
         """Function with nodal ``values`` at radii within the trace; zero beyond it."""
@@ -65,6 +64,22 @@ class TraceSpace:
         local = (weights * function_values) @ self.basis((x + 1) / 2)
         loads = np.bincount(self._cell_nodes.ravel(), local.ravel(), minlength=len(self.radii))
         return np.asarray(loads, dtype=np.float64)
+
+    def hat_moments(self, stride: int) -> Array:
+        """``int v hat 2 pi r dr`` for every basis function v and the hat functions on every ``stride``-th node.
+
+        Shape (node, hat); ``stride`` divides the degree, so that hats bend at nodes only.
+        """
+        hats, parts, points = TraceSpace(self.radii[::stride], 1), self.degree // stride, self.degree + 1
+        weights = hats.gauss(points)[1]
+        x = (np.polynomial.legendre.leggauss(points)[0] + 1) / 2
+        piece = np.arange(len(weights))
+        basis = self.basis((piece[:, None] % parts + x) / parts)
+        local = np.einsum("cq,cqi,qj->cij", weights, basis, hats.basis(x))
+        moments = np.zeros((len(self.radii), len(hats.radii)))
+        rows = (piece // parts)[:, None] * self.degree + np.arange(self.degree + 1)
+        np.add.at(moments, (rows[:, :, None], (piece[:, None] + np.arange(2))[:, None, :]), local)
+        return moments
 
     @property
     def _cell_nodes(self) -> NDArray[np.int64]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +57,7 @@ def fixed_radius_equilibrium(contact: CertifiedContact, depth: float, depth_erro
         + answer.stiffness * error["smooth_depth"] * answer.smooth_depth
     )
     reported = {
+        "contact_radius": 0.0,
         "indentation_depth": depth_error / abs(depth) if depth else 0.0,
         "normal_force": force_error / abs(force) if force else 0.0,
         "contact_stiffness": error["stiffness"],
@@ -95,7 +97,11 @@ def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: boo
         scaled = target / end if by_depth else target / end**2 / contact.answer.stiffness
         return fixed_radius_equilibrium(contact, scaled, 0.0 if by_depth else contact.error["stiffness"] * abs(scaled))
     radius = stable_radius(branch, load, target)
-    return adhesive_equilibrium(solve(radius), work_of_adhesion(scene))
+    state = adhesive_equilibrium(solve(radius), work_of_adhesion(scene))
+    name, found = ("indentation_depth", state.depth) if by_depth else ("normal_force", state.force)
+    slope = branch.slope(load, np.array([radius]))[0]  # d load / da, in SI lengths
+    moved = (state.error[name] + branch.error[name]) * abs(found) * radius ** (0 if by_depth else 1) / abs(slope)
+    return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
 
 
 def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target: float) -> float:

@@ -118,11 +118,13 @@ def _turning_points(branch: AdhesiveBranch, radius: Array) -> list[CriticalPoint
         slope = branch.slope(load, radius)
         for i in np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1])):
             kind = "pull-off" if slope[i] > 0 else "snap-in"
-            points.append(_point(branch, _root(branch, load, radius[i + 1], radius[i]), control, kind))
+            points.append(_point(branch, slope_root(branch, load, radius[i + 1], radius[i]), control, kind))
     return points
 
 
-def _root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: float, high: float) -> float:
+def slope_root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: float, high: float) -> float:
+    """Radius [m] between two at which the slope of a load changes its sign."""
+
     def slope(a: float) -> float:
         return float(branch.slope(load, np.array([a]))[0])
 

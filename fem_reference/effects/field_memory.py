@@ -3,7 +3,7 @@
 Shear relaxes, volume does not.  With D the matrix of ``2 dev : dev`` at unit shear modulus and one displacement field
 z_j for each branch (``z_j' = G_j u' - z_j / tau_j``), a step solves
 
-    (K_vol + G_eff D) u_1 = Q p - D memory,      memory = sum_j (alpha z_j - beta u_0) + eta (w_1 u_0 + w_2 u_(-1)).
+    (K_vol + G_eff D) u_1 = Q p - D memory,      memory = sum_j (alpha z_j - beta u_0) + eta (u'_1 at u_1 = 0).
 
 The matrix is factorised once for each length of step.  Units as in `surface_memory`.
 """
@@ -21,7 +21,7 @@ from fem_reference.effects.relaxation_step import RelaxationStep
 from fem_reference.elements import taylor_hood
 from fem_reference.geometry import LayerMesh
 from fem_reference.layer_problem import LayerProblem, RestrictedSolver
-from fem_reference.surface_compliance import STRIP_ORDER, strip_loads
+from fem_reference.surface_compliance import STRIP_ORDER, strip_loads, strip_vertices
 
 Array = NDArray[np.float64]
 
@@ -73,8 +73,9 @@ class CompressibleSurface:
         self._displacements = space.displacement_count
         self._deviator = scatter(shear_elements(space, 1.0), space.element_displacements, space.size)
         self._pressure_mass = scatter(pressure_mass_elements(space), space.element_pressures, space.size)
-        self._loads, self.resultants = strip_loads(problem)
-        self.radii = problem.positions[0, problem.top_nodes(1.0)[::STRIP_ORDER]]
+        self._loads = strip_loads(problem)
+        self.resultants = self._loads.sum(axis=0)
+        self.radii = problem.positions[0, strip_vertices(problem)]
         self.unknowns = space.size
         self._effective: dict[float, _EffectiveLayer] = {}
         self._now, self._before = np.zeros(space.size), np.zeros(space.size)
@@ -82,7 +83,7 @@ class CompressibleSurface:
         self._long_term, self._moduli = 0.0, np.zeros(branches)
         self._unloaded = np.zeros(space.size)
         self._dissipated = 0.0
-        self._is_first = True
+        self._rate = np.zeros(space.size)
 
     def _problem(self, poissons_ratio: float) -> LayerProblem:
         return LayerProblem(self._mesh, taylor_hood(STRIP_ORDER), poissons_ratio, self._layer.support, self._backend)
@@ -102,22 +103,22 @@ class CompressibleSurface:
 
     def begin(self, step: RelaxationStep) -> tuple[Array, Array]:
         """See `ViscoelasticSurface`."""
-        weights = step.rate_weights(self._is_first)
         memory = step.decay @ self._branches - step.tangent.sum() * self._now
-        memory = memory + step.dashpot * (weights[1] * self._now + weights[2] * self._before)
-        layer = self._effective_layer(step.effective_modulus(self._is_first))
+        memory = memory + step.dashpot * step.rate_memory(self._now, self._before, self._rate)
+        layer = self._effective_layer(step.effective_modulus)
         self._unloaded = layer.solve(-(self._deviator @ memory)[:, None], self._displacements)[:, 0]
         return layer.compliance, self._loads.T @ self._unloaded
 
     def accept(self, step: RelaxationStep, pressure: Array) -> None:
         """See `ViscoelasticSurface`."""
-        layer = self._effective_layer(step.effective_modulus(self._is_first))
+        layer = self._effective_layer(step.effective_modulus)
         following = self._unloaded + layer.responses @ pressure
         change = following - self._now
         self._dissipated += step.dissipation(self._branches, change, self._deviator)
         self._branches = step.decay[:, None] * self._branches + np.outer(step.tangent, change)
+        self._rate = step.rule[0] / step.duration * following + step.rate_memory(self._now, self._before, self._rate)
         self._before, self._now = self._now, following
-        self._long_term, self._moduli, self._is_first = step.long_term, step.moduli, False
+        self._long_term, self._moduli = step.long_term, step.moduli
 
     @property
     def stored_energy(self) -> float:

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import NotConvergedError, Relaxation
-from fem_reference.active_set import Complementary, solve_complementarity
+from fem_reference.active_set import Complementary, Mask, solve_complementarity
 from fem_reference.effects.impact import Record
-from fem_reference.effects.relaxation_step import relaxation_step
+from fem_reference.effects.relaxation_step import INSTANT, RelaxationStep, relaxation_step
 from fem_reference.effects.stage import Stage
 from fem_reference.unknown_contact import edge_radius
 
@@ -39,15 +39,22 @@ def simulate_depths(stage: Stage, relaxation: Relaxation, time: Array, depth: Ar
     """
     record = _at_rest(time[0], depth[0])
     surface = stage.surface
+
+    def advance(step: RelaxationStep, depth: float, active: Mask | None) -> Complementary:
+        matrix, offset = surface.begin(step)
+        state = solve_complementarity(matrix, depth * surface.resultants - stage.profile - offset, active)
+        surface.accept(step, state.pressure)
+        return state
+
     for (t0, t1), (d0, d1), count in zip(pairwise(time), pairwise(depth), segment_steps(time, steps), strict=True):
         step = relaxation_step(relaxation, (t1 - t0) / count)
+        if step.dashpot > 0:  # the rates jump with that of the depth
+            advance(step.instant, d0 + (d1 - d0) * INSTANT / count, None)
         active = None
         for n in range(1, count + 1):
             now = d0 + (d1 - d0) * n / count
-            matrix, offset = surface.begin(step)
-            state = solve_complementarity(matrix, now * surface.resultants - stage.profile - offset, active)
+            state = advance(step.first if n == 1 else step, now, active)
             active = state.active
-            surface.accept(step, state.pressure)
             _add(record, stage, state, t0 + (t1 - t0) * n / count, now)
     return record
 
@@ -60,13 +67,20 @@ def simulate_forces(stage: Stage, relaxation: Relaxation, time: Array, force: Ar
     """
     record = _at_rest(time[0], 0.0)
     surface, depth = stage.surface, 0.0
+
+    def advance(step: RelaxationStep, force: float, depth: float) -> tuple[Complementary, float]:
+        matrix, offset = surface.begin(step)
+        state, depth = _depth_of_force(matrix, surface.resultants, stage.profile + offset, force, depth)
+        surface.accept(step, state.pressure)
+        return state, depth
+
     for (t0, t1), (f0, f1), count in zip(pairwise(time), pairwise(force), segment_steps(time, steps), strict=True):
         step = relaxation_step(relaxation, (t1 - t0) / count)
+        if step.dashpot > 0:  # the rates jump if the force does
+            _, depth = advance(step.instant, max(0.0, float(f0)), depth)
         for n in range(1, count + 1):
-            matrix, offset = surface.begin(step)
             now = max(0.0, f0 + (f1 - f0) * n / count)
-            state, depth = _depth_of_force(matrix, surface.resultants, stage.profile + offset, now, depth)
-            surface.accept(step, state.pressure)
+            state, depth = advance(step.first if n == 1 else step, now, depth)
             _add(record, stage, state, t0 + (t1 - t0) * n / count, depth)
     return record
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from contact import NotConvergedError, Relaxation
 from fem_reference.active_set import solve_complementarity
-from fem_reference.effects.relaxation_step import relaxation_step
+from fem_reference.effects.relaxation_step import RelaxationStep, relaxation_step
 from fem_reference.effects.stage import Stage
 from fem_reference.unknown_contact import edge_radius
 
@@ -64,15 +64,16 @@ def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: 
     """
     surface = stage.surface
     step = relaxation_step(relaxation, duration)
+    force = touch(stage, body, step)
     kappa = duration**2 / (4 * body.mass)
     w = surface.resultants
     depth, velocity = 0.0, body.velocity
-    force = first_force(stage, body, relaxation, duration)
     record = Record()
     record.add(time=0.0, depth=0.0, velocity=velocity, force=force, radius=0.0, stored=0.0, dissipated=0.0)
-    active = None
+    active, overlap = None, 0.0
     for n in range(1, MAX_STEPS):
-        matrix, offset = surface.begin(step)
+        now = step.first if n == 1 else step
+        matrix, offset = surface.begin(now)
         ballistic = depth + duration * velocity - kappa * force
         approach = ballistic * w - stage.profile - offset
         state = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
@@ -81,9 +82,9 @@ def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: 
         mean = (force + following) / 2
         depth += duration * velocity - duration**2 * mean / (2 * body.mass)
         velocity -= duration * mean / body.mass
-        surface.accept(step, state.pressure)
+        surface.accept(now, state.pressure)
         if following == 0 and velocity < 0:
-            fraction = _release_fraction(record.force)
+            fraction = _release_fraction(overlap, float((approach / w).max()))
             record.add(
                 time=record.time[-1] + fraction * duration,
                 depth=record.depth[-1] + fraction * (depth - record.depth[-1]),
@@ -103,22 +104,26 @@ def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: 
             stored=surface.stored_energy,
             dissipated=surface.dissipated_energy,
         )
-        force = following
+        force, overlap = following, float((approach / w).max())
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
-def first_force(stage: Stage, body: Body, relaxation: Relaxation, duration: float) -> float:
+def touch(stage: Stage, body: Body, step: RelaxationStep) -> float:
     """Force at first touch: that of the dashpots under the part of the profile that is flat."""
-    if relaxation.viscosity == 0:
+    if step.dashpot == 0:
         return 0.0
-    instant = relaxation_step(relaxation, 1e-9 * duration)
-    surface = stage.surface
+    instant, surface = step.instant, stage.surface
     matrix, offset = surface.begin(instant)
-    approach = 1e-9 * duration * body.velocity * surface.resultants - stage.profile - offset
-    return float(surface.resultants @ solve_complementarity(matrix, approach).pressure)
+    approach = instant.duration * body.velocity * surface.resultants - stage.profile - offset
+    pressure = solve_complementarity(matrix, approach).pressure
+    surface.accept(instant, pressure)
+    return float(surface.resultants @ pressure)
 
 
-def _release_fraction(force: list[float]) -> float:
-    """Part of the last step after which contact is lost: where the force, continued in a straight line, vanishes."""
-    falling = force[-2] - force[-1] if len(force) > 1 else 0.0
-    return min(1.0, force[-1] / falling) if falling > 0 else 1.0
+def _release_fraction(before: float, after: float) -> float:
+    """Part of the last step after which contact is lost.
+
+    The overlap of the indenter with the surface as it would be without pressure passes zero there; it does so in a
+    straight line, while the force of a round indenter vanishes like its power 3/2.
+    """
+    return before / (before - after) if before > 0 > after else 1.0

@@ -4,13 +4,15 @@ Each Maxwell branch obeys ``s' = G_j e' - s / tau_j``.  With alpha = exp(-dt / t
 
     s_1 = alpha s_0 + beta (e_1 - e_0),    beta = G_j (tau_j / dt) (1 - alpha),
 
-and a dashpot adds ``eta e'``, by the second-order backward difference (by the first-order one in the first step).
+and a dashpot adds ``eta e'``, by the second-order backward difference (`BACKWARD`).  The first of equal steps takes
+the trapezoidal rule instead, from a known rate; where the rate jumps, a tiny step of the implicit Euler rule finds it.
 Moduli are given in units of the instantaneous shear modulus.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -19,6 +21,12 @@ from numpy.typing import NDArray
 from contact import Relaxation
 
 Array = NDArray[np.float64]
+RateRule = tuple[float, float, float, float]
+
+BACKWARD: RateRule = (1.5, -2.0, 0.5, 0.0)  # dt e'_1 = 3/2 e_1 - 2 e_0 + 1/2 e_(-1)
+TRAPEZOID: RateRule = (2.0, -2.0, 0.0, -1.0)  # dt e'_1 = 2 e_1 - 2 e_0 - dt e'_0
+EULER: RateRule = (1.0, -1.0, 0.0, 0.0)
+INSTANT = 1e-7  # of a step
 
 
 @dataclass(frozen=True)
@@ -31,6 +39,7 @@ class RelaxationStep:
         moduli: G_j, shape (m,).
         times: tau_j [s], shape (m,).
         dashpot: eta [s], in units of the instantaneous modulus.
+        rule: coefficients of e_1, e_0, e_(-1) and dt e'_0 in dt e'_1.
     """
 
     duration: float
@@ -38,26 +47,38 @@ class RelaxationStep:
     moduli: Array
     times: Array
     dashpot: float
+    rule: RateRule = BACKWARD
 
-    @property
+    @cached_property
+    def first(self) -> RelaxationStep:
+        """The first of steps like this one."""
+        return replace(self, rule=TRAPEZOID)
+
+    @cached_property
+    def instant(self) -> RelaxationStep:
+        """A jump of the rates in next to no time, before steps like this one."""
+        return replace(self, duration=INSTANT * self.duration, rule=EULER)
+
+    @cached_property
     def decay(self) -> Array:
         """alpha_j."""
         return np.exp(-self.duration / self.times)
 
-    @property
+    @cached_property
     def tangent(self) -> Array:
         """beta_j; evaluated without cancellation for dt << tau."""
         ratio = self.duration / self.times
         return np.asarray(-self.moduli * np.expm1(-ratio) / ratio)
 
-    def effective_modulus(self, is_first: bool) -> float:
+    @cached_property
+    def effective_modulus(self) -> float:
         """Change of stress per change of strain at the end of the step, per 2."""
-        return float(self.long_term + self.tangent.sum() + self.rate_weights(is_first)[0] * self.dashpot)
+        return float(self.long_term + self.tangent.sum() + self.rule[0] * self.dashpot / self.duration)
 
-    def rate_weights(self, is_first: bool) -> Array:
-        """e' = w_0 e_1 + w_1 e_0 + w_2 e_(-1)."""
-        weights = [1.0, -1.0, 0.0] if is_first else [1.5, -2.0, 0.5]
-        return np.array(weights) / self.duration
+    def rate_memory(self, now: Array, before: Array, rate: Array) -> Array:
+        """e'_1 if e_1 were zero; e'_1 is this plus ``rule[0] e_1 / dt``."""
+        _, w_now, w_before, w_rate = self.rule
+        return np.asarray((w_now * now + w_before * before) / self.duration + w_rate * rate)
 
     def dissipation(self, before: Array, change: Array, product: Any) -> float:
         """Energy lost in the branches and the dashpot during a step.

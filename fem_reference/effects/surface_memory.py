@@ -57,27 +57,33 @@ class ProportionalSurface:
         self._long_term = 0.0
         self._moduli = np.zeros(branches)
         self._dissipated = 0.0
-        self._is_first = True
+        self._rate = np.zeros_like(resultants)
+        self._memory = np.zeros_like(resultants)
 
     def begin(self, step: RelaxationStep) -> tuple[Array, Array]:
         """See `ViscoelasticSurface`."""
-        modulus = step.effective_modulus(self._is_first)
-        return self._compliance / modulus, -self._compliance @ self._memory(step) / modulus
+        self._memory = self._stress_of_return(step)
+        modulus = step.effective_modulus
+        return self._compliance / modulus, -self._compliance @ self._memory / modulus
 
-    def _memory(self, step: RelaxationStep) -> Array:
+    def _stress_of_return(self, step: RelaxationStep) -> Array:
         """Stress at the end of the step if y returned to zero."""
-        weights = step.rate_weights(self._is_first)
         memory = step.decay @ self._branches - step.tangent.sum() * self._strain
-        return np.asarray(memory + step.dashpot * (weights[1] * self._strain + weights[2] * self._before))
+        if step.dashpot > 0:
+            memory += step.dashpot * step.rate_memory(self._strain, self._before, self._rate)
+        return np.asarray(memory)
 
     def accept(self, step: RelaxationStep, pressure: Array) -> None:
         """See `ViscoelasticSurface`."""
-        strain = (pressure - self._memory(step)) / step.effective_modulus(self._is_first)
+        strain = (pressure - self._memory) / step.effective_modulus
         change = strain - self._strain
         self._dissipated += step.dissipation(self._branches, change, self._compliance)
         self._branches = step.decay[:, None] * self._branches + np.outer(step.tangent, change)
+        if step.dashpot > 0:
+            memory = step.rate_memory(self._strain, self._before, self._rate)
+            self._rate = step.rule[0] / step.duration * strain + memory
         self._before, self._strain = self._strain, strain
-        self._long_term, self._moduli, self._is_first = step.long_term, step.moduli, False
+        self._long_term, self._moduli = step.long_term, step.moduli
 
     @property
     def stored_energy(self) -> float:

@@ -1,17 +1,17 @@
 """Viscoelastic scenes: which surface, which strip, how many steps; and the answer in SI units with its error.
 
-Every scene is solved twice, the second time with half the cells and half the steps; the difference is the error
-estimate.
+Every scene is solved three times: with half the cells and half the steps, with half the cells, and as asked.  The
+differences are the error estimates, see `history_errors`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from contact import (
     DepthHistory,
@@ -27,23 +27,26 @@ from contact import (
     StageLog,
     Viscoelasticity,
 )
-from fem_reference.certified import solve_certified_contact
+from fem_reference.certified import HALF_SPACE_COEFFICIENT, CertifiedContact, solve_certified_contact
 from fem_reference.discretisation import Discretisation, contact_mesh
 from fem_reference.effects.field_memory import CompressibleSurface
 from fem_reference.effects.history import simulate_depths, simulate_forces
+from fem_reference.effects.history_errors import KnownErrors, with_errors
 from fem_reference.effects.impact import Body, Record, simulate_impact
 from fem_reference.effects.stage import Stage
 from fem_reference.effects.surface_memory import ProportionalSurface
 from fem_reference.geometry import LayerMesh
 from fem_reference.indenter import ScaledIndenter
-from fem_reference.surface_compliance import condense, strip_mesh
+from fem_reference.surface_compliance import SurfaceCompliance, condense, strip_mesh
 from fem_reference.trace import TraceSpace
 
 Array = NDArray[np.float64]
 Settings = Mapping[str, bool | int | float | str | None]
 
 FITTINGS = 12
-LEAST_TRUNCATION = 1e-6  # far below the errors of cells and steps, and half the mesh of 1e-12
+LEAST_TRUNCATION = 1e-7  # far below the errors of cells and steps, and half the mesh of 1e-12
+TRUNCATION_SAFETY = 40.0  # on thin layers the force feels the outer edge so much more than the stiffness
+EDGE_SCATTER = 0.1  # cells between the true edge of the contact and the one read from the pressures
 
 
 @dataclass(frozen=True)
@@ -87,32 +90,63 @@ class Theatre:
         self._branches = int(np.count_nonzero(moduli))
         relaxes = self._branches > 0 or self.relaxation.viscosity > 0
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
+        self._strips: dict[tuple[float, int], SurfaceCompliance] = {}
 
     def set(self, radius: float, cells: int) -> Stage:
         """The layer at rest with a strip of ``radius`` [m]."""
         if isinstance(self.scene.indenter, FlatPunch) and not self._needs_field:
-            return self._punch_stage(self.scene.indenter)
-        mesh = self._mesh(radius, cells)
+            return self._punch_stage(self.scene.indenter, is_fine=cells >= self.resolution.cells)
         if self._needs_field:
+            mesh = self._mesh(radius, cells)
             with self.log.stage("factor"):
                 field = CompressibleSurface(self.scene.layer, mesh, self._branches, self._backend)
             return Stage(field, field.radii, self._profile(field.radii, radius), radius, field.unknowns)
-        strip = condense(self.scene.layer, mesh, self._backend, self.log)
+        strip = self._strip(radius, cells)
         surface = ProportionalSurface(strip.matrix * self._per_shear, strip.resultants, self._branches)
         return Stage(surface, strip.radii, self._profile(strip.radii, radius), radius, strip.unknowns)
+
+    def _strip(self, radius: float, cells: int) -> SurfaceCompliance:
+        if (radius, cells) not in self._strips:
+            mesh = self._mesh(radius, cells)
+            self._strips[radius, cells] = condense(self.scene.layer, mesh, self._backend, self.log)
+        return self._strips[radius, cells]
+
+    def known_errors(self, radius: float, peak_radius: float) -> KnownErrors:
+        """Errors that halving cells and steps does not show; strip and largest contact radius [m]."""
+        layer, settings = self.scene.layer, self._settings
+        thick = HALF_SPACE_COEFFICIENT / settings.half_space_thickness if layer.is_half_space else 0.0
+        exact = {
+            "indentation_depth": isinstance(self.scene.loading, DepthHistory),
+            "normal_force": isinstance(self.scene.loading, ForceHistory),
+            "contact_radius": isinstance(self.scene.indenter, FlatPunch),
+            "peak_contact_radius": isinstance(self.scene.indenter, FlatPunch),
+        }
+        return KnownErrors(
+            everywhere=thick + TRUNCATION_SAFETY * settings.truncation,
+            radius=EDGE_SCATTER * radius / (self.resolution.cells * peak_radius),
+            exact=frozenset(name for name, is_exact in exact.items() if is_exact),
+        )
 
     @property
     def _per_shear(self) -> float:
         """Compliances are per contact modulus E* = 2 G / (1 - nu); this turns them to unit G."""
         return (1 - self.scene.layer.poissons_ratio) / 2
 
-    def _punch_stage(self, punch: FlatPunch) -> Stage:
-        """A flat punch moves as one: its force is the only unknown, 1 / k_N its compliance."""
-        indenter = ScaledIndenter(punch, punch.radius)
-        contact = solve_certified_contact(self.scene.layer, indenter, self._settings, self._backend, self.log)
-        compliance = np.array([[self._per_shear / contact.answer.stiffness]])
+    def _punch_stage(self, punch: FlatPunch, *, is_fine: bool) -> Stage:
+        """A flat punch moves as one: its force is the only unknown, 1 / k_N its compliance.
+
+        In place of half the cells it takes a stiffness that is wrong by the stated error.
+        """
+        contact = self._punch_contact
+        stiffness = contact.answer.stiffness * (1 if is_fine else 1 + contact.error["stiffness"])
+        compliance = np.array([[self._per_shear / stiffness]])
         surface = ProportionalSurface(compliance, np.ones(1), self._branches)
         return Stage(surface, np.ones(1), np.zeros(1), punch.radius, contact.answer.unknowns)
+
+    @cached_property
+    def _punch_contact(self) -> CertifiedContact:
+        indenter = ScaledIndenter(self.scene.indenter, self.scene.indenter.flat_radius)
+        return solve_certified_contact(self.scene.layer, indenter, self._settings, self._backend, self.log)
 
     def _mesh(self, radius: float, cells: int) -> LayerMesh:
         layer, indenter = self.scene.layer, self.scene.indenter
@@ -167,12 +201,14 @@ def impact_history(theatre: Theatre, loading: Impact, shown: Settings) -> Impact
 
     guess, span = _impact_scales(scene, loading)
     radius, pilot = theatre.fitted_radius(1.6 * guess, lambda stage: simulate(stage, span / 60))
+    duration = pilot.time[-1] / theatre.resolution.steps
     histories = []
-    for factor in (2, 1):
-        stage = theatre.set(radius, theatre.resolution.cells // factor)
-        record = simulate(stage, factor * pilot.time[-1] / theatre.resolution.steps)
+    for cells, steps in ((2, 2), (2, 1), (1, 1)):
+        stage = theatre.set(radius, theatre.resolution.cells // cells)
+        record = simulate(stage, steps * duration)
         histories.append(_impact_in_si(theatre, loading, stage, record, shown))
-    return _with_errors(histories[1], histories[0])
+    coarse, wider, fine = histories
+    return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.peak_contact_radius))
 
 
 def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
@@ -191,9 +227,9 @@ def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Recor
     scene, log = theatre.scene, theatre.log
     length, modulus = stage.radius, scene.layer.shear_modulus
     energy = modulus * length**3
-    force, depth, radius = np.array(record.force), np.array(record.depth), np.array(record.radius)
+    force, depth = np.array(record.force), np.array(record.depth)
     velocity = np.array(record.velocity) * length
-    radius = np.where(force > 0, length, 0.0) if isinstance(scene.indenter, FlatPunch) else radius * length
+    radius = np.maximum(np.array(record.radius) * length, scene.indenter.flat_radius)
     return ImpactHistory(
         scene=scene,
         method="fem",
@@ -225,22 +261,6 @@ def peak(values: Array) -> float:
     return float(top - (right - left) ** 2 / (8 * curvature)) if curvature < 0 else float(top)
 
 
-def _with_errors(fine: ImpactHistory, coarse: ImpactHistory) -> ImpactHistory:
-    """Differences to the run of half the resolution."""
-    scalars = (*ImpactHistory.SCALARS, "coefficient_of_restitution", "contact_time")
-    error = {name: np.atleast_1d(abs(getattr(coarse, name) / getattr(fine, name) - 1)) for name in scalars}
-    for name in ("indentation_depth", "velocity", "normal_force"):
-        error[name] = _difference(fine.time, getattr(fine, name), coarse.time, getattr(coarse, name))
-    return replace(fine, error_estimate=error)
-
-
-def _difference(time: Array, values: Array, coarse_time: Array, coarse_values: Array) -> Array:
-    """Largest difference of two histories by the range of the finer one, as an array like it."""
-    common = time[time <= min(time[-1], coarse_time[-1])]
-    difference = CubicSpline(coarse_time, coarse_values)(common) - CubicSpline(time, values)(common)
-    return np.full(len(time), np.abs(difference).max() / np.abs(values).max())
-
-
 def prescribed_history(theatre: Theatre, loading: DepthHistory | ForceHistory, shown: Settings) -> HistoryPath:
     """Response to a prescribed history of depth or force."""
     scene, log = theatre.scene, theatre.log
@@ -258,36 +278,30 @@ def prescribed_history(theatre: Theatre, loading: DepthHistory | ForceHistory, s
         return record
 
     radius, _ = theatre.fitted_radius(1.6 * _history_radius(scene, loading), lambda stage: simulate(stage, 40))
-    resolution = theatre.resolution
-    coarse = simulate(theatre.set(radius, resolution.cells // 2), resolution.steps // 2)
-    stage = theatre.set(radius, resolution.cells)
-    fine = simulate(stage, resolution.steps)
-    contact_radius = np.array(fine.radius)
-    if isinstance(scene.indenter, FlatPunch):
-        contact_radius = (np.array(fine.force) > 0).astype(float)
+    histories = []
+    for cells, steps in ((2, 2), (2, 1), (1, 1)):
+        stage = theatre.set(radius, theatre.resolution.cells // cells)
+        record = simulate(stage, theatre.resolution.steps // steps)
+        histories.append(_history_in_si(theatre, stage, record, shown))
+    coarse, wider, fine = histories
+    return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.contact_radius.max()))
+
+
+def _history_in_si(theatre: Theatre, stage: Stage, record: Record, shown: Settings) -> HistoryPath:
+    scene, log, length = theatre.scene, theatre.log, stage.radius
+    force, radius = np.array(record.force), np.array(record.radius) * length
     return HistoryPath(
         scene=scene,
         method="fem",
         settings=shown,
-        error_estimate={
-            "indentation_depth": _linear_difference(fine, coarse, "depth"),
-            "normal_force": _linear_difference(fine, coarse, "force"),
-        },
+        error_estimate={},
         cost=log.cost(unknowns=stage.unknowns),
         stages=log.records,
-        time=np.array(fine.time),
-        indentation_depth=np.array(fine.depth) * radius,
-        normal_force=np.array(fine.force) * modulus * radius**2,
-        contact_radius=contact_radius * radius,
+        time=np.array(record.time),
+        indentation_depth=np.array(record.depth) * length,
+        normal_force=force * scene.layer.shear_modulus * length**2,
+        contact_radius=np.where(force > 0, np.maximum(radius, scene.indenter.flat_radius), 0.0),
     )
-
-
-def _linear_difference(fine: Record, coarse: Record, name: str) -> Array:
-    """Largest difference at the coarse run's instants, relative to the largest value, for every sample."""
-    values = np.array(getattr(fine, name))
-    difference = np.interp(coarse.time, fine.time, values) - np.array(getattr(coarse, name))
-    scale = max(np.abs(values).max(), np.finfo(float).tiny)
-    return np.full(len(values), np.abs(difference).max() / scale)
 
 
 def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:

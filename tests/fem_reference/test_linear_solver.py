@@ -49,6 +49,22 @@ def test_nested_dissection_needs_no_pivoting_and_agrees_with_partial_pivoting(de
     assert solutions[0] == pytest.approx(solutions[1], rel=1e-11)
 
 
+@pytest.mark.parametrize(("degree", "nu"), [(2, 0.3), (3, 0.4999999), (4, 0.5)])
+def test_mumps_agrees_with_superlu(degree, nu):
+    pytest.importorskip("mumps", reason="the optional package python-mumps is not installed")
+    solutions = []
+    for backend in ("superlu", "mumps"):
+        problem = LayerProblem(LAYER_MESH, taylor_hood(degree), nu, "bonded", backend)
+        pressed = 2 * problem.top_nodes(1.0) + 1
+        solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
+        values = np.zeros((len(solver.held), 2))
+        values[-len(pressed) :] = [1, 2]
+        solution = solver.solve_displaced(values)
+        assert solver.checked.factorisations == 1  # MUMPS itself passed the check, nobody stepped in
+        solutions.append(solver.reactions(solution, pressed).sum(axis=0))
+    assert solutions[1] == pytest.approx(solutions[0], rel=1e-11)
+
+
 class Careless:
     """Factors that are wrong by one part in a thousand."""
 

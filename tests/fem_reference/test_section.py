@@ -63,6 +63,37 @@ def test_files_are_read_back(path, tmp_path, ending):
     assert set(back.point_data) >= {"stress_rr", "stress_zz", "stress_hoop", "stress_rz", "pressure"}
 
 
+def read_by_vtk(file):
+    """Points, quadratic triangles and point data as ParaView's own library reads them."""
+    xml = pytest.importorskip("vtkmodules.vtkIOXML", reason="ParaView's reader library (package vtk) is not installed")
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+
+    reader = xml.vtkXMLUnstructuredGridReader() if file.suffix == ".vtu" else vtkXdmfReader()
+    reader.SetFileName(str(file))
+    reader.Update()
+    grid = reader.GetOutputDataObject(0)
+    data = grid.GetPointData()
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    types = {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())}
+    return vtk_to_numpy(grid.GetPoints().GetData()), types, arrays
+
+
+@pytest.mark.parametrize("ending", [".vtu", ".xdmf"])
+def test_files_are_read_by_the_library_of_paraview(path, tmp_path, ending):
+    file = tmp_path / f"section{ending}"
+    section = path.fields.section()
+    section.write(file)
+    points, types, arrays = read_by_vtk(file)
+    assert types == {22}  # VTK_QUADRATIC_TRIANGLE
+    r, z = points[:, 0], points[:, 1]
+    assert arrays["displacement"][::97, :2] == pytest.approx(section.displacement(r[::97], z[::97]), abs=1e-15)
+    top = (z == 0) & (r < 0.9 * A)
+    assert np.count_nonzero(top) > 10
+    assert -arrays["stress_zz"][top] == pytest.approx(path.pressure(r[top]), abs=3e-3 * path.pressure(0.0))
+    assert set(arrays) == {"displacement", "stress_rr", "stress_zz", "stress_hoop", "stress_rz", "pressure"}
+
+
 def test_settings_name_the_mesh(path):
     assert path.settings["mesh"] == path.fields.states[0].contact.layer_mesh.fingerprint
 

@@ -61,13 +61,6 @@ def test_requested_accuracy_of_an_impact_is_reached_or_refused():
         solve_history_to_accuracy(lambda settings: history, 1e-9)
 
 
-@pytest.mark.slow
-def test_finite_bulk_modulus_tends_to_the_incompressible_layer():
-    restitutions = [Fem().solve(impact_scene(1e-3, nu)).coefficient_of_restitution for nu in (0.3, 0.4, 0.49, 0.4999)]
-    assert np.all(np.diff(restitutions) < 0)
-    assert restitutions[-1] == pytest.approx(0.64341, abs=2e-4)
-
-
 def test_field_memory_equals_surface_memory_in_the_incompressible_limit():
     almost = QUICK.solve(impact_scene(1e-3, 0.49999))
     exactly = QUICK.solve(impact_scene(1e-3))
@@ -97,7 +90,7 @@ def test_flat_punch_on_a_kelvin_voigt_layer(damping):
     history = Fem(growth=0.7, edge_cell=1e-6).solve(scene)
     error = history.coefficient_of_restitution / kelvin_voigt_restitution(damping) - 1
     assert abs(error) < 3e-4
-    assert abs(error) <= history.error_estimate["coefficient_of_restitution"][0] + 1e-5
+    assert abs(error) <= history.error_estimate["coefficient_of_restitution"][0] < 1e-3
 
 
 def single_spring(relaxation, steps):
@@ -132,6 +125,45 @@ def test_kinetic_energy_and_work_balance_exactly():
     work = np.cumsum((force[1:] + force[:-1]) / 2 * np.diff(depth))
     kinetic = velocity**2 / 2
     assert kinetic[1:-1] + work[:-1] == pytest.approx(0.5, abs=1e-13)
+
+
+@pytest.mark.parametrize("damping", [0.3, 0.5, 2.0])
+def test_peak_force_of_a_kelvin_voigt_impact_is_within_its_error_bar(damping):
+    # a damped oscillator, s = sqrt(1 - D^2), t in units of sqrt(M / k): F is M v_0 sqrt(k / M) times
+    # exp(-D t) (2 D cos(s t) + (1 - 2 D^2) / s sin(s t)), with its peak at tan(s t) = s (1 - 4 D^2) / (D (3 - 4 D^2)),
+    # or at first touch if D >= 1/2
+    a, G, mass, speed, k_bar = 1e-3, 1e6, 0.01, 0.1, 3.61873584896
+    stiffness = 8 * G * a * k_bar
+    viscosity = damping * 2 * G * sqrt(mass / stiffness)
+    unit = sqrt(mass * stiffness) * speed
+    s = sqrt(abs(1 - damping**2))
+    t = atan(s * (1 - 4 * damping**2) / (damping * (3 - 4 * damping**2))) / s if damping < 0.5 else 0.0
+    exact = unit * exp(-damping * t) * (2 * damping * np.cos(s * t) + (1 - 2 * damping**2) / s * np.sin(s * t))
+    scene = Scene(
+        layer=Layer.incompressible(thickness=a, shear_modulus=G),
+        indenter=FlatPunch(radius=a),
+        loading=Impact(mass=mass, velocity=speed),
+        effects=(KelvinVoigt(shear_modulus=G, viscosity=viscosity),),
+    )
+    history = Fem(growth=0.7, edge_cell=1e-6).solve(scene)
+    assert abs(history.peak_force / exact - 1) <= history.error_estimate["peak_force"][0] < 2e-4
+    assert history.normal_force[0] == pytest.approx(2 * damping * unit, rel=1e-4)
+
+
+def test_every_quantity_of_a_history_has_an_error_bar():
+    history = QUICK.solve(impact_scene(2e-3))
+    assert set(history.error_estimate) == {
+        *history.ARRAYS,
+        *history.SCALARS,
+        "coefficient_of_restitution",
+        "contact_time",
+    } - {"time"}
+    assert all(np.all(error > 0) for error in history.error_estimate.values())
+    layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
+    loading = DepthHistory(time=[0, 1e-3], depth=[0, 5e-5])
+    path = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
+    assert set(path.error_estimate) == {"indentation_depth", "normal_force", "contact_radius"}
+    assert path.error_estimate["indentation_depth"].tolist() == [0.0] * len(path)  # input
 
 
 def test_elastic_impact_loses_nothing():

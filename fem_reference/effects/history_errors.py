@@ -1,0 +1,71 @@
+"""Error bars of histories: what half the cells change, what half the steps change, and what neither shows.
+
+The trajectory is simulated three times.  Contact sets are found to a cell, so differences scatter, and one number may
+change little by accident: the changes by space of restitution, peaks and range therefore stand in for each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import HistoryPath, ImpactHistory
+
+Array = NDArray[np.float64]
+H = TypeVar("H", bound=HistoryPath | ImpactHistory)
+
+DERIVED = ("coefficient_of_restitution", "contact_time")
+TYPICAL = 0.5  # of the mean change by space: the least that is believed of one number
+
+
+@dataclass(frozen=True, kw_only=True)
+class KnownErrors:
+    """Relative errors that halving shows not, or that are not there.
+
+    Attributes:
+        everywhere: of every quantity, from the outer edge and the thickness that stands for a half-space.
+        radius: of contact radii, which are read from pressures on cells.
+        exact: quantities that are input.
+    """
+
+    everywhere: float
+    radius: float
+    exact: frozenset[str]
+
+
+def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
+    """The finest history with its error estimates.
+
+    Args:
+        fine: history as asked.
+        wider: on half the cells.
+        coarse: on half the cells with half the steps.
+        known: what these do not show.
+    """
+    channels = [name for name in fine.ARRAYS if name != "time"]
+    scalars = [*fine.SCALARS, *(name for name in DERIVED if hasattr(fine, name))]
+    space = {name: _channel_change(fine, wider, name) for name in channels}
+    space |= {name: _scalar_change(fine, wider, name) for name in scalars}
+    time = {name: _channel_change(wider, coarse, name) for name in channels}
+    time |= {name: _scalar_change(wider, coarse, name) for name in scalars}
+    judged = [name for name in ("indentation_depth", "normal_force", *scalars) if "radius" not in name]
+    typical = TYPICAL * np.mean([space[name] for name in judged if name not in known.exact])
+    error = {}
+    for name in (*channels, *scalars):
+        size = max(space[name], typical) + time[name] + known.everywhere + known.radius * ("radius" in name)
+        error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
+    return replace(fine, error_estimate=error)
+
+
+def _scalar_change(fine: H, coarse: H, name: str) -> float:
+    return float(abs(getattr(coarse, name) / getattr(fine, name) - 1))
+
+
+def _channel_change(fine: H, coarse: H, name: str) -> float:
+    """Largest change at the instants of the coarser history, relative to the largest value."""
+    values, others = getattr(fine, name), getattr(coarse, name)
+    change = np.interp(coarse.time, fine.time, values) - others
+    return float(np.abs(change).max() / max(np.abs(values).max(), np.finfo(float).tiny))
