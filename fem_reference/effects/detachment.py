@@ -27,6 +27,8 @@ from fem_reference.prescribed_radius import PrescribedContact
 Array = NDArray[np.float64]
 Control = Literal["displacement", "force"]
 
+BEND = 1e-2  # of ln a, for second differences
+
 CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
     "its axial symmetry (cavitation, fingering), and this branch may be unphysical there"
@@ -62,12 +64,15 @@ def detachment_path(
     pull_off = _pull_off(branch, radius, loading.control, critical)
     modulus = scene.layer.contact_modulus
     passed = radius >= pull_off.contact_radius
-    scale = {"indentation_depth": np.abs(depth).max(), "normal_force": np.abs(force).max()}
-    answers = {
-        "indentation_depth": np.abs(depth) + branch.elongation(radius),
-        "normal_force": np.abs(force) + branch.stiffness(radius) * branch.elongation(radius),
+    strongest = _point(branch, float(radius[passed][np.argmin(force[passed])]), loading.control, "strongest")
+    strongest = min(strongest, pull_off, key=lambda point: point.normal_force)
+    absolute = _absolute_errors(branch, radius)
+    error = {
+        "contact_radius": np.zeros_like(radius),
+        "indentation_depth": absolute["indentation_depth"] / np.abs(depth).max(),
+        "normal_force": absolute["normal_force"] / np.abs(force).max(),
+        **_pull_off_errors(branch, pull_off, strongest),
     }
-    error = {name: branch.error[name] * answers[name] / scale[name] for name in scale}
     cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c.answer)]
     return DetachmentPath(
         scene=scene,
@@ -84,11 +89,46 @@ def detachment_path(
         normal_force=modulus * force,
         stable_displacement_control=branch.slope(branch.depth, radius) > 0,
         stable_force_control=branch.slope(branch.force, radius) > 0,
-        pull_off_force=float(modulus * min(force[passed].min(), pull_off.normal_force)),
+        pull_off_force=modulus * strongest.normal_force,
         pull_off_depth=pull_off.indentation_depth,
         pull_off_contact_radius=pull_off.contact_radius,
         critical_points=tuple(_in_newtons(point, modulus) for point in critical),
     )
+
+
+def _absolute_errors(branch: AdhesiveBranch, radius: Array) -> dict[str, Array]:
+    """Errors of depth [m] and force / E* [m^2]: relative ones of the terms whose differences they are."""
+    dl = branch.elongation(radius)
+    depth = branch.error["indentation_depth"] * (np.abs(branch.depth(radius)) + dl)
+    force = branch.error["normal_force"] * (np.abs(branch.force(radius)) + branch.stiffness(radius) * dl)
+    return {"indentation_depth": depth, "normal_force": force}
+
+
+def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, Array]:
+    """Relative errors of the load and the place of pull-off; at the rim of a punch the place is exact."""
+    load, name = (
+        (branch.depth, "indentation_depth") if pull_off.control == "displacement" else (branch.force, "normal_force")
+    )
+    here = _absolute_errors(branch, np.array([pull_off.contact_radius]))
+    there = _absolute_errors(branch, np.array([strongest.contact_radius]))
+    at_end = pull_off.contact_radius == branch.pieces[-1].high
+    place = 0.0 if at_end else place_error(branch, load, pull_off.contact_radius, float(here[name][0]))
+    return {
+        "pull_off_depth": here["indentation_depth"] / abs(pull_off.indentation_depth),
+        "pull_off_force": there["normal_force"] / abs(strongest.normal_force),
+        "pull_off_contact_radius": np.array([place]),
+    }
+
+
+def place_error(branch: AdhesiveBranch, load: Callable[[Array], Array], radius: float, error: float) -> float:
+    """Relative error of the radius at which a load, known within an error, is stationary.
+
+    The error differs from one solved radius to the next, which tilts the load by about as many times that error per
+    unit of ln a as there are radii.
+    """
+    left, middle, right = load(radius * np.exp(np.array([-BEND, 0.0, BEND])))
+    curvature = abs(left - 2 * middle + right) / BEND**2
+    return float(len(branch.pieces[0].contacts) * error / curvature)
 
 
 def presses_most_in_the_centre(contact: PrescribedContact) -> bool:

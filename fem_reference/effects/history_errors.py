@@ -52,12 +52,21 @@ def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
     time = {name: _channel_change(wider, coarse, name) for name in channels}
     time |= {name: _scalar_change(wider, coarse, name) for name in scalars}
     judged = [name for name in ("indentation_depth", "normal_force", *scalars) if "radius" not in name]
-    typical = TYPICAL * np.mean([space[name] for name in judged if name not in known.exact])
+    typical = TYPICAL * float(np.mean([space[name] for name in judged if name not in known.exact]))
     error = {}
     for name in (*channels, *scalars):
         size = max(space[name], typical) + time[name] + known.everywhere + known.radius * ("radius" in name)
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
+    if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
+        error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
     return replace(fine, error_estimate=error)
+
+
+def _steep_end(history: ImpactHistory, time_error: float) -> float:
+    """What an error of the contact time means for the radius, which vanishes like the root of the time that is left."""
+    drop = history.contact_radius[-2] - history.contact_radius[-1]
+    shift = time_error * history.contact_time / (history.time[-1] - history.time[-2])
+    return float(drop * np.sqrt(min(1.0, shift)) / history.contact_radius.max())
 
 
 def _scalar_change(fine: H, coarse: H, name: str) -> float:

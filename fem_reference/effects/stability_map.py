@@ -18,7 +18,7 @@ from contact import Layer
 from fem_reference.certified import CertifiedContact
 from fem_reference.effects.adhesion import branch_samples
 from fem_reference.effects.adhesive_branch import AdhesiveBranch, solve_branch
-from fem_reference.effects.detachment import slope_root
+from fem_reference.effects.detachment import place_error, slope_root
 
 Array = NDArray[np.float64]
 
@@ -28,7 +28,6 @@ RATIOS = (
     12.0,
 )  # a/h: ends of the pieces; below 0.1 a layer is a half-space, beyond 12 a foundation of springs
 NODES = 17
-BEND = 1e-2  # of ln a, for second differences
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,15 +66,13 @@ def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple
 
 
 def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
-    """An error e of ln dl, which differs from one node to the next, tilts it by about ``NODES e`` per unit of ln a."""
-    height = branch.elongation(radius * np.exp(np.array([-BEND, 0.0, BEND])))
-    curvature = abs(height[0] - 2 * height[1] + height[2]) / (BEND**2 * height[1])
+    height = float(branch.elongation(np.array([radius]))[0])
     error = (max(c.error["stiffness_slope"] for c in branch.contacts) + branch.interpolation_error) / 2
     return Reversal(
         kind="maximum" if is_maximum else "minimum",
         ratio=radius / thickness,
-        elongation=float(height[1]) / thickness,
-        ratio_error=float(NODES * error / curvature),
+        elongation=height / thickness,
+        ratio_error=place_error(branch, branch.elongation, radius, error * height),
         elongation_error=error,
     )
 

@@ -53,6 +53,10 @@ def manufactured_error(pair, nu, cells):
     if nu == 0.5:  # the level of the pressure is free: hold it at the first vertex
         held = np.append(held, space.displacement_count)
         values = np.append(values, np.prod(np.cos(space.mesh.p[:, 0])))
+        # the interpolated boundary values let a little flux through, which would leave the layer as a source at that
+        # vertex, with an error of the pressure of order h^3: make them conserve volume
+        flux = np.asarray(problem.matrix[space.displacement_count :].sum(axis=0)).ravel()[held]
+        values -= flux * (flux @ values) / (flux @ flux)
     solver = problem.solver(held)
     solution = solver.solve_displaced(values[:, None]) + solver.solve_loaded(loads)
     fields = point_fields(space, problem.moduli, solution, np.arange(space.mesh.t.shape[1]))
@@ -76,7 +80,7 @@ def test_manufactured_solution_converges_at_the_formal_orders(pair, nu):
     displacement, pressure = np.log2(coarse / fine)
     k = pair.degree
     assert k + 0.8 < displacement < k + 1.5
-    assert pressure > k - 0.2  # degree k - 1, order k
+    assert pressure > k - 0.1  # degree k - 1, order k; -K div u of P2 has 1.95 on these meshes
     assert fine[0] < {2: 1e-3, 3: 1e-5, 4: 1e-6}[k]
 
 

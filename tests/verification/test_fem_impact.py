@@ -4,24 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.interpolate import CubicSpline
 
 from bem.integral_equation import IntegralEquation
-from contact import Layer
+from benchmarks.fem_impacts import largest_difference, with_poissons_ratio
 from fem_reference import Fem
 from mdr.effects.impact import solve_impact
 from tests.mdr.viscoelastic_scenes import figure_12
 
 # Restitution from a separate Fredholm solution and explicit integration over springs, five digits.
 RESTITUTION = {np.inf: 0.45457, 3e-3: 0.52344, 2e-3: 0.55924, 1e-3: 0.64341}
-
-
-def largest_difference(name, history, exact):
-    """Of a channel at the samples of ``history``, by the largest value of the exact one."""
-    time, first = np.unique(exact.time, return_index=True)
-    common = history.time <= exact.time[-1]
-    truth = CubicSpline(time, getattr(exact, name)[first])(history.time[common])
-    return np.abs(getattr(history, name)[common] - truth).max() / np.abs(truth).max()
 
 
 @pytest.mark.parametrize(
@@ -42,10 +33,8 @@ def test_force_history_of_figure_12_within_3e_4_of_the_peak(thickness):
 @pytest.mark.slow
 def test_finite_bulk_modulus_tends_to_the_incompressible_layer():
     scene = figure_12(1e-3)
-    gaps = []
-    for nu in (0.3, 0.4, 0.49, 0.4999):
-        layer = Layer(thickness=1e-3, youngs_modulus=2 * (1 + nu) * scene.layer.shear_modulus, poissons_ratio=nu)
-        gaps.append(Fem().solve(scene.replace(layer=layer)).coefficient_of_restitution - 0.64341)
+    layers = (with_poissons_ratio(scene, nu) for nu in (0.3, 0.4, 0.49, 0.4999))
+    gaps = [Fem().solve(on_layer).coefficient_of_restitution - 0.64341 for on_layer in layers]
     assert np.all(np.diff(gaps) < 0)
     assert gaps[-1] < 0.02 * gaps[-2]  # the gap closes in proportion to 1 - 2 nu, here by a hundred
     assert gaps[-1] == pytest.approx(0, abs=2e-4)
