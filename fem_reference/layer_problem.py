@@ -121,7 +121,7 @@ class RestrictedSolver:
         self.problem = problem
         self.held = held
         self._free = order[is_free[order]]
-        rows = problem.matrix.tocsr()[self._free]
+        rows = problem.matrix.T[self._free]  # symmetric: the transpose is the same matrix, stored by rows
         self._coupling = rows[:, held]
         self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend)
 

@@ -46,7 +46,9 @@ def with_mumps(matrix: sparse.csc_array) -> Factors:
         InvalidInput: python-mumps is not installed.
     """
     if find_spec("mumps") is None:
-        raise InvalidInput("solver 'mumps' needs the package python-mumps; install it or take solver 'superlu'")
+        raise InvalidInput(
+            "solver 'mumps' needs python-mumps; install contact-verification[mumps] or take solver 'superlu'"
+        )
     return _Mumps(matrix)
 
 

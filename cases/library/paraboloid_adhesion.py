@@ -108,10 +108,11 @@ CLAIMS = (
     ),
     *agreements(
         BY_FORCE,
-        {"fem": 2e-2},
+        {"fem": 2e-3},
         ("pull_off_force", "pull_off_depth"),
         reason=with_reason(
-            FINITE_ELEMENTS, "errors of 1e-4 of the largest force on the branch, which is a hundred times the pull-off"
+            FINITE_ELEMENTS,
+            "accuracy 1e-4 of profile and elongation, whose difference the pull-off is; it states at most 1e-3, twice",
         ),
     ),
 )

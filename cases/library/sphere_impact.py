@@ -162,7 +162,8 @@ def _velocity(run: SceneRun, reference: SceneRun) -> tuple[Array, Array]:
 
 SEPARATE_IMPACT = Reason(
     because="the same springs and memory, integrated by a separate code on two resolutions",
-    derived_from="those two agree to 3e-5; finite elements ten times their error",
+    derived_from="those two agree to 3e-5; finite elements what they state for 120 cells and 400 steps: 7e-5 in the "
+    "restitution, 3e-4 in the peak force",
     origin=Origin.INDEPENDENT_METHOD,
     source="explicit integration over springs from a separate Fredholm solution",
 )
@@ -174,7 +175,7 @@ SIX_DIGITS = Reason(
 )
 ENERGY = Reason(
     because="kinetic, stored and dissipated energy add up to the initial one",
-    derived_from="MDR: tolerance of its time integration; finite elements: second order of 600 time steps",
+    derived_from="MDR: tolerance of its time integration; finite elements: 1e-5 by 400 time steps, ten times",
     origin=Origin.CLOSED_FORM,
     source="first law of thermodynamics",
 )
@@ -191,7 +192,7 @@ CLAIMS = (
         quantity="coefficient_of_restitution",
         expected={name_of(h): (RESTITUTION[h],) for h in THICKNESSES},
         tolerance=3e-5,
-        tolerances={"fem": 5e-4},
+        tolerances={"fem": 1e-4},
         reason=SEPARATE_IMPACT,
     ),
     Exact(
@@ -206,7 +207,7 @@ CLAIMS = (
         quantity="peak_force",
         expected={name_of(h): (force,) for h, force in PEAK_FORCE.items()},
         tolerance=3e-5,
-        tolerances={"fem": 1e-3},
+        tolerances={"fem": 3e-4},
         reason=SEPARATE_IMPACT,
     ),
     Residual(
@@ -214,7 +215,7 @@ CLAIMS = (
         quantity="energy_residual",
         scenes=tuple(s.name for s in ON_LAYERS),
         tolerance=1e-7,
-        tolerances={"fem": 1e-3},
+        tolerances={"fem": 1e-4},
         reason=ENERGY,
     ),
     Twin(
@@ -230,9 +231,21 @@ CLAIMS = (
     ),
     *agreements(
         ON_LAYERS,
-        {"fem": 1e-3},
-        ("coefficient_of_restitution", "peak_force", "peak_depth"),
-        reason=with_reason(FINITE_ELEMENTS, "ten times the finite element error in space and time, 1e-4"),
+        {"fem": 2e-4},
+        ("coefficient_of_restitution", "peak_depth", "contact_time"),
+        reason=with_reason(FINITE_ELEMENTS, "what finite elements state for 120 cells and 400 steps, 8e-5, twice"),
+    ),
+    *agreements(
+        ON_LAYERS,
+        {"fem": 5e-4},
+        ("peak_force",),
+        reason=with_reason(FINITE_ELEMENTS, "what finite elements state for 120 cells and 400 steps, 3e-4, twice"),
+    ),
+    *agreements(
+        ON_LAYERS,
+        {"fem": 4e-3},
+        ("peak_contact_radius",),
+        reason=with_reason(FINITE_ELEMENTS, "a tenth of a cell and what halving the cells changes, 2e-3, twice"),
     ),
 )
 

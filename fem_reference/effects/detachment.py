@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 Control = Literal["displacement", "force"]
 
 BEND = 1e-2  # of ln a, for second differences
+TILT = 3.0
 
 CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
@@ -123,12 +124,12 @@ def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest:
 def place_error(branch: AdhesiveBranch, load: Callable[[Array], Array], radius: float, error: float) -> float:
     """Relative error of the radius at which a load, known within an error, is stationary.
 
-    The error differs from one solved radius to the next, which tilts the load by about as many times that error per
-    unit of ln a as there are radii.
+    The error differs from one solved radius to the next, which tilts the load by a few times that error per unit of
+    ln a; measured: less than once.
     """
     left, middle, right = load(radius * np.exp(np.array([-BEND, 0.0, BEND])))
     curvature = abs(left - 2 * middle + right) / BEND**2
-    return float(len(branch.pieces[0].contacts) * error / curvature)
+    return float(TILT * error / curvature)
 
 
 def presses_most_in_the_centre(contact: PrescribedContact) -> bool:

@@ -22,12 +22,8 @@ from fem_reference.effects.detachment import place_error, slope_root
 
 Array = NDArray[np.float64]
 
-RATIOS = (
-    0.1,
-    1.2,
-    12.0,
-)  # a/h: ends of the pieces; below 0.1 a layer is a half-space, beyond 12 a foundation of springs
-NODES = 17
+RATIOS = (0.1, 0.5, 2.4, 12.0)  # a/h at the ends of pieces: below, a layer is a half-space; beyond, a bed of springs
+NODES = 13
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +63,7 @@ def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple
 
 def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
     height = float(branch.elongation(np.array([radius]))[0])
-    error = (max(c.error["stiffness_slope"] for c in branch.contacts) + branch.interpolation_error) / 2
+    error = float(max(c.error["stiffness_slope"] for c in branch.contacts) + branch.interpolation_error) / 2
     return Reversal(
         kind="maximum" if is_maximum else "minimum",
         ratio=radius / thickness,

@@ -150,7 +150,7 @@ def test_no_work_of_adhesion_is_elastic_contact():
 
 
 def test_cohesive_zone_converges_to_the_energy_argument_as_it_shrinks():
-    punch = CohesivePunch(unit_layer(), 1.0, Discretisation(edge_cell=1e-4, growth=0.15, truncation=1e-6))
+    punch = CohesivePunch(unit_layer(), 1.0, Discretisation(edge_cell=1e-4, growth=0.3, truncation=1e-6))
     exact, work = solve_contact(1.0), 1e-4
     force = -exact.stiffness * np.sqrt(4 * np.pi * work / exact.stiffness_slope)
     pull_offs = [punch.pull_off(work, strength * np.sqrt(work)) for strength in (5, 10)]

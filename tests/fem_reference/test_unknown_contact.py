@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from contact import (
+    ContactRadii,
     IndentationDepths,
     InvalidInput,
     Layer,
@@ -49,6 +50,17 @@ def test_depth_and_force_control_find_the_same_state(ratio, kind):
         }
         for name, error in true.items():
             assert abs(error) <= path.error_estimate[name][0] + 1e-12 < 1e-4, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("flat", [0.99, 0.999, 0.9999])
+def test_contact_that_barely_passes_a_flat_end_is_found(flat):
+    indenter = TruncatedCone(flat_radius=flat * 1e-3, slope=0.1)
+    at_radius = QUICK.solve(Scene(layer=LAYER, indenter=indenter, loading=ContactRadii([1e-3])))
+    for loading in (IndentationDepths(at_radius.indentation_depth), NormalForces(at_radius.normal_force)):
+        found = QUICK.solve(Scene(layer=LAYER, indenter=indenter, loading=loading))
+        assert abs(found.contact_radius[0] / 1e-3 - 1) <= found.error_estimate["contact_radius"][0] < 1e-4
+        assert found.normal_force[0] == pytest.approx(at_radius.normal_force[0], rel=1e-4)
 
 
 @pytest.mark.slow
