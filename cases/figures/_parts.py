@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
@@ -9,11 +10,12 @@ from numpy.typing import ArrayLike
 
 from bem.flat_punch import FlatPunchSolution
 from bem.integral_equation import IntegralEquation
-from cases.results import Series
+from cases.results import Figure, Series
 from contact import Layer
 from contact.validation import FloatArray
 
 SOURCE = IntegralEquation()
+MDR = "mdr"
 LARGEST_RATIO = 100.0  # of a/h in the figures
 
 
@@ -49,16 +51,34 @@ def mdr_line(
 ) -> Series:
     """A line computed by MDR, with its band."""
     ordinates = np.asarray(y, dtype=np.float64)
-    band = np.abs(ordinates) * np.broadcast_to(np.asarray(relative_error, dtype=np.float64), ordinates.shape)
+    relative = np.broadcast_to(np.asarray(relative_error, dtype=np.float64), ordinates.shape)
     return Series(
-        label=group,
-        method="mdr",
+        label=f"{group}, {MDR}",
+        method=MDR,
         group=group,
         x=_tuple(x),
         y=_tuple(ordinates),
-        half_width=_tuple(band),
+        half_width=_tuple(np.abs(ordinates) * relative),
         style=style,
     )
+
+
+def with_errors(figure: Figure) -> Figure:
+    """The figure with the largest error of its MDR curves, over each curve's largest ordinate, in their label."""
+    curves = [one for panel in figure.panels for one in panel.series if one.method == MDR]
+    worst = max(max(one.half_width) / max(map(abs, one.y)) for one in curves)
+    name = f"{MDR}, error below {10.0 ** np.ceil(np.log10(worst)):.0e}"
+    panels = (
+        replace(
+            panel,
+            series=tuple(
+                replace(one, method=name, label=f"{one.group}, {name}") if one.method == MDR else one
+                for one in panel.series
+            ),
+        )
+        for panel in figure.panels
+    )
+    return replace(figure, panels=tuple(panels))
 
 
 def closed_form(group: str, method: str, x: ArrayLike, y: ArrayLike) -> Series:

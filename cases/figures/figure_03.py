@@ -43,7 +43,7 @@ def figure() -> Figure:
         series=tuple(lines),
     )
     return Figure(
-        name="figure_3", title="Fig. 3: contact stiffness of the flat punch", caption=_caption(), panels=(panel,)
+        name="fig_3", title="Fig. 3: contact stiffness of the flat punch", caption=_caption(), panels=(panel,)
     )
 
 

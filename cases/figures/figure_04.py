@@ -18,7 +18,7 @@ def figure() -> Figure:
     data, edge = punch(layer(0.5)), np.sqrt((1.0 - RADII) * (1.0 + RADII))
     lines = [
         mdr_line(
-            f"a/h = {ratio:g}",
+            f"a/h={ratio:g}",
             RADII,
             data.smooth_pressure(RADII, np.full(RADII.size, ratio)) / edge,
             float(data.relative_error(np.array(ratio))),
@@ -34,7 +34,7 @@ def figure() -> Figure:
         "Lines: MDR with the integral equation, nu = 0.5. Dashed: thin layer, dotted: half-space. The paper sees the "
         f"second maximum in the centre develop for a/h >= 2; it is there from a/h = {second_maximum():.3f} on."
     )
-    return Figure(name="figure_4", title="Fig. 4: pressure under a flat punch", caption=caption, panels=(panel,))
+    return Figure(name="fig_4", title="Fig. 4: pressure under a flat punch", caption=caption, panels=(panel,))
 
 
 def second_maximum(poissons_ratio: float = 0.5) -> float:

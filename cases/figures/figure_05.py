@@ -39,4 +39,4 @@ def figure() -> Figure:
         "Lines: MDR with the integral equation. m tends to 0 (half-space), 1 (thin compressible or unbonded) and 3 "
         f"(thin incompressible); the last slowly: m = {float(exponent(layer(0.5), RATIOS)[0][-1]):.3f} at a/h = 100."
     )
-    return Figure(name="figure_5", title="Fig. 5: exponent and factor of the stiffness", caption=caption, panels=panels)
+    return Figure(name="fig_5", title="Fig. 5: exponent and factor of the stiffness", caption=caption, panels=panels)

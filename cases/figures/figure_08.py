@@ -56,7 +56,7 @@ def figure() -> Figure:
         series=tuple(lines),
     )
     return Figure(
-        name="figure_8", title="Fig. 8: elongation at which the edge lets go", caption=_caption(), panels=(panel,)
+        name="fig_8", title="Fig. 8: elongation at which the edge lets go", caption=_caption(), panels=(panel,)
     )
 
 

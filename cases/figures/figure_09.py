@@ -24,7 +24,7 @@ def figure() -> Figure:
         x_label=r"$\delta/|\delta_\mathrm{c}^\mathrm{HS}|$",
         y_label=r"$F_\mathrm{N}/|F_\mathrm{c}^\mathrm{HS}|$",
         x_range=(-1.1, 0.0),
-        y_range=(-8.0, 0.0),
+        y_range=(-4.0, 0.0),
         series=tuple(lines),
     )
     caption = (
@@ -33,7 +33,7 @@ def figure() -> Figure:
         f"a*/h = {second_maximum():.3f} on, the tension has a second maximum in the centre, and cavities or fingers "
         "may come first; the paper, by its criterion, says 2."
     )
-    return Figure(name="figure_9", title="Fig. 9: detachment of a flat punch", caption=caption, panels=(panel,))
+    return Figure(name="fig_9", title="Fig. 9: detachment of a flat punch", caption=caption, panels=(panel,))
 
 
 def _curves(ratio: float) -> list[Series]:
@@ -48,7 +48,7 @@ def _curves(ratio: float) -> list[Series]:
     path = solve_detachment(scene, SOURCE, {})
     depth, force = path.indentation_depth, path.normal_force / 2.0
     start = int(np.flatnonzero(path.contact_radius == path.contact_radius[0])[-1])
-    error = float(path.error_estimate["normal_force"][0])
+    error = float(path.error_estimate["normal_force"].max())
     name = f"a*/h = {ratio:g}"
     found = [mdr_line(name, depth[: start + 1], force[: start + 1], error)]
     peeling = path.stable_displacement_control & (np.arange(len(path)) >= start)

@@ -47,9 +47,7 @@ def figure() -> Figure:
         y_range=(0.0, 1.0),
         series=tuple(lines),
     )
-    return Figure(
-        name="figure_11", title="Fig. 11: restitution of a flat punch", caption=_caption(), panels=(left, right)
-    )
+    return Figure(name="fig_11", title="Fig. 11: restitution of a flat punch", caption=_caption(), panels=(left, right))
 
 
 def _caption() -> str:

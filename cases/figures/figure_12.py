@@ -35,9 +35,14 @@ def scene(thickness: float) -> Scene:
     return Scene(layer=soft, indenter=Paraboloid(radius_of_curvature=RADIUS), loading=impact, effects=(model,))
 
 
+def elastic_half_space() -> ImpactHistory:
+    """Its largest depth and force and its duration are the figure's units."""
+    return solve_impact(scene(math.inf).replace(effects=()), SOURCE, {})
+
+
 def figure() -> Figure:
     """Panels A (force over depth), B (a/h over time), C (velocity over time), in units of the elastic half-space."""
-    elastic = solve_impact(scene(math.inf).replace(effects=()), SOURCE, {})
+    elastic = elastic_half_space()
     histories = {thickness: solve_impact(scene(thickness), SOURCE, {}) for thickness in THICKNESSES}
     loops, ratios, speeds = [], [], []
     for thickness, run in histories.items():
@@ -59,7 +64,7 @@ def figure() -> Figure:
         Panel(title="C", x_label=r"$t/T^\mathrm{HS}$", y_label="$v/v_0$", y_range=(-1.0, 1.0), series=tuple(speeds)),
     )
     return Figure(
-        name="figure_12", title="Fig. 12: sphere on a viscoelastic layer", caption=_caption(histories), panels=panels
+        name="fig_12", title="Fig. 12: sphere on a viscoelastic layer", caption=_caption(histories), panels=panels
     )
 
 

@@ -8,9 +8,10 @@ from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
+from cases.figures import paper_figure
 from cases.library._compared import BEM, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, half_space
-from cases.results import Figure, Origin, Panel, SceneRun, Series
+from cases.results import Figure, Origin
 from cases.task import Answers
 from cases.work.settings import detachment_costs
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
@@ -65,8 +66,6 @@ def on_half_space(control: str) -> CaseScene:
 HALF_SPACE = tuple(on_half_space(control) for control in ("displacement", "force"))
 BEYOND_MAXIMUM = tuple(case_scene(nu, 2.0, "displacement", only_mdr=nu != 0.5) for nu in MAXIMA)
 ABRUPT = (case_scene(0.5, 1.0, "force"),)
-FIGURE_9 = tuple(case_scene(0.5, ratio, "displacement", only_mdr=True) for ratio in (0.2, 0.46, 1.0, 3.0, 10.0))
-FIGURE_8 = tuple(case_scene(nu, 20.0, "displacement", only_mdr=True) for nu in (0.3, 0.4, 0.45, 0.5))
 
 
 def kendall_depth(scene: Scene) -> list[float]:
@@ -93,57 +92,11 @@ def abrupt_force(scene: Scene) -> list[float]:
     return [-float(2 * scene.layer.contact_modulus * a * kbar * elongation)]
 
 
-def figure_8(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 8: largest spring elongation over a/h."""
-    series = []
-    for scene in FIGURE_8:
-        run = answers.of(case.task(scene, MDR))
-        if run.solved:
-            depth = run.curve("indentation_depth")
-            unit = unit_elongation(scene.scene.layer)
-            nu = scene.parameters["poissons_ratio"]
-            x = tuple(a / THICKNESS for a in depth.x)
-            series.append(_line(f"nu={nu}", x, tuple(-d / unit for d in depth.y)))
-    panel = Panel(title="", x_label="$a/h$", y_label=r"$\overline{\Delta l}$", x_scale="log", series=tuple(series))
-    yield Figure(
-        name="fig_8",
-        title="Fig. 8: normalised spring elongation on bonded layers",
-        caption="A maximum exists for nearly incompressible layers only.",
-        panels=(panel,),
-    )
-
-
-def figure_9(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 9: force over depth, both over the critical values of the half-space."""
-    series = []
-    for scene in FIGURE_9:
-        run = answers.of(case.task(scene, MDR))
-        if run.solved:
-            series.append(_force_over_depth(scene, run))
-    panel = Panel(
-        title="",
-        x_label=r"$\delta/|\delta_c^\mathrm{HS}|$",
-        y_label=r"$F_N/|F_c^\mathrm{HS}|$",
-        series=tuple(series),
-    )
-    yield Figure(
-        name="fig_9",
-        title="Fig. 9: detachment of a flat punch from a bonded incompressible layer",
-        caption="From the undeformed state along the punch's stiffness, then along the branch of shrinking contact.",
-        panels=(panel,),
-    )
-
-
-def _force_over_depth(scene: CaseScene, run: SceneRun) -> Series:
-    depth, force = run.curve("indentation_depth"), run.curve("normal_force")
-    unit_depth, unit_force = -kendall_depth(scene.scene)[0], -kendall_force(scene.scene)[0]
-    x = (0.0, *(d / unit_depth for d in depth.y))  # the straight line of the punch at full contact comes first
-    y = (0.0, *(f / unit_force for f in force.y))
-    return _line(f"a*/h={scene.parameters['a_over_h']}", x, y)
-
-
-def _line(group: str, x: tuple[float, ...], y: tuple[float, ...]) -> Series:
-    return Series(label=group, method="mdr", group=group, x=x, y=y)
+def figures(case: Case, answers: Answers) -> Iterator[Figure]:
+    """Fig. 8: largest spring elongation over a/h. Fig. 9: force over depth, both over those of the half-space."""
+    del case, answers
+    yield paper_figure(8)
+    yield paper_figure(9)
 
 
 KENDALL = Reason(
@@ -234,10 +187,10 @@ CASE = Case(
     equations=("Eq. (40)", "Eq. (42)", "Eq. (45)", "Eq. (46)", "Figs. 8-9"),
     text=TEXT.strip(),
     suites=("ci", "nightly"),
-    scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT, *FIGURE_9, *FIGURE_8),
+    scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT),
     methods=(MDR, QUICK_FEM, BEM),
     claims=CLAIMS,
     ablations=(AblationStudy(scene=BEYOND_MAXIMUM[0].name, nightly=("fem", "bem")),),
     work=detachment_costs(BEYOND_MAXIMUM[0].name),
-    figures=(figure_8, figure_9),
+    figures=(figures,),
 )

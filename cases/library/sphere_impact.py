@@ -11,9 +11,10 @@ from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.residual import Residual
 from cases.claims.twin import Twin
+from cases.figures import paper_figure
 from cases.library._compared import FINITE_ELEMENTS, MDR, agreements, with_reason
 from cases.methods import MethodUse
-from cases.results import Curve, Figure, Origin, Panel, SceneRun, Series
+from cases.results import Figure, Origin, SceneRun, Series
 from cases.task import Answers
 from cases.work.settings import impact_costs
 from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
@@ -89,75 +90,34 @@ def twice_the_radius_at_half_the_speed(scene: Scene) -> Scene:
 
 
 def figure_12(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 12: force over depth, a/h over time, velocity over time; scaled by the half-space."""
-    reference = answers.of(case.task(HALF_SPACE, MDR))
-    if not reference.solved:
-        return
-    runs = [
-        (scene, answers.of(case.task(scene, use)))
-        for scene in (HALF_SPACE, *ON_LAYERS)
-        for use in case.methods_of(scene)
-    ]
-    solved = [(scene, run) for scene, run in runs if run.solved]
-    yield Figure(
-        name="fig_12",
-        title="Fig. 12: impact of a sphere on a standard-solid layer",
-        caption="Lines: MDR. Symbols: finite elements. Force, depth and time over those of the half-space.",
-        panels=(
-            Panel(
-                title="A",
-                x_label=r"$\delta/\delta_\mathrm{HS}$",
-                y_label=r"$F/F_\mathrm{HS}$",
-                series=tuple(_line(scene, run, *_hysteresis(run, reference)) for scene, run in solved),
-            ),
-            Panel(
-                title="B",
-                x_label=r"$t/t_\mathrm{HS}$",
-                y_label="$a/h$",
-                series=tuple(
-                    _line(scene, run, *_confinement(scene, run, reference))
-                    for scene, run in solved
-                    if not scene.scene.layer.is_half_space
-                ),
-            ),
-            Panel(
-                title="C",
-                x_label=r"$t/t_\mathrm{HS}$",
-                y_label="$v/v_0$",
-                series=tuple(_line(scene, run, *_velocity(run, reference)) for scene, run in solved),
-            ),
-        ),
-    )
+    """Fig. 12: force over depth, a/h over time, velocity over time; in units of the elastic half-space."""
+    from cases.figures.figure_12 import elastic_half_space  # noqa: PLC0415  # loads MDR, so only for the drawing
+
+    unit = elastic_half_space()
+    loops: list[Series] = []
+    ratios: list[Series] = []
+    speeds: list[Series] = []
+    for scene in ON_LAYERS:
+        run = answers.of(case.task(scene, FEM))
+        if run.solved:
+            time, depth = _samples(run, "indentation_depth")
+            loops.append(_symbols(scene, depth / unit.peak_depth, _samples(run, "normal_force")[1] / unit.peak_force))
+            radius, velocity = _samples(run, "contact_radius")[1], _samples(run, "velocity")[1]
+            ratios.append(_symbols(scene, time / unit.contact_time, radius / scene.scene.layer.thickness))
+            speeds.append(_symbols(scene, time / unit.contact_time, velocity / VELOCITY))
+    yield paper_figure(12, loops, ratios, speeds)
 
 
-def _line(scene: CaseScene, run: SceneRun, x: Array, y: Array) -> Series:
-    label = f"{run.method} {scene.name}"
-    return Series(label=label, method=run.method, group=scene.name, x=tuple(x.tolist()), y=tuple(y.tolist()))
+def _symbols(scene: CaseScene, x: Array, y: Array) -> Series:
+    group = f"h = {1e3 * scene.scene.layer.thickness:g} mm"
+    return Series(label=f"fem {scene.name}", method="fem", group=group, x=tuple(x.tolist()), y=tuple(y.tolist()))
 
 
-def _sampled(run: SceneRun, channel: str) -> tuple[Curve, slice]:
-    """Return a channel, and which of its samples a figure shows: symbols need fewer than lines."""
+def _samples(run: SceneRun, channel: str) -> tuple[Array, Array]:
+    """Return time and values, as many as symbols can show."""
     curve = run.curve(channel)
-    return curve, slice(None, None, 1 if run.method == "mdr" else max(1, len(curve.x) // 25))
-
-
-def _hysteresis(run: SceneRun, reference: SceneRun) -> tuple[Array, Array]:
-    depth, shown = _sampled(run, "indentation_depth")
-    force, _ = _sampled(run, "normal_force")
-    x = np.array(depth.y)[shown] / reference.quantity("peak_depth").values[0]
-    return x, np.array(force.y)[shown] / reference.quantity("peak_force").values[0]
-
-
-def _confinement(scene: CaseScene, run: SceneRun, reference: SceneRun) -> tuple[Array, Array]:
-    radius, shown = _sampled(run, "contact_radius")
-    x = np.array(radius.x)[shown] / reference.quantity("contact_time").values[0]
-    return x, np.array(radius.y)[shown] / scene.scene.layer.thickness
-
-
-def _velocity(run: SceneRun, reference: SceneRun) -> tuple[Array, Array]:
-    velocity, shown = _sampled(run, "velocity")
-    x = np.array(velocity.x)[shown] / reference.quantity("contact_time").values[0]
-    return x, np.array(velocity.y)[shown] / VELOCITY
+    shown = slice(None, None, max(1, len(curve.x) // 25))
+    return np.array(curve.x)[shown], np.array(curve.y)[shown]
 
 
 SEPARATE_IMPACT = Reason(

@@ -16,6 +16,7 @@ from cases.claims.incremental_stiffness import IncrementalStiffness, chebyshev_r
 from cases.claims.order import Order
 from cases.claims.residual import Residual
 from cases.claims.twin import Twin
+from cases.figures import paper_figure
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
@@ -28,9 +29,8 @@ from cases.library._layers import (
     prescribed_radii,
     scene_name,
 )
-from cases.library._truncated_cone_limits import pressure_limits, profile_limits
 from cases.methods import MethodUse
-from cases.results import Figure, Origin, Panel, SceneRun, Series
+from cases.results import Figure, Origin, SceneRun, Series
 from cases.task import Answers, Sampling
 from cases.work.settings import elastic_costs
 from contact import ContactRadii, Scene, TruncatedCone
@@ -99,51 +99,32 @@ ON_LAYERS = tuple(scene.name for scene in LAYER_SCENES)
 ON_PATHS = tuple(scene.name for scene in PATH_SCENES)
 ON_HALF_SPACE = tuple(scene.name for scene in HALF_SPACE_SCENES)
 
-# -- Fig. 7: g(x; h) is the relation of depth and contact radius, so every method can draw it --------------------------
+# -- Fig. 7: g(x; h) is the relation of depth and contact radius, so finite elements can draw it too ------------------
 
 FIGURE_LAYERS = ("unbonded", "bonded nu=0.45", "bonded nu=0.5")
-LINE_RADII = 1 - (1 - FLAT_FRACTION) * np.linspace(0, 1, 40, endpoint=False)[::-1] ** 2
 SYMBOL_RADII = np.array([0.6, 0.75, 0.9])
-LIMIT_CONE = TruncatedCone(flat_radius=FLAT_FRACTION * THICKNESS, slope=SLOPE)
-LIMIT_RADII = np.linspace(0.0, 0.999, 100)  # even in number, so that none is b
 
 
-def profile_scene(label: str, ratio: float, role: str, use: MethodUse, radii: NDArray[np.float64]) -> CaseScene:
+def profile_scene(label: str, ratio: float) -> CaseScene:
     """Return a scene that walks the contact radius from b to a."""
     base = cone_scene(label, ratio)
-    scene = base.scene.replace(loading=ContactRadii(values=ratio * THICKNESS * radii))
-    name = f"{base.name}, {role}"
-    return CaseScene(name=name, parameters=base.parameters, scene=scene, methods=(use,))
+    scene = base.scene.replace(loading=ContactRadii(values=ratio * THICKNESS * SYMBOL_RADII))
+    return CaseScene(name=f"{base.name}, symbols", parameters=base.parameters, scene=scene, methods=(QUICK_FEM,))
 
 
-FIGURE_SCENES = tuple(
-    profile_scene(label, ratio, role, use, radii)
-    for label in FIGURE_LAYERS
-    for ratio in RATIOS
-    for role, use, radii in (("line", MDR, LINE_RADII), ("symbols", QUICK_FEM, SYMBOL_RADII))
-)
+FIGURE_SCENES = tuple(profile_scene(label, ratio) for label in FIGURE_LAYERS for ratio in RATIOS)
 
 
 def figure_7(case: Case, answers: Answers) -> Iterator[Figure]:
     """Fig. 7 from both methods: g/f(a) over x/a and p/p_mean over r/a, one row of panels a layer."""
-    panels = [panel(case, answers, label) for label in FIGURE_LAYERS for panel in (_profile_panel, _pressure_panel)]
-    yield Figure(
-        name="fig_7",
-        title="Fig. 7: MDR profile and contact pressure of a truncated cone, b/a = 0.5",
-        caption="Lines: MDR. Symbols: finite elements. Dotted: half-space. Dashed: thin layer. Pressure over its mean.",
-        panels=tuple(panels),
-    )
+    symbols = (_profile_symbols, _pressure_symbols)
+    yield paper_figure(7, *(own(case, answers, label) for label in FIGURE_LAYERS for own in symbols))
 
 
-def _profile_panel(case: Case, answers: Answers, label: str) -> Panel:
-    series = []
-    for ratio in RATIOS:
-        for role, radii in (("line", LINE_RADII), ("symbols", SYMBOL_RADII)):
-            scene = case.scene(f"{scene_name(label, ratio)}, {role}")
-            run = answers.of(case.task(scene, scene.methods[0]))
-            series += [_profile(run, ratio, radii)] if run.solved else []
-    series += profile_limits(label, LIMIT_CONE, THICKNESS, LINE_RADII * THICKNESS)
-    return Panel(title=label, x_label=r"$x/a$", y_label=r"$g(x)/f(a)$", series=tuple(series))
+def _profile_symbols(case: Case, answers: Answers, label: str) -> list[Series]:
+    scenes = {ratio: case.scene(f"{scene_name(label, ratio)}, symbols") for ratio in RATIOS}
+    runs = {ratio: answers.of(case.task(scene, scene.methods[0])) for ratio, scene in scenes.items()}
+    return [_profile(run, ratio, SYMBOL_RADII) for ratio, run in runs.items() if run.solved]
 
 
 def _profile(run: SceneRun, ratio: float, radii: NDArray[np.float64]) -> Series:
@@ -158,28 +139,26 @@ def _profile(run: SceneRun, ratio: float, radii: NDArray[np.float64]) -> Series:
     )
 
 
-def _pressure_panel(case: Case, answers: Answers, label: str) -> Panel:
+def _pressure_symbols(case: Case, answers: Answers, label: str) -> list[Series]:
     series = []
     for ratio in RATIOS:
         scene = case.scene(scene_name(label, ratio))
         for use in case.methods_of(scene):
             run = answers.of(case.task(scene, use))
-            series += [_pressure(run, ratio)] if run.solved and run.curves else []
-    series += pressure_limits(label, LIMIT_CONE, THICKNESS, LIMIT_RADII * THICKNESS)
-    return Panel(title=label, x_label=r"$r/a$", y_label=r"$p/p_\mathrm{m}$", series=tuple(series))
+            series += [_pressure(run, ratio)] if run.solved and run.curves and use.label != "mdr" else []
+    return series
 
 
 def _pressure(run: SceneRun, ratio: float) -> Series:
     a = ratio * THICKNESS
     mean = run.quantity("normal_force").values[-1] / (np.pi * a**2)
     curve = run.curve("pressure")
-    every = 1 if run.method == "mdr" else 3
     return Series(
         label=f"{run.method} a/h={ratio:g}",
         method=run.method,
         group=f"a/h={ratio:g}",
-        x=tuple(r / a for r in curve.x[::every]),
-        y=tuple(p / mean for p in curve.y[::every]),
+        x=tuple(r / a for r in curve.x[::3]),
+        y=tuple(p / mean for p in curve.y[::3]),
     )
 
 
