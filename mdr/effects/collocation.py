@@ -17,6 +17,7 @@ from mdr.effects.chebyshev import powers
 from mdr.effects.collocation_step import (
     STAGES,
     SWEEP_TOLERANCE,
+    Chain,
     Course,
     Derivative,
     Landing,
@@ -38,6 +39,10 @@ class Problem(Protocol):
     @property
     def controlled(self) -> int:
         """How many leading components of the state the error control watches."""
+
+    @property
+    def chain(self) -> Chain | None:
+        """A component whose slope is another one."""
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """The right-hand side of a subset of lanes, from states (m, stages, len(lanes)) to their derivatives."""
@@ -171,7 +176,7 @@ class _Walk:
         due = np.where(due < 0, self._first_event(self.active, start, ahead), due)
         landing = self._landing(due, start)
         precision = self.tolerance[self.active] * np.maximum(1.0, np.abs(start[: self.problem.controlled]))
-        task = Task(start, course.aimed(size, landing), precision, landing)
+        task = Task(start, course.aimed(size, landing), precision, landing, self.problem.chain)
         self._settle(self._tried(task, course), due)
 
     def _settle(self, trial: Step, due: Lanes) -> None:

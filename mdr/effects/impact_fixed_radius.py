@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.validation import FloatArray
-from mdr.effects.collocation_step import Derivative, Lanes
+from mdr.effects.collocation_step import Chain, Derivative, Lanes
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,11 @@ class FlatPunchLanes:
     def controlled(self) -> int:
         """All components."""
         return 5 + int(self.weights.shape[0])
+
+    @property
+    def chain(self) -> Chain:
+        """d(delta) = v dt."""
+        return 2, 3, None
 
     def take(self, lanes: Lanes) -> FlatPunchLanes:
         """Some of the lanes."""

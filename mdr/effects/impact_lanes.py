@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.validation import FloatArray
-from mdr.effects.collocation_step import Derivative, Lanes
+from mdr.effects.collocation_step import Chain, Derivative, Lanes
 from mdr.effects.impact_memory import Memory
 from mdr.effects.spring_table import MOMENT, SECOND_MOMENT, STIFFNESS, SpringTable
 
@@ -90,6 +90,11 @@ class Pressing:
         """All of them."""
         return 4 + 3 * self.lanes.branches
 
+    @property
+    def chain(self) -> Chain:
+        """dy = v d(sigma)."""
+        return 0, 2, None
+
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/d(sigma)."""
         own, section = self.lanes.take(lanes), self.section
@@ -126,6 +131,11 @@ class Receding:
     def controlled(self) -> int:
         """All of them."""
         return 5 + self.lanes.branches
+
+    @property
+    def chain(self) -> Chain:
+        """d(delta) = v dt."""
+        return 2, 3, 1
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/d(sigma)."""
