@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bem.flat_punch import FlatPunchSource
 from contact import (
@@ -34,9 +35,9 @@ from mdr.effects.spring_table import MOMENT, PROFILE, STIFFENING, STIFFNESS, Spr
 
 ACCURACY = 1e-9  # of the method's time integration, for which the next two numbers stand; one digit more doubles both
 _GAPS = 640  # between springs; even, so that every second spring reaches from end to end
-_FINENESS = 400  # substeps of a whole force history, at least two an interval
+_FINENESS = 400  # substeps of a whole force history, at least four an interval
+_LEVELS = (4, 2, 1)  # times the fewest substeps
 _FEWEST, _MOST = -2, 2  # how often they may be doubled
-_MOST_SUBSTEPS = 64  # of one interval
 _MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
 _ROUNDING = 1e-12  # of sums over hundreds of springs
 _LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
@@ -76,14 +77,11 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("equivalent_system"):
         table, bed = _bed(scene, loading, law, flat_punch, gaps)
     with log.stage("history"):
-        fine = _follow(law, bed, loading, fineness)
-        coarse = _follow(law, bed.coarser(), loading, fineness // 2)
+        found, change = _followed(law, bed, loading, _substeps(loading, fineness))
     log.count("springs", bed.y.size)
     log.count("instants", loading.time.size)
-    contact = fine.y >= 0.0
-    error = np.full(
-        loading.time.size, max(_change(fine.force, coarse.force), _change(fine.depth, coarse.depth), _ROUNDING)
-    )
+    contact = found.y >= 0.0
+    error = np.full(loading.time.size, max(change, _ROUNDING))
     if error[0] > _LARGEST_ERROR:
         raise NotConvergedError(
             "the springs do not resolve this history", {"change with twice as many": float(error[0])}
@@ -95,11 +93,11 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         error_estimate=dict.fromkeys(("indentation_depth", "normal_force"), error),
         cost=log.cost(unknowns=bed.y.size),
         stages=log.records,
-        notes=(_BENT,) if fine.bent else (),
+        notes=(_BENT,) if found.bent else (),
         time=loading.time,
-        indentation_depth=fine.depth,
-        normal_force=fine.force,
-        contact_radius=np.where(contact, _radius(scene, table, np.maximum(fine.y, 0.0)), 0.0),
+        indentation_depth=found.depth,
+        normal_force=found.force,
+        contact_radius=np.where(contact, _radius(scene, table, np.maximum(found.y, 0.0)), 0.0),
     )
 
 
@@ -113,6 +111,36 @@ def _doublings(settings: Mapping[str, Setting]) -> int:
     """How much finer than usual the springs and substeps are for the method's accuracy."""
     accuracy = settings.get("accuracy") or ACCURACY
     return int(np.clip(round(np.log10(ACCURACY / float(accuracy))), _FEWEST, _MOST))
+
+
+def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np.intp]:
+    """Fewest substeps of each interval."""
+    durations = np.diff(loading.time)
+    return np.maximum(np.ceil(fineness / _LEVELS[0] * durations / durations.sum()), 1.0).astype(np.intp)
+
+
+def _followed(
+    law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
+) -> tuple[_Track, float]:
+    """The history, and how much it changes with half the springs and, under a force, with fewer substeps.
+
+    Between two instants a prescribed depth needs no substeps. Under a force their errors go with the second and fourth
+    powers of their number, so three numbers of them have a limit (Romberg).
+    """
+    if isinstance(loading, DepthHistory):
+        fine, half = (_follow(law, own, loading, substeps) for own in (bed, bed.coarser()))
+        return fine, _change(fine.force, half.force)
+    fine, middle, coarse = (_follow(law, bed, loading, level * substeps) for level in _LEVELS)
+    half = _follow(law, bed.coarser(), loading, substeps)
+    depth, by_two = _limits(fine.depth, middle.depth, coarse.depth)
+    change = _change(depth, by_two) + _change(coarse.depth, half.depth)
+    return _Track(depth, fine.force, fine.y, fine.bent), change
+
+
+def _limits(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Without the errors of second and fourth order, and without those of second order only."""
+    first, second = fine + (fine - middle) / 3.0, middle + (middle - coarse) / 3.0
+    return first + (first - second) / 15.0, first
 
 
 def _change(fine: FloatArray, coarse: FloatArray) -> float:
@@ -184,11 +212,11 @@ def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHis
     return np.asarray(softest * (rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]))
 
 
-def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, fineness: int) -> _Track:
+def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
     time = loading.time
     states = (
-        _by_depth(law, bed, loading) if isinstance(loading, DepthHistory) else _by_force(law, bed, loading, fineness)
+        _by_depth(law, bed, loading) if isinstance(loading, DepthHistory) else _by_force(law, bed, loading, substeps)
     )
     records, bent = [], False
     for (state, speed), instant in zip(states, time, strict=True):
@@ -208,14 +236,16 @@ def _by_depth(law: SpringLaw, bed: Bed, loading: DepthHistory) -> Iterator[tuple
         yield state, speed
 
 
-def _by_force(law: SpringLaw, bed: Bed, loading: ForceHistory, fineness: int) -> Iterator[tuple[BedState, float]]:
+def _by_force(
+    law: SpringLaw, bed: Bed, loading: ForceHistory, substeps: NDArray[np.intp]
+) -> Iterator[tuple[BedState, float]]:
     """The same under prescribed force."""
     force, durations = loading.force, np.diff(loading.time)
     state = pressed_at_once(law, bed, float(force[0])) if force[0] > 0.0 else undeformed(law, bed.profile, 0.0)
     yield state, 0.0
     for i, duration in enumerate(durations):
-        substeps = int(np.clip(np.ceil(fineness * duration / durations.sum()), 2, _MOST_SUBSTEPS))
-        state, speed = to_force(law, bed, state, Ramp(float(force[i]), float(force[i + 1]), float(duration)), substeps)
+        ramp = Ramp(float(force[i]), float(force[i + 1]), float(duration))
+        state, speed = to_force(law, bed, state, ramp, int(substeps[i]))
         yield state, speed
 
 
