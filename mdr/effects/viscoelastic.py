@@ -116,7 +116,8 @@ def _doublings(settings: Mapping[str, Setting]) -> int:
 def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np.intp]:
     """Fewest substeps of each interval."""
     durations = np.diff(loading.time)
-    return np.maximum(np.ceil(fineness / _LEVELS[0] * durations / durations.sum()), 1.0).astype(np.intp)
+    counts: NDArray[np.intp] = np.maximum(np.ceil(fineness / _LEVELS[0] * durations / durations.sum()), 1.0).astype(int)
+    return counts
 
 
 def _followed(

@@ -71,11 +71,11 @@ def test_a_step_in_depth_relaxes():
     np.testing.assert_allclose(answer.normal_force, HERTZ * 1e-6 * relaxation(time), rtol=1e-9)
 
 
-@pytest.mark.parametrize("last", [3e-3, 30e-3])
-def test_a_step_in_force_creeps(last):
+@pytest.mark.parametrize(("last", "tolerance"), [(3e-3, 1e-8), (30e-3, 1e-6)])  # the second in intervals of three tau
+def test_a_step_in_force_creeps(last, tolerance):
     time = np.linspace(0.0, last, 11)
     answer = solve(ForceHistory(time=time, force=np.ones(11)))
-    np.testing.assert_allclose(HERTZ * answer.indentation_depth**1.5, creep(time), rtol=1e-8)
+    np.testing.assert_allclose(HERTZ * answer.indentation_depth**1.5, creep(time), rtol=tolerance)
     exact = (creep(time) / HERTZ) ** (2.0 / 3.0)
     assert np.all(np.abs(answer.indentation_depth - exact) <= answer.uncertainty("indentation_depth"))
     assert np.all(answer.contact_radius[1:] > answer.contact_radius[:-1])
