@@ -90,10 +90,12 @@ def _non_negative_least_squares(compliance: Array, approach: Array) -> Array:
 
 def _checked(compliance: Array, approach: Array, pressure: Array, active: Mask, iterations: int) -> Complementary:
     gap = compliance @ pressure - approach
+    tiny = np.finfo(float).tiny  # a flat punch that touches without pressing has neither overlap nor pressure
+    overlap = max(np.abs(approach).max(), tiny)
     violations = {
-        "tensile_pressure": -pressure.min() / max(np.abs(pressure).max(), np.finfo(float).tiny),
-        "overlap": -gap.min() / np.abs(approach).max(),
-        "gap_under_pressure": np.abs(gap[active]).max(initial=0.0) / np.abs(approach).max(),
+        "tensile_pressure": -pressure.min() / max(np.abs(pressure).max(), tiny),
+        "overlap": -gap.min() / overlap,
+        "gap_under_pressure": np.abs(gap[active]).max(initial=0.0) / overlap,
     }
     if not all(violation <= TOLERANCE for violation in violations.values()):
         raise NotConvergedError("contact conditions are violated", violations)

@@ -76,8 +76,8 @@ def simulate_forces(stage: Stage, relaxation: Relaxation, time: Array, force: Ar
 
     for (t0, t1), (f0, f1), count in zip(pairwise(time), pairwise(force), segment_steps(time, steps), strict=True):
         step = relaxation_step(relaxation, (t1 - t0) / count)
-        if step.dashpot > 0:  # the rates jump if the force does
-            _, depth = advance(step.instant, max(0.0, float(f0)), depth)
+        if step.dashpot > 0 and t0 == time[0] and f0 > 0:  # the only jump of the force, hence of the rates
+            _, depth = advance(step.instant, float(f0), depth)
         for n in range(1, count + 1):
             now = max(0.0, f0 + (f1 - f0) * n / count)
             state, depth = advance(step.first if n == 1 else step, now, depth)

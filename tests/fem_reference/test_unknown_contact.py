@@ -20,7 +20,7 @@ from contact import (
 from fem_reference import Fem
 from fem_reference.discretisation import Discretisation
 from fem_reference.polish import radius_of_load
-from fem_reference.unknown_contact import ContactSearch, find_contact
+from fem_reference.unknown_contact import ContactSearch, edge_radius, find_contact
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5)
@@ -50,6 +50,22 @@ def test_depth_and_force_control_find_the_same_state(ratio, kind):
         }
         for name, error in true.items():
             assert abs(error) <= path.error_estimate[name][0] + 1e-12 < 1e-4, name
+
+
+def test_contact_radius_is_read_from_the_pressures_to_a_tenth_of_a_cell():
+    scene = Scene(layer=LAYER, indenter=exact(1.0, "paraboloid")[0], loading=IndentationDepths([1e-5]))
+    search = ContactSearch(scene, 1.2e-3, Discretisation(), "superlu", StageLog())
+    cell = search.strip.radii[1]
+    for ratio in np.linspace(0.4, 1.0, 9):
+        found = search.at_depth(exact(ratio, "paraboloid")[1])
+        assert abs(found.contact_radius - ratio / 1.2) < 0.1 * cell
+
+
+def test_a_rim_that_presses_more_than_its_neighbour_ends_the_contact():
+    radii = np.array([0.0, 1.0, 2.0, 3.0])
+    assert edge_radius(radii, np.array([1.0, 1.0, 3.0, 0.0])) == 2.0
+    assert edge_radius(radii, np.zeros(4)) == 0.0
+    assert edge_radius(radii, np.array([1.0, 0.0, 0.0, 0.0])) == 0.5
 
 
 @pytest.mark.slow

@@ -204,6 +204,26 @@ def test_force_history_reproduces_the_depth_history_it_came_from():
     assert depth[later] == pytest.approx(there.indentation_depth[later], abs=5e-3 * 5e-5)
 
 
+def test_a_kelvin_voigt_punch_under_given_depth_or_force():
+    # F = k (delta + tau delta'), tau = eta / G; under the force f t: delta = f/k (t - tau (1 - exp(-t/tau)))
+    a, tau, k_bar = 1e-3, 0.5, 3.61873584896
+    stiffness = 8 * 1e6 * a * k_bar
+    scene = Scene(
+        layer=Layer.incompressible(thickness=a, shear_modulus=1e6),
+        indenter=FlatPunch(radius=a),
+        loading=DepthHistory(time=[0, 1, 3], depth=[0, 1e-5, 1.2e-5]),
+        effects=(KelvinVoigt(shear_modulus=1e6, viscosity=tau * 1e6),),
+    )
+    path = QUICK.solve(scene)
+    rate = np.where(path.time < 1 + 1e-9, 1e-5, 1e-6)
+    exact = stiffness * (path.indentation_depth + tau * rate)
+    assert np.abs(path.normal_force - exact)[1:].max() <= path.uncertainty("normal_force")[0]
+    path = QUICK.solve(scene.replace(loading=ForceHistory(time=[0, 1], force=[0, 0.3])))
+    exact = 0.3 / stiffness * (path.time - tau * (1 - np.exp(-path.time / tau)))
+    assert np.abs(path.indentation_depth - exact).max() <= path.uncertainty("indentation_depth")[0]
+    assert path.error_estimate["indentation_depth"][0] < 1e-2
+
+
 def test_history_that_outgrows_or_never_meets_the_profile_is_refused():
     layer = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
     for loading, match in (
