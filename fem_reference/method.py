@@ -118,9 +118,10 @@ class Fem:
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
     ) -> ImpactHistory | HistoryPath:
         from fem_reference.effects import viscoelastic  # noqa: PLC0415 - only scenes in time load it
+        from fem_reference.effects.theatre import Theatre  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
-            theatre = viscoelastic.Theatre(scene, settings, self.solver, log)
+            theatre = Theatre(scene, settings, self.solver, log)
             if isinstance(loading, Impact):
                 return viscoelastic.impact_history(theatre, loading, asdict(self))
             return viscoelastic.prescribed_history(theatre, loading, asdict(self))

@@ -77,34 +77,25 @@ def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: 
         ballistic = depth + duration * velocity - kappa * force
         approach = ballistic * w - stage.profile - offset
         state = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
-        active = state.active
-        following = float(w @ state.pressure)
-        mean = (force + following) / 2
-        depth += duration * velocity - duration**2 * mean / (2 * body.mass)
-        velocity -= duration * mean / body.mass
         surface.accept(now, state.pressure)
-        if following == 0 and velocity < 0:
-            fraction = _release_fraction(overlap, float((approach / w).max()))
-            record.add(
-                time=record.time[-1] + fraction * duration,
-                depth=record.depth[-1] + fraction * (depth - record.depth[-1]),
-                velocity=record.velocity[-1] + fraction * (velocity - record.velocity[-1]),
-                force=0.0,
-                radius=0.0,
-                stored=surface.stored_energy,
-                dissipated=surface.dissipated_energy,
-            )
-            return record
+        following, overlap_before = float(w @ state.pressure), overlap
+        mean, overlap, active = (force + following) / 2, float((approach / w).max()), state.active
+        is_free = following == 0 and velocity - duration * mean / body.mass < 0
+        part = duration * (_release_fraction(overlap_before, overlap) if is_free else 1.0)
+        depth += part * velocity - part * duration * mean / (2 * body.mass)
+        velocity -= part * mean / body.mass
+        force = following
         record.add(
-            time=n * duration,
+            time=record.time[-1] + part,
             depth=depth,
             velocity=velocity,
-            force=following,
+            force=force,
             radius=edge_radius(stage.radii, state.pressure),
             stored=surface.stored_energy,
             dissipated=surface.dissipated_energy,
         )
-        force, overlap = following, float((approach / w).max())
+        if is_free:
+            return record
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
