@@ -107,15 +107,20 @@ class CertifiedContact:
         """rho: the error of the answer relative to the last change between degrees."""
         if self.settings.order == min(self.levels):
             return 1.0
-        floor = TYPICAL_RATE * self.settings.growth**2
         if len(self._last_changes) == 1:
             return min(1.0, UNMEASURED_RATE * self.settings.growth**3)
         previous, last = (self._change(*pair).mean() for pair in self._last_changes[-2:])
-        return float(np.clip(last / previous, min(floor, 1.0), 1.0))
+        return float(np.clip(last / previous, self._fastest_rate, 1.0))
+
+    @property
+    def _fastest_rate(self) -> float:
+        return min(TYPICAL_RATE * self.settings.growth**2, 1.0)
 
     @property
     def _interpolation_error(self) -> Mapping[str, float]:
         change = self._change(*self._last_changes[-1])
+        for before in self._last_changes[-2:-1]:  # a change that fell faster than errors do is small by accident
+            change = np.maximum(change, self._fastest_rate * self._change(*before))
         change = np.maximum(change, 0.6 * change.mean())  # one quantity may change little by accident
         change[1] = max(change[1], SLOPE_RATIO * change[0])
         return dict(zip(QUANTITIES, SAFETY * self._rate * change, strict=True))
