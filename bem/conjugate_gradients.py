@@ -148,7 +148,9 @@ def solve_contact(
 
 def complementarity_residual(pressure: FloatArray, gap: FloatArray, depth: float) -> float:
     """max |min(p/p_max, g/delta)|: zero exactly where p >= 0, g >= 0 and p g = 0 in every cell."""
-    return float(np.max(np.abs(np.minimum(pressure / np.max(pressure), gap / depth))))
+    peak = float(np.max(pressure))
+    shares = pressure / peak if peak > 0.0 else pressure  # a step may lift the indenter off for one iteration
+    return float(np.max(np.abs(np.minimum(shares, gap / depth))))
 
 
 def _restricted(field: FloatArray, contact: BoolArray) -> FloatArray:

@@ -59,7 +59,7 @@ class FftTable(Record):
         if layer.is_half_space:
             raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
         grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
-        if not 0.0 < max_ratio <= LARGEST_RATIO:
+        if not 0.0 < max_ratio <= LARGEST_RATIO * (1.0 + 1e-12):  # a quotient meant as 1000 may come out above it
             raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
         rows = max(LEAST_ROWS, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1)
         poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0  # unbonded: nu plays no part

@@ -113,7 +113,7 @@ class FlatPunchTable:
 
     def _checked(self, ratio: ArrayLike) -> FloatArray:
         xi = np.asarray(ratio, dtype=np.float64)
-        if not np.all((xi >= 0.0) & (xi <= self.max_ratio)):  # written so that NaN fails
+        if not np.all((xi >= 0.0) & (xi <= self.max_ratio * (1.0 + 1e-12))):  # written so that NaN fails
             raise InvalidInput(
                 f"a/h must lie in [0, {self.max_ratio:g}], got {xi.min():g} .. {xi.max():g}; "
                 "a table is never extrapolated: build it up to a larger ratio"

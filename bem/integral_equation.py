@@ -13,7 +13,7 @@ from pydantic import Field
 from bem.contact_density import ContactDensity
 from bem.fredholm_kernel import FredholmKernel
 from bem.kernels import Support, compliance_kernel
-from bem.large_ratio import LARGEST_RATIO, LargeRatioSolution
+from bem.large_ratio import LARGEST_RATIO, ROUNDING, LargeRatioSolution
 from bem.panels import gauss_nodes, partial_panel_interpolation
 from bem.piecewise import EqualPanels
 from bem.volterra_factor import VolterraFactor
@@ -46,7 +46,7 @@ class IntegralEquation(Record):
             InvalidInput: If the ratio is beyond `LARGEST_RATIO`.
             NotConvergedError: If the equation is singular to double precision.
         """
-        if not 0 < max_ratio <= LARGEST_RATIO:
+        if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
             raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
         rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
         nu = layer.poissons_ratio if layer.support == "bonded" else 0.0  # no influence on the unbonded layer

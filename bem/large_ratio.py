@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from bem.integral_equation import IntegralEquationSolution
 
 LARGEST_RATIO = 1000.0
+ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above it
 FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
 OVERLAP = 120.0  # compared with the narrow panels' from here on, and used where those end
 PANEL_WIDTH = 8.0
@@ -146,10 +147,11 @@ class LargeRatioSolution:
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)
-        covered = (ratio >= 0) & (ratio <= LARGEST_RATIO)
+        covered = (ratio >= 0) & (ratio <= LARGEST_RATIO * (1 + ROUNDING))
         if not np.all(covered):
             raise InvalidInput(f"a/h = {ratio[~covered].flat[0]:g}: this solution covers [0, {LARGEST_RATIO:g}]")
-        return ratio
+        limited: FloatArray = np.minimum(ratio, LARGEST_RATIO)
+        return limited
 
 
 def _wide_punches(

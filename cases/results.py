@@ -463,6 +463,35 @@ class CoverageRecord:
     percentiles: tuple[NotNegative, ...] = ()
 
 
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class ErrorMap:
+    """Signed relative errors over a/h and Poisson's ratio.
+
+    Attributes:
+        name: of the formula or method.
+        title: for readers.
+        quantity: whose error.
+        reference: what it is relative to.
+        ratios: a/h, shape (n,).
+        rows: Poisson's ratios as words, or "unbonded", shape (m,).
+        errors: shape (m, n); None where there is no answer.
+    """
+
+    name: str
+    title: str
+    quantity: str
+    reference: str
+    ratios: Vector
+    rows: tuple[str, ...]
+    errors: tuple[tuple[Finite | None, ...], ...]
+
+    @model_validator(mode="after")
+    def _full(self) -> Self:
+        if len(self.errors) != len(self.rows) or any(len(row) != len(self.ratios) for row in self.errors):
+            raise ValueError(f"{self.name}: a map needs one error for each row and ratio")
+        return self
+
+
 # -- figures: all numbers, no ink ----------------------------------------------------------------------------------
 
 
@@ -569,6 +598,7 @@ class CaseResult:
     effects: tuple[EffectEntry, ...] = ()
     ladders: tuple[Ladder, ...] = ()
     coverage: tuple[CoverageRecord, ...] = ()
+    maps: tuple[ErrorMap, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from cases.results import CaseResult, WorkPrecision
 from reports import case_tables, cost_tables, hard_tables
-from reports.charts import agreement, convergence, coverage, ladder, work_precision
+from reports.charts import agreement, convergence, coverage, error_map, ladder, work_precision
 from reports.drawing import plate_of
 from reports.gallery import Gallery, Hung
 from reports.matrix import Matrix, case_matrix
@@ -38,6 +38,8 @@ class CaseView:
     breakdowns: Table | None
     coverage: tuple[Hung, ...]
     covered: Table | None
+    maps: tuple[Hung, ...]
+    good_ranges: Table | None
     refusals: tuple[str, ...]
     effects: Table | None
     stages: Table | None
@@ -59,6 +61,8 @@ def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
         breakdowns=hard_tables.ladders(case),
         coverage=gallery.hang(coverage.plates(case, command)),
         covered=hard_tables.coverage(case),
+        maps=gallery.hang(error_map.plates(case, command)),
+        good_ranges=hard_tables.good_ranges(case),
         refusals=tuple(ladder.refusals(case)),
         effects=case_tables.effects(case),
         stages=case_tables.stages(case),

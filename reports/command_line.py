@@ -277,6 +277,19 @@ def coverage(
     return run_command(method or [], family or [], seed, out)
 
 
+@app.command("maps")
+def error_maps(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[NAME]...", help="Formulas and methods; all if none is named.")
+    ] = None,
+    out: Annotated[Path, typer.Option(help="Folder for the report with figures and data.")] = Path("build/maps"),
+) -> int:
+    """Map the signed error of each closed form and method over a/h and Poisson's ratio: where it is good to 1 %."""
+    from reports.commands.hard import error_maps as run_command  # noqa: PLC0415
+
+    return run_command(names or [], out)
+
+
 @app.command()
 def calibrate(
     out: Annotated[Path, typer.Argument(help="File for the measurements, JSON.")],

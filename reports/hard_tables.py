@@ -1,7 +1,8 @@
 """Tables of hard cases: where ladders break and with how many digits, and how well stated errors hold."""
 
-from cases.results import CaseResult, CoverageRecord, Ladder
+from cases.results import CaseResult, CoverageRecord, ErrorMap, Ladder
 from cases.stability.ladders import breakdown, fewest_digits
+from cases.work.error_maps import UNBONDED, good_range
 from reports.method_names import display_name
 from reports.numbers import small
 from reports.tables import Table
@@ -90,3 +91,23 @@ def _coverage_row(record: CoverageRecord) -> tuple[str, ...]:
         f"{100 * record.covered:.1f} %",
         "" if record.sharpness is None else small(record.sharpness),
     )
+
+
+def good_ranges(case: CaseResult) -> Table | None:
+    """Where each formula or method is good to one percent, one row a map."""
+    if not case.maps:
+        return None
+    rows = list(dict.fromkeys(row for found in case.maps for row in found.rows))
+    return Table(
+        title="Range of a/h that is good to 1 %",
+        note="Smallest and largest a/h of the map with an error of at most 1 %; between them a hole may lie.",
+        heads=("formula or method", *(row if row == UNBONDED else f"nu = {row}" for row in rows)),
+        rows=tuple((found.title, *(_range(found, row) for row in rows)) for found in case.maps),
+    )
+
+
+def _range(found: ErrorMap, row: str) -> str:
+    good = good_range(found, row) if row in found.rows else None
+    if good is None:
+        return "nowhere" if row in found.rows else ""
+    return f"{small(good[0])} .. {small(good[1])}"

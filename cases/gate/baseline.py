@@ -100,7 +100,7 @@ def write_baseline(folder: Path, baseline: Baseline) -> None:
     path = baseline_path(folder, baseline.case, baseline.method)
     path.parent.mkdir(parents=True, exist_ok=True)
     tree = _BASELINE.dump_python(baseline, mode="json")
-    write_whole(path, _text({"digest": _digest(tree), "baseline": tree}))
+    write_whole(path, _text({"digest": digest_of(tree), "baseline": tree}))
 
 
 def read_baselines(folder: Path) -> tuple[Baseline, ...]:
@@ -121,7 +121,7 @@ def _read(path: Path) -> Baseline:
         raise InvalidInput(f"{path} is no baseline ({error}); {REMEDY}") from error
     if version != BASELINE_VERSION:
         raise InvalidInput(f"{path} has version {version!r}, this program reads {BASELINE_VERSION}; accept it anew")
-    if digest != _digest(tree):
+    if digest != digest_of(tree):
         raise InvalidInput(f"{path} was changed by something else than accept; {REMEDY}")
     return _validated(tree, path)
 
@@ -145,5 +145,6 @@ def _text(tree: dict[str, Any]) -> str:
     return json.dumps(tree, sort_keys=True, indent=1, allow_nan=False) + "\n"
 
 
-def _digest(tree: dict[str, Any]) -> str:
+def digest_of(tree: dict[str, Any]) -> str:
+    """Return the digest that tells whether a file was edited by hand."""
     return hashlib.sha256(_text(tree).encode()).hexdigest()[:32]

@@ -5,24 +5,32 @@ from dataclasses import replace
 
 from cases.gate.baseline import Baseline
 from cases.gate.counts import count_checks
+from cases.gate.ladders import ladder_claims
 from cases.gate.values import value_checks
-from cases.results import Acceptance, CaseResult, Claim, Kind, RunResult
+from cases.results import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult
 
 
-def gate(run: RunResult, baselines: Iterable[Baseline], history: Iterable[Acceptance] = ()) -> RunResult:
+def gate(
+    run: RunResult,
+    baselines: Iterable[Baseline],
+    history: Iterable[Acceptance] = (),
+    ladders: Iterable[Ladder] = (),
+) -> RunResult:
     """Return ``run`` with a regression claim for every quantity and counter that was accepted or is new.
 
     Args:
         run: a run whose own claims are judged.
         baselines: what was accepted; a case of the run's suite that the run does not have counts as missing.
         history: acceptances, for the report.
+        ladders: accepted stability ladders.
     """
+    climbed = tuple(ladders)
     accepted: dict[str, list[Baseline]] = {}
     for baseline in baselines:
         accepted.setdefault(baseline.case, []).append(baseline)
     present = {case.name for case in run.cases}
     lost = [_lost_case(name) for name in sorted(accepted) if name not in present and _belongs(accepted[name], run)]
-    cases = tuple(_gated(case, accepted.get(case.name, [])) for case in (*run.cases, *lost))
+    cases = tuple(_gated(case, accepted.get(case.name, []), climbed) for case in (*run.cases, *lost))
     return replace(run, cases=cases, acceptances=tuple(history))
 
 
@@ -43,10 +51,10 @@ def _lost_case(name: str) -> CaseResult:
     )
 
 
-def _gated(case: CaseResult, baselines: list[Baseline]) -> CaseResult:
+def _gated(case: CaseResult, baselines: list[Baseline], ladders: tuple[Ladder, ...]) -> CaseResult:
     """Return ``case`` with its regression claims; those of an earlier gate are replaced."""
     own = (claim for claim in case.claims if claim.kind is not Kind.REGRESSION)
-    return replace(case, claims=(*own, *_regression_claims(case, baselines)))
+    return replace(case, claims=(*own, *_regression_claims(case, baselines), *ladder_claims(case, ladders)))
 
 
 def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[Claim]:

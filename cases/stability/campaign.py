@@ -14,11 +14,22 @@ from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cases.stability.random_scenes import RATIO, Family, random_scenes
-from cases.stability.second_opinion import LARGEST_RATIO, second_opinion
+from cases.stability.second_opinion import LARGEST_RATIO, adhesive_states, second_opinion
 from cases.stability.units import Units, in_units
-from contact import ContactError, ContactPath, HistoryPath, ImpactHistory, Method, NotConvergedError, Scene, Solution
+from contact import (
+    ContactError,
+    ContactPath,
+    DetachmentPath,
+    HistoryPath,
+    ImpactHistory,
+    Method,
+    NotConvergedError,
+    Scene,
+    Solution,
+)
 from contact.validation import FloatArray
 
 End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
@@ -29,6 +40,8 @@ IMPACT_NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "p
 UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
 _ROUNDING = 64 * float(np.finfo(float).eps)  # a few operations, also on what was prescribed
 _THIN_LAYERS_REFINED = 8  # one in so many
+_STATES_OF_A_BRANCH = 5
+_ALL = slice(None)
 _UNLISTED_MOST = 1e-2  # a quantity without a stated error still may not be this far off
 
 
@@ -219,14 +232,28 @@ def _refereed(method: Method, answer: Solution, number: int, other: Method | Non
             return "second opinion", tuple(checks)
         if number % _THIN_LAYERS_REFINED:
             return "other units", ()
+    on_branch = _branch_checks(answer) if isinstance(answer, DetachmentPath) else ()
     try:
         finer = (other or method.refined()).solve(scene)
     except NotConvergedError:
-        return "none", ()
-    return "another method" if other else "refinement", tuple(
+        return "none", on_branch
+    return "another method" if other else "refinement", on_branch + tuple(
         _check(answer, q, _values(finer, q), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
         for q in _comparable(answer, finer)
         if q in answer.error_estimate
+    )
+
+
+def _branch_checks(answer: DetachmentPath) -> tuple[Check, ...]:
+    """Some states of a branch, as far as the second opinion reaches, each at its own contact radius."""
+    scene = answer.scene
+    chosen = np.linspace(0, len(answer.contact_radius) - 1, _STATES_OF_A_BRANCH).round().astype(int)
+    radii = answer.contact_radius[chosen]
+    if np.max(radii) > LARGEST_RATIO * scene.layer.thickness or np.min(radii) <= 0:
+        return ()
+    opinion = adhesive_states(scene, radii)
+    return tuple(
+        _check(answer, quantity, value, opinion.uncertainty, chosen) for quantity, value in opinion.values.items()
     )
 
 
@@ -234,6 +261,8 @@ def _comparable(answer: Solution, other: Solution) -> tuple[str, ...]:
     """Quantities of two answers that stand for the same states; an impact's samples lie where its steps fall."""
     if isinstance(answer, ImpactHistory):
         return IMPACT_NUMBERS
+    if isinstance(answer, DetachmentPath):  # states of two branches lie at different radii
+        return tuple(answer.SCALARS)
     if isinstance(answer, HistoryPath):  # its contact radius jumps where contact is lost
         same = isinstance(other, HistoryPath) and np.array_equal(answer.time, other.time)
         return tuple(answer.error_estimate) if same else ()
@@ -245,11 +274,18 @@ def _values(answer: Solution, quantity: str) -> FloatArray:
     return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
 
 
-def _check(answer: Solution, quantity: str, expected: FloatArray, allowance: FloatArray) -> Check:
-    """The step with the largest excess of distance over what is allowed."""
+def _check(
+    answer: Solution,
+    quantity: str,
+    expected: FloatArray,
+    allowance: FloatArray,
+    chosen: NDArray[np.intp] | slice = _ALL,
+) -> Check:
+    """The step, among those chosen, with the largest excess of distance over what is allowed."""
     scale = np.maximum(answer.scale(quantity), np.finfo(float).tiny)
-    error = np.abs(_values(answer, quantity) - expected) / scale
-    stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), error.shape)
+    values = _values(answer, quantity)
+    error = np.abs(values[chosen] - expected) / np.broadcast_to(scale, values.shape)[chosen]
+    stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), values.shape)[chosen]
     allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
     worst = int(np.argmax(error - stated - allowance))
     return Check(

@@ -85,7 +85,9 @@ def force_of_an_independent_answer(method: Method, answer: Solution) -> float | 
     if not isinstance(answer, ContactPath) or scene.effects or not _within_reach(answer, scene):
         return None
     opinion = second_opinion(answer)
-    distance = np.abs(answer.normal_force / opinion.values["normal_force"] - 1.0)
+    expected = opinion.values["normal_force"]
+    largest = np.maximum(np.abs(expected), np.abs(answer.normal_force))
+    distance = np.abs(answer.normal_force - expected) / largest
     return float(np.max(np.maximum(distance - opinion.uncertainty, 0.0)))
 
 

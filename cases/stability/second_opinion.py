@@ -21,7 +21,7 @@ from typing import Final
 import numpy as np
 
 from cases.stability.half_space_forms import equivalent_profile
-from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene
+from contact import Adhesion, ContactPath, ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene
 from contact.validation import FloatArray
 
 LARGEST_RATIO: Final = 25.0  # a/h; beyond, one radius takes seconds
@@ -54,6 +54,7 @@ class _State:
     depth: float
     force: float
     stiffness: float
+    edge: float  # phi_1(a) of the flat punch pressed in by 1
 
 
 def second_opinion(path: ContactPath) -> SecondOpinion:
@@ -65,12 +66,34 @@ def second_opinion(path: ContactPath) -> SecondOpinion:
     scene, given = path.scene, getattr(path.scene.loading, "values", path.contact_radius)
     rows = [_row(scene, float(value), float(a)) for value, a in zip(given, path.contact_radius, strict=True)]
     values = {name: np.array([row[i] for row in rows]) for i, name in enumerate(QUANTITIES)}
-    uncertainty = np.array([_rounding(scene, float(a)) for a in path.contact_radius])
+    radii = given if isinstance(scene.loading, ContactRadii) else path.contact_radius
+    uncertainty = np.array([_rounding(scene, float(a)) for a in radii])
     return SecondOpinion(values=values, uncertainty=uncertainty)
+
+
+def adhesive_states(scene: Scene, radii: FloatArray) -> SecondOpinion:
+    """Depth and force of an adhering indenter in equilibrium at contact radii, Eqs. (40) and (41).
+
+    The contact of radius a is pulled by dl = sqrt(2 pi Delta gamma a/c_N) from where it would touch without adhesion;
+    c_N = E* phi_1(a)^2 is the edge value of the flat punch's density.
+
+    Raises:
+        InvalidInput: If a/h is beyond `LARGEST_RATIO`.
+    """
+    adhesion = scene.effect(Adhesion)
+    work = 0.0 if adhesion is None else adhesion.work_of_adhesion
+    states = [_state(scene, float(a)) for a in radii]
+    springs = scene.layer.contact_modulus * np.array([state.edge for state in states]) ** 2
+    elongation = np.sqrt(2 * math.pi * work * radii / springs)  # Eq. (40)
+    depth = np.array([state.depth for state in states]) - elongation
+    force = np.array([state.force - state.stiffness * dl for state, dl in zip(states, elongation, strict=True)])
+    uncertainty = np.array([_rounding(scene, float(a)) for a in radii])
+    return SecondOpinion(values={"indentation_depth": depth, "normal_force": force}, uncertainty=uncertainty)
 
 
 def _row(scene: Scene, given: float, a: float) -> tuple[float, float, float, float]:
     """Radius, depth, force, stiffness; the radius is corrected to first order to meet what is prescribed."""
+    a = given if isinstance(scene.loading, ContactRadii) else a
     here = _state(scene, a)
     is_depth = isinstance(scene.loading, IndentationDepths)
     if isinstance(scene.indenter, FlatPunch):
@@ -102,6 +125,7 @@ def _state(scene: Scene, a: float) -> _State:
         depth=depth * length,
         force=scale * length * (depth * punch.integral - shape.integral),
         stiffness=scale * punch.integral,
+        edge=punch.edge,
     )
 
 

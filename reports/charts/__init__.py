@@ -4,6 +4,7 @@
 `charts.agreement`        differences of two methods, with uncertainty, against the tolerance
 `charts.convergence`      error under refinement, formal slope, GCI bars
 `charts.coverage`         stated over true errors of random scenes
+`charts.error_map`        signed errors over a/h and Poisson's ratio
 `charts.ladder`           digits left as a parameter gets hard
 `charts.solution`         one answer: force over depth, or its history
 `charts.work_precision`   error against seconds, Pareto front, crossover

@@ -8,10 +8,11 @@ from cases.gate.accept import accept, refusals, refusals_beforehand
 from cases.gate.against import SOURCE
 from cases.gate.baseline import read_baselines
 from cases.gate.circumstances import circumstances
+from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
 from cases.gate.proposal import Change, Proposal, propose
 from cases.gate.spread import measured_spreads
 from cases.registry import load_cases, select
-from cases.results import RunResult
+from cases.results import CaseResult, RunResult
 from cases.results_files import read_run
 from contact import InvalidInput
 from reports.numbers import small
@@ -46,10 +47,15 @@ def accept_cases(names: list[str], wish: Wish) -> None:
     Raises:
         InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
     """
-    result = read_run(wish.run)
+    result, library = read_run(wish.run), load_cases()
     ran = [case.name for case in result.cases]
     refused: list[str] = []
-    for case in select(load_cases(), names=names or ran):
+    studies = [case for case in result.cases if case.ladders and case.name not in library]
+    for study in studies:
+        if not names or study.name in names:
+            _accept_ladders(study, result, wish)
+    known = [name for name in names or ran if name not in {study.name for study in result.cases} - set(library)]
+    for case in select(library, names=known) if known else ():
         if case.name not in ran:
             raise InvalidInput(f"the run in {wish.run} does not have {case.name}; run it first")
         try:
@@ -79,6 +85,22 @@ def _accept_case(case: Case, result: RunResult, wish: Wish) -> None:
         terminal.print(f"{case.name}: written to {wish.baselines / case.name}", style=STYLES["good"])
     else:
         terminal.print(f"{case.name}: nothing written; say --write to write it", style=STYLES["warn"])
+
+
+def _accept_ladders(study: CaseResult, result: RunResult, wish: Wish) -> None:
+    """Accept the ladders of a study, or say which rungs would be lost."""
+    now = circumstances(SOURCE, wish.baselines)
+    hopeless = refusals_beforehand(study.name, result, now)
+    if hopeless:
+        raise InvalidInput(f"{study.name} is not accepted: {'; '.join(hopeless)}")
+    terminal = console()
+    for claim in ladder_claims(study, read_ladders(wish.baselines)):
+        terminal.print(f"{claim.scene}, {claim.methods[0]}: {claim.message}", markup=False)
+    if wish.write:
+        accept_ladders(wish.baselines, study.ladders, now, reason=wish.reason, loosen=wish.loosen)
+        terminal.print(f"{study.name}: {len(study.ladders)} ladders written", style=STYLES["good"])
+    else:
+        terminal.print(f"{study.name}: nothing written; say --write to write it", style=STYLES["warn"])
 
 
 def change_table(proposal: Proposal) -> Table:

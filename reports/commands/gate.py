@@ -8,6 +8,7 @@ from cases.gate.against import with_times_against
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
 from cases.gate.history import read_history
+from cases.gate.ladders import read_ladders
 from cases.gate.race import PAIRS
 from cases.registry import load_cases, select
 from cases.results import RunResult
@@ -33,10 +34,10 @@ def run_gate(directory: Path, baselines: Path, *, timing: Timing, strict: bool, 
     Raises:
         InvalidInput: if there is no run or no baseline, or if the revision cannot be timed.
     """
-    accepted = read_baselines(baselines)
-    if not accepted:
+    accepted, ladders = read_baselines(baselines), read_ladders(baselines)
+    if not accepted and not ladders:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
-    result = gate(read_run(directory), accepted, read_history(baselines))
+    result = gate(read_run(directory), accepted, read_history(baselines), ladders)
     if timing.revision:
         result = with_times_against(result, timing.revision, _declared(result, timing.cases), pairs=timing.pairs)
     write_run(result, directory)

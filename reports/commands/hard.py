@@ -45,6 +45,20 @@ def coverage(methods: list[str], families: list[str], seed: int, out: Path | Non
     return published(lambda: coverage_case(plans, seed, progress=_say), out)
 
 
+def error_maps(names: list[str], out: Path | None) -> int:
+    """Draw up maps of signed errors over (a/h, nu).
+
+    Raises:
+        InvalidInput: If no map has such a name.
+    """
+    from cases.work.error_maps import FORMULAS, METHODS, map_case  # noqa: PLC0415 - only this command needs it
+
+    plans = [plan for plan in (*FORMULAS, *METHODS) if not names or plan.name in names]
+    if not plans:
+        raise InvalidInput(f"no map of {names[0]!r}; there are {', '.join(p.name for p in (*FORMULAS, *METHODS))}")
+    return published(lambda: map_case(plans, progress=_say), out)
+
+
 def published(study: Callable[[], CaseResult], out: Path | None) -> int:
     """Carry out a study, write it as a run of its own if asked, and return 1 if it failed."""
     from cases.studies import run_of  # noqa: PLC0415

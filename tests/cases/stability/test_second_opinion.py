@@ -10,12 +10,14 @@ import pytest
 from scipy.integrate import quad
 
 from cases.stability.half_space_forms import equivalent_profile
-from cases.stability.second_opinion import LARGEST_RATIO, QUANTITIES, second_opinion
+from cases.stability.second_opinion import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
 from contact import (
+    Adhesion,
     Cone,
     ContactPath,
     ContactRadii,
     Cost,
+    Detachment,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -28,6 +30,7 @@ from contact import (
     TruncatedCone,
     TruncatedParaboloid,
 )
+from mdr import Mdr
 
 # Relative; digits to which the tables print k_bar, solved elsewhere by radius-by-radius collocation
 STIFFNESS = {
@@ -110,11 +113,50 @@ def test_closed_forms_are_the_integral(indenter, x):
 
 def test_beyond_its_reach_it_says_so():
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
-    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=ContactRadii([1.0]))
+    radius = 1.01 * LARGEST_RATIO
+    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=ContactRadii([radius]))
     with pytest.raises(InvalidInput, match="covers ratios up to"):
-        second_opinion(answer(scene, 1.01 * LARGEST_RATIO))
+        second_opinion(answer(scene, radius))
+
+
+def test_a_prescribed_radius_counts_not_the_radius_that_an_answer_claims():
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1.0]))
+    assert second_opinion(answer(scene, 0.5)).values == second_opinion(answer(scene, 1.0)).values
 
 
 def test_every_quantity_has_a_value():
     scene = Scene(layer=HALF_SPACE, indenter=Cone(slope=0.1), loading=ContactRadii([0.3]))
     assert tuple(second_opinion(answer(scene, 0.3)).values) == QUANTITIES
+
+
+def test_an_adhering_paraboloid_on_the_half_space_is_that_of_johnson_kendall_and_roberts():
+    """F = 4 E* a^3/(3 R) - sqrt(8 pi E* Delta gamma a^3), delta = a^2/R - sqrt(2 pi Delta gamma a/E*)."""
+    layer = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3)
+    work, curvature, modulus = 1e-3, 5.0, layer.contact_modulus
+    scene = Scene(
+        layer=layer,
+        indenter=Paraboloid(radius_of_curvature=curvature),
+        loading=Detachment(control="force"),
+        effects=(Adhesion(work_of_adhesion=work),),
+    )
+    a = np.array([0.1, 0.5, 1.0])
+    found = adhesive_states(scene, a)
+    force = 4 * modulus * a**3 / (3 * curvature) - np.sqrt(8 * np.pi * modulus * work * a**3)
+    depth = a**2 / curvature - np.sqrt(2 * np.pi * work * a / modulus)
+    np.testing.assert_allclose(found.values["normal_force"], force, rtol=1e-12)
+    np.testing.assert_allclose(found.values["indentation_depth"], depth, rtol=1e-12)
+
+
+def test_the_branch_of_the_fast_method_on_a_layer_is_the_same():
+    scene = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5),
+        indenter=Paraboloid(radius_of_curvature=5.0),
+        loading=Detachment(control="displacement", initial_contact_radius=2.0),
+        effects=(Adhesion(work_of_adhesion=1e-3),),
+    )
+    branch = Mdr().solve(scene)
+    found = adhesive_states(scene, branch.contact_radius[::20])
+    for name, values in found.values.items():
+        error = np.abs(getattr(branch, name)[::20] - values) / branch.scale(name)[::20]
+        assert np.max(error) < 1e-10, name

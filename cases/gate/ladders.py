@@ -1,0 +1,120 @@
+"""Accepted ladders: no method may give up earlier than it did, or lose more than one digit on a rung.
+
+One file a method, ``baselines/ladders-<method>.json``, written by ``accept`` alone; a digest covers it.
+"""
+
+import json
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+from pydantic import TypeAdapter, ValidationError
+
+from cases.gate.baseline import REMEDY, digest_of
+from cases.gate.circumstances import Circumstances
+from cases.gate.history import append_history
+from cases.results import Acceptance, CaseResult, Claim, Kind, Ladder, Origin, Verdict
+from cases.results_files import write_whole
+from cases.stability.ladders import worsened
+from cases.status import Status
+from contact import InvalidInput
+
+_LADDERS: TypeAdapter[tuple[Ladder, ...]] = TypeAdapter(tuple[Ladder, ...])
+_NAME = "ladders-{}.json"
+
+
+def read_ladders(folder: Path) -> tuple[Ladder, ...]:
+    """Return every accepted ladder; none if there is no file.
+
+    Raises:
+        InvalidInput: if a file is damaged or edited by hand.
+    """
+    return tuple(ladder for path in sorted(folder.glob(_NAME.format("*"))) for ladder in _read(path))
+
+
+def _read(path: Path) -> tuple[Ladder, ...]:
+    try:
+        stored = json.loads(path.read_text(encoding="utf-8"))
+        tree, digest = stored["ladders"], stored["digest"]
+        found = _LADDERS.validate_python(tree)
+    except (ValueError, KeyError, TypeError, ValidationError) as error:
+        raise InvalidInput(f"{path} holds no ladders ({error!s:.160}); {REMEDY}") from error
+    if digest != digest_of({"ladders": tree}):
+        raise InvalidInput(f"{path} was changed by something else than accept; {REMEDY}")
+    return found
+
+
+def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Claim]:
+    """Return one regression claim for each ladder of the case; one that nobody accepted fails by its name.
+
+    Nothing is claimed as long as no ladder at all was accepted.
+    """
+    before = {(ladder.name, ladder.method): ladder for ladder in accepted}
+    for ladder in case.ladders if before else ():
+        yield _claim(ladder, before.get((ladder.name, ladder.method)))
+
+
+def _claim(ladder: Ladder, before: Ladder | None) -> Claim:
+    worse = [] if before is None else worsened(ladder, before)
+    status = Status.INCOMPARABLE if before is None else Status.DIFF if worse else Status.PASS
+    extra = "extra: this ladder was never accepted; look at it, then accept the run"
+    return Claim(
+        name="accepted rungs and digits",
+        kind=Kind.REGRESSION,
+        scene=ladder.name,
+        methods=(ladder.method,),
+        quantity=ladder.quantity,
+        unit="1",
+        status=status,
+        verdict=Verdict.NONE if before is None else Verdict.FAIL if worse else Verdict.PASS,
+        observed=None if before is None else float(len(worse)),
+        expected=None if before is None else 0.0,
+        tolerance=0.5,
+        fraction=None if before is None else 2.0 * len(worse),
+        origin=Origin.OWN_EARLIER_OUTPUT,
+        source=f"baselines/{_NAME.format(ladder.method)}",
+        because="a method should not give up earlier than it did",
+        derived_from="one digit: repeats that differ by single roundings share about as many digits every time",
+        message=extra if before is None else "; ".join(worse) or "no rung lost, no more than one digit lost",
+    )
+
+
+def accept_ladders(
+    folder: Path, ladders: Iterable[Ladder], now: Circumstances, *, reason: str, loosen: bool = False
+) -> None:
+    """Write ladders into ``folder``, those of a method over those accepted before, and a line into its history.
+
+    Raises:
+        InvalidInput: if a ladder is worse than the accepted one and ``loosen`` is not said; nothing is written then.
+    """
+    accepted = {(ladder.name, ladder.method): ladder for ladder in read_ladders(folder)}
+    new = {(ladder.name, ladder.method): ladder for ladder in ladders}
+    worse = [line for place, ladder in new.items() if place in accepted for line in worsened(ladder, accepted[place])]
+    if worse and not loosen:
+        raise InvalidInput(f"ladders are not accepted: {'; '.join(worse)}; find out why, then say --loosen")
+    for method in dict.fromkeys(ladder.method for ladder in new.values()):
+        merged = [ladder for ladder in (accepted | new).values() if ladder.method == method]
+        _write(folder / _NAME.format(method), merged)
+        count = sum(ladder.method == method for ladder in new.values())
+        append_history(folder, [_entry(now, method, f"{count} ladders", reason)])
+
+
+def _write(path: Path, ladders: list[Ladder]) -> None:
+    tree = _LADDERS.dump_python(tuple(sorted(ladders, key=lambda ladder: ladder.name)), mode="json")
+    path.parent.mkdir(parents=True, exist_ok=True)
+    digest = digest_of({"ladders": tree})
+    write_whole(path, json.dumps({"digest": digest, "ladders": tree}, sort_keys=True, indent=1, allow_nan=False) + "\n")
+
+
+def _entry(now: Circumstances, method: str, quantity: str, reason: str) -> Acceptance:
+    return Acceptance(
+        date=now.date,
+        case="stability",
+        method=method,
+        quantity=quantity,
+        old=None,
+        new=None,
+        old_tolerance=None,
+        new_tolerance=None,
+        reason=reason,
+        revision=now.revision,
+    )
