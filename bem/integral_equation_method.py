@@ -57,6 +57,9 @@ class IntegralEquationMethod(Record):
             return Unsupported(f"the direct integral equation models elastic contact only, not {names}")
         if not isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
             return Unsupported(f"the direct integral equation does not model {type(scene.loading).__name__}")
+        if isinstance(scene.loading, ContactRadii):
+            ratio = float(scene.loading.values.max()) / scene.layer.thickness
+            return Supported() if ratio <= LARGEST_RATIO else Unsupported(_too_thin(ratio))
         return Supported()
 
     def refined(self) -> Self:
@@ -67,8 +70,8 @@ class IntegralEquationMethod(Record):
         """Equilibria under prescribed radii, depths or forces, each radius solved by itself.
 
         Raises:
-            UnsupportedSceneError: If the scene has effects or a history.
-            InvalidInput: If a/h is beyond `LARGEST_RATIO` or the indenter ends too early.
+            UnsupportedSceneError: If the scene has effects or a history, or a/h is beyond `LARGEST_RATIO`.
+            InvalidInput: If the indenter ends too early.
             NotConvergedError: If the matrix is singular to double precision.
         """
         support = self.supports(scene)
@@ -95,6 +98,10 @@ class IntegralEquationMethod(Record):
             stages=log.records,
             fields=DirectFields(scene, contacts),
         )
+
+
+def _too_thin(ratio: float) -> str:
+    return f"a/h = {ratio:g}: the direct integral equation covers ratios up to {LARGEST_RATIO:g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -195,7 +202,7 @@ class _Solver:
     def _density(self, radius: float) -> DirectDensity:
         ratio = radius / self.scene.layer.thickness
         if ratio > LARGEST_RATIO:
-            raise InvalidInput(f"a/h = {ratio:g}: the direct integral equation covers ratios up to {LARGEST_RATIO:g}")
+            raise UnsupportedSceneError(_too_thin(ratio))
         self.log.count("factorisations", 0 if self.scene.layer.is_half_space else 1)
         return DirectDensity.solve(self.scene.layer, self.scene.indenter, radius, self.panel_width, self.nodes)
 

@@ -1,7 +1,7 @@
 """A case: a short paper that is also a test.  Pure description; nothing here solves anything."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from cases.methods import MethodUse
@@ -27,6 +27,7 @@ class CaseScene:
         scene: the problem.
         sampling: what is kept of each answer.
         methods: the methods that solve it; empty for those of the case.
+        nightly: labels of those that take too long for the suite "ci".
     """
 
     name: str
@@ -34,6 +35,7 @@ class CaseScene:
     scene: Scene
     sampling: Sampling = field(default_factory=Sampling)
     methods: tuple[MethodUse, ...] = ()
+    nightly: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,6 +82,9 @@ class Case:
         for suite in self.suites:
             if suite not in SUITES:
                 raise InvalidInput(f"case {self.name}: suite {suite!r} is none of {', '.join(SUITES)}")
+        for scene in self.scenes:
+            for label in scene.nightly:
+                self.use(scene, label)
         for claim in self.claims:
             claim.check(self)
 
@@ -135,11 +140,6 @@ class Case:
         """The tasks of the work studies alone."""
         for study in self.work:
             yield from study.tasks(self)
-
-    def in_suite(self, suite: str) -> "Case":
-        """Return the case with the settings that a suite times and the methods whose parts it leaves out."""
-        ablations = tuple(study.in_suite(suite) for study in self.ablations)
-        return replace(self, work=tuple(study.in_suite(suite) for study in self.work), ablations=ablations)
 
 
 def _refuse_empty(case: str, **fields: object) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from cases import library
 from cases.case import SUITES, Case
+from cases.narrow import in_suite
 from cases.newcomer import with_registered
 from contact import InvalidInput
 
@@ -35,7 +36,7 @@ def by_name(cases: Iterable[Case]) -> dict[str, Case]:
 
 
 def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = "") -> tuple[Case, ...]:
-    """Return the cases asked for by name, or those of a suite, or all.
+    """Return the cases asked for by name, or those of a suite (as it runs them), or all.
 
     Raises:
         InvalidInput: for an unknown name or suite.
@@ -46,7 +47,7 @@ def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = ""
     for name in wanted:
         if name not in cases:
             raise InvalidInput(f"no case {name!r}; there are {', '.join(cases)}")
-    return tuple(cases[name] for name in wanted if not suite or suite in cases[name].suites)
+    return tuple(in_suite(cases[name], suite) for name in wanted if not suite or suite in cases[name].suites)
 
 
 def _case_of(module: str) -> Case:

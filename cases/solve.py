@@ -2,11 +2,6 @@
 
 import time
 from collections import deque
-from collections.abc import Iterator
-from contextlib import contextmanager
-from signal import ITIMER_REAL, SIGALRM, setitimer, signal
-from threading import current_thread, main_thread
-from types import FrameType
 
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
@@ -15,13 +10,10 @@ from cases.methods import shared_inputs
 from cases.results import Scalar, SceneRun
 from cases.status import Status
 from cases.task import Task
+from cases.time_limit import TimeLimitReached, time_limited
 from cases.work.forgetting import forget
 from cases.work.timing import timed_warm
 from contact import NotConvergedError, Solution, UnsupportedSceneError
-
-
-class TimeLimitReached(BaseException):
-    """The task used up its time."""
 
 
 def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
@@ -33,7 +25,7 @@ def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
         time_limit: seconds; zero for no limit.
     """
     try:
-        with _alarm(time_limit), threadpool_limits(limits=1):  # one thread: times compare, sums repeat bit by bit
+        with time_limited(time_limit), threadpool_limits(limits=1):  # one thread: times compare, sums repeat bit by bit
             support = task.solver.supports(task.problem)
             if not support:
                 return _without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
@@ -90,22 +82,3 @@ def _without_numbers(task: Task, key: str, status: Status, reason: str) -> Scene
         reason=" ".join(reason.split()) or status.value,
         cost=None,
     )
-
-
-@contextmanager
-def _alarm(seconds: float) -> Iterator[None]:
-    """Raise ``TimeLimitReached`` after so many seconds; only a main thread can be interrupted this way."""
-    if seconds <= 0 or current_thread() is not main_thread():
-        yield
-        return
-    previous = signal(SIGALRM, _ring)
-    setitimer(ITIMER_REAL, seconds)
-    try:
-        yield
-    finally:
-        setitimer(ITIMER_REAL, 0.0)
-        signal(SIGALRM, previous)
-
-
-def _ring(number: int, frame: FrameType | None) -> None:
-    raise TimeLimitReached

@@ -1,8 +1,8 @@
 """The tables of one case: answers of each method side by side, what an accuracy costs, where the time went."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
-from cases.results import CaseResult, Claim, EffectEntry, Kind, Quantity, SceneRun, WorkPrecision
+from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
 from reports.method_names import display_name
 from reports.numbers import duration, measured, memory, scaled_unit, small
 from reports.tables import Table
@@ -11,60 +11,33 @@ DROPPED_AT = (1e-1, 1e-2, 1e-4)
 DROPPED_WORDS = ", ".join(f"{100 * tau:g} %" for tau in DROPPED_AT)
 
 
-def claims(case: CaseResult) -> Table | None:
-    """What is claimed, why, and where tolerance and expected number come from; one row a claim, whatever its scenes."""
-    same: dict[str, list[Claim]] = {}
-    for claim in case.claims:
-        if claim.kind is not Kind.REGRESSION:  # those say why in the tolerance history
-            same.setdefault(claim.name, []).append(claim)
-    if not same:
-        return None
-    heads = ("claim", "tolerance", "expected because", "tolerance from", "origin of the expected number")
-    return Table(title="Claims", note="", heads=heads, rows=tuple(map(_claim_row, same.values())), words=5)
-
-
-def _claim_row(same: list[Claim]) -> tuple[str, ...]:
-    """One row of claims that differ in scene and method only."""
-    first = same[0]
-    origin = f"{first.origin}: {first.source}"
-    return f"{first.kind}: {first.name}", _tolerances(same), first.because, first.derived_from, origin
-
-
-def _tolerances(same: list[Claim]) -> str:
-    """The tolerance, or each with its methods where they differ."""
-    methods: dict[str, dict[str, None]] = {}
-    for claim in same:
-        shown = methods.setdefault(f"{small(claim.tolerance)}{_unit(claim)}", {})
-        shown.update(dict.fromkeys(map(display_name, claim.methods)))
-    if len(methods) == 1:
-        return next(iter(methods))
-    return ", ".join(f"{tolerance} ({', '.join(names)})" for tolerance, names in methods.items())
-
-
-def _unit(claim: Claim) -> str:
-    return "" if claim.unit == "1" else f" {claim.unit}"
-
-
 def answers(case: CaseResult) -> Table | None:
-    """The last step of each scene with a claim by each method, every number with the uncertainty its method states."""
-    judged = {claim.scene for claim in case.claims}
+    """The last step of each scene with a claim, methods side by side, each number with the uncertainty it states."""
+    judged = dict.fromkeys(claim.scene for claim in case.claims)
     shown = [run for run in case.runs if run.solved and run.scene in judged]
+    methods = tuple(dict.fromkeys(run.method for run in shown))
     if not shown:
         return None
-    names = tuple(dict.fromkeys(quantity.name for run in shown for quantity in _final(run)))
     note = (
         "Digits in brackets: uncertainty of the last digits, stated by the method itself; (?) where it states none. "
         "Load paths show their last step, histories what they end with; all steps, and scenes without a claim, are in "
         "results.json."
     )
-    heads = ("scene", "method", *(name.replace("_", " ") for name in names), "time")
-    return Table(title="Answers", note=note, heads=heads, rows=tuple(_answer_row(run, names) for run in shown), words=2)
+    rows: list[tuple[str, ...]] = []
+    for scene in dict.fromkeys(run.scene for run in shown):
+        rows += [(scene,), *_answer_rows({run.method: run for run in shown if run.scene == scene}, methods)]
+    heads = ("quantity", *map(display_name, methods))
+    return Table(title="Answers", note=note, heads=heads, rows=tuple(rows), words=1)
 
 
-def _answer_row(run: SceneRun, names: Iterable[str]) -> tuple[str, ...]:
-    own = {quantity.name: quantity for quantity in _final(run)}
-    numbers = (_last_value(own[name]) if name in own else "" for name in names)
-    return run.scene, display_name(run.method), *numbers, duration(run.cost.wall_seconds) if run.cost else ""
+def _answer_rows(runs: Mapping[str, SceneRun], methods: Iterable[str]) -> Iterator[tuple[str, ...]]:
+    """One row a quantity and one for the time; a method without that quantity leaves its cell empty."""
+    found = {method: {quantity.name: quantity for quantity in _final(run)} for method, run in runs.items()}
+    for name in dict.fromkeys(name for own in found.values() for name in own):
+        values = (_last_value(found[m][name]) if name in found.get(m, {}) else "" for m in methods)
+        yield name.replace("_", " "), *values
+    costs = {method: duration(run.cost.wall_seconds) for method, run in runs.items() if run.cost}
+    yield "time", *(costs.get(method, "") for method in methods)
 
 
 def _final(run: SceneRun) -> tuple[Quantity, ...]:
@@ -116,23 +89,23 @@ def digit_prices(work: WorkPrecision) -> Table | None:
 
 def stages(case: CaseResult) -> Table | None:
     """Where the time of each solution went: the ledger of stages."""
-    rows = []
+    rows: list[tuple[str, ...]] = []
     judged = {claim.scene for claim in case.claims}
-    for run in (run for run in case.runs if run.scene in judged):
+    for run in (run for run in case.runs if run.scene in judged and run.stages):
         total = sum(stage.seconds for stage in run.stages)
+        rows.append((f"{run.scene}, {display_name(run.method)}",))
         for stage in run.stages:
             share = f"{100.0 * stage.seconds / total:.0f} %" if total > 0.0 else ""
             size = memory(stage.bytes) if stage.bytes else ""
-            who = (run.scene, display_name(run.method), stage.name)
-            rows.append((*who, f"{stage.calls}", duration(stage.seconds), share, size))
+            rows.append((stage.name, f"{stage.calls}", duration(stage.seconds), share, size))
     if not rows:
         return None
     return Table(
         title="Where the time went",
         note="Stages that ran, and no others: what a scene does not list has no row.",
-        heads=("scene", "method", "stage", "calls", "time", "share", "memory"),
+        heads=("stage", "calls", "time", "share", "memory"),
         rows=tuple(rows),
-        words=3,
+        words=1,
     )
 
 

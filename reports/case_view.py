@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from cases.results import CaseResult, WorkPrecision
 from reports import case_tables, cost_tables, hard_tables
 from reports.charts import agreement, convergence, coverage, error_map, ladder, work_precision
+from reports.claim_blocks import ClaimBlock, claim_blocks
 from reports.drawing import plate_of
 from reports.gallery import Gallery, Hung
-from reports.matrix import Matrix, case_matrix
 from reports.outcomes import Outcome, case_outcomes, severity
 from reports.tables import Table
 
@@ -27,8 +27,7 @@ class CaseView:
     """A case on the page; `refusals` are sentences, `outcomes` come worst first."""
 
     result: CaseResult
-    claims: Table | None
-    matrix: Matrix
+    claims: tuple[ClaimBlock, ...]
     figures: tuple[Hung, ...]
     agreement: tuple[Hung, ...]
     answers: Table | None
@@ -50,8 +49,7 @@ def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
     """Draw and tabulate a case; `command` makes its numbers and figures again."""
     return CaseView(
         result=case,
-        claims=case_tables.claims(case),
-        matrix=case_matrix(case),
+        claims=claim_blocks(case),
         figures=gallery.hang(plate_of(figure, case=case.name, command=command) for figure in case.figures),
         agreement=gallery.hang(agreement.plates(case, command)),
         answers=case_tables.answers(case),

@@ -7,7 +7,7 @@ import sys
 import traceback
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -41,6 +41,7 @@ Cases = Annotated[
 ]
 Out = Annotated[Path, typer.Option(help="Folder of the run: results.json, results.h5, report.html, figures.")]
 Baselines = Annotated[Path, typer.Option(help="Folder of the accepted numbers.")]
+SchemaName = Literal["results", "scene"]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
 
 
@@ -162,6 +163,9 @@ def gate(
         list[str] | None, typer.Option(metavar="CASE", help="With --against: time only these cases. Repeatable.")
     ] = None,
     pairs: Annotated[int, typer.Option(min=7, help="With --against: how often each method is timed.")] = 15,
+    method: Annotated[
+        list[str] | None, typer.Option(help="Only these methods, for a run of them alone. Repeatable.")
+    ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
     quiet: Quiet = False,
 ) -> int:
@@ -172,7 +176,7 @@ def gate(
     from reports.commands.gate import Timing, run_gate  # noqa: PLC0415
 
     timing = Timing(revision=against, cases=tuple(only or ()), pairs=pairs)
-    return run_gate(run, baseline, timing=timing, strict=strict, quiet=quiet)
+    return run_gate(run, baseline, methods=method or (), timing=timing, strict=strict, quiet=quiet)
 
 
 @app.command()
@@ -326,13 +330,20 @@ def explain(
 
 
 @app.command()
-def schema() -> None:
-    """Print the JSON Schema of results.json."""
+def schema(
+    what: Annotated[SchemaName, typer.Argument(help="results.json, or scene files for an editor.")] = "results",
+) -> None:
+    """Print the JSON Schema of results.json, or of scene files.
+
+    Editors complete and check a scene whose first line is `#:schema scene.schema.json`.
+    """
     import json  # noqa: PLC0415
 
     from cases.results_files import json_schema  # noqa: PLC0415
+    from contact.scene_schema import scene_schema  # noqa: PLC0415
 
-    typer.echo(json.dumps(json_schema(), indent=1, sort_keys=True))
+    chosen = scene_schema() if what == "scene" else json_schema()
+    typer.echo(json.dumps(chosen, indent=1, sort_keys=True))
 
 
 @app.command()

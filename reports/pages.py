@@ -7,12 +7,14 @@ from importlib.resources import files
 from pathlib import Path
 
 import jinja2
+from markupsafe import Markup
 
 from cases.results import Acceptance, Kind, RunResult
 from cases.results_files import write_whole
 from cases.status import Status
 from reports import cost_tables
 from reports.case_view import CaseView, case_view
+from reports.claim_blocks import is_wide
 from reports.gallery import Gallery
 from reports.matrix import run_matrix
 from reports.names import file_name
@@ -46,6 +48,7 @@ def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
         baseline=baseline_sentence(run),
         counts=counts(rows),
         explanations=EXPLANATIONS,
+        wide=sum(is_wide(claim) for case in run.cases for claim in case.claims),
         worst=worst,
         more_failures=sum(row.tone != "skip" for row in notable) - len(worst),
         matrix=run_matrix(run),
@@ -142,6 +145,8 @@ def _environment() -> jinja2.Environment:
         anchor=file_name,
         duration=duration,
         tone=tone_of,
+        sentence=lambda text: text[:1].upper() + text[1:],
+        breakable=lambda name: Markup("_<wbr>").join(name.split("_")),
         paragraphs=lambda text: [part.strip() for part in text.split("\n\n") if part.strip()],
     )
     return environment

@@ -1,15 +1,17 @@
 """`gate --against REVISION`: this source raced against another revision in a worktree of its own, in one job."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
 from cases.case import Case
-from cases.gate.race import PAIRS, Race, judge_race, race
-from cases.gate.version import Subject, Version, subject
+from cases.gate.race import PAIRS, SLOWEST, judge_race, race
+from cases.gate.version import CannotSolve, Subject, Version, subject
 from cases.gate.worktree import worktree
 from cases.results import Claim, Kind, Origin, RunResult
+from cases.rules.judgement import nothing_compared
+from cases.status import Status
 
 SOURCE = Path(__file__).resolve().parents[2]
 
@@ -19,6 +21,8 @@ def with_times_against(
 ) -> RunResult:
     """Return ``run`` with a claim about the time of every method on the first scene it solved of each case.
 
+    What the revision cannot solve yet is skipped, with its words.
+
     Args:
         run: finished; it says what each method solves.
         revision: what the working tree is raced against, anything git understands.
@@ -27,14 +31,14 @@ def with_times_against(
         pairs: how often each is timed, at least seven.
 
     Raises:
-        InvalidInput: if there is no such revision, or it cannot solve what this source can.
+        InvalidInput: if there is no such revision, or it is no source of this project.
     """
     claims: dict[str, list[Claim]] = {}
     with ExitStack() as stack:
         base = stack.enter_context(worktree(repository, revision))
         versions = [stack.enter_context(Version(folder)) for folder in (base, repository, base)]
         for what in subjects(run, cases):
-            claims.setdefault(what.case, []).append(_claim(race(versions, what, pairs=pairs), what, revision))
+            claims.setdefault(what.case, []).append(_claim(versions, what, revision, pairs))
     timed = (replace(case, claims=(*case.claims, *claims.get(case.name, ()))) for case in run.cases)
     return replace(run, cases=tuple(timed))
 
@@ -48,8 +52,12 @@ def subjects(run: RunResult, cases: Iterable[Case]) -> Iterator[Subject]:
             yield subject(case, scene, case.use(scene, row.method))
 
 
-def _claim(finished: Race, what: Subject, revision: str) -> Claim:
-    judged = judge_race(finished)
+def _claim(versions: Sequence[Version], what: Subject, revision: str, pairs: int) -> Claim:
+    try:
+        finished = race(versions, what, pairs=pairs)
+        judged, limit = judge_race(finished), finished.limit
+    except CannotSolve as error:
+        judged, limit = nothing_compared(Status.SKIP, str(error)), SLOWEST
     return Claim(
         name=f"no slower than {revision}",
         kind=Kind.REGRESSION,
@@ -61,7 +69,7 @@ def _claim(finished: Race, what: Subject, revision: str) -> Claim:
         verdict=judged.verdict,
         observed=judged.observed,
         expected=0.0,
-        tolerance=finished.limit - 1,
+        tolerance=limit - 1,
         fraction=judged.fraction,
         origin=Origin.OWN_EARLIER_OUTPUT,
         source=f"revision {revision}, timed alternately in the same job",

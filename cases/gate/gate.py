@@ -1,13 +1,15 @@
 """A run against what was accepted: every number, every counter, nothing missing and nothing extra."""
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from cases.gate.baseline import Baseline
 from cases.gate.counts import count_checks
 from cases.gate.ladders import ladder_claims
 from cases.gate.values import value_checks
-from cases.results import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult
+from cases.results import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult, SceneRun
+
+Watched = Callable[[str, SceneRun], bool]
 
 
 def gate(
@@ -15,6 +17,7 @@ def gate(
     baselines: Iterable[Baseline],
     history: Iterable[Acceptance] = (),
     ladders: Iterable[Ladder] = (),
+    watched: Watched = lambda case, row: True,
 ) -> RunResult:
     """Return ``run`` with a regression claim for every quantity and counter that was accepted or is new.
 
@@ -23,6 +26,7 @@ def gate(
         baselines: what was accepted; a case of the run's suite that the run does not have counts as missing.
         history: acceptances, for the report.
         ladders: accepted stability ladders.
+        watched: whether a solution of a case needs accepted numbers; those of the nightly suite alone do not.
     """
     climbed = tuple(ladders)
     accepted: dict[str, list[Baseline]] = {}
@@ -30,7 +34,7 @@ def gate(
         accepted.setdefault(baseline.case, []).append(baseline)
     present = {case.name for case in run.cases}
     lost = [_lost_case(name) for name in sorted(accepted) if name not in present and _belongs(accepted[name], run)]
-    cases = tuple(_gated(case, accepted.get(case.name, []), climbed) for case in (*run.cases, *lost))
+    cases = tuple(_gated(case, accepted.get(case.name, []), climbed, watched) for case in (*run.cases, *lost))
     return replace(run, cases=cases, acceptances=tuple(history))
 
 
@@ -51,10 +55,11 @@ def _lost_case(name: str) -> CaseResult:
     )
 
 
-def _gated(case: CaseResult, baselines: list[Baseline], ladders: tuple[Ladder, ...]) -> CaseResult:
+def _gated(case: CaseResult, baselines: list[Baseline], ladders: tuple[Ladder, ...], watched: Watched) -> CaseResult:
     """Return ``case`` with its regression claims; those of an earlier gate are replaced."""
     own = (claim for claim in case.claims if claim.kind is not Kind.REGRESSION)
-    return replace(case, claims=(*own, *_regression_claims(case, baselines), *ladder_claims(case, ladders)))
+    seen = replace(case, runs=tuple(row for row in case.runs if watched(case.name, row)))
+    return replace(case, claims=(*own, *_regression_claims(seen, baselines), *ladder_claims(case, ladders)))
 
 
 def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[Claim]:

@@ -15,6 +15,7 @@ from cases.status import Status
 from cases.work.timing import SHORTEST, Slowdown, is_ambiguous, is_slower, slowdown
 
 PAIRS = 15
+SLOWEST = 1.10  # ratio that passes on a machine without noise
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,7 +49,7 @@ class Race:
     @property
     def limit(self) -> float:
         """Largest ratio that passes."""
-        return 1 + max(0.10, 3 * self.null_spread)
+        return max(SLOWEST, 1 + 3 * self.null_spread)
 
 
 def race(versions: Sequence[Version], what: Subject, *, pairs: int = PAIRS) -> Race:

@@ -19,6 +19,10 @@ _STOPWATCH = Path(__file__).with_name("stopwatch.py")
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1")
 
 
+class CannotSolve(InvalidInput):
+    """A version has no answer to a subject, such as a revision from before a method or setting."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Subject:
     """What is timed: one method on one scene; ``order`` is the same as a word that every version understands."""
@@ -67,14 +71,14 @@ class Version:
         """Return the CPU seconds of one solve, mean of ``solves``, after a warm-up at the first call.
 
         Raises:
-            InvalidInput: if this version cannot solve that.
+            CannotSolve: if this version cannot solve that.
         """
         questions = _opened(self._process.stdin)
         questions.write(f"{what.order} {solves}\n")
         questions.flush()
         reply = self._reply()
         if "error" in reply:
-            raise InvalidInput(f"{what.label} cannot be timed in {self._folder}: {reply['error']}")
+            raise CannotSolve(f"{what.label} cannot be timed in {self._folder}: {reply['error']}")
         return float(reply["seconds"])
 
     def __enter__(self) -> Self:

@@ -6,7 +6,7 @@ from cases.case import Case, CaseScene
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
 from cases.claims.twin import Twin
-from cases.library._compared import BEM, EQUATION, FEM, MDR, agreements
+from cases.library._compared import EVERY, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, prescribed_radii
 from cases.results import Origin
 from cases.work.settings import elastic_costs
@@ -62,7 +62,8 @@ def unequal(ratio: float) -> CaseScene:
         name=f"unequal coatings a/h={ratio:g}",
         parameters={"a_over_h": ratio},
         scene=scene,
-        methods=(MDR,),
+        methods=(MDR, FEM),
+        nightly=("fem",),
     )
 
 
@@ -116,7 +117,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*SYMMETRIC, *THIN),
-    methods=(MDR, FEM, BEM, EQUATION),
+    methods=EVERY,
     claims=(
         Twin(
             name="half the approach on one body",
@@ -139,7 +140,7 @@ CASE = Case(
             tolerance=0.2,
             reason=SERIES,
         ),
-        *agreements(SYMMETRIC, {"fem": 1e-5, "bem": 2e-3, "integral_equation": 1e-9}),
+        *agreements(SYMMETRIC, {"fem": 3e-6, "bem": 2e-3, "integral_equation": 1e-9, "mdr_table": 1.5e-2}),
     ),
     work=elastic_costs(SYMMETRIC[0].name),
 )

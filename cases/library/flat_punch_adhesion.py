@@ -9,7 +9,18 @@ from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.figures import paper_figure
-from cases.library._compared import BEM, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
+from cases.library._compared import (
+    BEM,
+    BOUNDARY_ELEMENTS,
+    EQUATION,
+    FINITE_ELEMENTS,
+    MDR,
+    PUBLISHED_ROUTE,
+    QUICK_FEM,
+    TABLE,
+    agreements,
+    with_reason,
+)
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, half_space
 from cases.results import Figure, Origin
 from cases.task import Answers
@@ -59,7 +70,7 @@ def on_half_space(control: str) -> CaseScene:
         name=f"half-space, {control}",
         parameters={"control": control},
         scene=scene_of(0.3, 1.0, control, half_space()),
-        methods=ONLY_MDR if control == "force" else (MDR, QUICK_FEM),
+        methods=(MDR, BEM, TABLE) if control == "force" else (MDR, QUICK_FEM, BEM, TABLE),
     )
 
 
@@ -108,7 +119,7 @@ KENDALL = Reason(
 MAXIMUM = Reason(
     because="under displacement control the contact holds until Delta l(a) is largest, Eq. (45)",
     derived_from="six printed digits of a maximum found on a separate solution; finite elements add their 1e-4; "
-    "boundary elements let go cell by cell, with 59 cells across the contact that jumps",
+    "boundary elements three times the 7e-4 they state",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, maximum of Eq. (42)",
 )
@@ -152,7 +163,7 @@ CLAIMS = (
             for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)
         },
         tolerance=3e-6,
-        tolerances={"fem": 1e-3, "bem": 5e-2},
+        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-2},
         reason=MAXIMUM,
     ),
     Exact(
@@ -160,7 +171,7 @@ CLAIMS = (
         quantity="pull_off_contact_radius",
         expected={s.name: (MAXIMA[nu][0] * THICKNESS,) for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)},
         tolerance=3e-6,
-        tolerances={"fem": 1e-2, "bem": 5e-2},
+        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-2},
         reason=STABILITY,
     ),
     Exact(
@@ -169,7 +180,7 @@ CLAIMS = (
         scenes=tuple(s.name for s in ABRUPT),
         expected=abrupt_force,
         tolerance=1e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-2},
+        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-2},
         reason=GRIFFITH,
     ),
     *agreements(
@@ -177,6 +188,18 @@ CLAIMS = (
         {"fem": 1e-3},
         ("pull_off_force", "pull_off_depth"),
         reason=with_reason(FINITE_ELEMENTS, "ten times the finite element accuracy of 1e-4 on every contact radius"),
+    ),
+    *agreements(
+        (BEYOND_MAXIMUM[0], *ABRUPT),
+        {"bem": 8e-3},
+        ("pull_off_force", "pull_off_depth"),
+        reason=with_reason(BOUNDARY_ELEMENTS, "three times the error that 128 cells across the contact state, 2.6e-3"),
+    ),
+    *agreements(
+        (BEYOND_MAXIMUM[0], *ABRUPT),
+        {"mdr_table": 6e-3},
+        ("pull_off_force",),  # where the branch turns, the depth of a table's springs is known to their root only
+        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table's springs state, 2e-3 on 128 cells"),
     ),
 )
 
@@ -188,7 +211,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT),
-    methods=(MDR, QUICK_FEM, BEM),
+    methods=(MDR, QUICK_FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,
     ablations=(AblationStudy(scene=BEYOND_MAXIMUM[0].name, nightly=("fem", "bem")),),
     work=detachment_costs(BEYOND_MAXIMUM[0].name),

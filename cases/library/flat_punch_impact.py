@@ -9,7 +9,7 @@ from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.residual import Residual
 from cases.figures import paper_figure
-from cases.library._compared import FEM, FINITE_ELEMENTS, MDR, agreements, with_reason
+from cases.library._compared import EVERY, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, agreements, with_reason
 from cases.results import Figure, Origin, Series
 from cases.task import Answers
 from cases.work.settings import impact_costs
@@ -134,7 +134,7 @@ CLAIMS = (
         quantity="coefficient_of_restitution",
         expected={s.name: (restitution(0.3 * math.sqrt(k)),) for k, s in zip(KBAR.values(), ON_LAYERS, strict=True)},
         tolerance=1e-6,
-        tolerances={"fem": 1e-4},
+        tolerances={"fem": 1e-4, "mdr_table": 3e-3},
         reason=CLOSED_FORM,
     ),
     Residual(
@@ -151,6 +151,12 @@ CLAIMS = (
         ("coefficient_of_restitution", "peak_depth", "peak_force", "contact_time"),
         reason=with_reason(FINITE_ELEMENTS, "what finite elements state for 500 time steps, at most 3e-5, three times"),
     ),
+    *agreements(
+        ON_LAYERS,
+        {"mdr_table": 3e-3},
+        ("coefficient_of_restitution", "peak_depth", "peak_force", "contact_time"),
+        reason=with_reason(PUBLISHED_ROUTE, "twice the error that the table states for the stiffness, 1.4e-3"),
+    ),
 )
 
 CASE = Case(
@@ -161,7 +167,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*HALF_SPACE, *ON_LAYERS),
-    methods=(MDR, FEM),
+    methods=EVERY,
     claims=CLAIMS,
     ablations=(AblationStudy(scene=ON_LAYERS[0].name, nightly=("fem",)),),
     work=impact_costs(ON_LAYERS[0].name),

@@ -9,7 +9,7 @@ from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.figures import paper_figure
-from cases.library._compared import BEM, FEM, MDR, TABLE, agreements
+from cases.library._compared import BEM, EVERY, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
 from cases.results import Figure, Origin, Series
 from cases.task import Answers, Sampling
@@ -194,7 +194,7 @@ CLAIMS = (
         quantity="contact_stiffness",
         expected=tabulated(),
         tolerance=1e-10,
-        tolerances={"fem": 1e-5, "bem": 1e-4, "mdr_table": 1e-3},
+        tolerances={"fem": 3e-6, "bem": 1e-4, "mdr_table": 1e-3},
         reason=SEPARATE_SOLUTION,
     ),
     Exact(
@@ -221,7 +221,7 @@ CLAIMS = (
         methods=("mdr",),
         reason=HERMANOWICZ_FIT,
     ),
-    *agreements(PUNCHES, {"fem": 1e-5, "bem": 1e-4, "mdr_table": 2e-3}, ("normal_force",)),
+    *agreements(PUNCHES, {"fem": 3e-6, "bem": 1e-4, "integral_equation": 1e-9, "mdr_table": 2e-3}, ("normal_force",)),
 )
 
 
@@ -281,7 +281,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*PUNCHES, *HAYES_WALKS, *HERMANOWICZ_WALKS),
-    methods=(MDR, FEM, BEM, TABLE),
+    methods=EVERY,
     claims=CLAIMS,
     work=elastic_costs("bonded nu=0.5 a/h=2", ("contact_stiffness",)),
     figures=(figure_3, figure_4, figure_5),

@@ -7,7 +7,7 @@ from cases.claims.approach import Approach
 from cases.claims.declared import Reason
 from cases.claims.even_accuracy import EvenAccuracy
 from cases.claims.exact import Exact
-from cases.library._compared import BEM, EQUATION, FEM, MDR, agreements
+from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS
 from cases.methods import MethodUse
 from cases.results import Origin
@@ -86,9 +86,11 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=SCENES,
-    methods=(MDR, FEM, ONE_MESH, BEM, EQUATION),
+    methods=(MDR, FEM, ONE_MESH, BEM, EQUATION, TABLE),
     claims=(
-        *agreements(SCENES, {"fem": 1e-5, "bem": 1e-4, "integral_equation": 1e-9}, ("contact_stiffness",)),
+        *agreements(
+            SCENES, {"fem": 3e-6, "bem": 1e-4, "integral_equation": 1e-9, "mdr_table": 2e-3}, ("contact_stiffness",)
+        ),
         Exact(
             name="stiffness to ten digits",
             quantity="contact_stiffness",
@@ -97,7 +99,7 @@ CASE = Case(
                 for nu, kbar in KBAR.items()
             },
             tolerance=1e-10,
-            tolerances={"fem": 1e-5, "fem one mesh": 1e-5, "bem": 1e-4},
+            tolerances={"fem": 3e-6, "fem one mesh": 1e-5, "bem": 1e-4, "mdr_table": 2e-3},
             reason=SEPARATE_SOLUTION,
         ),
         EvenAccuracy(

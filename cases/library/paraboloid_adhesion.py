@@ -6,7 +6,17 @@ from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
-from cases.library._compared import BEM, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
+from cases.library._compared import (
+    BEM,
+    BOUNDARY_ELEMENTS,
+    EQUATION,
+    FINITE_ELEMENTS,
+    MDR,
+    QUICK_FEM,
+    TABLE,
+    agreements,
+    with_reason,
+)
 from cases.library._layers import half_space, layer
 from cases.results import Origin
 from cases.work.settings import detachment_costs
@@ -34,12 +44,13 @@ def case_scene(label: str, control: str, body: Layer) -> CaseScene:
         loading=Detachment(control="force" if control == "force" else "displacement"),
         effects=(Adhesion(work_of_adhesion=WORK_OF_ADHESION),),
     )
-    # finite elements solve the whole branch whatever the control; boundary elements have their closed form here
-    finite_elements = (QUICK_FEM,) if control == "force" else ()
-    boundary_elements = (BEM,) if body.is_half_space else ()
-    methods = (MDR, *finite_elements, *boundary_elements)
     return CaseScene(
-        name=f"{label}, {control}", parameters={"layer": label, "control": control}, scene=scene, methods=methods
+        name=f"{label}, {control}",
+        parameters={"layer": label, "control": control},
+        scene=scene,
+        # adhesion takes the slope of springs along the radius, for which a table is too rough: MDR refuses it by name
+        methods=() if body.is_half_space else (MDR, QUICK_FEM, BEM, EQUATION),
+        nightly=() if control == "force" else ("fem",),  # the same branch, whatever the control
     )
 
 
@@ -48,7 +59,6 @@ HALF_SPACE = tuple(case_scene("half-space", control, half_space()) for control i
 ON_LAYERS = tuple(
     case_scene(label, control, layer(label)) for label in ("unbonded", "bonded nu=0.5") for control in CONTROLS
 )
-BY_FORCE = tuple(scene for scene in (*HALF_SPACE, *ON_LAYERS) if scene.parameters["control"] == "force")
 
 
 def control_of(scene: Scene) -> str:
@@ -78,7 +88,7 @@ def jkr_depth(scene: Scene) -> list[float]:
 JKR = Reason(
     because="Johnson, Kendall and Roberts: energy release rate equals the work of adhesion",
     derived_from="MDR: turning points of an analytic branch; finite elements ten times their accuracy of 1e-4; "
-    "boundary elements let go cell by cell: 2 % in the force, and five times that in the depth where the force is flat",
+    "boundary elements and table three times what they state",
     origin=Origin.CLOSED_FORM,
     source="Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971) 301",
 )
@@ -101,19 +111,25 @@ CLAIMS = (
             reason=reason,
         )
         for quantity, closed_form, tolerance, tolerances, reason in (
-            ("pull_off_force", jkr_force, 1e-9, {"fem": 1e-3, "bem": 2e-2}, JKR),
-            ("pull_off_depth", jkr_depth, 1e-9, {"fem": 1e-3, "bem": 1e-1}, JKR),
-            ("pull_off_contact_radius", jkr_radius, 1e-6, {"fem": 1e-2, "bem": 1e-1}, FOLD),
+            ("pull_off_force", jkr_force, 1e-9, {"fem": 1e-3, "bem": 6e-3}, JKR),
+            ("pull_off_depth", jkr_depth, 1e-9, {"fem": 1e-3, "bem": 1.5e-2}, JKR),
+            ("pull_off_contact_radius", jkr_radius, 1e-6, {"fem": 1e-3, "bem": 6e-3}, FOLD),
         )
     ),
     *agreements(
-        BY_FORCE,
+        (*HALF_SPACE, *ON_LAYERS),
         {"fem": 2e-3},
         ("pull_off_force", "pull_off_depth"),
         reason=with_reason(
             FINITE_ELEMENTS,
             "accuracy 1e-4 of profile and elongation, whose difference the pull-off is; it states at most 1e-3, twice",
         ),
+    ),
+    *agreements(
+        (*HALF_SPACE, *ON_LAYERS),
+        {"bem": 1.5e-2},
+        ("pull_off_force", "pull_off_depth", "pull_off_contact_radius"),
+        reason=with_reason(BOUNDARY_ELEMENTS, "three times what they state where the force is flat, 5e-3"),
     ),
 )
 
@@ -125,7 +141,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*HALF_SPACE, *ON_LAYERS),
-    methods=(MDR, QUICK_FEM, BEM),
+    methods=(MDR, QUICK_FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,
     ablations=(AblationStudy(scene="bonded nu=0.5, force", nightly=("fem",)),),
     work=detachment_costs("bonded nu=0.5, force"),

@@ -12,7 +12,7 @@ from cases.claims.exact import Exact
 from cases.claims.residual import Residual
 from cases.claims.twin import Twin
 from cases.figures import paper_figure
-from cases.library._compared import FINITE_ELEMENTS, MDR, agreements, with_reason
+from cases.library._compared import BEM, EQUATION, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
 from cases.methods import MethodUse
 from cases.results import Figure, Origin, SceneRun, Series
 from cases.task import Answers
@@ -152,7 +152,7 @@ CLAIMS = (
         quantity="coefficient_of_restitution",
         expected={name_of(h): (RESTITUTION[h],) for h in THICKNESSES},
         tolerance=3e-5,
-        tolerances={"fem": 1e-4},
+        tolerances={"fem": 1e-4, "mdr_table": 2e-2},
         reason=SEPARATE_IMPACT,
     ),
     Exact(
@@ -167,7 +167,7 @@ CLAIMS = (
         quantity="peak_force",
         expected={name_of(h): (force,) for h, force in PEAK_FORCE.items()},
         tolerance=3e-5,
-        tolerances={"fem": 3e-4},
+        tolerances={"fem": 3e-4, "mdr_table": 2e-2},
         reason=SEPARATE_IMPACT,
     ),
     Residual(
@@ -175,7 +175,7 @@ CLAIMS = (
         quantity="energy_residual",
         scenes=tuple(s.name for s in ON_LAYERS),
         tolerance=1e-7,
-        tolerances={"fem": 1e-4},
+        tolerances={"fem": 1e-4, "mdr_table": 1e-4},
         reason=ENERGY,
     ),
     Twin(
@@ -207,6 +207,12 @@ CLAIMS = (
         ("peak_contact_radius",),
         reason=with_reason(FINITE_ELEMENTS, "a tenth of a cell and what halving the cells changes, 2e-3, twice"),
     ),
+    *agreements(
+        ON_LAYERS,
+        {"mdr_table": 2e-2},
+        ("coefficient_of_restitution", "peak_force", "peak_depth"),
+        reason=with_reason(PUBLISHED_ROUTE, "one and a half times the error that the table states, 1.3e-2"),
+    ),
 )
 
 CASE = Case(
@@ -217,7 +223,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(HALF_SPACE, *ON_LAYERS),
-    methods=(MDR, FEM),
+    methods=(MDR, FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,
     ablations=(AblationStudy(scene=name_of(2e-3), nightly=("fem",)),),
     work=impact_costs(name_of(2e-3)),

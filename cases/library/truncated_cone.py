@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from cases.advice.study import AblationStudy
 from cases.case import Case, CaseScene
-from cases.claims.agreement import Agreement
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
@@ -17,6 +16,7 @@ from cases.claims.order import Order
 from cases.claims.residual import Residual
 from cases.claims.twin import Twin
 from cases.figures import paper_figure
+from cases.library._compared import EQUATION, EVERY, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
@@ -29,7 +29,6 @@ from cases.library._layers import (
     prescribed_radii,
     scene_name,
 )
-from cases.methods import MethodUse
 from cases.results import Figure, Origin, SceneRun, Series
 from cases.task import Answers, Sampling
 from cases.work.settings import elastic_costs
@@ -41,11 +40,6 @@ RATIOS = (0.1, 1.0, 2.0, 5.0, 20.0)
 HALF_SPACE_FLATS = (0.25, 0.5, 0.75, 0.9)
 RINGS = (0.0, 0.4, FLAT_FRACTION, 0.6, 0.8, 1.0)
 
-MDR = MethodUse(label="mdr")
-FEM = MethodUse(label="fem", settings={"accuracy": 3e-6})
-EQUATION = MethodUse(label="integral_equation")
-QUICK_FEM = MethodUse(label="fem", settings={"accuracy": 1e-4})
-
 TEXT = """
 A rigid cone with a flat end of radius b, f(r) = (r - b) tan(theta) for r >= b, Eq. (35), presses on a layer of
 thickness h. The contact radius a is prescribed with b/a = 0.5, for an unbonded layer and bonded layers with nu = 0.3,
@@ -56,7 +50,7 @@ delta = a tan(theta) arccos(b/a),  F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sq
 
 MDR, Eqs. (4) and (8), starts from flat-punch data of the layer kernel, Eqs. (29)-(31). The finite element model meshes
 the section and never sees that kernel; the two share no input. Depth, force and contact stiffness must agree within
-1e-5. The pressure has a logarithmic singularity at r = b, so it is compared in the 2 pi r weighted L2 norm and by the
+3e-6. The pressure has a logarithmic singularity at r = b, so it is compared in the 2 pi r weighted L2 norm and by the
 loads of rings with an edge at r = b, never by its maximum.
 """
 
@@ -70,6 +64,7 @@ def cone_scene(label: str, ratio: float) -> CaseScene:
         parameters={"layer": label, "a_over_h": ratio, "b_over_a": FLAT_FRACTION},
         scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii(values=np.array([a]))),
         sampling=Sampling(ring_edges=edges(a, RINGS)),
+        nightly=("fem",) if label == "bonded nu=0.3" else (),
     )
 
 
@@ -88,11 +83,13 @@ def path_scene(label: str, ratio: float) -> CaseScene:
     """Return the path over contact radii from 0.75 a to a, away from the kink at 0.5 a."""
     base = cone_scene(label, ratio)
     loading = ContactRadii(values=ratio * THICKNESS * chebyshev_radii(0.75, 1.0, 16))
-    methods = (MDR, EQUATION) if ratio == 1.0 else (MDR,)
-    return replace(base, name=f"{base.name}, path", scene=base.scene.replace(loading=loading), methods=methods)
+    path = replace(base, name=f"{base.name}, path", scene=base.scene.replace(loading=loading), nightly=())
+    return replace(path, methods=(MDR, EQUATION) if ratio == 1.0 else (MDR,))
 
 
 LAYER_SCENES = tuple(cone_scene(label, ratio) for label in LAYERS for ratio in RATIOS)
+RESOLVED = tuple(s for s in LAYER_SCENES if float(s.parameters["a_over_h"]) <= 2)
+THIN = tuple(s for s in LAYER_SCENES if float(s.parameters["a_over_h"]) > 2)
 PATH_SCENES = tuple(path_scene(label, ratio) for label in LAYERS for ratio in (0.3, 1.0, 3.0, 10.0))
 HALF_SPACE_SCENES = tuple(half_space_scene(flat) for flat in HALF_SPACE_FLATS)
 ON_LAYERS = tuple(scene.name for scene in LAYER_SCENES)
@@ -211,25 +208,26 @@ def tabulated_forces() -> dict[str, tuple[float, ...]]:
 
 SNEDDON = Reason(
     because="linear elasticity on the half-space, solved by Sneddon",
-    derived_from="MDR: quadrature to 1e-12 with two digits to spare; FEM: three times its accuracy of 3e-6",
+    derived_from="MDR: quadrature to 1e-12 with two digits to spare; FEM: what it states, 1e-6, three times; boundary "
+    "elements twice theirs, 8e-3, as the rim falls between cells",
     origin=Origin.CLOSED_FORM,
     source="Popov, Hess, Willert: Handbook of Contact Mechanics (2019), truncated cone",
 )
 DIRECT_SOLUTION = Reason(
     because="the same Fredholm equation, solved radius by radius for the profile instead of factorised",
-    derived_from="half a unit of the sixth decimal over the smallest value, 0.33; FEM adds its 3e-6",
+    derived_from="half a unit of the sixth decimal over the smallest value, 0.33; FEM adds what it states, 1e-6, three "
+    "times; boundary elements and table twice what they state up to a/h = 5",
     origin=Origin.INDEPENDENT_METHOD,
     source="direct Nystrom solution with the rule split at r = b, twelve digits stable over the node count",
 )
-FINITE_ELEMENTS = Reason(
-    because="both solve the same linear elastic layer; they share no input",
-    derived_from="three times the finite element accuracy of 3e-6; MDR's own error is below 1e-9",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="axisymmetric mixed finite elements",
+FINITE_ELEMENT_FIELDS = with_reason(
+    FINITE_ELEMENTS, "the logarithmic singularity at r = b and the root at r = a limit finite elements to about 1e-4"
 )
-FINITE_ELEMENT_FIELDS = replace(
-    FINITE_ELEMENTS,
-    derived_from="the logarithmic singularity at r = b and the root at r = a limit finite elements to about 5e-4",
+KINKED_GRIDS = Reason(
+    because="both solve the same layer; the rim at r = b falls between the cells of a square grid",
+    derived_from="one and a half times the error that 128 cells across the contact and tables of 128 cells state",
+    origin=Origin.INDEPENDENT_METHOD,
+    source="FFT boundary elements; share the layer kernel",
 )
 LINEARITY = Reason(
     because="the layer is linear elastic and the indenter rigid",
@@ -245,7 +243,7 @@ DIMENSIONS = Reason(
 )
 UNBONDED_KERNEL = Reason(
     because="at given E* the kernel of the unbonded layer has no nu",
-    derived_from="MDR: the same equation; FEM: another problem with another nu, three times its accuracy of 3e-6",
+    derived_from="MDR: the same equation; FEM: another problem with another nu, three times what it states, 1e-6",
     origin=Origin.CLOSED_FORM,
     source="Eq. (29)",
 )
@@ -258,7 +256,7 @@ EXACT = (
         scenes=ON_HALF_SPACE,
         expected=half_space_depth,
         tolerance=1e-10,
-        tolerances={"fem": 1e-5},
+        tolerances={"fem": 3e-6, "bem": 2e-2},
         reason=SNEDDON,
     ),
     Exact(
@@ -267,7 +265,7 @@ EXACT = (
         scenes=ON_HALF_SPACE,
         expected=half_space_force,
         tolerance=1e-10,
-        tolerances={"fem": 1e-5},
+        tolerances={"fem": 3e-6, "bem": 2e-2},
         reason=SNEDDON,
     ),
     Exact(
@@ -275,7 +273,7 @@ EXACT = (
         quantity="indentation_depth",
         expected=tabulated_depths(),
         tolerance=1.6e-6,
-        tolerances={"fem": 5e-6},
+        tolerances={"fem": 5e-6, "bem": 2e-2, "mdr_table": 4e-2},
         reason=DIRECT_SOLUTION,
     ),
     Exact(
@@ -283,24 +281,15 @@ EXACT = (
         quantity="normal_force",
         expected=tabulated_forces(),
         tolerance=1.6e-6,
-        tolerances={"fem": 5e-6},
+        tolerances={"fem": 5e-6, "bem": 2e-2, "mdr_table": 4e-2},
         reason=DIRECT_SOLUTION,
     ),
 )
 
 AGREEMENTS = (
-    *(
-        Agreement(
-            name=f"{quantity.replace('_', ' ')} agrees",
-            quantity=quantity,
-            scenes=ON_LAYERS,
-            fast="mdr",
-            reference="fem",
-            tolerance=1e-5,
-            reason=FINITE_ELEMENTS,
-        )
-        for quantity in ("indentation_depth", "normal_force", "contact_stiffness")
-    ),
+    *agreements(LAYER_SCENES, {"fem": 3e-6, "integral_equation": 1e-9}),
+    *agreements(RESOLVED, {"bem": 2e-2, "mdr_table": 2e-2}, reason=KINKED_GRIDS),
+    *agreements(THIN, {"bem": 4e-2, "mdr_table": 3e-1}, reason=KINKED_GRIDS, suffix=", thin layers"),
     FieldAgreement(
         name="pressure agrees",
         quantity="pressure",
@@ -309,7 +298,7 @@ AGREEMENTS = (
         fast="mdr",
         reference="fem",
         refined=("mdr",),
-        tolerance=2e-3,
+        tolerance=5e-4,
         reason=FINITE_ELEMENT_FIELDS,
     ),
     FieldAgreement(
@@ -320,7 +309,7 @@ AGREEMENTS = (
         fast="mdr",
         reference="fem",
         refined=("mdr",),
-        tolerance=2e-3,
+        tolerance=5e-4,
         reason=FINITE_ELEMENT_FIELDS,
     ),
 )
@@ -383,6 +372,7 @@ INVARIANTS = (
         change=in_millimetres,
         factors={"indentation_depth": 1e3, "normal_force": 1.0, "contact_stiffness": 1e-3},
         tolerance=1e-9,
+        tolerances={"bem": 1e-6},
         reason=DIMENSIONS,
     ),
     Twin(
@@ -392,7 +382,7 @@ INVARIANTS = (
         change=other_poissons_ratio,
         factors={"indentation_depth": 1.0, "normal_force": 1.0, "contact_stiffness": 1.0},
         tolerance=1e-12,
-        tolerances={"fem": 1e-5},
+        tolerances={"fem": 3e-6, "bem": 1e-6},
         reason=UNBONDED_KERNEL,
     ),
 )
@@ -447,7 +437,7 @@ CASE = Case(
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*LAYER_SCENES, *PATH_SCENES, *HALF_SPACE_SCENES, *FIGURE_SCENES),
-    methods=(MDR, FEM),
+    methods=EVERY,
     claims=(*EXACT, *AGREEMENTS, *INVARIANTS, *ORDERS),
     ablations=(AblationStudy(scene=scene_name("bonded nu=0.45", 2.0), nightly=("fem",)),),
     work=elastic_costs(scene_name("bonded nu=0.45", 2.0), in_ci=True),

@@ -15,7 +15,7 @@ FAILED = 1
 
 def cost(names: list[str], options: RunOptions, *, quiet: bool) -> int:
     """Time the work studies of cases alone on the machine; return 1 if a reference broke down."""
-    chosen = (case.in_suite(options.suite) for case in select(load_cases(), names=names))
+    chosen = select(load_cases(), names=names, suite=options.suite)
     timed = [case for case in chosen if case.work]
     terminal = console()
     with RunDisplay(terminal, quiet=quiet) as display:

@@ -1,5 +1,6 @@
 """`contact-verify gate`: a finished run against the accepted numbers and, if asked, against the speed of a revision."""
 
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,8 +11,9 @@ from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.ladders import read_ladders
 from cases.gate.race import PAIRS
+from cases.narrow import nightly_only
 from cases.registry import load_cases, select
-from cases.results import RunResult
+from cases.results import RunResult, SceneRun
 from cases.results_files import read_run, write_run
 from cases.status import ExitCode, exit_code
 from contact import InvalidInput
@@ -28,16 +30,24 @@ class Timing:
     pairs: int = PAIRS
 
 
-def run_gate(directory: Path, baselines: Path, *, timing: Timing, strict: bool, quiet: bool) -> int:
-    """Gate the run in `directory`, write its pages again and return the exit code.
+def run_gate(
+    directory: Path, baselines: Path, *, methods: Collection[str], timing: Timing, strict: bool, quiet: bool
+) -> int:
+    """Gate the run in `directory` (only these `methods`, if any), write its pages again and return the exit code.
 
     Raises:
         InvalidInput: if there is no run or no baseline, or if the revision cannot be timed.
     """
-    accepted, ladders = read_baselines(baselines), read_ladders(baselines)
+    accepted = [b for b in read_baselines(baselines) if not methods or b.method in methods]
+    ladders = read_ladders(baselines)
     if not accepted and not ladders:
         raise InvalidInput(f"no baselines in {baselines}; name their folder, or accept a case first")
-    result = gate(read_run(directory), accepted, read_history(baselines), ladders)
+    unwatched = {(case.name, *place) for case in load_cases().values() for place in nightly_only(case)}
+
+    def watched(case: str, row: SceneRun) -> bool:
+        return (case, row.scene, row.method) not in unwatched and (not methods or row.method in methods)
+
+    result = gate(read_run(directory), accepted, read_history(baselines), ladders, watched)
     if timing.revision:
         result = with_times_against(result, timing.revision, _declared(result, timing.cases), pairs=timing.pairs)
     write_run(result, directory)

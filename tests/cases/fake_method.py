@@ -105,6 +105,10 @@ class FakeHertz:
                 os.kill(os.getpid(), 9)
             case "sleep":
                 time.sleep(30)
+            case "compute":
+                end = time.monotonic() + 30
+                while time.monotonic() < end:
+                    pass
             case "raise":
                 raise ZeroDivisionError("a slip in a solver")
             case "not converged":

@@ -7,7 +7,8 @@ import pytest
 
 from cases.executors import by_name, serial
 from cases.runner import RunOptions, run_cases
-from tests.cases.fake_case import fake_case
+from cases.status import Status
+from tests.cases.fake_case import SLOW, fake_case, spoiled
 from tests.cases.test_runner import strip_times
 
 distributed = pytest.importorskip("distributed", reason="the optional extra 'cluster' is not installed")
@@ -39,6 +40,14 @@ def test_a_killed_worker_loses_nothing(cluster, tmp_path):
     assert not victims
     assert result.complete
     assert strip_times(alone, result).cases == alone.cases
+
+
+def test_a_task_beyond_its_time_is_a_timeout_and_its_worker_goes_on(cluster, tmp_path):
+    slow = spoiled(SLOW, plant="compute")
+    options = RunOptions(out=tmp_path, executor=by_name(cluster.scheduler_address), time_limit=0.3)
+    result = run_cases([fake_case(slow=slow, ladder={"cell": 0.1})], options)
+    assert {row.status for row in result.cases[0].runs if row.method == "slow"} == {Status.TIMEOUT}
+    assert {row.status for row in result.cases[0].runs if row.method == "fast"} == {Status.PASS}
 
 
 def test_both_workers_take_part(cluster, tmp_path):

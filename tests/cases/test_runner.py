@@ -4,7 +4,6 @@ import os
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -224,28 +223,36 @@ def test_executors_by_name():
 
 
 KILLED = """
-import sys
+import os, signal, sys, time
 from pathlib import Path
-from cases import methods
+from cases import methods, results_files, store
 from cases.executors import serial
 from cases.runner import RunOptions, run_cases
 from tests.cases.fake_case import fake_case
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
+left = 5
+def replace(old, new, rename=os.replace):
+    global left
+    left -= 1
+    if sys.argv[2] == "written, not yet renamed" and not left:
+        os.kill(os.getpid(), signal.SIGKILL)
+    rename(old, new)
+os.replace = replace
 def slowly(event):
-    import time
-    print(event.done, flush=True)
+    print(event.kind, event.done, flush=True)
     time.sleep(0.05)
 run_cases([fake_case()], RunOptions(out=Path(sys.argv[1]), executor=serial, progress=slowly))
 """
 
 
-def test_kill_in_mid_run_then_resume_gives_the_same_result(tmp_path):
-    process = subprocess.Popen([sys.executable, "-c", KILLED, str(tmp_path)], stdout=subprocess.PIPE, text=True)
+@pytest.mark.parametrize("where", ["finished 4", "written, not yet renamed", "judged"])
+def test_kill_then_resume_gives_the_same_result_wherever_it_struck(where, tmp_path):
+    process = subprocess.Popen([sys.executable, "-c", KILLED, str(tmp_path), where], stdout=subprocess.PIPE, text=True)
     with process:
-        while int(process.stdout.readline() or -1) < 4:
-            pass
-        os.kill(process.pid, signal.SIGKILL)
-    time.sleep(0.05)
+        for line in process.stdout:
+            if line.startswith(where):
+                os.kill(process.pid, signal.SIGKILL)
+    assert process.returncode == -signal.SIGKILL
     assert not (tmp_path / "results.json").exists()
     events = []
     resumed = run(fake_case(), tmp_path, resume=True, progress=events.append)

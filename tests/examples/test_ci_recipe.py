@@ -1,5 +1,6 @@
 """The CI recipe is tested by running its commands, with one fabricated case in place of the library."""
 
+import dataclasses
 import os
 import re
 import subprocess
@@ -8,7 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from cases.results_files import read_run
 from reports.command_line import run
+from tests.cases.example_run import example_run
+from tests.cases.gate.example_baselines import accepted, scaled
 
 ROOT = Path(__file__).parents[2]
 RECIPE = ROOT / "examples" / "ci" / "verify.sh"
@@ -19,10 +23,10 @@ import sys
 sys.path.insert(0, {root!r})
 from cases import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
-from reports.commands import run
+from reports.commands import gate, run
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
-run.load_cases = lambda: {{case.name: case}}
+run.load_cases = gate.load_cases = lambda: {{case.name: case}}
 from reports.command_line import main
 main()
 """
@@ -51,6 +55,28 @@ def test_recipe_writes_the_report_and_hands_on_the_exit_code(tmp_path, plant, co
     done = verify(tmp_path, "out", "--executor", "serial", plant=plant)
     assert done.returncode == code, done.stderr
     assert {"report.html", "summary.md", "junit.xml", "results.json"} <= {p.name for p in (tmp_path / "out").iterdir()}
+
+
+def test_recipe_gates_where_numbers_are_accepted(tmp_path):
+    assert verify(tmp_path, "out", "--executor", "serial").returncode == 0
+    result = dataclasses.replace(read_run(tmp_path / "out"), stamp=example_run().stamp)
+    accepted(tmp_path / "baselines", result, case="fake_hertz")
+    done = verify(tmp_path, "out", "--executor", "serial")
+    assert (done.returncode, "checks" in done.stdout) == (0, True), done.stdout
+    moved = tmp_path / "elsewhere"
+    accepted(moved, edited(result), case="fake_hertz")
+    done = verify(tmp_path, "out", "--executor", "serial", BASELINES=str(moved))
+    assert done.returncode == 1
+    assert "DIFF fake_hertz" in done.stdout
+
+
+def edited(result):
+    """The run with every number moved by 1e-7."""
+    (case,) = result.cases
+    rows = [
+        dataclasses.replace(row, quantities=tuple(scaled(1 + 1e-7)(q) for q in row.quantities)) for row in case.runs
+    ]
+    return dataclasses.replace(result, cases=(dataclasses.replace(case, runs=tuple(rows)),))
 
 
 def test_recipe_fills_the_summary_page_and_annotates_on_github(tmp_path):

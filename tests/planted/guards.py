@@ -41,10 +41,11 @@ class Claims:
         assert len(chosen) == len(self.claims), f"{self.case} has no {set(self.claims) - {c.name for c in chosen}}"
         return dataclasses.replace(
             case,
-            scenes=tuple(case.scene(name) for name in self.scenes),
+            scenes=tuple(dataclasses.replace(case.scene(name), nightly=()) for name in self.scenes),
             methods=tuple(use for use in case.methods if use.label in self.methods),
             claims=tuple(self._narrowed(claim) for claim in chosen),
             work=(),
+            ablations=(),
             figures=(),
         )
 

@@ -10,6 +10,7 @@ from pathlib import Path
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--hide-scrollbars")
 WIDTH, HEIGHT = 1280, 800
+PRINTED_WIDTH = 688  # pixels between the margins of A4: (210 - 2 x 14) mm at 96 to the inch
 
 MEASURE = """
 <script>
@@ -29,6 +30,9 @@ document.body.innerHTML = "<pre id=measured>" + JSON.stringify({
   worst: first ? box(first) : [],
   worst_text: first ? first.textContent : "",
   page_width: document.documentElement.scrollWidth,
+  too_wide: [...document.querySelectorAll("table, th, td, p, li, dd, pre, figure svg")]
+    .filter(e => e.getBoundingClientRect().right > innerWidth + 1 || e.scrollWidth > e.clientWidth + 1 && e.clientWidth)
+    .map(e => e.tagName + " " + e.textContent.trim().slice(0, 60)),
   figures: document.querySelectorAll("figure svg").length,
   clipped: clipped,
 }).replaceAll("<", "") + "</pre>";
@@ -41,12 +45,14 @@ def browser() -> str:
     return next((path for name in NAMES if (path := shutil.which(name))), "")
 
 
-def measure(page: Path) -> dict:
-    """Places and sizes on the page in a window of 1280 x 800."""
+def measure(page: Path, *, width: int = WIDTH, printed: bool = False) -> dict:
+    """Places and sizes on the page in a window; `printed` shows it with the style of paper, all details open."""
+    text = page.read_text(encoding="utf-8").replace("<details>", "<details open>")
+    text = text.replace("</body>", f"{MEASURE}</body>")
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "page.html"
-        copy.write_text(page.read_text(encoding="utf-8").replace("</body>", f"{MEASURE}</body>"), encoding="utf-8")
-        dumped = _run("--dump-dom", f"file://{copy}", folder)
+        copy.write_text(text.replace("@media print", "@media all") if printed else text, encoding="utf-8")
+        dumped = _run("--dump-dom", f"file://{copy}", folder, width=width)
     found = re.search(r'<pre id="measured">(.*?)</pre>', dumped, re.DOTALL)
     return json.loads(found[1].replace("&amp;", "&").replace("&gt;", ">"))
 
@@ -57,12 +63,12 @@ def picture(page: Path, target: Path, *, height: int = HEIGHT) -> None:
         _run(f"--screenshot={target}", f"file://{page}", folder, height=height)
 
 
-def _run(task: str, address: str, profile: str, *, height: int = HEIGHT) -> str:
+def _run(task: str, address: str, profile: str, *, width: int = WIDTH, height: int = HEIGHT) -> str:
     command = [
         browser(),
         *FLAGS,
         f"--user-data-dir={profile}/profile",
-        f"--window-size={WIDTH},{height}",
+        f"--window-size={width},{height}",
         task,
         address,
     ]

@@ -8,7 +8,7 @@ import pytest
 
 from reports.pages import write_report
 from tests.cases.example_run import example_run, failing_case, passing_case
-from tests.reports.browser import HEIGHT, WIDTH, browser, measure, picture
+from tests.reports.browser import HEIGHT, PRINTED_WIDTH, WIDTH, browser, measure, picture
 
 pytestmark = [
     pytest.mark.slow,
@@ -61,8 +61,20 @@ def test_the_clipping_check_sees_a_planted_label(failed_page, tmp_path):
     assert measure(page)["clipped"] == ["planted"]
 
 
-def test_page_is_not_wider_than_its_window(measured):
-    assert measured["page_width"] <= WIDTH
+@pytest.mark.parametrize(("width", "printed"), [(WIDTH, False), (800, False), (PRINTED_WIDTH, True)])
+def test_nothing_is_wider_than_its_window_or_its_sheet_of_paper(failed_page, width, printed):
+    seen = measure(failed_page, width=width, printed=printed)
+    assert seen["page_width"] <= width
+    assert seen["too_wide"] == []
+
+
+def test_the_width_check_sees_a_planted_cell(failed_page, tmp_path):
+    page = tmp_path / "wide.html"
+    text = failed_page.read_text(encoding="utf-8")
+    page.write_text(
+        text.replace("<td", f'<td style="white-space: nowrap">{"wide " * 200}</td><td', 1), encoding="utf-8"
+    )
+    assert measure(page)["too_wide"]
 
 
 @pytest.mark.parametrize(("case", "red"), [(failing_case(), True), (passing_case(), False)], ids=["failed", "passed"])

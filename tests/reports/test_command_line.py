@@ -1,7 +1,6 @@
 """The command line: every way to end has its exit code, errors are one clear line, help comes at once."""
 
 import csv
-import dataclasses
 import json
 import os
 import subprocess
@@ -14,7 +13,6 @@ from contact import load_scene
 from reports import command_line
 from reports.command_line import run
 from reports.commands import solve as solve_command
-from reports.commands.run import only_methods
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
 
@@ -253,13 +251,3 @@ def test_help_loads_no_solver_and_comes_in_half_a_second():
     end = os.times()
     used = (end.children_user - start.children_user) + (end.children_system - start.children_system)
     assert used < 0.5  # processor seconds: another job on the machine does not count
-
-
-def test_a_scene_of_other_methods_alone_is_left_out_with_its_claims():
-    case = fake_case()
-    only_slow = dataclasses.replace(case.scenes[1], methods=(SLOW,))
-    narrowed = only_methods(
-        dataclasses.replace(case, scenes=(case.scenes[0], only_slow), claims=case.claims[-1:]), ["fast"]
-    )
-    assert [scene.name for scene in narrowed.scenes] == [case.scenes[0].name]
-    assert [use.label for use in narrowed.methods] == ["fast"]

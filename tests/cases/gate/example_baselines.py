@@ -25,9 +25,9 @@ def spreads_of(run, spread=SPREAD):
     return {(row.method, row.scene, q.name): spread for row in rows for q in row.quantities}
 
 
-def proposal_of(run, folder, *, spread=SPREAD, reason="first numbers"):
+def proposal_of(run, folder, *, case=CASE, spread=SPREAD, reason="first numbers"):
     return propose(
-        run.case(CASE),
+        run.case(case),
         suites=("ci",),
         accepted=read_baselines(folder),
         spreads=spreads_of(run, spread),

@@ -1,23 +1,21 @@
-"""The timing gate on real code and a busy machine: twenty times the same code, twenty times a planted slowdown."""
+"""The gate by its own command, in a repository of its own, on a busy machine: twenty times the same code, twenty times
+a planted slowdown, and a planted change of 1e-7."""
 
 import os
+import shutil
 import subprocess
 import sys
 from collections import Counter
-from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
 
 from cases.gate.circumstances import git
-from cases.gate.race import judge_race, race
-from cases.gate.version import Version, subject
-from cases.gate.worktree import worktree
-from cases.registry import load_cases
-from cases.status import Status
 
 SOURCE = Path(__file__).parents[3]
 TIMES = 20
+CASE = "near_incompressible"
+COMMAND = (sys.executable, "-c", "from reports.command_line import main; main()")
 SLOWER = """
 
 def _slower(solve):
@@ -36,9 +34,23 @@ def _slower(solve):
 
 Mdr.solve = _slower(Mdr.solve)
 """
+HEAVIER = """
+
+def _heavier(solve):
+    import dataclasses
+
+    def solve_and_change(self, scene):
+        path = solve(self, scene)
+        return dataclasses.replace(path, normal_force=path.normal_force * (1 + 1e-7))
+
+    return solve_and_change
 
 
-@pytest.fixture(scope="module")
+Mdr.solve = _heavier(Mdr.solve)
+"""
+
+
+@pytest.fixture(scope="module", autouse=True)
 def _busy():
     """At least one other process wants each processor."""
     spin = [sys.executable, "-c", "while True: pass"]
@@ -50,37 +62,66 @@ def _busy():
         process.wait()
 
 
+@pytest.fixture(scope="module")
+def accepted(tmp_path_factory):
+    """The committed source in a repository of its own, one method's run of one case, and its accepted numbers."""
+    folder = tmp_path_factory.mktemp("gated")
+    git(SOURCE, "clone", "--quiet", "--no-hardlinks", str(SOURCE), str(folder / "source"))
+    assert verify(folder, "run", CASE, *RUN) == 0
+    accept = ("accept", CASE, "--reason", "first numbers", "--run", folder / "run", "--baseline", folder / "accepted")
+    assert verify(folder, *accept, "--write", "--jobs", "1") == 0
+    return folder
+
+
 @pytest.fixture
-def clone(tmp_path):
-    """The committed source, in a repository of its own."""
-    git(SOURCE, "clone", "--quiet", "--no-hardlinks", str(SOURCE), str(tmp_path / "source"))
-    return tmp_path / "source"
+def gated(accepted):
+    """The same, with the source as it was committed, before and after."""
+    yield accepted
+    git(accepted / "source", "checkout", "--quiet", ".")
 
 
-def statuses(repository):
-    """How twenty races of the working tree against its last commit end, each with fresh processes."""
-    case = load_cases()["truncated_cone"]
-    scene = case.scene("bonded nu=0.45 a/h=1")
-    what = subject(case, scene, case.use(scene, "mdr"))
-    found = []
-    with worktree(repository, "HEAD") as base:
-        for _ in range(TIMES):
-            with ExitStack() as stack:
-                versions = [stack.enter_context(Version(folder)) for folder in (base, repository, base)]
-                found.append(judge_race(race(versions, what)))
-                print(found[-1].status, found[-1].message, flush=True)  # noqa: T201 - shown when the test fails
-    return Counter(judged.status for judged in found)
+RUN = ("--method", "mdr", "--no-timing", "--quiet", "--jobs", "1", "--out", "../run")
+GATE = ("gate", "../run", "--baseline", "../accepted", "--quiet")
+AGAINST = ("--against", "HEAD", "--only", CASE)
+
+
+def verify(folder, *words):
+    """The exit code of the console command, run in the repository's own source."""
+    environment = {**os.environ, "PYTHONPATH": str(folder / "source"), "CI": ""}
+    done = subprocess.run([*COMMAND, *map(str, words)], cwd=folder / "source", env=environment, check=False)
+    return done.returncode
+
+
+def plant(folder, text):
+    with (folder / "source" / "mdr" / "method.py").open("a", encoding="utf-8") as source:
+        source.write(text)
+
+
+def exit_codes(folder):
+    """How twenty gates end, each with a worktree and processes of its own."""
+    codes = Counter(verify(folder, *GATE, *AGAINST) for _ in range(TIMES))
+    print(f"exit codes: {dict(codes)}", flush=True)  # noqa: T201 - the measured numbers, shown by pytest -s
+    return codes
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_busy")
-def test_identical_code_passes_twenty_times_in_a_row(clone):
-    assert statuses(clone)[Status.PERF] == 0
+def test_identical_code_passes_twenty_times_in_a_row(gated):
+    assert exit_codes(gated) == {0: TIMES}
+    assert len(git(gated / "source", "worktree", "list").splitlines()) == 1
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_busy")
-def test_code_slower_by_half_fails_nineteen_times_of_twenty(clone):
-    with (clone / "mdr" / "method.py").open("a", encoding="utf-8") as source:
-        source.write(SLOWER)
-    assert statuses(clone)[Status.PERF] >= 19
+def test_code_slower_by_half_fails_nineteen_times_of_twenty(gated):
+    plant(gated, SLOWER)
+    assert exit_codes(gated)[1] >= 19
+
+
+@pytest.mark.slow
+def test_a_change_of_1e_7_fails_always(gated):
+    plant(gated, HEAVIER)
+    changed = gated / "changed"
+    for _ in range(3):
+        shutil.rmtree(changed, ignore_errors=True)
+        assert verify(gated, "run", CASE, *RUN[:-1], changed) == 0  # no claim of the case is about the force
+        assert verify(gated, "gate", changed, *GATE[2:]) == 1
+    assert "DIFF" in (changed / "summary.md").read_text(encoding="utf-8")

@@ -183,6 +183,16 @@ def run_of(case: Case):
     return clean_run(case_result(case, Answers(rows), complete=True))
 
 
+@pytest.mark.usefixtures("short")
+def test_what_the_revision_cannot_solve_is_skipped_with_its_words(monkeypatch, repository):
+    case = fake_case()
+    monkeypatch.setattr("cases.gate.against.subject", lambda *_: dataclasses.replace(busy(fail=True), case=case.name))
+    claims = with_times_against(run_of(case), "quick", [case], repository=repository, pairs=7).case(case.name).claims
+    timed = [claim for claim in claims if claim.quantity == "cpu_seconds"]
+    assert {claim.status for claim in timed} == {Status.SKIP}
+    assert all("ZeroDivisionError" in claim.message for claim in timed)
+
+
 def test_a_subject_is_understood_without_the_library():
     case = fake_case()
     order = subject(case, case.scenes[0], case.methods[0]).order

@@ -1,0 +1,66 @@
+"""A time limit on whatever runs inside a ``with`` statement, in a process of its own or in a worker's thread."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from ctypes import c_ulong, py_object, pythonapi
+from signal import ITIMER_REAL, SIGALRM, setitimer, signal
+from threading import Lock, Timer, current_thread, get_ident, main_thread
+from types import FrameType
+
+
+class TimeLimitReached(BaseException):
+    """The time is used up; no ``except Exception`` of a solver may swallow it."""
+
+
+@contextmanager
+def time_limited(seconds: float) -> Iterator[None]:
+    """Raise ``TimeLimitReached`` after so many seconds, between two instructions of Python."""
+    if seconds <= 0:
+        yield
+    elif current_thread() is main_thread():
+        with _signal(seconds):
+            yield
+    else:
+        with _timer(seconds):
+            yield
+
+
+@contextmanager
+def _signal(seconds: float) -> Iterator[None]:
+    """In the main thread of a process; ends a wait, too."""
+    previous = signal(SIGALRM, _ring)
+    setitimer(ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        setitimer(ITIMER_REAL, 0.0)
+        signal(SIGALRM, previous)
+
+
+def _ring(number: int, frame: FrameType | None) -> None:
+    raise TimeLimitReached
+
+
+@contextmanager
+def _timer(seconds: float) -> Iterator[None]:
+    """In any other thread, such as those in which a cluster's workers solve; signals reach the main thread only."""
+    thread, lock, running = get_ident(), Lock(), True
+
+    def ring() -> None:
+        with lock:
+            if running:
+                _raise_in(thread, py_object(TimeLimitReached))
+
+    timer = Timer(seconds, ring)
+    timer.start()
+    try:
+        yield
+    finally:
+        with lock:
+            running = False
+        timer.cancel()
+        _raise_in(thread, None)  # what was raised at the last moment has nothing left to interrupt
+
+
+def _raise_in(thread: int, error: object) -> None:
+    pythonapi.PyThreadState_SetAsyncExc(c_ulong(thread), error)

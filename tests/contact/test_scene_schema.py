@@ -1,0 +1,98 @@
+"""The schema of scene files: the published file is that of the code, and both judge the same scenes alike."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from contact import InvalidInput, Scene, scene_from_mapping, scene_to_mapping
+from contact.effects import EFFECTS
+from contact.loading import LOADINGS
+from contact.profiles import PROFILES
+from contact.scene_file import kind_of
+from contact.scene_schema import scene_schema
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+SCHEMA = scene_schema()
+VALID = {
+    "layer": {"thickness": 1e-3, "youngs_modulus": 1e6, "poissons_ratio": 0.3},
+    "indenter": {"kind": "cone", "slope": 0.1},
+    "loading": {"kind": "contact_radii", "values": [1e-3]},
+}
+
+
+def accepted(mapping):
+    try:
+        jsonschema.validate(mapping, SCHEMA)
+    except jsonschema.ValidationError:
+        return False
+    return True
+
+
+def test_the_schema_is_one():
+    jsonschema.Draft7Validator.check_schema(SCHEMA)
+
+
+def test_the_published_file_is_that_of_the_code():
+    """Write it again with: contact-verify schema scene > examples/scene.schema.json."""
+    published = json.loads((EXAMPLES / "scene.schema.json").read_text(encoding="utf-8"))
+    assert published == SCHEMA
+
+
+def test_every_kind_is_offered_to_an_editor():
+    for name, kinds in (("indenter", PROFILES), ("loading", LOADINGS)):
+        offered = [part["properties"]["kind"]["const"] for part in SCHEMA["properties"][name]["oneOf"]]
+        assert offered == [kind_of(cls) for cls in kinds]
+    assert len(SCHEMA["properties"]["effects"]["items"]["oneOf"]) == len(EFFECTS)
+
+
+def test_every_field_is_explained():
+    for part in SCHEMA["properties"]["indenter"]["oneOf"]:
+        fields = {name: field for name, field in part["properties"].items() if name != "kind"}
+        assert all(field.get("description") for field in fields.values()), part["description"]
+
+
+@pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.toml")), ids=lambda path: path.name)
+def test_the_examples_follow_it_and_name_it(path):
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith("#:schema scene.schema.json\n")
+    assert accepted(tomllib.loads(text))
+
+
+def test_every_scene_of_the_library_follows_it():
+    from cases.registry import load_cases
+
+    scenes: list[Scene] = [scene.scene for case in load_cases().values() for scene in case.scenes]
+    assert all(accepted(scene_to_mapping(scene)) for scene in scenes)
+
+
+@pytest.mark.parametrize(
+    ("table", "change"),
+    [
+        ("layer", {"poisons_ratio": 0.3}),
+        ("layer", {"poissons_ratio": 0.6}),
+        ("layer", {"half_space": True}),
+        ("layer", {"support": "glued"}),
+        ("indenter", {"kind": "conne"}),
+        ("indenter", {"slope": -0.1}),
+        ("loading", {"values": []}),
+        ("loading", {"value": [1e-3]}),
+    ],
+    ids=str,
+)
+def test_schema_and_code_refuse_the_same_mistakes(table, change):
+    mapping = VALID | {table: VALID[table] | change}
+    assert accepted(VALID)
+    assert not accepted(mapping)
+    with pytest.raises(InvalidInput):
+        scene_from_mapping(mapping)
+
+
+@pytest.mark.parametrize("table", ["layer", "indenter", "loading"])
+def test_schema_and_code_miss_the_same_tables(table):
+    mapping = {name: part for name, part in VALID.items() if name != table}
+    assert not accepted(mapping)
+    with pytest.raises(InvalidInput):
+        scene_from_mapping(mapping)
