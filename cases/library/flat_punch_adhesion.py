@@ -112,26 +112,28 @@ def figures(case: Case, answers: Answers) -> Iterator[Figure]:
 
 KENDALL = Reason(
     because="linear elastic fracture mechanics of the punch's edge on the half-space",
-    derived_from="MDR: round-off; finite elements ten times their accuracy of 1e-4",
+    derived_from="MDR: round-off; finite elements ten times their accuracy of 1e-4; boundary elements three times the "
+    "1.2e-3 they state",
     origin=Origin.CLOSED_FORM,
     source="Kendall, J. Phys. D 4 (1971) 1186",
 )
 MAXIMUM = Reason(
     because="under displacement control the contact holds until Delta l(a) is largest, Eq. (45)",
     derived_from="six printed digits of a maximum found on a separate solution; finite elements add their 1e-4; "
-    "boundary elements three times the 7e-4 they state",
+    "boundary elements and table three times what they state, 7e-4 and 2e-4",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, maximum of Eq. (42)",
 )
 STABILITY = Reason(
     because="a maximum is flat: its place is known to the root of what its height is known to",
-    derived_from="six printed digits, twice; finite elements add the root of their error",
+    derived_from="six printed digits, twice; finite elements add the root of their error; boundary elements and table "
+    "three times theirs",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, maximum of Eq. (42)",
 )
 GRIFFITH = Reason(
     because="under force control detachment is abrupt at Delta l(a*), Eq. (46)",
-    derived_from="seven printed digits of cbar, halved by the root; finite elements add their accuracy",
+    derived_from="seven printed digits of cbar, halved by the root; the others add three times what they state",
     origin=Origin.INDEPENDENT_METHOD,
     source="kbar and cbar of the Nystrom solution",
 )
@@ -143,7 +145,7 @@ CLAIMS = (
         scenes=tuple(s.name for s in HALF_SPACE),
         expected=kendall_depth,
         tolerance=1e-10,
-        tolerances={"fem": 1e-3},
+        tolerances={"fem": 1e-3, "bem": 4e-3},
         reason=KENDALL,
     ),
     Exact(
@@ -152,7 +154,7 @@ CLAIMS = (
         scenes=tuple(s.name for s in HALF_SPACE),
         expected=kendall_force,
         tolerance=1e-10,
-        tolerances={"fem": 1e-3},
+        tolerances={"fem": 1e-3, "bem": 4e-3},
         reason=KENDALL,
     ),
     Exact(
@@ -163,7 +165,7 @@ CLAIMS = (
             for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)
         },
         tolerance=3e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-2},
+        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-3},
         reason=MAXIMUM,
     ),
     Exact(
@@ -171,7 +173,7 @@ CLAIMS = (
         quantity="pull_off_contact_radius",
         expected={s.name: (MAXIMA[nu][0] * THICKNESS,) for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)},
         tolerance=3e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-2},
+        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-3},
         reason=STABILITY,
     ),
     Exact(
@@ -180,7 +182,7 @@ CLAIMS = (
         scenes=tuple(s.name for s in ABRUPT),
         expected=abrupt_force,
         tolerance=1e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-2},
+        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-3},
         reason=GRIFFITH,
     ),
     *agreements(
@@ -197,9 +199,9 @@ CLAIMS = (
     ),
     *agreements(
         (BEYOND_MAXIMUM[0], *ABRUPT),
-        {"mdr_table": 6e-3},
+        {"mdr_table": 5e-4},
         ("pull_off_force",),  # where the branch turns, the depth of a table's springs is known to their root only
-        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table's springs state, 2e-3 on 128 cells"),
+        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table states, 1.2e-4, rounded up"),
     ),
 )
 

@@ -134,7 +134,7 @@ CLAIMS = (
         quantity="coefficient_of_restitution",
         expected={s.name: (restitution(0.3 * math.sqrt(k)),) for k, s in zip(KBAR.values(), ON_LAYERS, strict=True)},
         tolerance=1e-6,
-        tolerances={"fem": 1e-4, "mdr_table": 3e-3},
+        tolerances={"fem": 1e-4, "mdr_table": 3e-4},
         reason=CLOSED_FORM,
     ),
     Residual(
@@ -153,9 +153,9 @@ CLAIMS = (
     ),
     *agreements(
         ON_LAYERS,
-        {"mdr_table": 3e-3},
+        {"mdr_table": 3e-4},
         ("coefficient_of_restitution", "peak_depth", "peak_force", "contact_time"),
-        reason=with_reason(PUBLISHED_ROUTE, "twice the error that the table states for the stiffness, 1.4e-3"),
+        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table states for the stiffness, 8e-5"),
     ),
 )
 

@@ -170,8 +170,7 @@ def fitted(label: str) -> dict[str, tuple[float, ...]]:
 
 SEPARATE_SOLUTION = Reason(
     because="the Fredholm equation of the flat punch, solved radius by radius to 1e-12",
-    derived_from="twelve digits; finite elements three times their accuracy; boundary elements and table ten times "
-    "what they state",
+    derived_from="twelve digits; finite elements, boundary elements and table three times what they state",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, separate code",
 )
@@ -194,7 +193,7 @@ CLAIMS = (
         quantity="contact_stiffness",
         expected=tabulated(),
         tolerance=1e-10,
-        tolerances={"fem": 3e-6, "bem": 1e-4, "mdr_table": 1e-3},
+        tolerances={"fem": 3e-6, "bem": 3e-5, "mdr_table": 3e-4},
         reason=SEPARATE_SOLUTION,
     ),
     Exact(
@@ -221,7 +220,7 @@ CLAIMS = (
         methods=("mdr",),
         reason=HERMANOWICZ_FIT,
     ),
-    *agreements(PUNCHES, {"fem": 3e-6, "bem": 1e-4, "integral_equation": 1e-9, "mdr_table": 2e-3}, ("normal_force",)),
+    *agreements(PUNCHES, {"fem": 3e-6, "bem": 3e-5, "integral_equation": 1e-9, "mdr_table": 3e-4}, ("normal_force",)),
 )
 
 

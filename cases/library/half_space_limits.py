@@ -116,7 +116,7 @@ def confinement(scene: Scene) -> float:
 SNEDDON = Reason(
     because="linear elasticity on the half-space, solved by Sneddon",
     derived_from="MDR and the integral equation: quadrature to 1e-12; finite elements three times their accuracy "
-    "of 3e-6; boundary elements second order on 128 cells across the contact",
+    "of 1e-6; boundary elements what they state on 128 cells across the contact, 6e-4, rounded up",
     origin=Origin.CLOSED_FORM,
     source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
 )
@@ -127,7 +127,7 @@ FIRST_ORDER_TERM = Reason(
     source="alpha = (2/pi) int_0^inf (1 - chi) dq",
 )
 
-LOOSER = {"fem": 3e-6, "bem": 2e-3}
+LOOSER = {"fem": 3e-6, "bem": 1e-3}
 CLAIMS = (
     *(
         Exact(
@@ -147,7 +147,7 @@ CLAIMS = (
         scenes=(PUNCH.name,),
         expected=punch_force,
         tolerance=1e-10,
-        tolerances=LOOSER,
+        tolerances={"fem": 3e-6},  # boundary elements measure their disc of cells by this very force
         reason=SNEDDON,
     ),
     *(

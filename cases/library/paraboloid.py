@@ -9,7 +9,19 @@ from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
 from cases.claims.twin import Twin
-from cases.library._compared import BEM, EQUATION, FEM, FINITE_ELEMENTS, MDR, TABLE, agreements, with_reason
+from cases.library._compared import (
+    BEM,
+    BEM_TOLERANCE,
+    EQUATION,
+    FEM,
+    FINITE_ELEMENTS,
+    MDR,
+    PUBLISHED_ROUTE,
+    TABLE,
+    TABLE_TOLERANCES,
+    agreements,
+    with_reason,
+)
 from cases.library._layers import LAYERS, THICKNESS, edges, in_millimetres, layer, scene_name
 from cases.results import Origin
 from cases.task import Sampling
@@ -104,11 +116,10 @@ SEPARATE_SOLUTION = Reason(
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, separate code",
 )
-COARSE_GRIDS = Reason(
-    because="both solve the same layer; a grid of 128 cells across the contact has few cells in a thin layer",
-    derived_from="twice the error that grid and table state at a/h = 10, where a cell is a sixth of the thickness",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="FFT boundary elements; share the layer kernel",
+COARSE_TABLE = with_reason(
+    PUBLISHED_ROUTE,
+    "three times what it states at a/h = 10, where a cell is a sixth of the thickness: depth 3e-3, force 1.5e-2, "
+    "stiffness 2e-3",
 )
 RETURN = with_reason(
     SEPARATE_SOLUTION, "the digits of the prescribed depth and force, halved or less in the radius by their powers of a"
@@ -121,12 +132,13 @@ HERMANOWICZ_FIT = Reason(
 )
 DIMENSIONS = Reason(
     because="mechanics knows no metre",
-    derived_from="round-off of a factor that is no power of two; boundary elements ten times their iteration's 1e-7",
+    derived_from="round-off of a factor that is no power of two; boundary elements what their iteration leaves, 1e-7",
     origin=Origin.CLOSED_FORM,
     source="dimensional analysis",
 )
 
-LOOSER = {"fem": 4e-5, "bem": 1e-2, "mdr_table": 2e-2}
+THIN_TABLE = {"indentation_depth": 1e-2, "normal_force": 5e-2, "contact_stiffness": 5e-3}
+LOOSER = {"fem": 4e-5, "bem": 1e-3, "mdr_table": 5e-3}
 CLAIMS = (
     Exact(
         name="tabulated depth",
@@ -145,7 +157,7 @@ CLAIMS = (
             scene_name(label, ratio): (force(label, ratio),) for label, rows in TABULATED.items() for ratio in rows
         },
         tolerance=5e-5,
-        tolerances=LOOSER | {"fem": 6e-5},
+        tolerances=LOOSER | {"fem": 6e-5, "mdr_table": 1.5e-2},
         reason=SEPARATE_SOLUTION,
     ),
     *(
@@ -168,13 +180,13 @@ CLAIMS = (
         quantity="normal_force",
         expected=fitted_forces(),
         tolerance=1e-3,
-        tolerances={"bem": 1e-2, "mdr_table": 2e-2},
+        tolerances={"bem": 2e-3, "mdr_table": 1.5e-2},
         reason=HERMANOWICZ_FIT,
     ),
-    *agreements(BY_RADIUS, {"fem": 3e-6, "integral_equation": 1e-9}),
-    *agreements(RESOLVED, {"bem": 4e-3, "mdr_table": 1.5e-2}),
-    *agreements(COARSE, {"bem": 5e-2, "mdr_table": 1e-1}, reason=COARSE_GRIDS, suffix=", thin layers"),
-    *agreements((*BY_DEPTH, *BY_FORCE), {"bem": 1e-2, "integral_equation": 1e-9}, ("contact_radius",)),
+    *agreements(BY_RADIUS, {"fem": 3e-6, "bem": BEM_TOLERANCE, "integral_equation": 1e-9}),
+    *agreements(RESOLVED, {"mdr_table": TABLE_TOLERANCES}),
+    *agreements(COARSE, {"mdr_table": THIN_TABLE}, reason=COARSE_TABLE, suffix=", thin layers"),
+    *agreements((*BY_DEPTH, *BY_FORCE), {"bem": BEM_TOLERANCE, "integral_equation": 1e-9}, ("contact_radius",)),
     FieldAgreement(
         name="pressure: MDR and fem",
         quantity="pressure",
@@ -193,7 +205,7 @@ CLAIMS = (
         change=in_millimetres,
         factors={"indentation_depth": 1e3, "normal_force": 1.0},
         tolerance=1e-9,
-        tolerances={"bem": 1e-6},
+        tolerances={"bem": 1e-7},
         reason=DIMENSIONS,
     ),
 )

@@ -152,7 +152,7 @@ CLAIMS = (
         quantity="coefficient_of_restitution",
         expected={name_of(h): (RESTITUTION[h],) for h in THICKNESSES},
         tolerance=3e-5,
-        tolerances={"fem": 1e-4, "mdr_table": 2e-2},
+        tolerances={"fem": 1e-4, "mdr_table": 3e-3},
         reason=SEPARATE_IMPACT,
     ),
     Exact(
@@ -167,7 +167,7 @@ CLAIMS = (
         quantity="peak_force",
         expected={name_of(h): (force,) for h, force in PEAK_FORCE.items()},
         tolerance=3e-5,
-        tolerances={"fem": 3e-4, "mdr_table": 2e-2},
+        tolerances={"fem": 3e-4, "mdr_table": 3e-3},
         reason=SEPARATE_IMPACT,
     ),
     Residual(
@@ -209,9 +209,9 @@ CLAIMS = (
     ),
     *agreements(
         ON_LAYERS,
-        {"mdr_table": 2e-2},
+        {"mdr_table": 8e-3},
         ("coefficient_of_restitution", "peak_force", "peak_depth"),
-        reason=with_reason(PUBLISHED_ROUTE, "one and a half times the error that the table states, 1.3e-2"),
+        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table states, 2.6e-3"),
     ),
 )
 

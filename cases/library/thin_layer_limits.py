@@ -105,10 +105,14 @@ TABLE_1 = Reason(
 
 COARSE_GRIDS = Reason(
     because="both solve the same layer; a grid of 128 cells across the contact has few cells in a thin layer",
-    derived_from="twice the error that grid and table state at a/h = 40, where a cell is two thirds of the thickness",
+    derived_from="three times what they state at a/h = 40, where a cell is two thirds of the thickness",
     origin=Origin.INDEPENDENT_METHOD,
     source="FFT boundary elements; share the layer kernel",
 )
+
+
+GRID_TOLERANCES = {"indentation_depth": 1.5e-2, "normal_force": 1.2e-2, "contact_stiffness": 1.5e-3}
+TABLE_TOLERANCES = {"indentation_depth": 7e-2, "normal_force": 3e-1, "contact_stiffness": 3e-2}
 
 
 def approach(
@@ -151,7 +155,7 @@ CASE = Case(
         *approach("depth of the paraboloid", "indentation_depth", paraboloid, depth),
         *approach("force of the truncated cone", "normal_force", cone, cone_force),
         *agreements(CHECKED, {"fem": 3e-6, "integral_equation": 1e-9}),
-        *agreements(CHECKED, {"bem": 5e-2, "mdr_table": 3e-1}, reason=COARSE_GRIDS),
+        *agreements(CHECKED, {"bem": GRID_TOLERANCES, "mdr_table": TABLE_TOLERANCES}, reason=COARSE_GRIDS),
         *agreements(FAR, {"fem": 3e-6}, suffix=", far"),
     ),
     work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),

@@ -16,7 +16,18 @@ from cases.claims.order import Order
 from cases.claims.residual import Residual
 from cases.claims.twin import Twin
 from cases.figures import paper_figure
-from cases.library._compared import EQUATION, EVERY, FINITE_ELEMENTS, MDR, QUICK_FEM, agreements, with_reason
+from cases.library._compared import (
+    BEM_TOLERANCE,
+    EQUATION,
+    EVERY,
+    FINITE_ELEMENTS,
+    MDR,
+    PUBLISHED_ROUTE,
+    QUICK_FEM,
+    TABLE_TOLERANCES,
+    agreements,
+    with_reason,
+)
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
@@ -209,26 +220,26 @@ def tabulated_forces() -> dict[str, tuple[float, ...]]:
 SNEDDON = Reason(
     because="linear elasticity on the half-space, solved by Sneddon",
     derived_from="MDR: quadrature to 1e-12 with two digits to spare; FEM: what it states, 1e-6, three times; boundary "
-    "elements twice theirs, 8e-3, as the rim falls between cells",
+    "elements three times what they state beside a rim, 1e-3",
     origin=Origin.CLOSED_FORM,
     source="Popov, Hess, Willert: Handbook of Contact Mechanics (2019), truncated cone",
 )
 DIRECT_SOLUTION = Reason(
     because="the same Fredholm equation, solved radius by radius for the profile instead of factorised",
     derived_from="half a unit of the sixth decimal over the smallest value, 0.33; FEM adds what it states, 1e-6, three "
-    "times; boundary elements and table twice what they state up to a/h = 5",
+    "times; boundary elements and table what they state up to a/h = 5, 2e-3 and 1e-2",
     origin=Origin.INDEPENDENT_METHOD,
     source="direct Nystrom solution with the rule split at r = b, twelve digits stable over the node count",
 )
 FINITE_ELEMENT_FIELDS = with_reason(
     FINITE_ELEMENTS, "the logarithmic singularity at r = b and the root at r = a limit finite elements to about 1e-4"
 )
-KINKED_GRIDS = Reason(
-    because="both solve the same layer; the rim at r = b falls between the cells of a square grid",
-    derived_from="one and a half times the error that 128 cells across the contact and tables of 128 cells state",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="FFT boundary elements; share the layer kernel",
+COARSE_TABLE = with_reason(
+    PUBLISHED_ROUTE,
+    "three times what it states at a/h = 20, where a cell is a third of the thickness: depth 1e-2, force 3.5e-2, "
+    "stiffness 5e-3",
 )
+THIN_TABLE = {"indentation_depth": 3e-2, "normal_force": 1e-1, "contact_stiffness": 1.5e-2}
 LINEARITY = Reason(
     because="the layer is linear elastic and the indenter rigid",
     derived_from="round-off; the modulus only scales the answer",
@@ -256,7 +267,7 @@ EXACT = (
         scenes=ON_HALF_SPACE,
         expected=half_space_depth,
         tolerance=1e-10,
-        tolerances={"fem": 3e-6, "bem": 2e-2},
+        tolerances={"fem": 3e-6, "bem": 3e-3},
         reason=SNEDDON,
     ),
     Exact(
@@ -265,7 +276,7 @@ EXACT = (
         scenes=ON_HALF_SPACE,
         expected=half_space_force,
         tolerance=1e-10,
-        tolerances={"fem": 3e-6, "bem": 2e-2},
+        tolerances={"fem": 3e-6, "bem": 3e-3},
         reason=SNEDDON,
     ),
     Exact(
@@ -273,7 +284,7 @@ EXACT = (
         quantity="indentation_depth",
         expected=tabulated_depths(),
         tolerance=1.6e-6,
-        tolerances={"fem": 5e-6, "bem": 2e-2, "mdr_table": 4e-2},
+        tolerances={"fem": 5e-6, "bem": 2e-3, "mdr_table": 1e-2},
         reason=DIRECT_SOLUTION,
     ),
     Exact(
@@ -281,15 +292,15 @@ EXACT = (
         quantity="normal_force",
         expected=tabulated_forces(),
         tolerance=1.6e-6,
-        tolerances={"fem": 5e-6, "bem": 2e-2, "mdr_table": 4e-2},
+        tolerances={"fem": 5e-6, "bem": 2e-3, "mdr_table": 1e-2},
         reason=DIRECT_SOLUTION,
     ),
 )
 
 AGREEMENTS = (
-    *agreements(LAYER_SCENES, {"fem": 3e-6, "integral_equation": 1e-9}),
-    *agreements(RESOLVED, {"bem": 2e-2, "mdr_table": 2e-2}, reason=KINKED_GRIDS),
-    *agreements(THIN, {"bem": 4e-2, "mdr_table": 3e-1}, reason=KINKED_GRIDS, suffix=", thin layers"),
+    *agreements(LAYER_SCENES, {"fem": 3e-6, "bem": BEM_TOLERANCE, "integral_equation": 1e-9}),
+    *agreements(RESOLVED, {"mdr_table": TABLE_TOLERANCES}),
+    *agreements(THIN, {"mdr_table": THIN_TABLE}, reason=COARSE_TABLE, suffix=", thin layers"),
     FieldAgreement(
         name="pressure agrees",
         quantity="pressure",
@@ -372,7 +383,7 @@ INVARIANTS = (
         change=in_millimetres,
         factors={"indentation_depth": 1e3, "normal_force": 1.0, "contact_stiffness": 1e-3},
         tolerance=1e-9,
-        tolerances={"bem": 1e-6},
+        tolerances={"bem": 1e-7},
         reason=DIMENSIONS,
     ),
     Twin(
@@ -382,7 +393,7 @@ INVARIANTS = (
         change=other_poissons_ratio,
         factors={"indentation_depth": 1.0, "normal_force": 1.0, "contact_stiffness": 1.0},
         tolerance=1e-12,
-        tolerances={"fem": 3e-6, "bem": 1e-6},
+        tolerances={"fem": 3e-6, "bem": 1e-7},
         reason=UNBONDED_KERNEL,
     ),
 )
