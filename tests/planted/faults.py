@@ -336,7 +336,12 @@ WEAK_FORMS = [
         THICK,
         REFUSED,
     ),
-    weak("r forgotten in 2 pi r dr dz", override("fem_reference.assembly:Space", "measure", without_radius), THICK),
+    weak(
+        "r forgotten in 2 pi r dr dz",
+        override("fem_reference.assembly:Space", "measure", without_radius),
+        THICK,
+        REFUSED,
+    ),
     weak(
         "deviator of two dimensions",
         set_to("fem_reference.assembly:DEVIATOR", deviator_in_the_plane()),
@@ -348,7 +353,7 @@ WEAK_FORMS = [
         override("fem_reference.layer_problem:LayerProblem", "supported_unknowns", sliding_base),
         THIN,
     ),
-    weak("bulk modulus of plane strain", swap("fem_reference.material:moduli", plane_strain_bulk), THICK),
+    weak("bulk modulus of plane strain", swap("fem_reference.material:moduli", plane_strain_bulk), THICK, REFUSED),
     weak("shear modulus at E = 1", swap("fem_reference.material:moduli", modulus_of_e), (0.1, 0.5, "bonded")),
     weak(
         "free outer edge of an unbonded layer",
