@@ -44,7 +44,7 @@ def test_a_wide_tolerance_is_refused_even_with_a_right_digest(file):
 
     tree = json.loads(file.read_text(encoding="utf-8"))["baseline"]
     tree["records"][0]["tolerance"] = 1e-3
-    file.write_text(json.dumps({"digest": baseline._digest(tree), "baseline": tree}), encoding="utf-8")
+    file.write_text(json.dumps({"digest": baseline.digest_of(tree), "baseline": tree}), encoding="utf-8")
     with pytest.raises(InvalidInput, match="is not max"):
         read_baselines(file.parent.parent)
 
