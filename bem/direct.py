@@ -9,9 +9,6 @@ from typing import ClassVar, Final, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from bem.adhesive_branch import SCOUT_CELLS
-from bem.adhesive_discs import AdheringDiscs
-from bem.adhesive_path import CellHistory, branch_errors, detachment_branch, stable_under_force, start_radius
 from bem.grid import LEAST_CELLS, Grid
 from bem.grid_punch import contact_stiffness, grid_punch
 from bem.pressed_state import Boundary, Prescribed, Press, PressedState
@@ -122,6 +119,8 @@ class Bem(Record):
             return dataclasses.replace(self._press(scene.replace(effects=()), log), scene=scene)
         if self.adhesion == "cells":
             return self._let_go(scene, log)
+        from bem.adhesive_discs import AdheringDiscs  # noqa: PLC0415 - only adhering scenes load it
+
         discs = AdheringDiscs(scene, self.points, self.threads, dataclasses.asdict(self), log)
         if isinstance(scene.loading, Detachment):
             return discs.detachment(scene.loading.control)
@@ -148,6 +147,9 @@ class Bem(Record):
 
     def _let_go(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath:
         """By single cells."""
+        from bem.adhesive_branch import SCOUT_CELLS  # noqa: PLC0415 - only adhering scenes load it
+        from bem.adhesive_path import CellHistory  # noqa: PLC0415
+
         if isinstance(scene.loading, Detachment):
             return self._detach(scene, scene.loading.control, log)
         _, depths = _prescription(scene)
@@ -174,6 +176,8 @@ class Bem(Record):
         )
 
     def _detach(self, scene: Scene, control: Literal["displacement", "force"], log: StageLog) -> DetachmentPath:
+        from bem.adhesive_path import branch_errors, detachment_branch, stable_under_force, start_radius  # noqa: PLC0415
+
         with log.stage("first_guess"):
             start = start_radius(scene, self.threads)
         with log.stage("detachment"):

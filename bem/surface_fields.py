@@ -9,17 +9,19 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from bem.adhering_disc import AdheringDisc
 from bem.grid import Grid
 from bem.influence import REACH, correction_function
 from bem.pressed_state import PressedState
 from contact import Layer, Profile, Scene
 from contact.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.adhering_disc import AdheringDisc
 
 EDGE_CELLS: Final = 2.5  # cells inside the edge that the grid does not resolve
 RINGS_PER_CELL: Final = 1.0
@@ -158,6 +160,8 @@ class AdheringFields:
 
     @cached_property
     def _disc(self) -> AdheringDisc:
+        from bem.adhering_disc import AdheringDisc  # noqa: PLC0415 - adhering scenes alone load it
+
         return AdheringDisc.solved(self.scene.layer, self.scene.indenter, self.contact_radius, self.cells, self.threads)
 
     @property

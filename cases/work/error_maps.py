@@ -97,17 +97,17 @@ FORMULAS: Final = (
 METHODS: Final = tuple(
     MapPlan(
         name=method,
-        title=f"{title}, {', '.join(f'{k} {v}' for k, v in settings.items())}",
+        title=title,
         answer=Solved(method, settings),
         ratios=FEW_RATIOS,
         rows=FEW_ROWS,
     )
     for method, title, settings in (
-        ("mdr", "MDR", {"nodes": 12}),
-        ("mdr_table", "MDR on the FFT table", {"cells": 64, "ratios": 60, "radii": 100}),
-        ("integral_equation", "Integral equation", {"nodes": 6}),
-        ("bem", "BEM", {"points": 128}),
-        ("fem", "FEM", {"accuracy": 1e-3}),
+        ("mdr", "MDR, 12 nodes", {"nodes": 12}),
+        ("mdr_table", "MDR on an FFT table, 64 cells", {"cells": 64, "ratios": 60, "radii": 100}),
+        ("integral_equation", "Integral equation, 6 nodes", {"nodes": 6}),
+        ("bem", "BEM, 128 cells", {"points": 128}),
+        ("fem", "FEM, accuracy 1e-3", {"accuracy": 1e-3}),
     )
 )
 

@@ -50,7 +50,7 @@ def _row(work: WorkPrecision, point: WorkPoint) -> tuple[Cell, ...]:
 
 def draw(work: WorkPrecision) -> Drawing:
     """Error bound over median seconds, both logarithmic."""
-    drawing = Drawing(figsize=(6.4, 4.0), layout="constrained")
+    drawing = Drawing(figsize=(6.4, 4.2), layout="constrained")
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log", xlabel="median time [s]")
     axes.set_ylabel(f"bound of the relative error, {work.quantity.replace('_', ' ')}")
@@ -62,20 +62,22 @@ def draw(work: WorkPrecision) -> Drawing:
     _draw_failures(axes, [point for point in work.points if point.bound is None])
     mark_decades(axes.xaxis)
     mark_decades(axes.yaxis)
-    drawing.legend(loc="outside lower center", ncols=4)
+    drawing.legend(loc="outside lower center", ncols=3)
     return drawing
 
 
 def _draw_method(axes: Axes, method: str, points: Sequence[WorkPoint]) -> None:
+    """Filled on the front, empty and faint where dominated; one entry in the legend."""
     look = look_of(method)
-    for chosen, word, face, alpha in ((True, "on the front", look.colour, 1.0), (False, "dominated", "white", 0.55)):
+    for chosen, face, alpha in ((True, look.colour, 1.0), (False, "white", 0.55)):
         part = [point for point in points if point.on_front is chosen]
         seconds, bounds = [p.seconds for p in part], [_bound(p) for p in part]
         spread = [[p.seconds - p.lower_quartile for p in part], [p.upper_quartile - p.seconds for p in part]]
         axes.errorbar(
             seconds, bounds, xerr=spread, color=look.colour, linestyle="none", marker=look.marker, markerfacecolor=face,
-            alpha=alpha, elinewidth=0.9, label=f"{display_name(method)}, {word}" if part else None,
+            alpha=alpha, elinewidth=0.9,
         )  # fmt: skip
+    axes.plot([], [], color=look.colour, linestyle="none", marker=look.marker, label=display_name(method))
 
 
 def _draw_front(axes: Axes, points: Iterable[WorkPoint]) -> None:
@@ -100,14 +102,16 @@ def _draw_references(axes: Axes, work: WorkPrecision) -> None:
 
 
 def _draw_failures(axes: Axes, points: Sequence[WorkPoint]) -> None:
-    """Crosses on the upper border, where they took their time; one entry a method in the legend."""
+    """Crosses on the upper border, where they took their time; one entry in the legend."""
     for method in dict.fromkeys(point.method for point in points):
         look = look_of(method)
         seconds = [point.seconds for point in points if point.method == method]
         axes.plot(
             seconds, [1.0] * len(seconds), transform=axes.get_xaxis_transform(), color=look.colour, marker="x",
-            markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False, label=f"{display_name(method)}, failed",
+            markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False,
         )  # fmt: skip
+    if points:
+        axes.plot([], [], color=BLACK, marker="x", markeredgewidth=2.0, linestyle="none", label="failed")
 
 
 def _bound(point: WorkPoint) -> float:

@@ -23,6 +23,8 @@ SCENES = {
     "depths": Scene(layer=layer, indenter=cone, loading=IndentationDepths([0.05])),
     "adhesive": Scene(layer=layer, indenter=cone, loading=Detachment(initial_contact_radius=1.0),
                       effects=(Adhesion(work_of_adhesion=1e-4),)),
+    "sticky": Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=5.0), loading=ContactRadii([1.0]),
+                    effects=(Adhesion(work_of_adhesion=1e-4),)),
     "impact": Scene(layer=layer, indenter=cone, loading=Impact(mass=0.1, velocity=0.05)),
     "viscoelastic": Scene(layer=layer, indenter=cone, loading=Impact(mass=0.1, velocity=0.05), effects=(solid,)),
 }
@@ -90,6 +92,30 @@ def test_finite_elements_load_no_effect_for_an_elastic_scene():
     assert effects_among(found) == []
     assert [m for m in found["modules"] if m.startswith(("mdr", "bem"))] == []
     assert set(found["foreign"]) <= {"skfem", "gmsh"}
+
+
+def test_finite_elements_load_only_the_listed_effect():
+    """One process each: an impact loads no adhesion, adhesion loads nothing in time."""
+    in_time = effects_among(solved("fem", "viscoelastic", COARSE_FEM))
+    assert in_time
+    assert [m for m in in_time if "adhes" in m or "detach" in m or "cohesive" in m] == []
+    adhering = effects_among(solved("fem", "sticky", COARSE_FEM))
+    assert adhering
+    assert [m for m in adhering if "visco" in m or "impact" in m or "relaxation" in m or "memory" in m] == []
+
+
+@pytest.mark.parametrize(("scene", "loads"), [("elastic", False), ("sticky", True)])
+def test_boundary_elements_load_adhesion_only_when_it_is_listed(scene, loads):
+    found = solved("bem", scene, '{"points": 96}')
+    assert any("adhe" in m for m in found["modules"]) is loads
+    assert [m for m in found["modules"] if m.startswith(("mdr", "fem_reference"))] == []
+    assert any("adh" in stage or "branch" in stage or "history" in stage for stage in found["stages"]) is loads
+
+
+def test_the_direct_integral_equation_loads_no_other_method():
+    found = solved("integral_equation", "elastic")
+    assert [m for m in found["modules"] if m.startswith(("mdr", "fem_reference")) or "transforms" in m] == []
+    assert found["stages"] == ["error_estimate", "integral_equation"]
 
 
 def test_a_planted_import_is_seen():

@@ -1,0 +1,94 @@
+"""Finite and boundary elements: zero strength equals absence, and other scenes in between change no bit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bem.direct import Bem
+from bem.integral_equation_method import IntegralEquationMethod
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    DepthHistory,
+    Detachment,
+    FlatPunch,
+    Impact,
+    IndentationDepths,
+    KelvinVoigt,
+    Layer,
+    Paraboloid,
+    PronySeries,
+    Scene,
+)
+from fem_reference import Fem
+
+LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
+COARSE = Fem(order=2, edge_cell=1e-3, growth=1.0, truncation=1e-4)
+CONE, PARABOLOID = Cone(slope=0.1), Paraboloid(radius_of_curvature=5.0)
+RADII = Scene(layer=LAYER, indenter=CONE, loading=ContactRadii([0.5, 1.0]))
+IMPACT = Scene(layer=LAYER, indenter=PARABOLOID, loading=Impact(mass=0.1, velocity=0.05))
+HISTORY = Scene(layer=LAYER, indenter=PARABOLOID, loading=DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 0.05, 0.0]))
+PUNCH = Scene(layer=LAYER, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.01]))
+ZERO = 1e-12  # relative: what "equals absence" means
+
+NO_VISCOSITY = {
+    "no viscosity": KelvinVoigt(shear_modulus=1.0, viscosity=0.0),
+    "a branch without modulus": PronySeries(long_term_shear_modulus=1.0, shear_moduli=[0.0], relaxation_times=[1.0]),
+}
+NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth")
+
+
+def difference(one, other, names):
+    return max(
+        float(np.max(np.abs(np.asarray(getattr(one, q)) - getattr(other, q))) / np.max(np.abs(getattr(other, q))))
+        for q in names
+    )
+
+
+def test_finite_elements_without_work_of_adhesion_are_finite_elements_without_adhesion():
+    with_zero = COARSE.solve(RADII.replace(effects=(Adhesion(work_of_adhesion=0.0),)))
+    assert difference(with_zero, COARSE.solve(RADII), ("contact_radius", "indentation_depth", "normal_force")) < ZERO
+
+
+@pytest.mark.parametrize("name", NO_VISCOSITY)
+def test_finite_elements_without_viscosity_are_an_elastic_impact(name):
+    with_zero, elastic = COARSE.solve(IMPACT.replace(effects=(NO_VISCOSITY[name],))), COARSE.solve(IMPACT)
+    assert difference(with_zero, elastic, NUMBERS) < ZERO
+
+
+@pytest.mark.parametrize("name", NO_VISCOSITY)
+def test_finite_elements_without_viscosity_follow_an_elastic_history(name):
+    with_zero, elastic = COARSE.solve(HISTORY.replace(effects=(NO_VISCOSITY[name],))), COARSE.solve(HISTORY)
+    assert difference(with_zero, elastic, ("normal_force",)) < ZERO
+
+
+@pytest.mark.parametrize("method", [COARSE, Bem(points=96), IntegralEquationMethod()], ids=lambda m: m.name)
+def test_solving_other_scenes_between_changes_no_bit(method):
+    """No state is left behind: not by an effect, not by another layer."""
+    before = method.solve(PUNCH)
+    adhesive = RADII.replace(
+        loading=Detachment(control="force", initial_contact_radius=1.0), effects=(Adhesion(work_of_adhesion=1e-3),)
+    )
+    for scene in (RADII.replace(layer=Layer(thickness=0.5, youngs_modulus=2.0, poissons_ratio=0.3)), adhesive, IMPACT):
+        if method.supports(scene) and method is not COARSE:
+            method.solve(scene)
+    after = method.solve(PUNCH)
+    for name in before.ARRAYS:
+        assert getattr(before, name).tobytes() == getattr(after, name).tobytes()
+
+
+@pytest.mark.parametrize(
+    ("method", "scene"),
+    [(Bem(points=96), IMPACT), (IntegralEquationMethod(), IMPACT), (IntegralEquationMethod(), RADII.replace(
+        effects=(Adhesion(work_of_adhesion=1e-3),)))],
+    ids=["bem, impact", "integral equation, impact", "integral equation, adhesion"],
+)  # fmt: skip
+def test_an_effect_that_a_method_does_not_model_is_refused_not_ignored(method, scene):
+    assert not method.supports(scene)
+
+
+def test_a_little_viscosity_is_seen():
+    little = COARSE.solve(IMPACT.replace(effects=(KelvinVoigt(shear_modulus=1.0, viscosity=1e-6),)))
+    assert difference(little, COARSE.solve(IMPACT), ("coefficient_of_restitution",)) > ZERO
