@@ -43,6 +43,10 @@ KINK_CELLS, KINK_ERROR = 6.0, 0.1  # nearer than so many cells to the edge, a ki
 SECOND_ORDER: Final = 0.1  # times (s/a)^2: differences of two grids may be smaller by chance
 
 
+ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
+STATED_ERROR: Final = 0.2  # over the points: of force at a given radius, the largest of the stated errors
+
+
 @record
 class Bem(Record):
     """Direct contact by FFT boundary elements.
@@ -56,11 +60,11 @@ class Bem(Record):
             measures (`adhering_disc`), or single "cells" beyond a stress that depends on their size (`detachment`).
 
     Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
-    what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. The method converges
-    with second order in the cell size. A flat punch is a disc
-    of cells measured by the half-space (`pixel_disc`), so that on the half-space itself its stiffness is exact by
-    construction. Adhesive contacts on discs converge with about order 1.5, detachment by cells with about first order.
-    Adhesive depths and forces are followed in their order, from out of contact (`adhesive_history`).
+    what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. Depth and force
+    converge with second order in the cell size. A flat punch is a disc of cells measured by the half-space
+    (`pixel_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on discs
+    converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are followed
+    in their order, from out of contact (`adhesive_history`).
 
     Raises:
         InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, or the tolerance is
@@ -81,6 +85,19 @@ class Bem(Record):
             raise InvalidInput(f"points must be a multiple of 4 and at least {2 * LEAST_CELLS}, got {self.points}")
         if not 0.0 < self.tolerance <= 1e-2:
             raise InvalidInput(f"tolerance must lie in (0, 0.01], got {self.tolerance:g}")
+
+    @classmethod
+    def for_accuracy(cls, accuracy: float) -> Self:
+        """The coarsest grid that states a relative error of at most `accuracy` for profiles without a near kink.
+
+        Raises:
+            InvalidInput: If no grid of `ACCURACY_POINTS` does.
+        """
+        enough = [points for points in ACCURACY_POINTS if STATED_ERROR / points <= accuracy]
+        if not enough:
+            finest = STATED_ERROR / ACCURACY_POINTS[-1]
+            raise InvalidInput(f"accuracy = {accuracy:g}: boundary elements reach {finest:.0e}; ask mdr or fem")
+        return cls(points=enough[0])
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""

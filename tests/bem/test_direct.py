@@ -18,6 +18,7 @@ from contact import (
     Paraboloid,
     Scene,
     Sphere,
+    Tabulated,
     TruncatedCone,
     UnsupportedSceneError,
 )
@@ -162,6 +163,31 @@ def test_repeated_solutions_are_bit_identical():
 def test_a_contact_beyond_the_indenter_is_refused():
     with pytest.raises(InvalidInput, match="end of the indenter"):
         solve(Sphere(radius=1e-3), IndentationDepths([3e-3]))
+
+
+@pytest.mark.parametrize("accuracy", [2e-3, 1e-3])
+def test_an_accuracy_chooses_a_grid_that_states_it(accuracy):
+    path = Bem.for_accuracy(accuracy).solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=ContactRadii([2e-3])))
+    assert max(float(path.error_estimate[name][0]) for name in path.ARRAYS) <= accuracy
+    with pytest.raises(InvalidInput, match="reach"):
+        Bem.for_accuracy(1e-6)
+
+
+def test_stated_errors_hold_beside_a_kink_and_at_the_end_of_the_profile():
+    r = np.linspace(0.0, 1.1e-3, 23)
+    indenters = (TruncatedCone(flat_radius=0.9e-3, slope=0.1), Tabulated(radii=r, heights=r**2 / 0.02))
+    for indenter in indenters:
+        exact = Mdr().solve(Scene(layer=LAYER, indenter=indenter, loading=ContactRadii([1e-3])))
+        for loading in (ContactRadii([1e-3]), IndentationDepths(exact.indentation_depth)):
+            path = solve(indenter, loading)
+            for name in path.ARRAYS:
+                error = abs(getattr(path, name)[0] / getattr(exact, name)[0] - 1.0)
+                assert error <= path.error_estimate[name][0] + 1e-9, (indenter, name)
+
+
+def test_too_few_cells_in_a_periodic_box_are_refused():
+    with pytest.raises(InvalidInput, match="too few"):
+        solve(PARABOLOID, IndentationDepths([4e-7]), boundary="periodic")
 
 
 @pytest.mark.parametrize(
