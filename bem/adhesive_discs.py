@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from bem.adhering_disc import is_measured
-from bem.adhesive_branch import AdhesiveBranch, Quantity, adhesive_length, long_enough
+from bem.adhesive_branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesive_history import Held, at_radii, followed
 from bem.adhesive_withdrawal import Control, Withdrawal, stable, strength
 from bem.surface_fields import AdheringFields, FieldSequence
@@ -19,7 +19,6 @@ from contact import (
     DetachmentPath,
     FlatPunch,
     IndentationDepths,
-    InvalidInput,
     NormalForces,
     Scene,
     StageLog,
@@ -83,13 +82,7 @@ class AdheringDiscs:
         )
 
     def detachment(self, control: Control) -> DetachmentPath:
-        """The whole equilibrium branch of a withdrawal, in order of decreasing radius.
-
-        Raises:
-            InvalidInput: If nothing adheres.
-        """
-        if adhesive_length(self.scene) == 0.0:
-            raise InvalidInput("effects: without work of adhesion there is nothing to detach; give a positive one")
+        """The whole equilibrium branch of a withdrawal, in order of decreasing radius."""
         fine, coarse = self._branches()
         start = self._start(fine)
         withdrawal = Withdrawal(fine, start)

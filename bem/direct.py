@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import Field
 
 from bem.grid import LEAST_CELLS, Grid
-from bem.grid_punch import contact_stiffness, grid_punch
+from bem.grid_punch import grid_punch
 from bem.pressed_state import Boundary, Prescribed, Press, PressedState
 from bem.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from contact import (
@@ -123,6 +123,7 @@ class Bem(Record):
 
         Raises:
             UnsupportedSceneError: If `supports` says no.
+            InvalidInput: If nothing adheres, a force pulls too much, or the contact outgrows the indenter.
             NotConvergedError: If a tolerance was missed.
         """
         answer = self.supports(scene)
@@ -132,16 +133,21 @@ class Bem(Record):
         adhesion = scene.effect(Adhesion)
         if adhesion is None:
             return self._press(scene, log)
-        if adhesion.work_of_adhesion == 0.0 and not isinstance(scene.loading, Detachment):
+        if adhesion.work_of_adhesion == 0.0:
+            if isinstance(scene.loading, Detachment):
+                raise InvalidInput("effects: without work of adhesion there is nothing to detach; give a positive one")
             return dataclasses.replace(self._press(scene.replace(effects=()), log), scene=scene)
-        if self.adhesion == "cells":
-            return self._let_go(scene, log)
-        from bem.adhesive_discs import AdheringDiscs  # noqa: PLC0415 - only adhering scenes load it
+        return self._adhering(scene, log)
 
-        discs = AdheringDiscs(scene, self.points, self.threads, dataclasses.asdict(self), log)
+    def _adhering(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath:
+        from bem.adhesive_cells import AdheringCells  # noqa: PLC0415 - only listed effects load
+        from bem.adhesive_discs import AdheringDiscs  # noqa: PLC0415
+
+        kind = AdheringCells if self.adhesion == "cells" else AdheringDiscs
+        adhering = kind(scene, self.points, self.threads, dataclasses.asdict(self), log)
         if isinstance(scene.loading, Detachment):
-            return discs.detachment(scene.loading.control)
-        return discs.equilibria()
+            return adhering.detachment(scene.loading.control)
+        return adhering.equilibria()
 
     def _press(self, scene: Scene, log: StageLog) -> ContactPath:
         step = self._punch_step if isinstance(scene.indenter, FlatPunch) else self._smooth_step
@@ -160,67 +166,6 @@ class Bem(Record):
             indentation_depth=arrays["indentation_depth"],
             normal_force=arrays["normal_force"],
             contact_stiffness=arrays["contact_stiffness"],
-        )
-
-    def _let_go(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath:
-        """By single cells."""
-        from bem.adhesive_branch import SCOUT_CELLS  # noqa: PLC0415 - only adhering scenes load it
-        from bem.adhesive_path import CellHistory  # noqa: PLC0415
-
-        if isinstance(scene.loading, Detachment):
-            return self._detach(scene, scene.loading.control, log)
-        _, depths = _prescription(scene)
-        with log.stage("history"):
-            fine, coarse = (
-                CellHistory.of_depths(scene, depths, cells, self.threads, log)
-                for cells in (self.points, self.points // 2)
-            )
-        stiffness = [
-            contact_stiffness(scene.layer, a, SCOUT_CELLS) if a > 0.0 else 0.0 for a in fine.contact_radius.tolist()
-        ]
-        return ContactPath(
-            scene=scene,
-            method=self.name,
-            settings=dataclasses.asdict(self),
-            cost=log.cost(unknowns=self.points**2 // 4),
-            stages=log.records,
-            notes=("depths are followed in their order, from out of contact",),
-            error_estimate=fine.errors(coarse),
-            contact_radius=fine.contact_radius,
-            indentation_depth=depths,
-            normal_force=fine.normal_force,
-            contact_stiffness=np.array(stiffness),
-        )
-
-    def _detach(self, scene: Scene, control: Literal["displacement", "force"], log: StageLog) -> DetachmentPath:
-        from bem.adhesive_path import branch_errors, detachment_branch, stable_under_force, start_radius  # noqa: PLC0415
-
-        with log.stage("first_guess"):
-            start = start_radius(scene, self.threads)
-        with log.stage("detachment"):
-            fine, coarse = (
-                detachment_branch(scene, start, cells, self.threads, log, to_least_force=control == "force")
-                for cells in (self.points, self.points // 2)
-            )
-        end = fine.pull_off(control)
-        errors = branch_errors(fine, coarse, control)
-        return DetachmentPath(
-            scene=scene,
-            method=self.name,
-            settings=dataclasses.asdict(self),
-            cost=log.cost(unknowns=self.points**2 // 4),
-            stages=log.records,
-            notes=("only the branch that is stable under displacement control is followed",),
-            error_estimate={name: np.atleast_1d(error) for name, error in errors.items()},
-            contact_radius=fine.contact_radius,
-            indentation_depth=fine.indentation_depth,
-            normal_force=fine.normal_force,
-            stable_displacement_control=np.ones(len(fine.normal_force), dtype=np.bool_),
-            stable_force_control=stable_under_force(fine),
-            pull_off_force=float(fine.normal_force[fine.least_force]),
-            pull_off_depth=float(fine.indentation_depth[end]),
-            pull_off_contact_radius=float(fine.contact_radius[end]),
-            critical_points=fine.critical_points(),
         )
 
     def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
