@@ -281,6 +281,20 @@ def coverage(
     return run_command(method or [], family or [], seed, out)
 
 
+@app.command()
+def accuracy(
+    count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 300,
+    *,
+    seed: Annotated[int, typer.Option(help="Of the scenes.")] = 2,
+    evidence: Annotated[Path | None, typer.Option(help="Measurements of this machine from calibrate.")] = None,
+    out: Annotated[Path | None, typer.Option(help="Folder for a report.")] = None,
+) -> int:
+    """Solve random scenes to random accuracies: are they met, and how near is the time to the shortest?"""
+    from reports.commands.hard import accuracy as run_command  # noqa: PLC0415
+
+    return run_command(count, seed, evidence, out)
+
+
 @app.command("maps")
 def error_maps(
     names: Annotated[

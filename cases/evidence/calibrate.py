@@ -16,6 +16,7 @@ from cases.methods import build
 from cases.stability.campaign import IMPACT_NUMBERS
 from cases.stability.random_scenes import Family, random_scene
 from cases.stability.second_opinion import second_opinion
+from cases.work.forgetting import forget
 from contact import ContactError, ContactPath, ImpactHistory, Method, Scene, Solution
 from contact.validation import FloatArray
 
@@ -117,7 +118,7 @@ def measure(candidate: Candidate, kind: str, band: float, scenes: list[Scene]) -
     bounds, seconds, refused = [], [], 0
     for scene in scenes:
         try:
-            answer, spent = _first_solution(build(candidate.method, candidate.settings), scene)
+            answer, spent = timed_first_solution(build(candidate.method, candidate.settings), scene)
             bounds.append(max(error_bound(answer), largest_stated_error(answer)))  # a user sees the stated one
             seconds.append(spent)
         except ContactError:
@@ -138,19 +139,12 @@ def measure(candidate: Candidate, kind: str, band: float, scenes: list[Scene]) -
     )
 
 
-def _first_solution(method: Method, scene: Scene) -> tuple[Solution, float]:
+def timed_first_solution(method: Method, scene: Scene) -> tuple[Solution, float]:
     """Answer and processor time without anything cached from earlier scenes."""
     forget()
     start = time.process_time()
     answer = method.solve(scene)
     return answer, time.process_time() - start
-
-
-def forget() -> None:
-    """Empty the caches of flat-punch data, so that a first solution is timed."""
-    from bem import integral_equation  # noqa: PLC0415 - only where it is measured
-
-    integral_equation._solution.cache_clear()
 
 
 def largest_stated_error(answer: Solution) -> float:

@@ -67,11 +67,11 @@ def choose(scene: Scene, accuracy: float, *, within: float | None = None, eviden
     """
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative error")
-    usable = list(_usable(scene, (evidence or shipped()).measurements))
-    good = [m for m in usable if SAFETY * m.bound <= accuracy]
+    like = list(usable(scene, (evidence or shipped()).measurements))
+    good = [m for m in like if SAFETY * m.bound <= accuracy]
     best = min(good, key=lambda m: m.seconds, default=None)
     if best is None or (within is not None and best.seconds > within):
-        raise InvalidInput(_reachable(usable, accuracy, within))
+        raise InvalidInput(_reachable(like, accuracy, within))
     return Choice(
         method=best.method,
         settings=best.settings,
@@ -92,7 +92,7 @@ def solve_to_accuracy(
     return Outcome(choice=choice, answer=answer, stated_error=largest_stated_error(answer), seconds=seconds)
 
 
-def _usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measurement]:
+def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measurement]:
     """Measurements of scenes like this one, by methods that support it."""
     kind, band = kind_of(scene), band_of(scene)
     for m in measurements:

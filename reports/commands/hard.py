@@ -45,6 +45,15 @@ def coverage(methods: list[str], families: list[str], seed: int, out: Path | Non
     return published(lambda: coverage_case(plans, seed, progress=_say), out)
 
 
+def accuracy(count: int, seed: int, evidence: Path | None, out: Path | None) -> int:
+    """Solve random scenes to random accuracies; return 1 if too many are missed or it takes too long."""
+    from cases.evidence.audit import audit_case  # noqa: PLC0415 - only this command needs it
+    from cases.evidence.records import read  # noqa: PLC0415
+
+    measured = None if evidence is None else read(evidence)
+    return published(lambda: audit_case(count, seed, measured, progress=_say), out)
+
+
 def error_maps(names: list[str], out: Path | None) -> int:
     """Draw up maps of signed errors over (a/h, nu).
 
