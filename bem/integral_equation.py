@@ -130,12 +130,18 @@ class IntegralEquationSolution:
         """
         ratio = self._covered(ratio)
         panels, _ = self._edge_density.locate(ratio)
-        rounding = 1 + 1 / compliance_kernel(1 / np.maximum(ratio, 1.0), self.support, self.poissons_ratio)
+        rounding = 1 + np.exp(np.interp(np.log(np.maximum(ratio, 1.0)), *self._condition))
         return 2 * self._truncation[panels] + 4 * np.finfo(float).eps * rounding
 
     def moment_error(self, ratio: ArrayLike) -> FloatArray:
         """As that of the stiffnesses: the same density gives both."""
         return self.relative_error(ratio)
+
+    @cached_property
+    def _condition(self) -> tuple[FloatArray, FloatArray]:
+        """Logarithms of a/h and of 1/chi(h/a), dense enough for a bound."""
+        ratio = np.geomspace(1.0, max(self.max_ratio, 2.0), 100)
+        return np.log(ratio), -np.log(compliance_kernel(1 / ratio, self.support, self.poissons_ratio))
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)

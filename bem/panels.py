@@ -10,6 +10,8 @@ from numpy.polynomial import chebyshev, legendre
 
 from contact.validation import FloatArray
 
+_TINY = float(np.finfo(float).tiny)
+
 
 @cache
 def gauss_nodes(count: int) -> tuple[FloatArray, FloatArray]:
@@ -30,7 +32,7 @@ def lagrange_matrix(count: int, points: FloatArray) -> FloatArray:
     """
     nodes, _ = gauss_nodes(count)
     distance = points[..., None] - nodes
-    distance[distance == 0] = np.finfo(float).tiny  # a point that is a node: its own term dominates
+    distance[distance == 0] = _TINY  # a point that is a node: its own term dominates
     terms = _barycentric_weights(count) / distance
     matrix: FloatArray = terms / terms.sum(axis=-1, keepdims=True)
     return matrix

@@ -37,7 +37,8 @@ class EqualPanels:
 
     def locate(self, x: FloatArray) -> tuple[np.ndarray[tuple[int, ...], np.dtype[np.intp]], FloatArray]:
         """Number of the panel and relative position in it; a point between two panels belongs to the left one."""
-        panels = np.clip(np.ceil(x / self.panel_width).astype(np.intp) - 1, 0, len(self.coefficients) - 1)
+        panels = np.ceil(x / self.panel_width).astype(np.intp) - 1
+        panels = np.minimum(np.maximum(panels, 0), len(self.coefficients) - 1)
         return panels, x / self.panel_width - panels
 
     def truncation(self) -> FloatArray:
@@ -53,7 +54,7 @@ def chebyshev_sum(coefficients: FloatArray, s: FloatArray) -> FloatArray:
     A few points are summed as cosines in one step; for many, Clenshaw's recurrence needs less memory and time.
     """
     if s.size <= FEW_POINTS:
-        angles = np.arccos(np.clip(s, -1.0, 1.0))
+        angles = np.arccos(np.minimum(np.maximum(s, -1.0), 1.0))
         cosines = np.cos(np.multiply.outer(angles, np.arange(coefficients.shape[-1])))
         few: FloatArray = np.sum(coefficients * cosines, axis=-1)
         return few

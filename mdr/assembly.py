@@ -9,7 +9,6 @@ from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
 from bem.integral_equation import LARGEST_FACTORISED_RATIO, IntegralEquationSolution
 from bem.large_ratio import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
-from bem.panels import gauss_nodes
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.validation import FloatArray
 from mdr.equivalent_system import EquivalentSystem
@@ -47,7 +46,9 @@ def equivalent_system(
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
     if isinstance(solution, LargeRatioSolution) and not isinstance(indenter, FlatPunch):
         max_radius = _known_radius(solution, indenter, unit, max_radius)
-    profile, own_error = _profile(solution, indenter, unit, max_radius)
+    g_hs = _half_space_function(solution, indenter, unit, max_radius)
+    springs = _springs_at_nodes(solution, g_hs, indenter.flat_radius / unit)
+    profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
     _refuse_rings(profile, indenter, unit)
     return EquivalentSystem(
         contact_modulus=layer.contact_modulus,
@@ -56,7 +57,7 @@ def equivalent_system(
         max_radius=max_radius,
         flat_punch=solution,
         profile=profile,
-        moment=_moment(solution, profile, indenter.flat_radius / unit),
+        moment=MappedFunction(profile.grid, 2 * springs * profile.node_values, profile.lead).integral(),  # Eq. (4)
         profile_error=own_error,
     )
 
@@ -79,7 +80,9 @@ def contact_fields(
     if isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution):
         profile = _half_space_function(flat_punch, indenter, unit, contact_radius)
     else:
-        profile, table = _profile(flat_punch, indenter, unit, contact_radius)[0], flat_punch
+        g_hs, table = _half_space_function(flat_punch, indenter, unit, contact_radius), flat_punch
+        springs = _springs_at_nodes(flat_punch, g_hs, indenter.flat_radius / unit)
+        profile, _ = _profile(flat_punch, indenter, unit, g_hs, springs)
     if isinstance(flat_punch, IntegralEquationSolution):
         averages = np.full((int(np.ceil(ratio / flat_punch.factor.panel_width)), profile.grid.count), delta)
         if not isinstance(indenter, FlatPunch):
@@ -118,10 +121,17 @@ class SeveralContacts(UnsupportedSceneError):
 
 
 def _profile(
-    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float
+    solution: FlatPunchSolution, indenter: Profile, unit: float, g_hs: MappedFunction, springs: FloatArray
 ) -> tuple[MappedFunction, float]:
-    """g in units of `unit`, and its relative error beyond that of the flat-punch data."""
-    g_hs = _half_space_function(solution, indenter, unit, max_radius)
+    """g in units of `unit`, and its relative error beyond that of the flat-punch data.
+
+    Args:
+        solution: The flat punch.
+        indenter: Profile of revolution.
+        unit: Length unit [m].
+        g_hs: The half-space's profile; g is known on the same grid.
+        springs: c_bar at the grid's nodes.
+    """
     if isinstance(indenter, FlatPunch):
         return g_hs, 0.0
     flat, seen = indenter.flat_radius / unit, 0.0
@@ -130,9 +140,7 @@ def _profile(
             profile = g_hs
         case IntegralEquationSolution():
             edge = edge_values(solution.factor, g_hs, flat)
-            profile = MappedFunction.from_values(
-                g_hs.grid, edge / solution.edge_density(flat + g_hs.grid.nodes), g_hs.lead
-            )
+            profile = MappedFunction(g_hs.grid, edge / np.sqrt(springs), g_hs.lead)  # yg/y1, Eq. (8)
         case LargeRatioSolution():
             profile, seen = wide_profile(solution, g_hs, flat)
         case _:
@@ -236,20 +244,15 @@ def _leading_exponent(indenter: Profile, scale: float) -> float:
     return halves if abs(exponent - halves) < 1e-6 else exponent
 
 
-def _moment(solution: FlatPunchSolution, profile: MappedFunction, flat: float) -> MappedFunction:
-    """2 int c_bar g dx over the excess, Eq. (4)."""
-    grid = profile.grid
-    springs = solution.normalized_spring_stiffness(np.minimum(flat + grid.nodes, solution.max_ratio))
-    return MappedFunction.from_values(grid, 2 * springs * profile.node_values, profile.lead).integral()
+def _springs_at_nodes(solution: FlatPunchSolution, g_hs: MappedFunction, flat: float) -> FloatArray:
+    """c_bar at the nodes of a profile's grid."""
+    return solution.normalized_spring_stiffness(np.minimum(flat + g_hs.grid.nodes, solution.max_ratio))
 
 
 def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float) -> None:
     """One circle of contact needs g to increase; where it does not, the indenter touches somewhere else first."""
     if isinstance(indenter, FlatPunch):
         return
-    grid = profile.grid
-    piece = np.broadcast_to(np.arange(len(grid.left))[:, None], grid.nodes.shape)
-    slope = profile.slope_at(piece, np.broadcast_to(gauss_nodes(grid.count)[0], piece.shape))
-    if np.any(slope <= 0):
-        radius = indenter.flat_radius + unit * float(grid.nodes[slope <= 0].min())
-        raise SeveralContacts(radius)
+    falling = profile.node_slopes <= 0
+    if np.any(falling):
+        raise SeveralContacts(indenter.flat_radius + unit * float(profile.grid.nodes[falling].min()))

@@ -139,9 +139,11 @@ def _errors(
         }
     # F = k_N delta - moment: the errors of both terms count against their difference
     spread = system.contact_stiffness(radius) * depth / force
-    sensitivity = depth / (radius * system.mdr_profile_slope(radius))  # d(ln a)/d(ln delta)
+    moved = exact
+    if given != "ContactRadii":  # d(ln a)/d(ln delta)
+        moved = errors["contact_radius"] * depth / (radius * system.mdr_profile_slope(radius))
     return {
-        "contact_radius": exact if given == "ContactRadii" else errors["contact_radius"] * sensitivity,
+        "contact_radius": moved,
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
         "normal_force": exact if given == "NormalForces" else errors["normal_force"] * spread,
         "contact_stiffness": stiffness,

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,7 @@ from bem.piecewise import chebyshev_sum
 from contact.validation import FloatArray
 
 MAX_SPLITS = 60
+EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class MappedGrid:
     power: FloatArray
     count: int
 
-    @property
+    @cached_property
     def nodes(self) -> FloatArray:
         """Node positions d, shape (q, m)."""
         return self.left[:, None] + self.width[:, None] * gauss_nodes(self.count)[0] ** self.power[:, None]
@@ -55,8 +56,8 @@ class MappedGrid:
 
     def locate(self, d: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
         """Number of the piece of each point, and u in it; a point between two pieces belongs to the left one."""
-        piece = np.clip(np.searchsorted(self.left, d, side="left") - 1, 0, len(self.left) - 1)
-        s = np.clip((d - self.left[piece]) / self.width[piece], 0.0, 1.0)
+        piece = np.maximum(self.left.searchsorted(d) - 1, 0)
+        s = np.minimum(np.maximum((d - self.left[piece]) / self.width[piece], 0.0), 1.0)
         return piece, s ** (1 / self.power[piece])
 
     def split(self, pieces: NDArray[np.bool_]) -> MappedGrid:
@@ -75,20 +76,13 @@ class MappedFunction:
 
     Attributes:
         grid: The pieces.
-        coefficients: Chebyshev coefficients in u, shape (q, m), in the first piece after division by u^lead.
+        node_values: At the grid's nodes, shape (q, m).
         lead: Exponent of u split off in the first piece.
     """
 
     grid: MappedGrid
-    coefficients: FloatArray
+    node_values: FloatArray
     lead: float
-
-    @classmethod
-    def from_values(cls, grid: MappedGrid, values: FloatArray, lead: float) -> MappedFunction:
-        """The interpolant of values at the grid's nodes, shape (q, m)."""
-        regular = values.copy()
-        regular[0] /= gauss_nodes(grid.count)[0] ** lead
-        return cls(grid, regular @ chebyshev_from_nodes(grid.count).T, lead)
 
     def __call__(self, d: FloatArray) -> FloatArray:
         """Values at points of any shape."""
@@ -119,10 +113,12 @@ class MappedFunction:
         return derivative
 
     @cached_property
-    def node_values(self) -> FloatArray:
-        """Values at the grid's nodes, shape (q, m)."""
-        piece = np.broadcast_to(np.arange(len(self.grid.left))[:, None], self.coefficients.shape)
-        return self.at(piece, np.broadcast_to(gauss_nodes(self.grid.count)[0], piece.shape))
+    def node_slopes(self) -> FloatArray:
+        """Derivative with respect to u at the nodes, shape (q, m)."""
+        u = gauss_nodes(self.grid.count)[0]
+        slopes = self._regular @ _slopes_from_nodes(self.grid.count).T
+        slopes[0] = u**self.lead * slopes[0] + self.lead * u ** max(self.lead - 1.0, 0.0) * self._regular[0]
+        return np.asarray(slopes)
 
     def integral(self) -> MappedFunction:
         """int_0^d of the function: whole pieces before each node, and its own piece by Gauss nodes scaled into it."""
@@ -136,29 +132,53 @@ class MappedFunction:
         exponent = lead + grid.power[:, None, None] - 1
         stretch = (grid.width * grid.power)[:, None]
         partial = stretch * np.sum(inside * inner**exponent * np.multiply.outer(u, omega), axis=2)
-        return MappedFunction.from_values(grid, full[:, None] + partial, self.lead + float(grid.power[0]))
+        return MappedFunction(grid, full[:, None] + partial, self.lead + float(grid.power[0]))
 
     def truncation(self) -> FloatArray:
         """Size of the last coefficients of each piece relative to its largest, shape (q,)."""
         size = np.abs(self.coefficients)
-        tail: FloatArray = size[:, -2:].max(axis=1) / np.maximum(size.max(axis=1), np.finfo(float).tiny)
+        tail: FloatArray = size[:, -2:].max(axis=1) / np.maximum(size.max(axis=1), TINY)
         return tail
 
     def relative_error(self) -> float:
         """Last coefficients and rounding, relative to the smallest value on each piece without u^lead: the worst."""
         size = np.abs(self.coefficients)
-        error = size[:, -2:].max(axis=1) + 4 * np.finfo(float).eps * size.max(axis=1)
-        regular = chebyshev_sum(self.coefficients[:, None], 2 * gauss_nodes(self.grid.count)[0] - 1)
-        return float(np.max(error / np.maximum(np.abs(regular).min(axis=1), np.finfo(float).tiny)))
+        error = size[:, -2:].max(axis=1) + 4 * EPS * size.max(axis=1)
+        return float(np.max(error / np.maximum(np.abs(self._regular).min(axis=1), TINY)))
 
     def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         return np.where(piece == 0, u**self.lead, 1.0)
 
     @cached_property
+    def coefficients(self) -> FloatArray:
+        """Chebyshev coefficients in u, shape (q, m), in the first piece after division by u^lead."""
+        return np.asarray(self._regular @ chebyshev_from_nodes(self.grid.count).T)
+
+    @cached_property
+    def _regular(self) -> FloatArray:
+        """Values at the nodes, in the first piece after division by u^lead."""
+        regular = self.node_values.copy()
+        regular[0] /= gauss_nodes(self.grid.count)[0] ** self.lead
+        return regular
+
+    @cached_property
     def _slope_coefficients(self) -> FloatArray:
-        slope = np.zeros_like(self.coefficients)
-        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(self.coefficients, axis=1)
-        return slope
+        return np.asarray(self.coefficients @ _slope_of_chebyshev(self.grid.count).T)
+
+
+@cache
+def _slope_of_chebyshev(count: int) -> FloatArray:
+    """Matrix from Chebyshev coefficients on [0, 1] to those of the derivative."""
+    matrix = np.zeros((count, count))
+    matrix[:-1] = 2 * np.polynomial.chebyshev.chebder(np.eye(count))
+    return matrix
+
+
+@cache
+def _slopes_from_nodes(count: int) -> FloatArray:
+    """Matrix from values at the Gauss nodes of [0, 1] to derivatives there."""
+    at_nodes = np.polynomial.chebyshev.chebvander(2 * gauss_nodes(count)[0] - 1, count - 1)
+    return np.asarray(at_nodes @ _slope_of_chebyshev(count) @ chebyshev_from_nodes(count))
 
 
 def resolve(
@@ -179,7 +199,7 @@ def resolve(
     on which other functions of the same grid vary.
     """
     for _ in range(MAX_SPLITS):
-        resolved = MappedFunction.from_values(grid, function(grid.nodes), lead)
+        resolved = MappedFunction(grid, function(grid.nodes), lead)
         right = grid.left + grid.width
         smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, 0.1 * (far - right))
         coarse = (resolved.truncation() > tolerance) & (grid.width > smallest)

@@ -38,11 +38,11 @@ def published_profile(
     grid, flat = half_space.grid, indenter.flat_radius / unit
     x = flat + grid.nodes
     layer, plain = _weighted_heights(solution, indenter, unit, x)
-    share = MappedFunction.from_values(grid, solution.normalized_contact_stiffness(x) * layer / plain, 0.0)
+    share = MappedFunction(grid, solution.normalized_contact_stiffness(x) * layer / plain, 0.0)
     moment = half_space.integral()
     slope = share.derivative(grid.nodes)
     g = share.node_values * half_space.node_values + slope * moment.node_values  # d(rho M_hs)/dx
-    return MappedFunction.from_values(grid, g / solution.normalized_spring_stiffness(x), half_space.lead)  # Eq. (11)
+    return MappedFunction(grid, g / solution.normalized_spring_stiffness(x), half_space.lead)  # Eq. (11)
 
 
 def _weighted_heights(

@@ -182,4 +182,4 @@ def _remainder(density: ContactDensity, reach: float) -> MappedFunction:
     shells = int(np.ceil(np.log2(max(reach, 1.0)))) + 1
     ends = np.concatenate([[0.0], 2.0 ** np.arange(shells)])
     grid = MappedGrid(ends[:-1], np.diff(ends), np.ones(shells), NODES)
-    return MappedFunction.from_values(grid, density.outside(grid.nodes), 0.0)
+    return MappedFunction(grid, density.outside(grid.nodes), 0.0)

@@ -37,14 +37,14 @@ def wide_profile(
     x = flat_radius + grid.nodes
     within = x[:, 0] < near.max_ratio
     inner = MappedGrid(grid.left[within], grid.width[within], grid.power[within], grid.count)
-    edge = edge_values(near.factor, MappedFunction(inner, load.coefficients[within], load.lead), flat_radius)
+    edge = edge_values(near.factor, MappedFunction(inner, load.node_values[within], load.lead), flat_radius)
     values = np.empty_like(x)
     values[within] = edge / near.edge_density(np.minimum(x[within], near.max_ratio))
     far = _moment_fit(solution, load, flat_radius)
     values[~within] = _slope_over_springs(solution, far, x[~within])
     overlap = within & (x[:, 0] > 1.5 * FIRST_RATIO)
     seen = np.max(np.abs(_slope_over_springs(solution, far, x[overlap]) / values[overlap] - 1))
-    return MappedFunction.from_values(grid, values, load.lead), 2 * float(seen)
+    return MappedFunction(grid, values, load.lead), 2 * float(seen)
 
 
 def _moment_fit(solution: LargeRatioSolution, load: MappedFunction, flat_radius: float) -> Chebyshev:
