@@ -139,13 +139,14 @@ def _errors(
         }
     # F = k_N delta - moment: the errors of both terms count against their difference
     spread = system.contact_stiffness(radius) * depth / force
-    moved = exact
-    if given != "ContactRadii":  # d(ln a)/d(ln delta)
+    moved, growth = exact, exact
+    if given != "ContactRadii":  # d(ln a)/d(ln delta) and d(ln k_N)/d(ln a)
         moved = errors["contact_radius"] * depth / (radius * system.mdr_profile_slope(radius))
+        growth = 2.0 * system.spring_stiffness(radius) * radius / system.contact_stiffness(radius)
     return {
         "contact_radius": moved,
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
         "normal_force": exact if given == "NormalForces" else errors["normal_force"] * spread,
-        "contact_stiffness": stiffness,
+        "contact_stiffness": stiffness + growth * moved,
         "pressure": PRESSURE_SHARE * errors["indentation_depth"],
     }

@@ -14,7 +14,7 @@ from bem.grid import prolonged
 from bem.integral_equation import IntegralEquation
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import PixelDisc, disc
-from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone
+from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 
 KERNELS = [("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.3)]
@@ -118,6 +118,15 @@ def test_full_table_reaches_the_thin_layer(support, nu, limit):
 @pytest.mark.parametrize(("support", "nu"), KERNELS[:1])
 def test_mdr_on_the_table_agrees_with_mdr_on_the_integral_equation(support, nu):
     assert_mdr_agrees(support, nu, [0.6e-3, 1e-3], cells=64)
+
+
+@pytest.mark.parametrize("loading", [IndentationDepths([3.4253e-7, 5.59415e-6, 1.819611e-5]), NormalForces([0.025, 0.37])])
+def test_mdr_on_a_table_states_errors_of_all_quantities_under_any_loading(loading):
+    scene = Scene(layer=layer("bonded", 0.5), indenter=PARABOLOID, loading=loading)
+    path, exact = Mdr(flat_punch=FftTable(cells=128, ratios=60, radii=200)).solve(scene), Mdr().solve(scene)
+    for name in path.ARRAYS:
+        error = np.abs(getattr(path, name) / getattr(exact, name) - 1.0)
+        assert np.all(error <= path.error_estimate[name] + 1e-12), name
 
 
 @pytest.mark.slow
