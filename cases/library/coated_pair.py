@@ -98,7 +98,8 @@ def thinness(scene: Scene) -> float:
 
 SYMMETRY = Reason(
     because="the plane between two equal bodies stays plane",
-    derived_from="round-off; finite elements see the same contact in other units",
+    derived_from="round-off; finite elements see the same contact in other units; boundary elements what their "
+    "iteration leaves",
     origin=Origin.CLOSED_FORM,
     source="mirror symmetry",
 )

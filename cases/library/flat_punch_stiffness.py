@@ -9,7 +9,7 @@ from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.figures import paper_figure
-from cases.library._compared import BEM, EVERY, FEM, MDR, agreements
+from cases.library._compared import BEM, BOUNDARY_PUNCHES, EVERY, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
 from cases.results import Figure, Origin, Series
 from cases.task import Answers, Sampling
@@ -220,7 +220,8 @@ CLAIMS = (
         methods=("mdr",),
         reason=HERMANOWICZ_FIT,
     ),
-    *agreements(PUNCHES, {"fem": 3e-6, "bem": 3e-5, "integral_equation": 1e-9, "mdr_table": 3e-4}, ("normal_force",)),
+    *agreements(PUNCHES, {"fem": 3e-6, "integral_equation": 1e-9, "mdr_table": 3e-4}, ("normal_force",)),
+    *agreements(PUNCHES, {"bem": 3e-5}, ("normal_force",), reason=BOUNDARY_PUNCHES),
 )
 
 

@@ -7,7 +7,7 @@ from cases.claims.approach import Approach
 from cases.claims.declared import Reason
 from cases.claims.even_accuracy import EvenAccuracy
 from cases.claims.exact import Exact
-from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
+from cases.library._compared import BEM, BOUNDARY_PUNCHES, EQUATION, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS
 from cases.methods import MethodUse
 from cases.results import Origin
@@ -61,7 +61,9 @@ def incompressible_stiffness(scene: Scene) -> float:
 
 SEPARATE_SOLUTION = Reason(
     because="the Fredholm equation of the flat punch, solved to 1e-12",
-    derived_from="twelve digits; finite elements three times their accuracy of 3e-6, the same at every nu",
+    derived_from="twelve digits; the others three times what they state: finite elements 1e-6, on one mesh 3e-6, "
+    "boundary elements "
+    "3e-6, table 3e-5",
     origin=Origin.INDEPENDENT_METHOD,
     source="Nystrom solution of the integral equation, separate code",
 )
@@ -88,9 +90,8 @@ CASE = Case(
     scenes=SCENES,
     methods=(MDR, FEM, ONE_MESH, BEM, EQUATION, TABLE),
     claims=(
-        *agreements(
-            SCENES, {"fem": 3e-6, "bem": 1e-5, "integral_equation": 1e-9, "mdr_table": 1e-4}, ("contact_stiffness",)
-        ),
+        *agreements(SCENES, {"fem": 3e-6, "integral_equation": 1e-9, "mdr_table": 3e-4}, ("contact_stiffness",)),
+        *agreements(SCENES, {"bem": 1e-5}, ("contact_stiffness",), reason=BOUNDARY_PUNCHES),
         Exact(
             name="stiffness to ten digits",
             quantity="contact_stiffness",

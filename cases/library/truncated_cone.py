@@ -232,7 +232,8 @@ DIRECT_SOLUTION = Reason(
     source="direct Nystrom solution with the rule split at r = b, twelve digits stable over the node count",
 )
 FINITE_ELEMENT_FIELDS = with_reason(
-    FINITE_ELEMENTS, "the logarithmic singularity at r = b and the root at r = a limit finite elements to about 1e-4"
+    FINITE_ELEMENTS,
+    "the logarithmic singularity at r = b and the root at r = a limit finite elements to about 2e-5, ten times",
 )
 COARSE_TABLE = with_reason(
     PUBLISHED_ROUTE,
@@ -248,7 +249,8 @@ LINEARITY = Reason(
 )
 DIMENSIONS = Reason(
     because="mechanics knows no metre",
-    derived_from="round-off of a factor that is no power of two, magnified where meshes are made",
+    derived_from="round-off of a factor that is no power of two, magnified where meshes are made; what iterations "
+    "leave, 1e-7",
     origin=Origin.CLOSED_FORM,
     source="dimensional analysis",
 )
@@ -309,7 +311,7 @@ AGREEMENTS = (
         fast="mdr",
         reference="fem",
         refined=("mdr",),
-        tolerance=5e-4,
+        tolerance=2e-4,
         reason=FINITE_ELEMENT_FIELDS,
     ),
     FieldAgreement(
@@ -320,7 +322,7 @@ AGREEMENTS = (
         fast="mdr",
         reference="fem",
         refined=("mdr",),
-        tolerance=5e-4,
+        tolerance=2e-4,
         reason=FINITE_ELEMENT_FIELDS,
     ),
 )
