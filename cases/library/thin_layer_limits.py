@@ -106,8 +106,7 @@ TABLE_1 = Reason(
 COARSE_GRIDS = Reason(
     because="both solve the same layer; a grid of 128 cells across the contact has few cells in a thin layer",
     derived_from="three times what grid and table state at a/h = 40, where a cell is two thirds of the thickness: "
-    "depth 5e-3 and "
-    "2.3e-2, force 4e-3 and 0.1, stiffness 4e-4 and 1e-2",
+    "depth 5e-3 and 2.3e-2, force 4e-3 and 0.1, stiffness 4e-4 and 1e-2",
     origin=Origin.INDEPENDENT_METHOD,
     source="FFT boundary elements; share the layer kernel",
 )
