@@ -492,6 +492,31 @@ class ErrorMap:
         return self
 
 
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class ScalingFit:
+    """Seconds against size, and the exponent of the larger sizes.
+
+    Attributes:
+        method: name in the method table.
+        size: what grows.
+        sizes: shape (n,).
+        seconds: processor time of a first solution, shape (n,).
+        exponent: fitted.
+        half_width: of its 95 % interval.
+        theory: exponent of the most expensive stage.
+        because: which stage that is.
+    """
+
+    method: str
+    size: str
+    sizes: tuple[Positive, ...]
+    seconds: tuple[Positive, ...]
+    exponent: Finite
+    half_width: NotNegative
+    theory: Finite
+    because: str
+
+
 # -- figures: all numbers, no ink ----------------------------------------------------------------------------------
 
 
@@ -599,6 +624,7 @@ class CaseResult:
     ladders: tuple[Ladder, ...] = ()
     coverage: tuple[CoverageRecord, ...] = ()
     maps: tuple[ErrorMap, ...] = ()
+    scaling: tuple[ScalingFit, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property

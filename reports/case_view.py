@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from cases.results import CaseResult, WorkPrecision
 from reports import case_tables, cost_tables, hard_tables
-from reports.charts import agreement, convergence, coverage, error_map, ladder, work_precision
+from reports.charts import agreement, convergence, coverage, error_map, ladder, scaling, work_precision
 from reports.claim_blocks import ClaimBlock, claim_blocks
 from reports.drawing import plate_of
 from reports.gallery import Gallery, Hung
@@ -39,6 +39,7 @@ class CaseView:
     covered: Table | None
     maps: tuple[Hung, ...]
     good_ranges: Table | None
+    scaling: tuple[Hung, ...]
     refusals: tuple[str, ...]
     effects: Table | None
     stages: Table | None
@@ -61,6 +62,7 @@ def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
         covered=hard_tables.coverage(case),
         maps=gallery.hang(error_map.plates(case, command)),
         good_ranges=hard_tables.good_ranges(case),
+        scaling=gallery.hang(scaling.plates(case, command)),
         refusals=tuple(ladder.refusals(case)),
         effects=case_tables.effects(case),
         stages=case_tables.stages(case),

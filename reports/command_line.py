@@ -295,6 +295,16 @@ def accuracy(
     return run_command(count, seed, evidence, out)
 
 
+@app.command()
+def scaling(
+    out: Annotated[Path, typer.Option(help="Folder for the report.")] = Path("build/scaling"),
+) -> int:
+    """Measure how the time grows with a/h, radii, Prony terms, pieces of a history, grid cells, against theory."""
+    from reports.commands.hard import scaling as run_command  # noqa: PLC0415
+
+    return run_command(out)
+
+
 @app.command("maps")
 def error_maps(
     names: Annotated[

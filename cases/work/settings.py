@@ -29,7 +29,7 @@ FEM: Final = (
     ),
     *(
         MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
-        for accuracy in (1e-2, 1e-4, 1e-6, 1e-8)
+        for accuracy in (1e-2, 1e-4, 1e-6)
     ),
 )
 FEM_DETACHING: Final = tuple(

@@ -6,6 +6,7 @@
 `charts.coverage`         stated over true errors of random scenes
 `charts.error_map`        signed errors over a/h and Poisson's ratio
 `charts.ladder`           digits left as a parameter gets hard
+`charts.scaling`          seconds against size with the slope of theory
 `charts.solution`         one answer: force over depth, or its history
 `charts.work_precision`   error against seconds, Pareto front, crossover
 ========================  ==========================================================

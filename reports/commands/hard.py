@@ -54,6 +54,13 @@ def accuracy(count: int, seed: int, evidence: Path | None, out: Path | None) -> 
     return published(lambda: audit_case(count, seed, measured, progress=_say), out)
 
 
+def scaling(out: Path | None) -> int:
+    """Time growing problems; return 1 if one grows faster than theory allows."""
+    from cases.work.scaling import scaling_case  # noqa: PLC0415 - only this command needs it
+
+    return published(lambda: scaling_case(progress=_say), out)
+
+
 def error_maps(names: list[str], out: Path | None) -> int:
     """Draw up maps of signed errors over (a/h, nu).
 

@@ -1,0 +1,63 @@
+"""Seconds against size, with the slope that theory expects."""
+
+from collections.abc import Sequence
+
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure as Drawing
+
+from cases.results import CaseResult, ScalingFit
+from reports.method_names import display_name
+from reports.panels import panel_grid
+from reports.plates import Plate
+from reports.style import GREY, look_of, mark_decades
+
+COLUMNS = ("method", "size", "value", "cpu_seconds")
+CAPTION = (
+    "Processor time of a first solution. Dashed: the slope of the most expensive stage in theory, through the largest "
+    "size. In the titles the fitted exponent of the larger half of the sizes with its 95 % interval."
+)
+
+
+def plates(case: CaseResult, command: str) -> list[Plate]:
+    """One plate for all fits, if there are any."""
+    if not case.scaling:
+        return []
+    rows = tuple(
+        (fit.method, fit.size, size, seconds)
+        for fit in case.scaling
+        for size, seconds in zip(fit.sizes, fit.seconds, strict=True)
+    )
+    name, title = f"{case.name}-seconds", "Seconds against size"
+    return [
+        Plate(
+            name=name,
+            title=title,
+            caption=CAPTION,
+            paint=lambda: draw(case.scaling),
+            columns=COLUMNS,
+            rows=rows,
+            command=command,
+        )
+    ]
+
+
+def draw(fits: Sequence[ScalingFit]) -> Drawing:
+    """Panels in rows of three."""
+    drawing, all_axes = panel_grid(len(fits), 3, (3.6, 2.7))
+    for axes, fit in zip(all_axes, fits, strict=True):
+        _draw_fit(axes, fit)
+    return drawing
+
+
+def _draw_fit(axes: Axes, fit: ScalingFit) -> None:
+    look = look_of(fit.method)
+    largest, last = fit.sizes[-1], fit.seconds[-1]
+    half = len(fit.sizes) // 2
+    slope = [last * (size / largest) ** fit.theory for size in fit.sizes[half:]]
+    axes.set(xscale="log", yscale="log", xlabel=fit.size, ylabel="processor time [s]")
+    axes.set_title(f"{display_name(fit.method)}: {fit.exponent:.2f} ± {fit.half_width:.2f}")
+    axes.plot(fit.sizes[half:], slope, color=GREY, linestyle="--", linewidth=1.0, label=f"slope {fit.theory:g}")
+    axes.plot(fit.sizes, fit.seconds, color=look.colour, marker=look.marker, linestyle="none")
+    mark_decades(axes.xaxis)
+    mark_decades(axes.yaxis)
+    axes.legend(loc="upper left")
