@@ -243,7 +243,7 @@ def figure_4(case: Case, answers: Answers) -> Iterator[Figure]:
         scene = case.scene(punch_name("bonded nu=0.5", ratio))
         for use in case.methods_of(scene):
             run = answers.of(case.task(scene, use))
-            if run.solved and run.curves and use.label != "mdr":
+            if run.solved and run.curves and not use.label.startswith("mdr"):
                 a = ratio * THICKNESS
                 mean = run.quantity("normal_force").values[-1] / (np.pi * a**2)
                 curve = run.curve("pressure")

@@ -153,7 +153,7 @@ def _pressure_symbols(case: Case, answers: Answers, label: str) -> list[Series]:
         scene = case.scene(scene_name(label, ratio))
         for use in case.methods_of(scene):
             run = answers.of(case.task(scene, use))
-            series += [_pressure(run, ratio)] if run.solved and run.curves and use.label != "mdr" else []
+            series += [_pressure(run, ratio)] if run.solved and run.curves and not use.label.startswith("mdr") else []
     return series
 
 
