@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from bem.contact_edge import slope
 from bem.direct import Bem
 from contact import (
     Adhesion,
@@ -163,6 +164,26 @@ def test_repeated_solutions_are_bit_identical():
 def test_a_contact_beyond_the_indenter_is_refused():
     with pytest.raises(InvalidInput, match="end of the indenter"):
         solve(Sphere(radius=1e-3), IndentationDepths([3e-3]))
+
+
+@pytest.mark.parametrize("ratio", [0.2, 1.0, 10.0, 40.0])
+def test_a_thin_layer_costs_no_accuracy(ratio):
+    layer = LAYER.replace(poissons_ratio=0.3)
+    loading = ContactRadii([ratio * 1e-3])
+    path = solve(PARABOLOID, loading, layer)
+    exact = Mdr().solve(Scene(layer=layer, indenter=PARABOLOID, loading=loading))
+    # what 128 cells state of smooth profiles: 5e-4 of the depth and 1e-3 of the force
+    assert path.indentation_depth[0] == pytest.approx(exact.indentation_depth[0], rel=5e-4)
+    assert path.normal_force[0] == pytest.approx(exact.normal_force[0], rel=1e-3)
+    back = solve(PARABOLOID, IndentationDepths(exact.indentation_depth), layer)
+    assert back.contact_radius[0] == pytest.approx(ratio * 1e-3, rel=2e-4)
+    assert back.normal_force[0] == pytest.approx(exact.normal_force[0], rel=2e-4)
+
+
+def test_a_wrong_slope_is_seen(monkeypatch):
+    monkeypatch.setattr("bem.pressed_state.slope", lambda *values: 1.02 * slope(*values))
+    path = solve(PARABOLOID, IndentationDepths([1e-5]), HALF_SPACE)
+    assert path.contact_radius[0] != pytest.approx(1e-3, rel=5e-3)  # a^2 = R delta
 
 
 @pytest.mark.parametrize("accuracy", [2e-3, 1e-3])
