@@ -8,6 +8,7 @@ spring distance while spring forces are smooth, second where old fronts have lef
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,41 +17,82 @@ from contact.validation import FloatArray
 from mdr.effects.spring_bed import BedState, SpringLaw
 
 _FEW = 5
+_NEEDED = 3  # springs of one section, to extrapolate in y
 
 
 @dataclass(frozen=True)
 class Bed:
-    """Springs at equal distances of the front coordinate y.
+    """Springs at equal distances of the front coordinate y within each section between breakpoints of the profile.
 
     Attributes:
-        y: Where they stand, shape (n,), from 0 on.
+        y: Where they stand, shape (n,), from 0 on; a breakpoint has two, one for each side.
+        radius: a [m] there.
         profile: g [m].
-        density: dk/dy, shape (n,).
+        density: dk/dy, shape (n,), seen from inside the section.
         core: Stiffness k(b) within the flat end [N/m]; its springs all behave as the first one.
+        starts: Number of the first spring of each section.
     """
 
     y: FloatArray
+    radius: FloatArray
     profile: FloatArray
     density: FloatArray
     core: float
+    starts: tuple[int, ...] = (0,)
+
+    def sections(self) -> list[slice]:
+        """The springs of each section."""
+        return [slice(*ends) for ends in pairwise((*self.starts, self.y.size))]
+
+    def section(self, spring: int) -> slice:
+        """The springs of one spring's section."""
+        return next(own for own in self.sections() if spring < own.stop)
+
+    def step(self, spring: int) -> float:
+        """Distance of the springs around one of them."""
+        start = self.section(spring).start
+        return float(self.y[start + 1] - self.y[start])
 
     def coarser(self) -> Bed:
-        """Every second spring, if there are that many."""
-        return self if self.y.size < _FEW else Bed(self.y[::2], self.profile[::2], self.density[::2], self.core)
+        """Every second spring of each section, if there are that many."""
+        if self.y.size < _FEW:
+            return self
+        kept = [np.arange(own.start, own.stop, 2) for own in self.sections()]
+        starts = (0, *np.cumsum([own.size for own in kept])[:-1].tolist())
+        index = np.concatenate(kept)
+        return Bed(self.y[index], self.radius[index], self.profile[index], self.density[index], self.core, starts)
 
 
 def released_front(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray) -> float:
     """y of the outermost contact where the spring force falls to zero, seen from inside."""
     last = int(np.flatnonzero(touching)[-1])
-    inner = forces[max(last - 2, 0) : last + 1][::-1]
-    return float(bed.y[last] + _way_to_zero(inner, float(bed.y[1]))) if last + 1 < bed.y.size else float(bed.y[-1])
+    if last + 1 == bed.y.size:
+        return float(bed.y[-1])
+    start = bed.section(last).start
+    if last - start < _NEEDED - 1 and start:
+        return _by_radius(bed, last, (start - 2, last), forces)
+    inner = forces[max(last - 2, start) : last + 1][::-1]
+    return float(bed.y[last] + _way_to_zero(inner, bed.step(last)))
 
 
 def touched_front(bed: Bed, touching: NDArray[np.bool_], gaps: FloatArray) -> float:
     """y of the outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
     first = int(np.flatnonzero(touching)[-1]) + 1
-    outer = gaps[first : first + 3]
-    return float(bed.y[first] - _way_to_zero(outer, float(bed.y[1]))) if first < bed.y.size else float(bed.y[-1])
+    if first == bed.y.size:
+        return float(bed.y[-1])
+    stop = bed.section(first).stop
+    if stop - first < _NEEDED and stop < bed.y.size:
+        return _by_radius(bed, first - 1, (first, stop + 1), gaps)
+    return float(bed.y[first] - _way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+
+
+def _by_radius(bed: Bed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
+    """y where values of two springs on both sides of a breakpoint vanish: across it they are smooth in a, not in y."""
+    (a, b), (u, v) = bed.radius[list(pair)], values[list(pair)]
+    low, high = bed.radius[last], bed.radius[last + 1]
+    zero = min(max(a + (b - a) * u / (u - v), low), high) if u != v else low
+    start = bed.section(last + 1).start
+    return float(bed.y[start] + np.sqrt(max(zero - bed.radius[start], 0.0)))
 
 
 def _way_to_zero(values: FloatArray, step: float) -> float:
@@ -71,24 +113,31 @@ def _way_to_zero(values: FloatArray, step: float) -> float:
 def total_force(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray, y: float, at_front: float) -> float:
     """Force of all springs within the front at y, `at_front` the spring force there."""
     last = int(np.flatnonzero(touching)[-1])
-    step, load = float(bed.y[1]), (bed.density * forces)[: last + 1]
-    inner = step * (load.sum() - 0.5 * (load[0] + load[-1])) if last else 0.0
-    if last >= 4:
+    own, load = bed.section(last), bed.density * forces
+    inner = sum(_integral(load[one], bed.step(one.start)) for one in bed.sections() if one.start < own.start)
+    inner += _integral(load[own.start : last + 1], bed.step(last))
+    return float(bed.core * forces[0] + inner + _beyond(bed, load, last, y, at_front))
+
+
+def _integral(load: FloatArray, step: float) -> float:
+    """Trapezoidal rule with end corrections."""
+    inner = step * (load.sum() - 0.5 * (load[0] + load[-1])) if load.size > 1 else 0.0
+    if load.size >= _FEW:
         end = (1.5 * load[-1] - 2.0 * load[-2] + 0.5 * load[-3]) / step
         begin = (-1.5 * load[0] + 2.0 * load[1] - 0.5 * load[2]) / step
         inner -= step**2 / 12.0 * (end - begin)
-    return float(bed.core * forces[0] + inner + _beyond(bed, load, last, y, at_front))
+    return float(inner)
 
 
 def _beyond(bed: Bed, load: FloatArray, last: int, y: float, at_front: float) -> float:
     """Integral from the last spring in contact to the front, by a parabola through its inner neighbour."""
-    way, step = y - float(bed.y[last]), float(bed.y[1])
+    own, way, step = bed.section(last), y - float(bed.y[last]), bed.step(last)
     if way <= 0.0:
         return 0.0
-    edge = float(np.interp(y, bed.y, bed.density)) * at_front
-    rise = (edge - load[-1]) / way
-    bend = (rise - (load[-1] - load[-2]) / step) / (way + step) if last else 0.0
-    return float(load[-1] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
+    edge = float(np.interp(y, bed.y[own], bed.density[own])) * at_front
+    rise = (edge - load[last]) / way
+    bend = (rise - (load[last] - load[last - 1]) / step) / (way + step) if last > own.start else 0.0
+    return float(load[last] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
 def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[float, float]:
@@ -108,8 +157,8 @@ def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[fl
 def _continued(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:
     """The spring force at the front, from those inside."""
     last = int(np.flatnonzero(touching)[-1])
-    if last < 2:
+    if last - bed.section(last).start < _NEEDED - 1:
         return float(forces[last])
-    share = (y - float(bed.y[last])) / float(bed.y[1])
+    share = (y - float(bed.y[last])) / bed.step(last)
     outer, middle, inner = forces[last], forces[last - 1], forces[last - 2]
     return float(outer + share * (outer - middle) + 0.5 * share * (share + 1.0) * (outer - 2.0 * middle + inner))

@@ -83,7 +83,8 @@ def _first_move(law: SpringLaw, bed: Bed, state: BedState, excess: float, time: 
     """Newton's first step, with the stiffness that the springs in contact have over this time."""
     modulus = law.long_term + law.viscosity / time
     modulus += float((law.weights * law.times * -np.expm1(-time / law.times)).sum()) / time
-    springs = bed.core + float(bed.density[state.touching].sum()) * float(bed.y[1])
+    touched = np.where(state.touching, bed.density, 0.0)
+    springs = bed.core + float(sum(touched[own].sum() * bed.step(own.start) for own in bed.sections()))
     scale = float(bed.profile[np.isfinite(bed.profile)].max()) or float(np.abs(state.depth))
     return -excess / (modulus * springs) if springs > 0.0 else -np.sign(excess) * 1e-3 * scale
 

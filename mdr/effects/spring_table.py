@@ -55,7 +55,11 @@ class SpringTable:
     def radius(self, y: FloatArray) -> FloatArray:
         """a [m] at front coordinate y."""
         section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
-        return _radius(self.section_radii[section], y - self.section_ends[section])
+        return self.radius_within(y, section)
+
+    def radius_within(self, y: FloatArray, section: int | NDArray[np.intp]) -> FloatArray:
+        """The same, of points of known sections."""
+        return _radius(np.asarray(self.section_radii[section]), y - self.section_ends[section])
 
     def coordinate(self, radius: FloatArray) -> FloatArray:
         """The front coordinate y at a [m]."""

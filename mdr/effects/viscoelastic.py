@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +39,7 @@ _GAPS = 640  # between springs; even, so that every second spring reaches from e
 _FINENESS = 400  # substeps of a whole force history, at least four an interval
 _LEVELS = (4, 2, 1)  # times the fewest substeps
 _FEWEST, _MOST = -2, 2  # how often they may be doubled
+_FEWEST_GAPS = 8  # of a section between breakpoints
 _MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
 _ROUNDING = 1e-12  # of sums over hundreds of springs
 _LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
@@ -163,7 +165,7 @@ def _bed(
         end = scene.indenter.max_radius
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
-        return None, Bed(np.array([0.0, 1.0]), np.array([0.0, np.inf]), np.zeros(2), core)
+        return None, Bed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
     largest = float(prescribed.max())
     for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
         table = own_table(scene.layer, scene.indenter, radius, flat_punch)
@@ -173,10 +175,26 @@ def _bed(
             break
     if reached[-1] < largest:
         raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
-    y = np.linspace(0.0, min(_MARGIN * float(np.interp(largest, reached, y)), float(y[-1])), gaps + 1)
-    rows = table.evaluate(y)
-    core = float(rows[STIFFNESS, 0]) if scene.indenter.flat_radius > 0.0 else 0.0
-    return table, Bed(y, np.maximum(rows[PROFILE], 0.0), rows[STIFFENING], core)
+    end = min(_MARGIN * float(np.interp(largest, reached, y)), float(y[-1]))
+    return table, _bed_up_to(table, end, gaps, pointed=scene.indenter.flat_radius == 0.0)
+
+
+def _bed_up_to(table: SpringTable, end: float, gaps: int, *, pointed: bool) -> Bed:
+    """Springs up to y = end, each section between breakpoints with its share of the gaps, an even number."""
+    ends = np.append(table.section_ends[table.section_ends < end], end)
+    lengths = np.diff(ends)
+    shares = [max(2 * round(0.5 * gaps * length / end), _FEWEST_GAPS) for length in lengths]
+    places = [np.linspace(low, high, share + 1) for (low, high), share in zip(pairwise(ends), shares, strict=True)]
+    rows = np.concatenate([table.evaluate(y, section=i) for i, y in enumerate(places)], axis=1)
+    radius = np.concatenate([table.radius_within(y, i) for i, y in enumerate(places)])
+    return Bed(
+        y=np.concatenate(places),
+        radius=radius,
+        profile=np.maximum(rows[PROFILE], 0.0),
+        density=rows[STIFFENING],
+        core=0.0 if pointed else float(rows[STIFFNESS, 0]),
+        starts=(0, *np.cumsum([y.size for y in places])[:-1].tolist()),
+    )
 
 
 def _refuse_idle(loading: DepthHistory | ForceHistory, prescribed: FloatArray) -> None:
