@@ -3,7 +3,7 @@
 from rich.padding import Padding
 from rich.text import Text
 
-from cases.case import Case
+from cases.case import Case, CaseScene
 from cases.claims.declared import DeclaredClaim
 from cases.registry import load_cases, select
 from reports.method_names import display_name
@@ -44,10 +44,19 @@ def show_case(name: str) -> None:
 
 
 def scene_table(case: Case) -> Table:
-    """The scenes with the parameters that set them apart."""
+    """The scenes with the parameters that set them apart, and who solves them."""
     names = tuple(dict.fromkeys(name for scene in case.scenes for name in scene.parameters))
-    rows = tuple((scene.name, *(f"{scene.parameters.get(name, '')}" for name in names)) for scene in case.scenes)
-    return Table(title="Scenes", note="", heads=("scene", *names), rows=rows, words=2 + len(names))
+    rows = tuple(
+        (scene.name, *(f"{scene.parameters.get(name, '')}" for name in names), _solvers(case, scene))
+        for scene in case.scenes
+    )
+    note = "In brackets: in the nightly suite only."
+    return Table(title="Scenes", note=note, heads=("scene", *names, "methods"), rows=rows, words=2 + len(names))
+
+
+def _solvers(case: Case, scene: CaseScene) -> str:
+    names = ((use.label, display_name(use.label)) for use in case.methods_of(scene))
+    return ", ".join(f"({name})" if label in scene.nightly else name for label, name in names)
 
 
 def method_table(case: Case) -> Table:
