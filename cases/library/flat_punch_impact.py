@@ -9,7 +9,7 @@ from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.residual import Residual
 from cases.figures import paper_figure
-from cases.library._compared import EVERY, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, agreements, with_reason
+from cases.library._compared import EVERY, FEM, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
 from cases.results import Figure, Origin, Series
 from cases.task import Answers
 from cases.work.settings import impact_costs
@@ -62,7 +62,8 @@ def on_half_space(damping: float) -> CaseScene:
         name=f"half-space D={damping:g}",
         parameters={"damping_ratio": damping},
         scene=scene_of(layer, damping),
-        methods=() if damping in (0.1, 1.0) else (MDR,),
+        methods=() if damping in (0.1, 1.0) else (MDR, FEM, TABLE),
+        nightly=() if damping in (0.1, 1.0) else ("fem", "mdr_table"),
     )
 
 
