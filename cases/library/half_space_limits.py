@@ -59,6 +59,7 @@ def on_thick_layer(label: str, ratio: float) -> CaseScene:
         name=scene_name(label, ratio),
         parameters={"layer": label, "a_over_h": ratio},
         scene=scene,
+        nightly=("fem",) if label in ("bonded nu=0.3", "bonded nu=0.45") else (),
     )
 
 

@@ -43,6 +43,7 @@ def scene(poissons_ratio: float) -> CaseScene:
         name=scene_name(poissons_ratio),
         parameters={"poissons_ratio": poissons_ratio},
         scene=Scene(layer=layer, indenter=FlatPunch(radius=THICKNESS), loading=loading),
+        nightly=() if poissons_ratio in KBAR else ("mdr_table",),
     )
 
 
