@@ -33,6 +33,7 @@ from contact.validation import FloatArray, positive
 ARRAYS = ContactPath.ARRAYS
 LARGEST_RATIO = 60.0  # a/h: a dense system of two thousand unknowns
 RADIUS_TOLERANCE = 1e-13
+SEARCHED = 10 * RADIUS_TOLERANCE  # what a prescribed depth or force may be missed by: powers of the radius up to six
 ROUNDING = 1e-13  # what cancellation in graded panels leaves, besides the difference of two discretisations
 
 
@@ -249,7 +250,7 @@ def _errors(fine: list[DirectContact], coarse: list[DirectContact], scene: Scene
         case ContactRadii():
             radius = nothing
         case IndentationDepths():
-            radius, depth, force = depth + RADIUS_TOLERANCE, nothing, force + 2 * depth
+            radius, depth, force = depth + RADIUS_TOLERANCE, nothing + SEARCHED, force + 2 * depth + SEARCHED
         case _:
-            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force, nothing
+            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + SEARCHED, nothing + SEARCHED
     return dict(zip(ARRAYS, (radius, depth, force, stiffness), strict=True))

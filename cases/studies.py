@@ -1,13 +1,17 @@
-"""Studies over many scenes and methods that are no cases of the library, written as runs that a report shows."""
+"""Studies over many scenes and methods that are no cases of the library, as results that a report shows."""
 
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from cases.executors import ExecutorFactory
 from cases.results import CaseResult, RunResult
 from cases.results_files import write_run
 from cases.stamp import stamp
+
+QUICK_LADDERS = ("vanishing flat end", "stability reverses", "damping ratio")
 
 
 def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
@@ -17,3 +21,40 @@ def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
     run = RunResult(suite="", complete=True, stamp=stamp(started, time.perf_counter() - clock), cases=cases)
     write_run(run, out)
     return run
+
+
+def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int) -> RunResult:
+    """Add the quick studies to a finished run of a suite and write it again."""
+    clock = time.perf_counter()
+    with executor(jobs) as pool:
+        futures = [pool.submit(study) for study in QUICK]
+        studies = tuple(future.result() for future in futures)
+    seconds = run.stamp.wall_seconds + time.perf_counter() - clock
+    whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))
+    write_run(whole, out)
+    return whole
+
+
+def quick_ladders() -> CaseResult:
+    """Some ladders of the fast method."""
+    from cases.stability.ladder_study import chosen, ladder_case  # noqa: PLC0415 - imported where it is carried out
+    from cases.stability.ladder_table import LADDERS  # noqa: PLC0415
+
+    return ladder_case(chosen(LADDERS, QUICK_LADDERS), {"mdr": {}})
+
+
+def quick_coverage() -> CaseResult:
+    """Stated errors of the fast method on a few scenes."""
+    from cases.stability.coverage import QUICK_PLANS, coverage_case  # noqa: PLC0415
+
+    return coverage_case(QUICK_PLANS)
+
+
+def quick_maps() -> CaseResult:
+    """Where closed forms are good."""
+    from cases.work.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, map_case  # noqa: PLC0415
+
+    return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in FORMULAS)
+
+
+QUICK: tuple[Callable[[], CaseResult], ...] = (quick_coverage, quick_ladders, quick_maps)

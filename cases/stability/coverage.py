@@ -71,9 +71,8 @@ PLANS: Final = (
     CoveragePlan(method="fem", settings={"growth": 1.0}, family="impact", count=60, smallest=0.1, largest=5.0),
 )
 QUICK_PLANS: Final = (
-    CoveragePlan(method="mdr", settings={}, family="elastic", count=60, largest=5.0),
-    CoveragePlan(method="integral_equation", settings={}, family="elastic", count=20, largest=5.0),
-    CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="elastic", count=6, only_radii=True, largest=5.0),
+    CoveragePlan(method="mdr", settings={"nodes": 12}, family="elastic", count=16, smallest=0.1, largest=1.0),
+    CoveragePlan(method="mdr", settings={}, family="impact", count=8, smallest=0.1, largest=1.0),
 )
 
 

@@ -12,6 +12,7 @@ from cases.registry import load_cases, select
 from cases.results import RunResult
 from cases.runner import RunOptions, run_cases
 from cases.status import ExitCode, exit_code
+from cases.studies import with_studies
 from reports.annotations import annotation_lines
 from reports.commands.report import write_pages
 from reports.matrix import run_matrix
@@ -38,6 +39,8 @@ def run(
     terminal = console()
     with RunDisplay(terminal, quiet=quiet) as display:
         result = run_cases(cases, dataclasses.replace(options, executor=by_name(executor), progress=display))
+    if options.suite and not names and not methods and result.complete:
+        result = with_studies(result, options.out, by_name(executor), options.jobs)
     write_pages(result, options.out)
     show_verdict(result, options.out, quiet=quiet)
     if not result.complete:

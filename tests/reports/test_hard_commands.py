@@ -64,6 +64,7 @@ def test_ladders_write_a_run_with_their_table(tmp_path):
     assert "climbed to the end" in page
 
 
+@pytest.mark.slow
 def test_the_cost_command_says_what_accuracy_costs(tmp_path, capsys):
     assert run(["cost", "coated_pair", "--suite", "ci", "--out", str(tmp_path), "--quiet"]) == 0
     assert "How much faster MDR is" in capsys.readouterr().out

@@ -120,7 +120,9 @@ def test_mdr_on_the_table_agrees_with_mdr_on_the_integral_equation(support, nu):
     assert_mdr_agrees(support, nu, [0.6e-3, 1e-3], cells=64)
 
 
-@pytest.mark.parametrize("loading", [IndentationDepths([3.4253e-7, 5.59415e-6, 1.819611e-5]), NormalForces([0.025, 0.37])])
+@pytest.mark.parametrize(
+    "loading", [IndentationDepths([3.4253e-7, 5.59415e-6, 1.819611e-5]), NormalForces([0.025, 0.37])]
+)
 def test_mdr_on_a_table_states_errors_of_all_quantities_under_any_loading(loading):
     scene = Scene(layer=layer("bonded", 0.5), indenter=PARABOLOID, loading=loading)
     path, exact = Mdr(flat_punch=FftTable(cells=128, ratios=60, radii=200)).solve(scene), Mdr().solve(scene)

@@ -1,0 +1,41 @@
+"""The cost page shows measured times only: reached, not reached, and how much faster."""
+
+import dataclasses
+
+from reports.cost_tables import settings, shortest_times, speed_ups
+from reports.numbers import duration
+from tests.cases.example_run import example_run, work_precision
+
+WORK = work_precision()
+
+
+def test_one_row_a_quantity_and_method():
+    table = shortest_times(example_run())
+    methods = {row[2] for row in table.rows}
+    assert {"MDR", "FEM"} <= methods
+    assert table.heads[3:] == ("1 %", "1e-4", "1e-6", "1e-8")
+
+
+def test_an_accuracy_that_was_not_reached_shows_the_best_bound():
+    cells = [cell for row in shortest_times(example_run()).rows for cell in row[3:]]
+    assert any(cell.startswith("best ") for cell in cells)
+    reached = next(row for row in WORK.cheapest if row.reached and row.tolerance == 1e-2)
+    assert any(cell.startswith(duration(reached.seconds)) for cell in cells)
+
+
+def test_speed_ups_name_the_slower_method():
+    table = speed_ups(example_run())
+    assert table.title == "How much faster MDR is"
+    assert {row[2] for row in table.rows} >= {"FEM"}
+
+
+def test_a_run_without_timings_has_no_cost_page():
+    bare = dataclasses.replace(example_run(), cases=())
+    assert shortest_times(bare) is None
+    assert speed_ups(bare) is None
+
+
+def test_every_setting_with_an_answer_has_its_degrees():
+    table = settings(WORK)
+    assert len(table.rows) == sum(1 for point in WORK.points if point.bound)
+    assert all(len(row) == len(table.heads) for row in table.rows)
