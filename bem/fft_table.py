@@ -33,7 +33,7 @@ class FftTable(Record):
 
     Each table is built on `cells` and on half as many; the differences, their largest values over neighbouring ratios,
     are the stated errors of stiffness and pressure. The method is of second order in cell size over thickness, so the
-    difference exceeds the error; where the layer is thinner than two cells, that of the pressure is doubled.
+    difference exceeds the error; where the layer is thinner than two cells, it is doubled.
 
     Raises:
         InvalidInput: If `cells` is too small or no multiple of 4.
@@ -112,8 +112,8 @@ def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: f
 def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int) -> FlatPunchTable:
     """The fine table, its errors the differences to the coarse one: of k_bar or c_bar, of q, and of q in the mean.
 
-    Where the edge layer, as wide as the layer is thick, spans fewer than two cells, that of the pressure is of first
-    order and slower; there its differences count twice.
+    Where the edge layer, as wide as the layer is thick, spans fewer than two cells, convergence is of first order
+    only; there the differences count twice, except in the mean, which converges faster.
     """
     xi = fine.ratios
     k = np.abs(coarse.stiffness / fine.stiffness - 1.0)
@@ -123,9 +123,9 @@ def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int) -> Fl
     times = np.where(xi > cells / 4, 2.0, 1.0)
     return dataclasses.replace(
         fine,
-        error=_largest_nearby(np.maximum(k, c), xi),
+        error=times * _largest_nearby(np.maximum(k, c), xi),
         pressure_error=times * _largest_nearby(np.max(difference, axis=1) / np.max(q, axis=1), xi),
-        mean_error=times * _largest_nearby(np.sum(difference, axis=1) / np.sum(q, axis=1), xi),
+        mean_error=_largest_nearby(np.sum(difference, axis=1) / np.sum(q, axis=1), xi),
     )
 
 
