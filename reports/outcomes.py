@@ -118,7 +118,12 @@ def headline(run: RunResult, rows: Iterable[Outcome]) -> tuple[str, str]:
     tally = Counter(row.tone for row in rows)
     checks = sum(tally.values()) - tally["skip"]
     if checks == 0:
-        return "Nothing ran", "bad"
+        measured = sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
+        return (
+            (f"MEASURED: {measured} case{'s'[: measured != 1]}, no claims", "good")
+            if measured
+            else ("Nothing ran", "bad")
+        )
     if tally["bad"]:
         return f"FAILED: {tally['bad']} of {checks} checks", "bad"
     if not run.complete:

@@ -9,7 +9,7 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from cases.results import Acceptance, Kind, RunResult
+from cases.results import Acceptance, CaseResult, Kind, RunResult
 from cases.results_files import write_whole
 from cases.status import Status
 from reports import cost_tables
@@ -29,10 +29,27 @@ def write_report(run: RunResult, directory: Path) -> Path:
     """Write report.html and the figures (SVG, PNG, CSV) of `run` into `directory`; return the page's path."""
     gallery = Gallery(directory)
     out = shlex.quote(str(directory))
-    cases = [case_view(case, gallery, f"contact-verify run {case.name} --out {out}") for case in run.cases]
+    cases = [case_view(case, gallery, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
     page = directory / "report.html"
     write_whole(page, render(run, directory, cases))
     return page
+
+
+STUDY_COMMANDS = {
+    "stability": "ladders",
+    "coverage": "coverage",
+    "error_maps": "maps",
+    "scaling": "scaling",
+    "requested_accuracy": "accuracy",
+}
+
+
+def _subcommand(case: CaseResult) -> str:
+    """The command that makes a case's numbers again: a study's own, `cost` where nothing but times was measured."""
+    if case.name in STUDY_COMMANDS:
+        methods = dict.fromkeys(ladder.method for ladder in case.ladders)
+        return " ".join([STUDY_COMMANDS[case.name], *(f"--method {method}" for method in methods)])
+    return f"cost {case.name}" if case.work_precision and not case.runs else f"run {case.name}"
 
 
 def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:

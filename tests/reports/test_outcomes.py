@@ -113,3 +113,9 @@ def test_annotation_escapes_what_a_workflow_command_would_read():
     (line,) = annotation_lines(only(dataclasses.replace(failing_case(), claims=(claim,), runs=())))
     assert line.endswith("::50 %25 off%0Asecond line; measured 0.25, tolerance 1.0e-10")
     assert "FAIL example_failures%3A" in line
+
+
+def test_a_run_that_only_measures_times_did_run():
+    case = dataclasses.replace(passing_case(), claims=(), runs=())
+    assert headline(only(case), ()) == ("MEASURED: 1 case, no claims", "good")
+    assert headline(only(dataclasses.replace(case, work_precision=())), ())[0] == "Nothing ran"
