@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 
 from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
+from contact import UNITS
 from reports.method_names import display_name
 from reports.numbers import duration, measured, memory, scaled_unit, small
 from reports.tables import Table
@@ -51,6 +52,8 @@ def _last_value(quantity: Quantity) -> str:
         return ""
     value = quantity.values[-1]
     factor, unit = scaled_unit(value, quantity.unit)
+    if not quantity.uncertainty and quantity.name not in UNITS:
+        return small(value)  # a residual, which vanishes but for rounding, has no uncertainty of its own
     uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else float("inf")
     return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
 

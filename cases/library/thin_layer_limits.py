@@ -24,7 +24,7 @@ FLAT_FRACTION = 0.5
 TEXT = """
 When a >> h a compressible bonded layer and an unbonded layer become Winkler beds, and a bonded incompressible layer
 squeezes its material outwards. Stiffness and depth then have the closed forms of Table 1, the truncated cone those of
-Eqs. (36) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the stiffness of
+Eqs. (36), (37) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the stiffness of
 the bonded incompressible layer still is 11 % off, so the limit itself is no substitute for the layer.
 """
 
@@ -77,6 +77,12 @@ def depth(scene: Scene) -> float:
     return _radius(scene) ** 2 / ((4 if is_squeezed(scene) else 2) * RADIUS_OF_CURVATURE)
 
 
+def cone_depth(scene: Scene) -> float:
+    """delta(a) of a truncated cone: f(a) on a Winkler bed, Eq. (37) where the material is squeezed out."""
+    a, q = _radius(scene), FLAT_FRACTION
+    return a * SLOPE * (1 - q) * ((2 + q) * (1 - q) / 3 if is_squeezed(scene) else 1.0)
+
+
 def cone_force(scene: Scene) -> float:
     """F of a truncated cone, Eqs. (36) and (38)."""
     a, h, q = _radius(scene), scene.layer.thickness, FLAT_FRACTION
@@ -99,7 +105,7 @@ TABLE_1 = Reason(
     because="to leading order in h/a the layer is a Winkler bed, or squeezes its material outwards",
     derived_from="accepted band [p_f - 0.2, p_f + 0.5] between a/h = 75 and 150",
     origin=Origin.CLOSED_FORM,
-    source="Forsbach, Machines 11 (2023) 474, Table 1, Eqs. (16), (18), (21), (36), (38)",
+    source="Forsbach, Machines 11 (2023) 474, Table 1, Eqs. (16), (18), (21), (36), (37), (38)",
 )
 
 
@@ -146,7 +152,7 @@ CASE = Case(
     name="thin_layer_limits",
     title="Limits of thin layers",
     question="Are the thin-layer formulas the limits of the layer, and how fast are they reached?",
-    equations=("Eq. (16)", "Eq. (18)", "Eq. (21)", "Eq. (36)", "Eq. (38)", "Table 1"),
+    equations=("Eq. (16)", "Eq. (18)", "Eq. (21)", "Eq. (36)", "Eq. (37)", "Eq. (38)", "Table 1"),
     text=TEXT.strip(),
     suites=("ci", "nightly"),
     scenes=(*PARABOLOIDS, *CONES),
@@ -154,6 +160,7 @@ CASE = Case(
     claims=(
         *approach("stiffness", "contact_stiffness", paraboloid, stiffness),
         *approach("depth of the paraboloid", "indentation_depth", paraboloid, depth),
+        *approach("depth of the truncated cone", "indentation_depth", cone, cone_depth),
         *approach("force of the truncated cone", "normal_force", cone, cone_force),
         *agreements(CHECKED, {"fem": 3e-6, "integral_equation": 1e-9}),
         *agreements(CHECKED, {"bem": GRID_TOLERANCES, "mdr_table": TABLE_TOLERANCES}, reason=COARSE_GRIDS),
