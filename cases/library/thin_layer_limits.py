@@ -24,8 +24,8 @@ FLAT_FRACTION = 0.5
 TEXT = """
 When a >> h a compressible bonded layer and an unbonded layer become Winkler beds, and a bonded incompressible layer
 squeezes its material outwards. Stiffness and depth then have the closed forms of Table 1, the truncated cone those of
-Eqs. (36), (37) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the stiffness of
-the bonded incompressible layer still is 11 % off, so the limit itself is no substitute for the layer.
+Eqs. (36), (37) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the
+stiffness of the bonded incompressible layer still is 11 % off, so the limit itself is no substitute for the layer.
 """
 
 
