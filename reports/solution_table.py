@@ -6,9 +6,9 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution
+from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 from reports.method_names import display_name
-from reports.numbers import duration, measured, prefix_for, scaled_unit, small
+from reports.numbers import duration, measured, memory, prefix_for, scaled_unit, small
 from reports.tables import Table
 
 SYMBOLS = {
@@ -105,6 +105,7 @@ def solution_facts(solution: Solution) -> list[tuple[str, str]]:
     estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
     facts += [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
+    facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
     return facts + [("note", note) for note in solution.notes]
 
 
@@ -140,3 +141,10 @@ def solution_csv(solution: Solution) -> str:
 def _csv_columns(solution: Solution, name: str) -> tuple[list[float], list[float | str]]:
     uncertain = _uncertainty(solution, name).tolist()
     return getattr(solution, name).tolist(), [u if np.isfinite(u) else "" for u in uncertain]
+
+
+def _stage(stage: StageRecord) -> str:
+    """The effect ledger in words: what ran, how long, how often, and the bytes it declared."""
+    times = "" if stage.calls == 1 else f" in {stage.calls} calls"
+    size = f", {memory(stage.bytes)}" if stage.bytes else ""
+    return f"{stage.name.replace('_', ' ')} {duration(stage.wall_seconds)}{times}{size}"

@@ -71,3 +71,10 @@ def test_the_cost_command_says_what_accuracy_costs(tmp_path, capsys):
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert 'id="costs"' in page
     assert "true static scaling" in page
+
+
+def test_an_answer_lists_the_stages_that_ran_and_no_others(scene, capsys):
+    assert run(["solve", scene]) == 0
+    line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("stages: "))
+    assert "flat punch data" in line
+    assert "adhes" not in line
