@@ -31,6 +31,10 @@ class ContactRadii(Loading):
 class IndentationDepths(Loading):
     """Equilibria at given depths, each reached from the undeformed layer.
 
+    With adhesion a negative depth has two answers: nothing on the way in, since a contact forms at the first touch, and
+    a contact on the way out. MDR and finite elements give the contact; boundary elements follow the values in order,
+    beginning out of contact.
+
     Attributes:
         values: delta [m], shape (n,); negative only with adhesion.
     """
