@@ -24,11 +24,14 @@ def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
 
 
 def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int) -> RunResult:
-    """Add the quick studies to a finished run of a suite and write it again."""
+    """Add the quick studies to a finished run of a suite and write it again; an interrupt leaves it incomplete."""
     clock = time.perf_counter()
-    with executor(jobs) as pool:
-        futures = [pool.submit(study) for study in QUICK]
-        studies = tuple(future.result() for future in futures)
+    try:
+        with executor(jobs) as pool:
+            futures = [pool.submit(study) for study in QUICK]
+            studies = tuple(future.result() for future in futures)
+    except KeyboardInterrupt:
+        run, studies = replace(run, complete=False), ()
     seconds = run.stamp.wall_seconds + time.perf_counter() - clock
     whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))
     write_run(whole, out)

@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
 from cases.results import CaseResult, Ladder, Rung
+from cases.status import Status
 from reports.method_names import display_name
 from reports.outcomes import worded
 from reports.panels import cut, panel_grid
@@ -80,12 +81,13 @@ def _draw_ladder(axes: Axes, ladder: Ladder) -> None:
     look, name = look_of(ladder.method), display_name(ladder.method)
     climbed = [(rung.value, rung.digits) for rung in ladder.rungs if rung.digits is not None]
     refused = [rung.value for rung in ladder.rungs if rung.digits is None]
+    failed = any(rung.status is Status.FAIL for rung in ladder.rungs if rung.digits is None)
     values, digits = zip(*climbed, strict=True) if climbed else ((), ())
     axes.plot(values, digits, color=look.colour, linestyle=look.dash, linewidth=1.0, marker=look.marker, label=name)
     if refused:
         axes.plot(
             refused, [0.0] * len(refused), color=look.colour, marker="x", markersize=8, markeredgewidth=2.0,
-            linestyle="none", clip_on=False, label=f"{name}, refused by name",
+            linestyle="none", clip_on=False, label=f"{name}, {'refused or failed' if failed else 'refused by name'}",
         )  # fmt: skip
 
 

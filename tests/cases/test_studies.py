@@ -19,6 +19,16 @@ def test_quick_studies_pass(study):
     assert found.claims or found.maps
 
 
+def test_an_interrupt_keeps_the_run_and_says_that_it_is_incomplete(tmp_path, monkeypatch):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(studies, "QUICK", (interrupted,))
+    run = studies.with_studies(example_run(), tmp_path, serial, 1)
+    assert (run.complete, run.cases) == (False, example_run().cases)
+    assert read_run(tmp_path) == run
+
+
 def test_studies_join_a_finished_run(tmp_path, monkeypatch):
     monkeypatch.setattr(studies, "QUICK", (studies.quick_maps,))
     run = studies.with_studies(example_run(), tmp_path, serial, 1)
