@@ -247,7 +247,8 @@ def _refereed(method: Method, answer: Solution, number: int, other: Method | Non
 def _branch_checks(answer: DetachmentPath) -> tuple[Check, ...]:
     """Some states of a branch, as far as the second opinion reaches, each at its own contact radius."""
     scene = answer.scene
-    chosen = np.linspace(0, len(answer.contact_radius) - 1, _STATES_OF_A_BRANCH).round().astype(int)
+    first = np.flatnonzero(answer.contact_radius == answer.contact_radius[0])[-1]  # before it a punch's front is held
+    chosen = np.linspace(first, len(answer.contact_radius) - 1, _STATES_OF_A_BRANCH).round().astype(int)
     radii = answer.contact_radius[chosen]
     if np.max(radii) > LARGEST_RATIO * scene.layer.thickness or np.min(radii) <= 0:
         return ()

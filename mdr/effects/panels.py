@@ -100,8 +100,8 @@ def _values(sample: Callable[[FloatArray], FloatArray], waiting: list[tuple[floa
 
 
 def _tails(values: FloatArray) -> FloatArray:
-    """Largest of the last three coefficients, shape (panels, functions)."""
-    return np.asarray(np.abs(values @ chebyshev.analysis(NODES)[-3:].T).max(axis=2))
+    """Sum of the last three coefficients' sizes, as they meet at a panel's end; shape (panels, functions)."""
+    return np.asarray(np.abs(values @ chebyshev.analysis(NODES)[-3:].T).sum(axis=2))
 
 
 @dataclass(frozen=True)
