@@ -68,7 +68,7 @@ def test_the_pressure_is_refused_where_only_moments_are_known():
         Scene(layer=LAYERS["unbonded"], indenter=INDENTERS[0], loading=ContactRadii([500.0]))
     )
     assert path.surface_displacement([1.0])[0] == pytest.approx(path.indentation_depth[0] - 0.5)
-    with pytest.raises(InvalidInput, match="covers"):
+    with pytest.raises(InvalidInput, match="pressures are known up to"):
         path.pressure([1.0])
 
 
