@@ -1,9 +1,9 @@
-"""Prescribed depths or forces of an adhering indenter, followed in their order from the first touch.
+"""Prescribed depths or forces of an adhering indenter, followed in their order from out of contact.
 
 Adhesion of JKR type has no reach: an approaching indenter feels nothing until it touches, at delta = 0, and then snaps
 in to the smallest stable contact. Pressed further or withdrawn, the edge moves along the stable branch; where that
 ends it jumps, to another stable radius if there is one, or off. So what holds at a negative depth depends on the way
-there: nothing on the way in, a contact on the way out. A first value below zero is on the way out from a touch.
+there: nothing on the way in, a contact on the way out.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def followed(branch: AdhesiveBranch, quantity: Quantity, values: FloatArray) -> 
     Raises:
         InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
     """
-    states, radius = [], 0.0 if values[0] >= 0.0 else _next_radius(branch, quantity, 0.0, 0.0)
+    states, radius = [], 0.0
     for entry, value in enumerate(values.tolist()):
         radius = _next_radius(branch, quantity, value, radius)
         if radius == 0.0 and quantity == "normal_force":

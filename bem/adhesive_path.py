@@ -98,7 +98,7 @@ class CellHistory:
     def of_depths(cls, scene: Scene, depths: FloatArray, cells: int, threads: int, log: StageLog) -> CellHistory:
         """Snap-in at the first touch, the same contact as long as it holds, and nothing beyond pull-off."""
         indenter, first = _on_grid(scene, _radius_at(scene, depths, threads), cells, threads, log)
-        held = None if depths[0] >= 0.0 else indenter.settle(first, 0.0, LOST)  # on the way out from a touch
+        held: AdheringState | None = None
         radius, force = np.zeros(depths.size), np.zeros(depths.size)
         for i, depth in enumerate(depths.tolist()):
             held = _next(indenter, first, held, depth)
