@@ -13,9 +13,9 @@ from reports.style import BLACK, look_of, mark_decades
 
 COLUMNS = ("family", "method", "settings", "quantity", "share", "stated_over_true")
 CAPTION = (
-    "A curve that crosses the line at 1 below 5 % belongs to error bars that hold in 95 % of all answers; the further "
-    "right a curve lies, the more is given away. One curve a quantity; answers whose error the referee cannot tell "
-    "from its own uncertainty are left out."
+    "Answers whose error the referee can tell from its own uncertainty, one curve a method and quantity: what lies left "
+    "of 1 is not covered. The further right a curve lies, the more is given away. The table counts all answers, those "
+    "without a difference to be seen included."
 )
 SMALLEST, LARGEST = 1e-3, 1e6
 
