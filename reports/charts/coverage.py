@@ -13,9 +13,9 @@ from reports.style import BLACK, look_of, mark_decades
 
 COLUMNS = ("family", "method", "settings", "quantity", "share", "stated_over_true")
 CAPTION = (
-    "Answers whose error the referee can tell from its own uncertainty, one curve a method and quantity: what lies left "
-    "of 1 is not covered. The further right a curve lies, the more is given away. The table counts all answers, those "
-    "without a difference to be seen included."
+    "Answers whose error the referee can tell from its own uncertainty, one curve a method and quantity: what lies "
+    "left of 1 is not covered. The further right a curve lies, the more is given away. The table counts all answers, "
+    "those without a difference to be seen included."
 )
 SMALLEST, LARGEST = 1e-3, 1e6
 
