@@ -82,6 +82,7 @@ def adhesive_states(scene: Scene, radii: FloatArray) -> SecondOpinion:
     """
     adhesion = scene.effect(Adhesion)
     work = 0.0 if adhesion is None else adhesion.work_of_adhesion
+    radii = np.minimum(radii, scene.indenter.max_radius)  # the end of a table may come out one rounding beyond
     states = [_state(scene, float(a)) for a in radii]
     springs = scene.layer.contact_modulus * np.array([state.edge for state in states]) ** 2
     elongation = np.sqrt(2 * math.pi * work * radii / springs)  # Eq. (40)
