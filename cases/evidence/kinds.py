@@ -70,9 +70,12 @@ def rough_radius(scene: Scene) -> float:
 
 def _trial_radii(scene: Scene) -> FloatArray:
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
+    if np.isfinite(end):  # a table may be far smaller than the layer is thick
+        within: FloatArray = flat + (end - flat) * _TRIALS[: _TRIALS.size // 2] * (1 - 1e-12)
+        return within
     scale = scene.layer.thickness if np.isfinite(scene.layer.thickness) else flat or 1.0
     radii: FloatArray = flat + scale * _TRIALS
-    return radii[radii < end] if np.isfinite(end) else radii
+    return radii
 
 
 def _wanted(scene: Scene, g: FloatArray, load: FloatArray, radii: FloatArray) -> tuple[FloatArray, float]:

@@ -10,7 +10,17 @@ from cases.evidence.calibrate import Candidate, calibrate, error_bound, sample_o
 from cases.evidence.kinds import BANDS, band_of, kind_of, rough_radius
 from cases.evidence.records import read, write
 from cases.stability.second_opinion import second_opinion
-from contact import ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, NormalForces, Paraboloid, Scene
+from contact import (
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    Tabulated,
+)
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
 SCENE = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=5.0), loading=ContactRadii([0.5]))
@@ -113,3 +123,11 @@ def test_what_is_shipped_serves_static_scenes():
     assert {m.kind for m in shipped().measurements} >= {"radii", "equilibrium"}
     for accuracy in (1e-2, 1e-4, 1e-6):
         assert choose(SCENE, accuracy).expected_error <= accuracy
+
+
+def test_a_table_of_nanometres_on_a_half_space_has_a_rough_radius():
+    """Found by random scenes: every trial radius lay beyond the end of the table."""
+    indenter = Tabulated(radii=np.linspace(0.0, 1e-10, 5), heights=np.linspace(0.0, 1e-5, 5) ** 2)
+    layer = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([1e-11]))
+    assert 0.0 < rough_radius(scene) < 1e-10
