@@ -91,7 +91,7 @@ def figure_11(case: Case, answers: Answers) -> Iterator[Figure]:
 
 
 def _symbols(case: Case, answers: Answers, scenes: Iterable[CaseScene]) -> Iterator[Series]:
-    for scene in scenes:
+    for scene in (case.scene(scene.name) for scene in scenes):
         layer, damping = scene.scene.layer, scene.parameters["damping_ratio"]
         support = "unbonded" if layer.support == "unbonded" else "bonded nu=0.5"
         at, group = scene.parameters.get("a_over_h", damping), f"{support}, $D_{{HS}}$ = {damping}"
