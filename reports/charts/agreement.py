@@ -14,6 +14,7 @@ from reports.plates import Cell, Plate
 from reports.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
 
 ROWS_A_PLATE = 40
+MOST_PLATES = 2  # on the page; the data of the last one hold the rest as well
 ROW_HEIGHT = 0.21  # inches
 SMALLEST = 1e-4  # of a tolerance; below, the axis is linear
 TONES = {"good": (BLUE, "o"), "warn": (ORANGE, "D"), "bad": (VERMILLION, "X"), "skip": (GREEN, ".")}
@@ -30,21 +31,26 @@ COLUMNS = (
 
 
 def plates(case: CaseResult, command: str) -> list[Plate]:
-    """The agreement plates of a case, worst rows first, forty rows each."""
+    """The agreement plates of a case: its worst eighty comparisons, forty a plate; the data hold all."""
     compared = [claim for claim in case.claims if claim.kind is Kind.AGREEMENT and claim.observed is not None]
     compared.sort(key=lambda claim: -(claim.fraction or 0.0))
-    parts = enumerate(cut(compared, ROWS_A_PLATE), start=1)
-    return [_plate(case, part, number, command) for number, part in parts]
+    parts = list(cut(compared, ROWS_A_PLATE))
+    shown, rest = parts[:MOST_PLATES], [claim for part in parts[MOST_PLATES:] for claim in part]
+    return [
+        _plate(case, part, rest if part is shown[-1] else [], number, command)
+        for number, part in enumerate(shown, start=1)
+    ]
 
 
-def _plate(case: CaseResult, claims: Sequence[Claim], number: int, command: str) -> Plate:
+def _plate(case: CaseResult, claims: Sequence[Claim], rest: Sequence[Claim], number: int, command: str) -> Plate:
+    beyond = f" {len(rest)} comparisons with less of their tolerance used up are in the data only." if rest else ""
     return Plate(
         name=f"{case.name}-agreement-{number}",
         title="Differences between methods, with uncertainty",
-        caption=CAPTION,
+        caption=CAPTION + beyond,
         paint=lambda: draw(claims),
         columns=COLUMNS,
-        rows=tuple(_row(claim) for claim in claims),
+        rows=tuple(_row(claim) for claim in (*claims, *rest)),
         command=command,
     )
 

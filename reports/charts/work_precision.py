@@ -55,6 +55,9 @@ def draw(work: WorkPrecision) -> Drawing:
     axes.set(xscale="log", yscale="log", xlabel="median time [s]")
     axes.set_ylabel(f"bound of the relative error, {work.quantity.replace('_', ' ')}")
     measured = [point for point in work.points if point.bound]
+    if measured:  # a decade of room: a single point has no range of its own
+        bounds = [*(_bound(point) for point in measured), work.reference_uncertainty or _bound(measured[0])]
+        axes.set_ylim(min(bounds) / 10.0, 10.0 * max(bounds))
     for method in dict.fromkeys(point.method for point in work.points):
         _draw_method(axes, method, [point for point in measured if point.method == method])
     _draw_front(axes, [point for point in measured if point.on_front])
