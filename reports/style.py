@@ -15,6 +15,8 @@ from typing import Any, Literal
 
 import matplotlib as mpl
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter, NullLocator
 
@@ -139,7 +141,8 @@ def svg_text(figure: Figure, *, key: str) -> str:
     """
     buffer = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": None, "Format": None, "Type": None})
+        metadata = {"Date": None, "Creator": None, "Format": None, "Type": None}
+        FigureCanvasSVG(figure).print_svg(buffer, metadata=metadata)  # savefig would draw everything twice
     return _compact(buffer.getvalue(), key)
 
 
@@ -164,5 +167,6 @@ def _two_decimals(tag: str) -> str:
 def png_bytes(figure: Figure) -> bytes:
     """The figure as PNG for slides and for viewers without SVG."""
     buffer = io.BytesIO()
-    figure.savefig(buffer, format="png", dpi=PNG_DOTS_PER_INCH, metadata={"Software": None})
+    figure.set_dpi(PNG_DOTS_PER_INCH)
+    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
     return buffer.getvalue()

@@ -110,7 +110,7 @@ ON_HALF_SPACE = tuple(scene.name for scene in HALF_SPACE_SCENES)
 # -- Fig. 7: g(x; h) is the relation of depth and contact radius, so finite elements can draw it too ------------------
 
 FIGURE_LAYERS = ("unbonded", "bonded nu=0.45", "bonded nu=0.5")
-SYMBOL_RADII = np.array([0.6, 0.75, 0.9])
+SYMBOL_RADII = np.array([0.65, 0.9])
 
 
 def profile_scene(label: str, ratio: float) -> CaseScene:
