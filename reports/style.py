@@ -142,7 +142,8 @@ def svg_text(figure: Figure, *, key: str) -> str:
     buffer = io.StringIO()
     with mpl.rc_context({"svg.hashsalt": key}):
         metadata = {"Date": None, "Creator": None, "Format": None, "Type": None}
-        FigureCanvasSVG(figure).print_svg(buffer, metadata=metadata)  # savefig would draw everything twice
+        canvas: Any = FigureCanvasSVG(figure)
+        canvas.print_svg(buffer, metadata=metadata)  # savefig would draw everything twice
     return _compact(buffer.getvalue(), key)
 
 
@@ -168,5 +169,6 @@ def png_bytes(figure: Figure) -> bytes:
     """The figure as PNG for slides and for viewers without SVG."""
     buffer = io.BytesIO()
     figure.set_dpi(PNG_DOTS_PER_INCH)
-    FigureCanvasAgg(figure).print_png(buffer, metadata={"Software": None})
+    canvas: Any = FigureCanvasAgg(figure)
+    canvas.print_png(buffer, metadata={"Software": None})
     return buffer.getvalue()
