@@ -64,12 +64,14 @@ def force(label: str, ratio: float) -> float:
 
 def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScene:
     """Return a paraboloid under ``loading``."""
+    searched = ("fem", "bem", "mdr_table") if ratio != QUICK_RATIO else ()
+    prescribed = ("fem",) if label == "bonded nu=0.45" else ()
     return CaseScene(
         name=scene_name(label, ratio) + how,
         parameters={"layer": label, "a_over_h": ratio},
         scene=Scene(layer=layer(label), indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), loading=loading),
         sampling=Sampling(ring_edges=edges(ratio * THICKNESS, (0.0, 0.4, 0.8, 1.0)) if not how else ()),
-        nightly=("fem", "bem", "mdr_table") if how and ratio != QUICK_RATIO else (),
+        nightly=searched if how else prescribed,
     )
 
 

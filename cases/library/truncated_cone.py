@@ -75,7 +75,6 @@ def cone_scene(label: str, ratio: float) -> CaseScene:
         parameters={"layer": label, "a_over_h": ratio, "b_over_a": FLAT_FRACTION},
         scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii(values=np.array([a]))),
         sampling=Sampling(ring_edges=edges(a, RINGS)),
-        nightly=("fem",) if label == "bonded nu=0.3" else (),
     )
 
 
@@ -94,7 +93,7 @@ def path_scene(label: str, ratio: float) -> CaseScene:
     """Return the path over contact radii from 0.75 a to a, away from the kink at 0.5 a."""
     base = cone_scene(label, ratio)
     loading = ContactRadii(values=ratio * THICKNESS * chebyshev_radii(0.75, 1.0, 16))
-    path = replace(base, name=f"{base.name}, path", scene=base.scene.replace(loading=loading), nightly=())
+    path = replace(base, name=f"{base.name}, path", scene=base.scene.replace(loading=loading))
     return replace(path, methods=(MDR, EQUATION) if ratio == 1.0 else (MDR,))
 
 
