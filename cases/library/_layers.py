@@ -43,6 +43,11 @@ def half_space(poissons_ratio: float = 0.3) -> Layer:
     return Layer.half_space(youngs_modulus=YOUNGS_MODULUS, poissons_ratio=poissons_ratio)
 
 
+def written_out_modulus(layer: Layer) -> float:
+    """E* = E / (1 - nu^2) [Pa] for expected numbers, which must not share a mistake with `Layer.contact_modulus`."""
+    return layer.youngs_modulus / (1 - layer.poissons_ratio**2)
+
+
 def scene_name(label: str, ratio: float) -> str:
     """Return the name of a scene: the layer and its confinement ratio."""
     return f"{label} a/h={ratio:g}"
