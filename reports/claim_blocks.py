@@ -62,8 +62,13 @@ def claim_blocks(case: CaseResult) -> tuple[ClaimBlock, ...]:
 
 
 def is_wide(claim: Claim) -> bool:
-    """Whether a claim passed within a relative tolerance that is said beside its verdict; orders have another unit."""
-    return claim.status is Status.PASS and claim.kind is not Kind.ORDER and claim.unit == "1" and claim.tolerance > WIDE
+    """Whether a claim passed within a relative tolerance that is said beside its verdict.
+
+    Orders have another unit; shares and counts (of silent failures, say) are claimed to be zero, relative to nothing.
+    """
+    counted = claim.kind is Kind.INVARIANT and claim.expected == 0.0
+    relative = claim.kind is not Kind.ORDER and claim.unit == "1" and not counted
+    return claim.status is Status.PASS and relative and claim.tolerance > WIDE
 
 
 def _is_accepted(claim: Claim) -> bool:

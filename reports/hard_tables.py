@@ -30,7 +30,7 @@ def ladders(case: CaseResult) -> Table | None:
             "stated",
         ),
         rows=tuple(map(_ladder_row, case.ladders)),
-        words=5,
+        words=3,
     )
 
 
@@ -94,20 +94,24 @@ def _coverage_row(record: CoverageRecord) -> tuple[str, ...]:
 
 
 def good_ranges(case: CaseResult) -> Table | None:
-    """Where each formula or method is good to one percent, one row a map."""
+    """Where each formula or method is good to one percent, one column a map."""
     if not case.maps:
         return None
     rows = list(dict.fromkeys(row for found in case.maps for row in found.rows))
     return Table(
         title="Range of a/h that is good to 1 %",
         note="Smallest and largest a/h of the map with an error of at most 1 %; between them a hole may lie.",
-        heads=("formula or method", *(row if row == UNBONDED else f"nu = {row}" for row in rows)),
-        rows=tuple((found.title, *(_range(found, row) for row in rows)) for found in case.maps),
+        heads=("layer", *(found.title for found in case.maps)),
+        rows=tuple((_layer(row), *(_range(found, row) for found in case.maps)) for row in rows),
     )
+
+
+def _layer(row: str) -> str:
+    return row if row == UNBONDED else f"nu = {row}"
 
 
 def _range(found: ErrorMap, row: str) -> str:
     good = good_range(found, row) if row in found.rows else None
     if good is None:
         return "nowhere" if row in found.rows else ""
-    return f"{small(good[0])} .. {small(good[1])}"
+    return f"{good[0]:.2g} .. {good[1]:.2g}"

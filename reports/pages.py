@@ -68,7 +68,7 @@ def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
         wide=sum(is_wide(claim) for case in run.cases for claim in case.claims),
         worst=worst,
         more_failures=sum(row.tone != "skip" for row in notable) - len(worst),
-        matrix=run_matrix(run),
+        matrix=run_matrix(run) if rows else None,
         costs=cost_tables.shortest_times(run),
         speed_ups=cost_tables.speed_ups(run),
         cases=cases,

@@ -16,7 +16,7 @@ from contact.validation import FloatArray
 
 NAME: Final = "error_maps"
 UNBONDED: Final = "unbonded"
-RATIOS: Final = tuple(np.geomspace(1e-3, 50.0, 25).tolist())
+RATIOS: Final = tuple(np.geomspace(1e-3, 1e3, 37).tolist())
 ROWS: Final = (UNBONDED, "0", "0.2", "0.3", "0.4", "0.45", "0.48", "0.49", "0.499", "0.5")
 FEW_RATIOS: Final = tuple(np.geomspace(1e-2, 20.0, 12).tolist())
 FEW_ROWS: Final = (UNBONDED, "0", "0.3", "0.45", "0.499", "0.5")

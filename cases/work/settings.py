@@ -39,7 +39,16 @@ FEM_DETACHING: Final = tuple(
 FEM_IN_TIME: Final = tuple(
     MethodUse(label=f"growth {growth:g}", method="fem", settings={"growth": growth}) for growth in (1.0, 0.5, 0.25)
 )
-BEM: Final = tuple(MethodUse(label=f"{n} cells", method="bem", settings={"points": n}) for n in (128, 256, 512, 1024))
+BEM: Final = (
+    *(MethodUse(label=f"{n} cells", method="bem", settings={"points": n}) for n in (128, 256, 512, 1024)),
+    *(
+        MethodUse(
+            label=f"256 cells, tolerance {tolerance:g}", method="bem", settings={"points": 256, "tolerance": tolerance}
+        )
+        for tolerance in (1e-3, 1e-5)
+    ),
+    MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"}),
+)
 TABLE: Final = tuple(
     MethodUse(label=f"{n} cells", method="mdr_table", settings={"cells": n, "ratios": 60, "radii": 200})
     for n in (64, 128)

@@ -59,6 +59,12 @@ def test_the_tolerance_of_an_order_is_no_relative_error():
     assert not is_wide(order)
 
 
+def test_a_count_that_should_be_zero_is_relative_to_nothing():
+    count = dataclasses.replace(passing_case().claims[0], kind=Kind.INVARIANT, expected=0.0, unit="1", tolerance=0.5)
+    assert not is_wide(count)
+    assert is_wide(dataclasses.replace(count, kind=Kind.AGREEMENT))
+
+
 def test_the_first_screen_counts_wide_tolerances(tmp_path):
     case = passing_case()
     wide = dataclasses.replace(case.claims[0], name="wide", kind=Kind.AGREEMENT, tolerance=0.05)

@@ -79,6 +79,13 @@ def test_all_six_parts_are_there_in_order(page):
     assert places == sorted(places)
 
 
+def test_measurements_without_checks_show_no_empty_matrix(tmp_path):
+    case = dataclasses.replace(passing_case(), claims=(), runs=())
+    page = write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path).read_text(encoding="utf-8")
+    assert "Cases and claims" not in words_of(page)
+    assert "#matrix" not in page
+
+
 def test_a_passing_run_has_no_word_of_failure(tmp_path):
     write_report(dataclasses.replace(example_run(), cases=(passing_case(),)), tmp_path)
     words = words_of((tmp_path / "report.html").read_text(encoding="utf-8"))
