@@ -2,12 +2,14 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from cases.results import CaseResult, EffectEntry, Quantity, SceneRun, WorkPrecision
+from cases.results import CaseResult, CheapestRun, EffectEntry, Quantity, SceneRun, WorkPrecision
+from cases.work.overview import methods
 from contact import UNITS
 from reports.method_names import display_name
 from reports.numbers import duration, measured, memory, scaled_unit, small
 from reports.tables import Table
 
+MOST_DECADES = 3  # a factor of time for one digit beyond this is not worth telling apart
 DROPPED_AT = (1e-1, 1e-2, 1e-4)
 DROPPED_WORDS = ", ".join(f"{100 * tau:g} %" for tau in DROPPED_AT)
 
@@ -59,23 +61,22 @@ def _last_value(quantity: Quantity) -> str:
 
 
 def cheapest(work: WorkPrecision) -> Table:
-    """T*(tau): what the next decade of accuracy costs with each method."""
-    rows = []
-    for entry in work.cheapest:
-        reached = entry.reached and entry.seconds is not None
-        time = duration(entry.seconds) if reached and entry.seconds is not None else "not reached"
-        bound = "" if entry.bound is None else small(entry.bound) if reached else f"best {small(entry.bound)}"
-        size = memory(entry.peak_memory_bytes) if entry.peak_memory_bytes else ""
-        gain = f"{entry.speed_up:.3g} x" if entry.speed_up else ""
-        rows.append((small(entry.tolerance), display_name(entry.method), entry.label, time, bound, size, gain))
-    baseline = display_name(work.baseline_method)
+    """T*(tau): what the next decade of accuracy costs, methods side by side."""
+    chosen = methods(work)
+    found = {(entry.tolerance, entry.method): _shortest_time(entry) for entry in work.cheapest}
+    tolerances = dict.fromkeys(entry.tolerance for entry in work.cheapest)
     return Table(
         title="Shortest time to an accuracy",
-        note="T* is the shortest measured time with error bound U within τ; nothing is interpolated.",
-        heads=("τ", "method", "settings", "T*", "U", "memory", f"speed-up over {baseline}"),
-        rows=tuple(rows),
-        words=3,
+        note="T* is the shortest measured time with error bound U within τ; nothing is interpolated. Empty where no "
+        "setting got there.",
+        heads=("τ", *map(display_name, chosen)),
+        rows=tuple((small(tau), *(found.get((tau, method), "") for method in chosen)) for tau in tolerances),
+        words=0,
     )
+
+
+def _shortest_time(entry: CheapestRun) -> str:
+    return duration(entry.seconds) if entry.reached and entry.seconds is not None else ""
 
 
 def digit_prices(work: WorkPrecision) -> Table | None:
@@ -83,11 +84,22 @@ def digit_prices(work: WorkPrecision) -> Table | None:
     if not work.prices:
         return None
     rows = tuple(
-        (display_name(p.method), p.from_label, p.to_label, f"{10.0**p.decades_per_digit:.2f} x") for p in work.prices
+        (display_name(p.method), _setting(p.from_label), _setting(p.to_label), _factor(p.decades_per_digit))
+        for p in work.prices
     )
     note = "Factor of time for one more correct digit, between neighbours on the front."
     heads = ("method", "from", "to", "time for a digit")
     return Table(title="Price of a digit", note=note, heads=heads, rows=rows, words=3)
+
+
+def _factor(decades: float) -> str:
+    """Of neighbours that are equally accurate the more expensive one gains next to nothing for its time."""
+    return f"{10.0**decades:.3g} x" if decades < MOST_DECADES else f"over {10.0**MOST_DECADES:g} x"
+
+
+def _setting(label: str) -> str:
+    """Without the method in front of it."""
+    return label.partition(": ")[2] or label
 
 
 def stages(case: CaseResult) -> Table | None:

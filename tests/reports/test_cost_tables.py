@@ -2,6 +2,7 @@
 
 import dataclasses
 
+from reports.case_tables import cheapest, digit_prices
 from reports.cost_tables import settings, shortest_times, speed_ups
 from reports.numbers import duration
 from tests.cases.example_run import example_run, work_precision
@@ -39,3 +40,19 @@ def test_every_setting_with_an_answer_has_its_degrees():
     table = settings(WORK)
     assert len(table.rows) == sum(1 for point in WORK.points if point.bound)
     assert all(len(row) == len(table.heads) for row in table.rows)
+
+
+def test_methods_stand_side_by_side_and_an_accuracy_nobody_reached_is_empty():
+    table = cheapest(WORK)
+    assert table.heads[0] == "τ"
+    assert len(table.rows) == len({entry.tolerance for entry in WORK.cheapest})
+    for entry in WORK.cheapest:
+        row = next(row for row in table.rows if float(row[0]) == entry.tolerance)
+        cell = row[table.heads.index({"mdr": "MDR", "fem": "FEM"}[entry.method])]
+        assert cell == (duration(entry.seconds) if entry.reached else "")
+
+
+def test_a_digit_that_costs_almost_everything_does_not_fill_the_page():
+    price = dataclasses.replace(WORK.prices[0], decades_per_digit=200.0)
+    (row,) = digit_prices(dataclasses.replace(WORK, prices=(price,))).rows
+    assert row[-1] == "over 1000 x"
