@@ -43,6 +43,7 @@ UNBONDED_TRUNCATION = 5.0
 ROUND_OFF = 1e-12
 TYPICAL_RATE = 0.1  # measured: e(k) / e(k-1) is seldom below this times growth^2 on graded meshes
 UNMEASURED_RATE = 0.4  # measured: e(3) / e(2) is seldom above this times growth^3
+COARSE_RATE = 0.2
 TRUNCATION_SAFETY = 4.0  # the mesh's end lets the layer give way a few times more than the energy beyond it
 SAFETY = 3.0  # on the interpolation error: rho is itself an extrapolation
 SLOPE_RATIO = 3.0  # the error of k_N' is a derivative of that of k_N, and does not cancel over the section as it does
@@ -110,7 +111,11 @@ class CertifiedContact:
         if len(self._last_changes) == 1:
             return min(1.0, UNMEASURED_RATE * self.settings.growth**3)
         previous, last = (self._change(*pair).mean() for pair in self._last_changes[-2:])
-        return float(np.clip(last / previous, self._fastest_rate, 1.0))
+        return float(np.clip(last / previous, max(self._fastest_rate, self._coarse_rate), 1.0))
+
+    @property
+    def _coarse_rate(self) -> float:
+        return min(COARSE_RATE * self.settings.growth**3, 1.0)
 
     @property
     def _fastest_rate(self) -> float:
@@ -127,10 +132,17 @@ class CertifiedContact:
 
     @property
     def _edge_error(self) -> Mapping[str, float]:
-        """A contact smaller by a fraction of the edge cell: dk_N = k_N' da; depth and force react more strongly."""
+        """A contact smaller by a fraction s of the edge cell: s k_N', s delta_0' and dF = k_N d(delta_0)."""
+        answer = self.answer
         edge = dict(graded_points(self.layer_mesh.thickness, self.indenter, self.settings))[1.0]
-        shift = EDGE_SHIFT[self.settings.order] * edge * self.answer.stiffness_slope / self.answer.stiffness
-        return {"stiffness": shift, "stiffness_slope": shift, "smooth_depth": 2.5 * shift, "smooth_force": 2.5 * shift}
+        shift = EDGE_SHIFT[self.settings.order] * edge
+        stiffness, depth = shift * answer.stiffness_slope / answer.stiffness, shift * abs(answer.smooth_depth_slope)
+        return {
+            "stiffness": stiffness,
+            "stiffness_slope": stiffness,
+            "smooth_depth": relative_size(depth, answer.smooth_depth),
+            "smooth_force": relative_size(answer.stiffness * depth, answer.smooth_force),
+        }
 
     @property
     def _truncation_error(self) -> Mapping[str, float]:

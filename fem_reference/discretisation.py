@@ -17,6 +17,9 @@ from fem_reference.truncation import outer_distance
 Array = NDArray[np.float64]
 
 
+LEAST_CELL = 1e-13  # a thousand roundings of the radius there
+
+
 @dataclass(frozen=True, kw_only=True)
 class Discretisation:
     """Everything that decides the mesh and its elements.
@@ -98,9 +101,13 @@ def graded_points(
     logarithmic, like its square, but the L2 error of the pressure like its root.
     """
     last_kink = max(indenter.kinks, default=0.0)
-    edge_cell = settings.edge_cell * min(1.0, thickness, 1.0 - last_kink)
+    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), LEAST_CELL)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
-    cells |= {r: edge_cell * r for r in indenter.kinks}
+    ends = (0.0, *sorted(indenter.kinks), 1.0)
+    cells |= {
+        r: settings.edge_cell * min(r - left, right - r)
+        for left, r, right in zip(ends, ends[1:], ends[2:], strict=False)
+    }
     if indenter.has_sharp_tip:
         cells[0.0] = edge_cell
     return tuple(sorted((cells | {1.0: edge_cell}).items()))

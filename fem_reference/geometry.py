@@ -10,6 +10,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass
 from functools import cache
+from itertools import pairwise
 from signal import SIGPIPE, getsignal, signal
 from threading import current_thread, main_thread
 from typing import Any
@@ -24,6 +25,10 @@ MISSING_LIBRARIES = (
     "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
     "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1"
 )
+
+
+LONGEST_LINE = 1e10  # over its smallest cell
+RESOLVED = 3e-8  # smallest cell that gmsh meshes well, over its distance from the origin
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -42,12 +47,27 @@ class Grading:
     growth: float = 0.25
     max_cell: float = np.inf
 
+    @property
+    def origin(self) -> float:
+        """Radius that becomes gmsh's x = 0: the last graded point where its cells are fine, else the axis.
+
+        gmsh squares coordinates: cells below 1e-8 of their distance from its origin degenerate.
+        """
+        r, cell = self.points[-1] if self.points else (0.0, 0.0)
+        return r if cell < RESOLVED * r else 0.0
+
+    @property
+    def shifted(self) -> tuple[tuple[float, float], ...]:
+        """(x, cell) of the graded points, with the cells that gmsh resolves so far from its origin."""
+        places = [(r - self.origin, cell) for r, cell in self.points]
+        return tuple((x, max(cell, RESOLVED * abs(x)) if self.origin else cell) for x, cell in places)
+
     def size_expression(self) -> str:
-        """Cell size as a function of gmsh's x = r, y = z."""
-        sizes = [f"{cell:.17g}+{self.growth:.17g}*Sqrt((x-{r:.17g})^2+y^2)" for r, cell in self.points]
+        """Cell size as a function of gmsh's x = r - origin, y = z."""
+        sizes = [f"{cell:.17g}+{self.growth:.17g}*Sqrt((x{-start:+.17g})^2+y^2)" for start, cell in self.shifted]
         if self.strip is not None:
-            radius, cell = self.strip
-            beyond = f"(0.5*(x-{radius:.17g}+Abs(x-{radius:.17g})))"
+            radius, cell = self.strip[0] - self.origin, self.strip[1]
+            beyond = f"(0.5*(x{-radius:+.17g}+Abs(x{-radius:+.17g})))"
             sizes.append(f"{cell:.17g}+{self.growth:.17g}*Sqrt({beyond}^2+y^2)")
         bounds = sizes if np.isinf(self.max_cell) else [f"{self.max_cell:.17g}", *sizes]
         expression = bounds[-1]
@@ -105,7 +125,7 @@ def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> Layer
     gmsh = _gmsh()
     gmsh.model.add("layer")
     try:
-        _draw_section(gmsh.model.geo, thickness, outer_radius, [r for r, _ in grading.points])
+        _draw_section(gmsh.model.geo, thickness, outer_radius, grading)
         field = gmsh.model.mesh.field
         field.add("MathEval", 1)
         field.setString(1, "F", grading.size_expression())
@@ -114,17 +134,19 @@ def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> Layer
         points, triangles = _mesh_arrays(gmsh.model.mesh)
     finally:
         gmsh.model.remove()
+    points[0] += grading.origin
     return named_layer_mesh(points, triangles)
 
 
-def _draw_section(geo: Any, thickness: float, outer_radius: float, top_radii: list[float]) -> None:
-    """One rectangle whose top carries the marked radii as vertices; long sides are split, for gmsh's line meshing."""
-    last = max([*top_radii, 0.0])
-    radii = sorted({0.0, *top_radii, *_far_stations(last, outer_radius), outer_radius})
+def _draw_section(geo: Any, thickness: float, outer_radius: float, grading: Grading) -> None:
+    """One rectangle whose top carries the graded radii as vertices; long sides are split, for gmsh's line meshing."""
+    last = max([*(r for r, _ in grading.points), 0.0])
+    ends = (r - grading.origin for r in (0.0, *_far_stations(last, outer_radius), outer_radius))
+    x = _split_where_fine(sorted({*ends, *(start for start, _ in grading.shifted)}), dict(grading.shifted))
     depths = sorted(_far_stations(last, thickness), reverse=True)
-    corners = [geo.addPoint(r, 0.0, 0.0) for r in radii]
-    corners += [geo.addPoint(outer_radius, thickness, 0.0), geo.addPoint(0.0, thickness, 0.0)]
-    corners += [geo.addPoint(0.0, z, 0.0) for z in depths]
+    corners = [geo.addPoint(each, 0.0, 0.0) for each in x]
+    corners += [geo.addPoint(x[-1], thickness, 0.0), geo.addPoint(x[0], thickness, 0.0)]
+    corners += [geo.addPoint(x[0], z, 0.0) for z in depths]
     edges = [geo.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
     geo.addPlaneSurface([geo.addCurveLoop(edges)])
     geo.synchronize()
@@ -137,6 +159,16 @@ def _far_stations(start: float, end: float) -> list[float]:
         start *= 100
         stations.append(start)
     return stations
+
+
+def _split_where_fine(x: list[float], cells: dict[float, float]) -> list[float]:
+    """Lines more than 1e10 cells of one of their ends long are split: gmsh would take minutes for them."""
+    stations = [*x]
+    for left, right in pairwise(x):
+        for end, away in ((left, right - left), (right, left - right)):
+            if abs(away) > LONGEST_LINE * cells.get(end, np.inf):
+                stations.append(end + np.copysign(np.sqrt(cells[end] * abs(away)), away))
+    return sorted(stations)
 
 
 def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:

@@ -84,7 +84,7 @@ class LayerProblem:
         """Scalar displacement unknowns of the top cells within ``radius``, in the order of increasing r."""
         mesh = self.layer_mesh.mesh
         facets = mesh.boundaries["top"]
-        inside = mesh.p[0, mesh.facets[:, facets]].max(axis=0) <= radius * (1 + 1e-12)
+        inside = mesh.p[0, mesh.facets[:, facets]].max(axis=0) <= radius * (1 + 1e-14)
         nodes = facet_nodes(self.space, facets[inside])
         return nodes[np.argsort(self.positions[0, nodes])]
 

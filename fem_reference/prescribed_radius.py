@@ -88,6 +88,16 @@ class PrescribedContact:
         """Normal force at the depth of smooth contact."""
         return self.force(self.smooth_depth)
 
+    @property
+    def smooth_depth_slope(self) -> float:
+        """d(delta_0)/da, from the pressures of smooth contact and flat punch: p / p_1 = 2 (a - r) delta_0' at the edge.
+
+        Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one.
+        """
+        inside = self.contact_trace.vertices[-4:][:1]
+        punch = self.contact_trace.evaluate(self.pressures[:, 0], inside)
+        return float((self.pressure(inside, self.smooth_depth) / punch / (2 * (1 - inside)))[0])
+
     def pressure(self, radius: Array, depth: float) -> Array:
         """p(r), zero outside the contact."""
         return self.contact_trace.evaluate(self.pressures @ [depth, 1.0], radius)
