@@ -15,6 +15,7 @@ from fem_reference.discretisation import Discretisation
 ATTEMPTS = 6
 JUDGED = ("stiffness", "smooth_depth", "smooth_force")
 HISTORY_ATTEMPTS = 5  # every one takes twice the steps and twice the cells
+COARSEST = 1.0  # growth; on meshes of fewer than a hundred triangles the errors of three degrees say little
 ERROR_ORDER = 7.0  # measured: the error of P4P3 falls like growth^7 on graded meshes (2k = 8 less mesh irregularity)
 ERROR_AT_HALF = 8e-6  # measured: above all estimated errors of P4P3 at growth 1/2, of punches, cones and paraboloids
 
@@ -26,7 +27,7 @@ def settings_for(accuracy: float) -> Discretisation:
     """A discretisation that usually meets ``accuracy`` (relative) at the first attempt."""
     return Discretisation(
         order=4,
-        growth=float(np.clip(0.5 * (accuracy / ERROR_AT_HALF) ** (1 / ERROR_ORDER), 0.05, 1.2)),
+        growth=float(np.clip(0.5 * (accuracy / ERROR_AT_HALF) ** (1 / ERROR_ORDER), 0.05, COARSEST)),
         edge_cell=float(np.clip(accuracy / 2, 1e-11, 1e-3)),
         truncation=float(np.clip(0.003 * accuracy, 1e-13, 1e-3)),  # on thin layers the force feels it 40-fold
         half_space_thickness=float(np.clip(100 / accuracy, 1e3, 1e12)),

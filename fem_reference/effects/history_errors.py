@@ -55,11 +55,23 @@ def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
     typical = TYPICAL * float(np.mean([space[name] for name in judged if name not in known.exact]))
     error = {}
     for name in (*channels, *scalars):
-        size = max(space[name], typical) + time[name] + known.everywhere + known.radius * ("radius" in name)
+        size = (
+            max(space[name], typical * _share(fine, name))
+            + time[name]
+            + known.everywhere
+            + known.radius * ("radius" in name)
+        )
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
     if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
         error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
     return replace(fine, error_estimate=error)
+
+
+def _share(history: HistoryPath | ImpactHistory, name: str) -> float:
+    """The restitution errs with the energy W lost: d(eps)/eps = -(1/eps^2 - 1)/2 dW/W, nothing on an elastic layer."""
+    if name != "coefficient_of_restitution" or not isinstance(history, ImpactHistory):
+        return 1.0
+    return float(np.clip((history.coefficient_of_restitution**-2 - 1) / 2, 0.0, 1.0))
 
 
 def _steep_end(history: ImpactHistory, time_error: float) -> float:

@@ -38,6 +38,8 @@ FITTINGS = 12
 LEAST_TRUNCATION = 1e-7  # far below the errors of cells and steps, and half the mesh of 1e-12
 TRUNCATION_SAFETY = 40.0  # on thin layers the force feels the outer edge so much more than the stiffness
 EDGE_SCATTER = 0.1  # cells between the true edge of the contact and the one read from the pressures
+RIM_SCATTER = 1.0  # the same next to a kink, where pressures do not end like sqrt(a - r)
+RIM_REACH = 2.0  # cells
 
 
 @dataclass(frozen=True)
@@ -112,9 +114,11 @@ class Theatre:
             "contact_radius": isinstance(self.scene.indenter, FlatPunch),
             "peak_contact_radius": isinstance(self.scene.indenter, FlatPunch),
         }
+        cell = radius / self.resolution.cells
+        at_rim = any(abs(peak_radius - kink) < RIM_REACH * cell for kink in self.scene.indenter.kinks)
         return KnownErrors(
             everywhere=thick + TRUNCATION_SAFETY * settings.truncation,
-            radius=EDGE_SCATTER * radius / (self.resolution.cells * peak_radius),
+            radius=(RIM_SCATTER if at_rim else EDGE_SCATTER) * cell / peak_radius,
             exact=frozenset(name for name, is_exact in exact.items() if is_exact),
         )
 
@@ -158,7 +162,7 @@ class Theatre:
 
         Raises:
             InvalidInput: contact reaches the end of the profile.
-            NotConvergedError: no strip fits.
+            NotConvergedError: no strip fits, or no step presses.
         """
         indenter = self.scene.indenter
         if isinstance(indenter, FlatPunch):
@@ -167,6 +171,10 @@ class Theatre:
         for _ in range(FITTINGS):
             record = simulate(self.set(radius, 30))
             largest = max(record.radius)
+            if largest == 0:
+                raise NotConvergedError(
+                    "the pilot simulation presses at no step: a strong dashpot stops the body, or nothing presses"
+                )
             if largest > 0.9:
                 if radius >= indenter.max_radius:
                     raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; load less")
