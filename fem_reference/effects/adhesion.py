@@ -25,7 +25,7 @@ from fem_reference.elastic import ContactSolver, Equilibrium
 
 Array = NDArray[np.float64]
 
-NODES = (11, 17, 25)  # Chebyshev points of a piece: the first number that meets the accuracy
+NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
 LARGEST_RATIO = 6.0  # of the radii that end one piece
 SAMPLES = 241
 
@@ -100,7 +100,9 @@ def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: boo
     state = adhesive_equilibrium(solve(radius), work_of_adhesion(scene))
     name, found = ("indentation_depth", state.depth) if by_depth else ("normal_force", state.force)
     slope = branch.slope(load, np.array([radius]))[0]  # d load / da, in SI lengths
-    moved = (state.error[name] + branch.error[name]) * abs(found) * radius ** (0 if by_depth else 1) / abs(slope)
+    interpolated = (branch.depth_error if by_depth else branch.force_error)(np.array([radius]))[0]
+    solved = state.error[name] * abs(found) * radius ** (1 if by_depth else 2)
+    moved = (solved + interpolated) / radius / abs(slope)
     return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
 
 

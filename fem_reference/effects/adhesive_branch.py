@@ -66,9 +66,15 @@ class BranchPiece:
         return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
 
     @cached_property
-    def interpolation_error(self) -> float:
-        """Relative size of the last Chebyshev coefficients of ln k_N', which has the least smoothness."""
-        return float(np.abs(self._interpolants["stiffness_slope"].coef[-2:]).sum())
+    def errors(self) -> dict[str, float]:
+        """Of the contacts, relative, their root mean square; of their interpolants: see `interpolation_errors`."""
+        names = self.contacts[0].error
+        return {name: float(np.sqrt(np.mean([c.error[name] ** 2 for c in self.contacts]))) for name in names}
+
+    @cached_property
+    def interpolation_errors(self) -> dict[str, float]:
+        """Size of the last Chebyshev coefficients: relative for k_N and k_N', in [m] for delta_0 and [m^2] for F_2."""
+        return {name: float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
 
 
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
@@ -132,16 +138,42 @@ class AdhesiveBranch:
 
     @property
     def interpolation_error(self) -> float:
-        """Of k_N' between the solved radii, relative."""
-        return max(piece.interpolation_error for piece in self.pieces)
+        """Of the depth between the solved radii, relative to its largest term in each piece."""
+        found = []
+        for piece in self.pieces:
+            radii = np.array([contact.indenter.contact_radius for contact in piece.contacts])
+            largest = np.max(np.abs(self._evaluate("smooth_depth", radii)) + self.elongation(radii))
+            errors = piece.interpolation_errors
+            found.append(errors["stiffness_slope"] / 2 + errors["smooth_depth"] / largest)
+        return float(max(found))
 
-    @property
-    def error(self) -> dict[str, float]:
-        """Relative errors of depth and force along the branch: that of dl is half that of k_N'."""
-        worst = {name: max(c.error[name] for c in self.contacts) for name in self.contacts[0].error}
-        elongation = 0.5 * (worst["stiffness_slope"] + self.interpolation_error)
-        depth = elongation + worst["smooth_depth"]
-        return {"indentation_depth": depth, "normal_force": depth + worst["stiffness"] + worst["smooth_force"]}
+    def _stated(self, kind: str, name: str, radius: Array) -> Array:
+        """``errors`` or ``interpolation_errors`` of the piece around each radius."""
+        ends = [piece.high for piece in self.pieces[:-1]]
+        values = np.array([getattr(piece, kind)[name] for piece in self.pieces])
+        return np.asarray(values[np.searchsorted(ends, radius)])
+
+    def elongation_error(self, radius: Array) -> Array:
+        """Of dl, relative: half that of k_N'."""
+        slope = (self._stated(kind, "stiffness_slope", radius) for kind in ("errors", "interpolation_errors"))
+        return np.asarray(sum(slope) / 2)
+
+    def depth_error(self, radius: Array) -> Array:
+        """Of delta = delta_0 - dl [m]."""
+        smooth = np.abs(self._evaluate("smooth_depth", radius)) * self._stated("errors", "smooth_depth", radius)
+        interpolation = self._stated("interpolation_errors", "smooth_depth", radius)
+        return np.asarray(smooth + interpolation + self.elongation(radius) * self.elongation_error(radius))
+
+    def force_error(self, radius: Array) -> Array:
+        """Of F / E* = F_0 - k_N dl [m^2], F_0 the force of smooth contact."""
+        pulled = self.stiffness(radius) * self.elongation(radius)
+        smooth = np.abs(self.force(radius) + pulled) * self._stated("errors", "smooth_force", radius)
+        interpolation = self.stiffness(radius) * self._stated("interpolation_errors", "smooth_depth", radius)
+        interpolation += self._stated("interpolation_errors", "profile_force", radius)
+        stiffness = self._stated("errors", "stiffness", radius) + self._stated(
+            "interpolation_errors", "stiffness", radius
+        )
+        return np.asarray(smooth + interpolation + pulled * (stiffness + self.elongation_error(radius)))
 
 
 def solve_branch(

@@ -63,7 +63,7 @@ def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple
 
 def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
     height = float(branch.elongation(np.array([radius]))[0])
-    error = float(max(c.error["stiffness_slope"] for c in branch.contacts) + branch.interpolation_error) / 2
+    error = float(branch.elongation_error(np.array([radius]))[0])
     return Reversal(
         kind="maximum" if is_maximum else "minimum",
         ratio=radius / thickness,
