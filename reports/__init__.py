@@ -13,3 +13,10 @@
 `reports.terminal`        progress and tables while a run goes on
 ========================  ==========================================================
 """
+
+import os
+
+# Commands compute on one thread of BLAS unless the user asks for more, before anything loads it: side by side in
+# processes, threads of small solves only wait for each other (ten times the processor time on a busy machine), and
+# sums repeat bit by bit whatever the number of cores.
+os.environ.setdefault("OMP_NUM_THREADS", "1")

@@ -251,3 +251,17 @@ def test_help_loads_no_solver_and_comes_in_half_a_second():
     end = os.times()
     used = (end.children_user - start.children_user) + (end.children_system - start.children_system)
     assert used < 0.5  # processor seconds: another job on the machine does not count
+
+
+def test_commands_compute_on_one_thread_unless_told_otherwise():
+    code = (
+        "import reports.command_line, scipy.linalg, threadpoolctl; "
+        "pools = [p['num_threads'] for p in threadpoolctl.threadpool_info() if p['user_api'] == 'blas']; "
+        "print(max(pools))"
+    )
+    free = {name: value for name, value in os.environ.items() if not name.endswith("_NUM_THREADS")}
+    for asked, threads in (({}, 1), ({"OMP_NUM_THREADS": "2"}, min(2, os.cpu_count() or 1))):
+        done = subprocess.run(
+            [sys.executable, "-c", code], env=free | asked, capture_output=True, text=True, check=True
+        )
+        assert int(done.stdout) == threads
