@@ -8,7 +8,7 @@ m = cells/2, and the first cell's centre lies half a cell from both axes.
 from __future__ import annotations
 
 from math import isinf, pi
-from typing import ClassVar, Protocol
+from typing import ClassVar, Final, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,8 @@ from bem.transforms import (
 from contact import InvalidInput, Layer
 
 FloatArray = npt.NDArray[np.float64]
+
+LEAST_ANSWER: Final = 0.1  # of the mean mode over the next: below, conjugate gradients with its inverse stall
 
 
 class Operator(Protocol):
@@ -140,8 +142,15 @@ def _wavenumbers(transform: Transform, cell_size: float) -> FloatArray:
 
 
 def _reciprocal(symbol: FloatArray) -> FloatArray:
-    """1/symbol, finite at modes that do not answer (k = 0 of a half-space or of a bonded incompressible layer)."""
-    return np.asarray(1.0 / np.where(symbol > 0.0, symbol, np.max(symbol)))
+    """1/symbol; a mean mode, k = 0, that hardly answers counts as the most compliant one.
+
+    It does not answer on a half-space or a bonded incompressible layer, and hardly on a nearly incompressible one,
+    where its reciprocal would drown all other modes: a contact that fills part of the box has no mode of its own there.
+    """
+    mean, next_mode = symbol[0, 0], symbol[0, 1]
+    damped = symbol.copy()
+    damped[0, 0] = mean if mean > LEAST_ANSWER * next_mode else np.max(symbol)
+    return np.asarray(1.0 / damped)
 
 
 def _transform(cells: int, period: int, *, quarter: bool, threads: int, planning: Planning) -> Transform:
