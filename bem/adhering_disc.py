@@ -11,7 +11,7 @@ the half-space is the measure here and hence exact; other contacts are of about 
 The displacement f of a profile leaves in the quotient what the grid makes of its tip, its kinks and the root-like part
 of the pressure. The half-space suffers the same, and its phi = g_hs(a) is an integral of the profile's slope; so on a
 layer the quotient takes the difference of the two. The half-space itself is left to the grid, except for a profile with
-kinks, which no polynomial follows: there its phi is exact by construction.
+breakpoints, which no polynomial follows: there its phi is exact by construction.
 """
 
 from __future__ import annotations
@@ -122,7 +122,7 @@ class AdheringDisc:
 
 def is_measured(layer: Layer, indenter: Profile) -> bool:
     """Whether the profile's own edge value is measured by the half-space."""
-    return not layer.is_half_space or bool(indenter.kinks)
+    return not layer.is_half_space or bool(indenter.breakpoints)
 
 
 @lru_cache(maxsize=4)

@@ -10,15 +10,18 @@ from typing import Final, Literal
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhering_disc import AdheringDisc
+from bem.direct_density import half_space_load
 from bem.grid import first_radius
-from contact import Adhesion, FlatPunch, Scene
+from contact import Adhesion, FlatPunch, Profile, Scene
 from contact.validation import FloatArray
 
 NODES: Final = 16  # contact radii solved on each piece of the branch
 SCOUT_CELLS: Final = 64
+KNOTS: Final = 2000  # of a measured profile's values on the half-space
 SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
 GROWTH: Final = 1.6  # of the largest radius while the branch is too short
 
@@ -29,31 +32,59 @@ Quantity = Literal["indentation_depth", "normal_force"]
 class Piece:
     """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
 
-    In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end.
+    In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
+    breakpoints in between is followed by no polynomial; its values are divided by those on the half-space, integrals of
+    the profile that have the same breakpoints, and what a layer makes of them is smooth.
+
+    Attributes:
+        inner: Least radius [m].
+        outer: Largest radius [m].
+        series: Chebyshev coefficients of edge values, stiffness and moment, over the half-space's if there is one.
+        half_space: The same on the half-space at radii, shape (4, n); or ones.
     """
 
     inner: float
     outer: float
     series: FloatArray
+    half_space: Callable[[FloatArray], FloatArray]
 
     @classmethod
-    def through(cls, inner: float, outer: float, solve: Callable[[float], AdheringDisc]) -> Piece:
+    def through(cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]) -> Piece:
         """Through solutions at Chebyshev points."""
+        broken = any(inner < r < outer for r in indenter.breakpoints)
+        half_space = half_space_values(indenter, outer) if broken else _ones
         t = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
-        discs = [solve(inner + (outer - inner) * float(x) ** 2) for x in t]
-        values = [[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in discs]
-        return cls(inner, outer, chebyshev.chebfit(2.0 * t - 1.0, np.array(values), NODES - 1))
+        radius = inner + (outer - inner) * t**2
+        values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in map(solve, radius.tolist())])
+        return cls(
+            inner, outer, chebyshev.chebfit(2.0 * t - 1.0, values / half_space(radius).T, NODES - 1), half_space
+        )
 
     def at(self, radius: FloatArray) -> FloatArray:
         """The four at radii of this piece, shape (4, n)."""
         t = np.sqrt(np.clip((radius - self.inner) / (self.outer - self.inner), 0.0, 1.0))
-        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series))
+        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series) * self.half_space(radius))
 
     @property
     def truncation(self) -> float:
         """What the last two orders contribute, relative to the largest value."""
         size = np.abs(self.series)
         return float(np.max(size[-2:].sum(axis=0) / np.maximum(size.max(axis=0), np.finfo(float).tiny)))
+
+
+def _ones(radius: FloatArray) -> FloatArray:
+    return np.ones((4, *radius.shape))
+
+
+def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray], FloatArray]:
+    """What a pointed profile does on the half-space up to a radius [m], at radii: shape (4, n).
+
+    phi under a unit depth is 1, of the profile g_hs [m]; k_N/E* is 2 a [m], and the moment 2 int_0^a g_hs da [m^2].
+    """
+    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4  # relative to themselves as dense at the axis
+    g_hs = CubicSpline(knots, half_space_load(indenter, knots))
+    moment = g_hs.antiderivative()
+    return lambda a: np.array([np.ones_like(a), g_hs(a), 2.0 * a, 2.0 * moment(a)])
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,7 +110,7 @@ class AdhesiveBranch:
 
         flat = scene.indenter.flat_radius
         ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
-        return cls(scene, cells, tuple(Piece.through(low, high, solve) for low, high in pairwise(ends)))
+        return cls(scene, cells, tuple(Piece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)))
 
     @property
     def largest_radius(self) -> float:

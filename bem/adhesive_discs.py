@@ -7,10 +7,11 @@ from typing import Final
 
 import numpy as np
 
-from bem.adhering_disc import is_measured
+from bem.adhering_disc import FARTHEST, is_measured
 from bem.adhesive_branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesive_history import Held, at_radii, followed
 from bem.adhesive_withdrawal import Control, Withdrawal, stable, strength
+from bem.pixel_disc import measured_disc
 from bem.surface_fields import AdheringFields, FieldSequence
 from contact import (
     ContactPath,
@@ -64,7 +65,8 @@ class AdheringDiscs:
             {name: np.array([getattr(state, name) for state in steps]) for name in ContactPath.ARRAYS}
             for steps in (states, others)
         )
-        errors = {name: _difference(values[name], other[name]) + self._floor(fine) for name in ContactPath.ARRAYS}
+        times, floor = self._times(values["contact_radius"]), self._floor(fine)
+        errors = {name: times * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -90,9 +92,10 @@ class AdheringDiscs:
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
         depth, force, floor = fine.depth(radius), fine.force(radius), self._floor(fine)
         share = dict.fromkeys(pull_off, floor) | {"pull_off_depth": floor * _swing(depth, pull_off["pull_off_depth"])}
-        errors = {name: np.atleast_1d(abs(other[name] / value - 1.0) + share[name]) for name, value in pull_off.items()}
-        errors["indentation_depth"] = _difference(depth, coarse.depth(radius)) + floor
-        errors["normal_force"] = _difference(force, coarse.force(radius)) + floor
+        times = self._times(np.array([pull_off["pull_off_contact_radius"]]))
+        errors = {name: times * abs(other[name] / value - 1.0) + share[name] for name, value in pull_off.items()}
+        errors["indentation_depth"] = self._times(radius) * _difference(depth, coarse.depth(radius)) + floor
+        errors["normal_force"] = self._times(radius) * _difference(force, coarse.force(radius)) + floor
         return DetachmentPath(
             scene=self.scene,
             method="bem",
@@ -157,6 +160,15 @@ class AdheringDiscs:
         """Relative error that the difference of two grids may not show."""
         measured = is_measured(self.scene.layer, self.scene.indenter)
         return (MEASURED_ERROR if measured else EDGE_ERROR) / self.points + branch.truncation + FLOOR
+
+    def _times(self, radius: FloatArray) -> FloatArray:
+        """How often the difference of two grids counts.
+
+        Twice where the ring of cells that tells the edge value is wider than the layer is thick: the edge value changes
+        over that thickness, so convergence is of first order only.
+        """
+        ring = FARTHEST * radius / measured_disc(self.points, False).radius
+        return np.where(ring > self.scene.layer.thickness, 2.0, 1.0)
 
     def _fields(self, held: Held) -> AdheringFields:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, self.points, self.threads)
