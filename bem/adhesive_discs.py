@@ -67,6 +67,9 @@ class AdheringDiscs:
         )
         times, floor = self._times(values["contact_radius"]), self._floor(fine)
         errors = {name: times * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
+        errors["normal_force"] += self._cancelled(
+            fine, values["contact_stiffness"] * values["indentation_depth"], values["normal_force"]
+        )
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -96,6 +99,7 @@ class AdheringDiscs:
         errors = {name: times * abs(other[name] / value - 1.0) + share[name] for name, value in pull_off.items()}
         errors["indentation_depth"] = self._times(radius) * _difference(depth, coarse.depth(radius)) + floor
         errors["normal_force"] = self._times(radius) * _difference(force, coarse.force(radius)) + floor
+        errors["normal_force"] += self._cancelled(fine, fine.stiffness(radius) * depth, force)
         return DetachmentPath(
             scene=self.scene,
             method="bem",
@@ -160,6 +164,15 @@ class AdheringDiscs:
         """Relative error that the difference of two grids may not show."""
         measured = is_measured(self.scene.layer, self.scene.indenter)
         return (MEASURED_ERROR if measured else EDGE_ERROR) / self.points + branch.truncation + FLOOR
+
+    def _cancelled(self, branch: AdhesiveBranch, pushed: FloatArray, force: FloatArray) -> float:
+        """What the force loses besides the floor: it is the difference of k_N delta, `pushed`, and the moment.
+
+        Where the half-space measures the edge, its values are far better than the floor and lose nothing visible.
+        """
+        if is_measured(self.scene.layer, self.scene.indenter):
+            return 0.0
+        return self._floor(branch) * float(np.max(np.abs(pushed))) / (float(np.max(np.abs(force))) or np.inf)
 
     def _times(self, radius: FloatArray) -> FloatArray:
         """How often the difference of two grids counts.
