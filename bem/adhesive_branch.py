@@ -56,9 +56,8 @@ class Piece:
         t = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
         radius = inner + (outer - inner) * t**2
         values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in map(solve, radius.tolist())])
-        return cls(
-            inner, outer, chebyshev.chebfit(2.0 * t - 1.0, values / half_space(radius).T, NODES - 1), half_space
-        )
+        series = chebyshev.chebfit(2.0 * t - 1.0, values / half_space(radius).T, NODES - 1)
+        return cls(inner, outer, np.asarray(series, dtype=np.float64), half_space)
 
     def at(self, radius: FloatArray) -> FloatArray:
         """The four at radii of this piece, shape (4, n)."""

@@ -38,8 +38,11 @@ class FlatPunchSolution(Protocol):
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar and c_bar."""
 
-    def moment_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of integrals of q over arcsin(rho), as Eqs. (11) and (12) take them."""
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Bound of the relative error of integrals of q over arcsin(rho), as Eqs. (11) and (12) take them.
+
+        They run from rho = `start`, b/a under a flat end of radius b, to the edge.
+        """
 
 
 @runtime_checkable

@@ -14,7 +14,7 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, RectBivariateSpline, make_interp_spline
 
 from bem.kernels import Support
@@ -37,7 +37,7 @@ class FlatPunchTable:
         pressure: p_bar, shape (n, m), Eq. (10).
         error: Bound of the relative error of k_bar and c_bar, shape (n,).
         pressure_error: Bound of the error of q at any radius, relative to its largest value, shape (n,).
-        mean_error: Bound of the relative error of integrals of q over arcsin(rho), shape (n,).
+        mean_error: Bound of the relative error of integrals of q over arcsin(rho) from each radius to the edge, (n, m).
         provenance: Where the numbers come from, in names and plain values.
 
     Raises:
@@ -62,7 +62,8 @@ class FlatPunchTable:
         rows, columns = len(self.ratios), len(self.radii)
         _check_values("stiffness k_bar", self.stiffness, (rows,))
         _check_values("pressure p_bar", self.pressure, (rows, columns))
-        for name in ("error", "pressure_error", "mean_error"):
+        _check_values("mean_error", self.mean_error, (rows, columns))
+        for name in ("error", "pressure_error"):
             _check_values(name, getattr(self, name), (rows,))
 
     @property
@@ -102,14 +103,16 @@ class FlatPunchTable:
         """Bound of the error of q at any radius, relative to its largest value."""
         return self._larger_neighbour(self.pressure_error, ratio)
 
-    def moment_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of integrals of q over arcsin(rho)."""
-        return self._larger_neighbour(self.mean_error, ratio)
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Bound of the relative error of integrals of q over arcsin(rho) from rho = `start` to the edge."""
+        xi, rho = np.broadcast_arrays(self._checked(ratio), np.asarray(start, dtype=np.float64))
+        pairs = [(i, j) for i in _neighbours(self.ratios, xi) for j in _neighbours(self.radii, rho)]
+        return np.asarray(np.max([self.mean_error[i, j] for i, j in pairs], axis=0))
 
     def _larger_neighbour(self, error: FloatArray, ratio: ArrayLike) -> FloatArray:
         """The larger of the errors of the two rows around each ratio."""
-        place = np.searchsorted(self.ratios, self._checked(ratio))
-        return np.asarray(np.maximum(error[np.maximum(place - 1, 0)], error[place]))
+        below, above = _neighbours(self.ratios, self._checked(ratio))
+        return np.asarray(np.maximum(error[below], error[above]))
 
     def _checked(self, ratio: ArrayLike) -> FloatArray:
         xi = np.asarray(ratio, dtype=np.float64)
@@ -138,6 +141,12 @@ class FlatPunchTable:
 def chebyshev_radii(count: int) -> FloatArray:
     """rho = sin(theta) at the midpoints of `count` equal intervals of theta in [0, pi/2]; none lies on the edge."""
     return np.asarray(np.sin((np.arange(count) + 0.5) * (np.pi / (2 * count))))
+
+
+def _neighbours(axis: FloatArray, values: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Numbers of the entries of an axis below and above values; at its ends twice the last."""
+    place = np.searchsorted(axis, values)
+    return np.maximum(place - 1, 0), np.minimum(place, len(axis) - 1)
 
 
 def _check_axis(name: str, values: FloatArray, above: float, below: float) -> None:

@@ -33,6 +33,6 @@ class HalfSpaceFlatPunch:
         """Exact."""
         return np.zeros(np.shape(ratio))
 
-    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """Exact."""
         return np.zeros(np.shape(ratio))

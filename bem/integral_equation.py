@@ -133,7 +133,7 @@ class IntegralEquationSolution:
         rounding = 1 + np.exp(np.interp(np.log(np.maximum(ratio, 1.0)), *self._condition))
         return 2 * self._truncation[panels] + 4 * np.finfo(float).eps * rounding
 
-    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """As that of the stiffnesses: the same density gives both."""
         return self.relative_error(ratio)
 

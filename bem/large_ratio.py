@@ -112,7 +112,7 @@ class LargeRatioSolution:
         within = self.near.relative_error(np.minimum(ratio, self.near.max_ratio))
         return np.where(ratio <= self.near.max_ratio, within, self.error)
 
-    def moment_error(self, ratio: ArrayLike) -> FloatArray:
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """As that of the stiffnesses."""
         return self.relative_error(ratio)
 

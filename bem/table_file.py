@@ -24,7 +24,7 @@ from contact.record import Record, record
 from contact.storage import read_tree, write_tree
 from contact.validation import FloatArray
 
-SCHEMA: Final = "contact-verification/flat-punch-table/2"
+SCHEMA: Final = "contact-verification/flat-punch-table/3"
 LIMIT_TOLERANCE: Final = 0.05  # a foreign table that misses a limit by more is of another kernel or normalisation
 THICK: Final = 0.05  # a/h below which k_bar = 1/(1 - c a/h) to 1e-4
 THIN: Final = 100.0  # a/h above which the thin-layer limits hold to 10 h/a, except for 0.45 < nu < 0.5
@@ -92,8 +92,8 @@ def read_foreign_table(
         place = table.ratios[falling[0]]
         raise InvalidInput(f"{path}: k_bar must grow with a/h, but falls after a/h = {place:g}")
     error = defect if relative_error is None else relative_error
-    everywhere = np.full(len(table.ratios), error)
-    return replace(table, error=everywhere, pressure_error=everywhere, mean_error=everywhere)
+    everywhere = np.full(table.pressure.shape, error)
+    return replace(table, error=everywhere[:, 0], pressure_error=everywhere[:, 0], mean_error=everywhere)
 
 
 @record
@@ -181,8 +181,13 @@ def _table(
         stiffness=stiffness,
         pressure=pressure,
         provenance=provenance,
-        **(dict.fromkeys(ERRORS, np.zeros(len(ratios))) | errors),
+        **(_unknown_errors(pressure) | errors),
     )
+
+
+def _unknown_errors(pressure: FloatArray) -> dict[str, FloatArray]:
+    """No errors yet, of the shapes that a table needs."""
+    return {"error": np.zeros(len(pressure)), "pressure_error": np.zeros(len(pressure)), "mean_error": 0.0 * pressure}
 
 
 def _check_normalisation(path: str | Path, table: FlatPunchTable) -> float:

@@ -49,7 +49,7 @@ def equivalent_system(
     g_hs = _half_space_function(solution, indenter, unit, max_radius)
     springs = _springs_at_nodes(solution, g_hs, indenter.flat_radius / unit)
     profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
-    _refuse_rings(profile, indenter, unit)
+    _refuse_rings(profile, indenter, unit, _noise(solution, max_radius / unit))
     return EquivalentSystem(
         contact_modulus=layer.contact_modulus,
         length_unit=unit,
@@ -249,10 +249,18 @@ def _springs_at_nodes(solution: FlatPunchSolution, g_hs: MappedFunction, flat: f
     return solution.normalized_spring_stiffness(np.minimum(flat + g_hs.grid.nodes, solution.max_ratio))
 
 
-def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float) -> None:
+def _noise(solution: FlatPunchSolution, ratio: float) -> float:
+    """How far a profile may fall, relative to its height, for no other reason than a table's noise."""
+    if isinstance(solution, HalfSpaceFlatPunch | IntegralEquationSolution | LargeRatioSolution):
+        return 0.0
+    return float(solution.relative_error(ratio) + solution.moment_error(ratio))
+
+
+def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float, noise: float) -> None:
     """One circle of contact needs g to increase; where it does not, the indenter touches somewhere else first."""
     if isinstance(indenter, FlatPunch):
         return
-    falling = profile.node_slopes <= 0
+    highest = np.maximum.accumulate(profile.node_values.ravel()).reshape(profile.node_values.shape)
+    falling = (profile.node_slopes <= 0) & (profile.node_values <= (1 - noise) * highest)
     if np.any(falling):
         raise SeveralContacts(indenter.flat_radius + unit * float(profile.grid.nodes[falling].min()))

@@ -140,8 +140,9 @@ def _errors(
     # F = k_N delta - moment: the errors of both terms count against their difference
     spread = system.contact_stiffness(radius) * depth / force
     moved, growth = exact, exact
-    if given != "ContactRadii":  # d(ln a)/d(ln delta) and d(ln k_N)/d(ln a)
-        moved = errors["contact_radius"] * depth / (radius * system.mdr_profile_slope(radius))
+    if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
+        searched = errors["normal_force" if given == "NormalForces" else "contact_radius"]
+        moved = searched * depth / (radius * np.abs(system.mdr_profile_slope(radius)))  # a table's noise may fall
         growth = 2.0 * system.spring_stiffness(radius) * radius / system.contact_stiffness(radius)
     return {
         "contact_radius": moved,

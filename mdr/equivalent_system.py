@@ -117,7 +117,7 @@ class EquivalentSystem:
         """Bounds of the relative errors of an elastic contact's quantities at each radius."""
         ratio = self._ratio(contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
-        moment = self.flat_punch.moment_error(ratio) + ROUNDING
+        moment = self.flat_punch.moment_error(ratio, self._flat_share(contact_radius)) + ROUNDING
         depth = stiffness + np.maximum(stiffness, moment) + self.profile_error
         return {
             "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
@@ -125,6 +125,11 @@ class EquivalentSystem:
             "normal_force": depth + stiffness,
             "contact_stiffness": stiffness,
         }
+
+    def _flat_share(self, contact_radius: FloatArray) -> FloatArray:
+        """b/a: beside the flat end, only flat-punch pressures near the edge count."""
+        a = np.asarray(contact_radius, dtype=float)
+        return np.asarray(np.divide(self.flat_radius, a, out=np.zeros_like(a), where=a > self.flat_radius))
 
     @property
     def _force_unit(self) -> float:

@@ -124,7 +124,7 @@ def test_too_few_iterations_raise_with_the_residual():
 @pytest.mark.parametrize("gap", [1e-2, 1e-4, 1e-7, 1e-12, 0.0])
 @pytest.mark.parametrize("thickness", [5.0, 0.3])
 def test_a_nearly_incompressible_layer_takes_no_more_iterations(gap, thickness):
-    """Found by random scenes: the mean mode hardly answers there, and its inverse drowned all others (200 did not do)."""
+    """Found by random scenes: the mean mode hardly answers there: its inverse drowned all others (200 did not do)."""
     layer = Layer(thickness=thickness, youngs_modulus=1.0, poissons_ratio=0.5 - gap, support="bonded")
     operator = FreeSpaceOperator(layer, cell_size=2.3 / 64, cells=64, quarter=True)
     answer = solve_contact(operator, quadrant_radius(64, 2.3) ** 2 / 2, depth=0.6)

@@ -48,6 +48,20 @@ def test_stated_error_covers_the_true_error_of_pressure(pair):
     assert np.all(mean <= table.moment_error(RATIOS))
 
 
+@pytest.mark.parametrize("settings", [{"ratios": 20}, {"ratios": 60, "radii": 12}])
+def test_what_few_rows_and_columns_cost_is_stated(settings):
+    """Reading between 20 rows costs 2e-3; the difference of two grids with the same rows does not show it."""
+    material, rho = layer("bonded", 0.5), np.linspace(0.0, 1.0, 30)
+    table, exact = FftTable(cells=64, **settings).solution(material, 2.0), IntegralEquation().solution(material, 2.0)
+    ratios = RATIOS[RATIOS <= 2.0]
+    for name in ("normalized_contact_stiffness", "normalized_spring_stiffness"):
+        error = np.abs(getattr(table, name)(ratios) / getattr(exact, name)(ratios) - 1.0)
+        assert np.all(error <= table.relative_error(ratios))
+    q, expected = table.smooth_pressure(rho, ratios[:, None]), exact.smooth_pressure(rho, ratios[:, None])
+    error = np.max(np.abs(q - expected), axis=1) / np.max(expected, axis=1)
+    assert np.all(error <= table.smooth_pressure_error(ratios))
+
+
 def test_stiffness_is_stated_to_be_better_known_than_pressure(pair):
     table, _ = pair
     resolved = (table.ratios > 0.1) & (table.ratios < 1.0)
@@ -100,7 +114,7 @@ def test_tables_with_bad_arrays_are_refused():
         "pressure": np.ones((8, 20)),
         "error": np.zeros(8),
         "pressure_error": np.zeros(8),
-        "mean_error": np.zeros(8),
+        "mean_error": np.zeros((8, 20)),
     }
     FlatPunchTable(**good)
     for name, bad in [

@@ -47,7 +47,8 @@ def tabulated():
     rho = np.sin((np.arange(100) + 0.5) * np.pi / 200)
     pressure = np.array([exact.smooth_pressure(rho, a) for a in ratios]) / np.sqrt(1 - rho**2)
     stiffness = exact.normalized_contact_stiffness(ratios)
-    return GivenTable(FlatPunchTable("bonded", 0.5, ratios, rho, stiffness, pressure, *3 * [np.full(120, TABLE_ERROR)]))
+    error = np.full((120, 100), TABLE_ERROR)
+    return GivenTable(FlatPunchTable("bonded", 0.5, ratios, rho, stiffness, pressure, error[:, 0], error[:, 0], error))
 
 
 @pytest.mark.parametrize(
