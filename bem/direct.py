@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from math import log2
 from typing import ClassVar, Final, Literal, Self
 
 import numpy as np
@@ -23,6 +24,7 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
+    NotConvergedError,
     Scene,
     StageLog,
     Supported,
@@ -30,6 +32,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from contact.record import Record, record
+from contact.solution import Setting
 from contact.validation import FloatArray
 
 PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
@@ -44,7 +47,8 @@ SECOND_ORDER: Final = 0.1  # times (s/a)^2: differences of two grids may be smal
 
 
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
-STATED_ERROR: Final = 0.2  # over the points: of force at a given radius, the largest of the stated errors
+FINEST_ACCURACY: Final = 1e-6
+BEST_GAIN: Final = 4.0  # of twice as many points: second order
 
 
 @record
@@ -53,6 +57,8 @@ class Bem(Record):
 
     Attributes:
         points: Cells across the box, a multiple of 4.
+        accuracy: Relative accuracy wanted in all quantities but the pressure; then the points are chosen: those of
+            `ACCURACY_POINTS` are tried in turn until the stated errors hold.
         boundary: "free" space, or "periodic" with 16 thicknesses between images (thin layers; no half-space).
         tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
         threads: Threads of FFTW.
@@ -67,13 +73,14 @@ class Bem(Record):
     in their order, from out of contact (`adhesive_history`).
 
     Raises:
-        InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, or the tolerance is
-            not in (0, 1e-2].
+        InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, the tolerance is not
+            in (0, 1e-2], or the accuracy not in [1e-6, 0.1].
     """
 
     name: ClassVar[str] = "bem"
 
     points: int = 512
+    accuracy: float | None = None
     boundary: Boundary = "free"
     tolerance: float = 1e-7
     threads: int = Field(default=1, ge=1)
@@ -85,19 +92,9 @@ class Bem(Record):
             raise InvalidInput(f"points must be a multiple of 4 and at least {2 * LEAST_CELLS}, got {self.points}")
         if not 0.0 < self.tolerance <= 1e-2:
             raise InvalidInput(f"tolerance must lie in (0, 0.01], got {self.tolerance:g}")
-
-    @classmethod
-    def for_accuracy(cls, accuracy: float) -> Self:
-        """The coarsest grid that states a relative error of at most `accuracy` for profiles without a near kink.
-
-        Raises:
-            InvalidInput: If no grid of `ACCURACY_POINTS` does.
-        """
-        enough = [points for points in ACCURACY_POINTS if STATED_ERROR / points <= accuracy]
-        if not enough:
-            finest = STATED_ERROR / ACCURACY_POINTS[-1]
-            raise InvalidInput(f"accuracy = {accuracy:g}: boundary elements reach {finest:.0e}; ask mdr or fem")
-        return cls(points=enough[0])
+        if self.accuracy is not None and not FINEST_ACCURACY <= self.accuracy <= 0.1:
+            finest = f"got {self.accuracy:g}; mdr and fem reach finer ones"
+            raise InvalidInput(f"accuracy must lie in [{FINEST_ACCURACY:g}, 0.1], {finest}")
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
@@ -115,7 +112,9 @@ class Bem(Record):
         return Supported()
 
     def refined(self) -> Self:
-        """A copy with half the cell size."""
+        """A copy with half the cell size, or the accuracy of half the cell size."""
+        if self.accuracy is not None:
+            return dataclasses.replace(self, accuracy=max(self.accuracy / BEST_GAIN, FINEST_ACCURACY))
         return dataclasses.replace(self, points=2 * self.points)
 
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
@@ -124,11 +123,13 @@ class Bem(Record):
         Raises:
             UnsupportedSceneError: If `supports` says no.
             InvalidInput: If nothing adheres, a force pulls too much, or the contact outgrows the indenter.
-            NotConvergedError: If a tolerance was missed.
+            NotConvergedError: If a tolerance was missed, or the accuracy with as many points as there may be.
         """
         answer = self.supports(scene)
         if isinstance(answer, Unsupported):
             raise UnsupportedSceneError(answer.reason)
+        if self.accuracy is not None:
+            return self._solve_to_accuracy(scene, self.accuracy)
         log = StageLog()
         adhesion = scene.effect(Adhesion)
         if adhesion is None:
@@ -139,12 +140,32 @@ class Bem(Record):
             return dataclasses.replace(self._press(scene.replace(effects=()), log), scene=scene)
         return self._adhering(scene, log)
 
+    def _solve_to_accuracy(self, scene: Scene, accuracy: float) -> ContactPath | DetachmentPath:
+        """More and more points, until the stated errors hold or even the finest grid would not do."""
+        for points in ACCURACY_POINTS:
+            path = dataclasses.replace(self, points=points, accuracy=None).solve(scene)
+            errors = {name: float(np.max(error)) for name, error in path.error_estimate.items() if name != "pressure"}
+            worst = max(errors, key=lambda name: errors[name])
+            if errors[worst] <= accuracy:
+                return dataclasses.replace(path, settings=dict(path.settings) | {"accuracy": accuracy})
+            reachable = errors[worst] * (points / ACCURACY_POINTS[-1]) ** log2(BEST_GAIN)
+            if reachable > accuracy:
+                break
+        what = f"{points} points state {errors[worst]:.1e} of the {worst.replace('_', ' ')}"
+        more = f", {ACCURACY_POINTS[-1]} would about {reachable:.0e}" if points < ACCURACY_POINTS[-1] else ""
+        message = f"accuracy = {accuracy:g} was not reached: {what}{more}; ask for less, or mdr or fem"
+        raise NotConvergedError(message, {"stated_error": errors[worst]})
+
+    def _settings(self) -> dict[str, Setting]:
+        """As the answer states them; an accuracy only where one was asked for."""
+        return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
+
     def _adhering(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath:
         from bem.adhesive_cells import AdheringCells  # noqa: PLC0415 - only listed effects load
         from bem.adhesive_discs import AdheringDiscs  # noqa: PLC0415
 
         kind = AdheringCells if self.adhesion == "cells" else AdheringDiscs
-        adhering = kind(scene, self.points, self.threads, dataclasses.asdict(self), log)
+        adhering = kind(scene, self.points, self.threads, self._settings(), log)
         if isinstance(scene.loading, Detachment):
             return adhering.detachment(scene.loading.control)
         return adhering.equilibria()
@@ -157,7 +178,7 @@ class Bem(Record):
         return ContactPath(
             scene=scene,
             method=self.name,
-            settings=dataclasses.asdict(self),
+            settings=self._settings(),
             cost=log.cost(unknowns=self.points**2 // 4),
             stages=log.records,
             fields=FieldSequence(tuple(step.fields for step in steps)),

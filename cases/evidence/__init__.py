@@ -6,7 +6,7 @@
 - ``choice``: the cheapest measured settings for a requested accuracy, and the answer with what it achieved
 """
 
-from cases.evidence.choice import Choice, Outcome, choose, solve_to_accuracy
+from cases.evidence.choice import Choice, Outcome, choose, solve
 from cases.evidence.records import Evidence, Measurement, shipped
 
-__all__ = ["Choice", "Evidence", "Measurement", "Outcome", "choose", "shipped", "solve_to_accuracy"]
+__all__ = ["Choice", "Evidence", "Measurement", "Outcome", "choose", "shipped", "solve"]

@@ -7,11 +7,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Final
 
+import numpy as np
+
 from cases.evidence.calibrate import largest_stated_error
 from cases.evidence.kinds import band_of, kind_of
 from cases.evidence.records import Evidence, Measurement, shipped
 from cases.methods import build
-from contact import InvalidInput, Scene, Solution
+from contact import InvalidInput, NotConvergedError, Scene, Solution
 
 SAFETY: Final = 2.0  # the sample's worst scene is not the world's worst
 MOST_REFUSED: Final = 0.2  # share of the sample that a setting may have refused by name
@@ -43,8 +45,8 @@ class Outcome:
     Attributes:
         choice: What it was solved with.
         answer: The solution.
-        stated_error: Largest relative error that the answer states for itself.
-        seconds: Processor time it took [s].
+        stated_error: Largest relative error that the answer states for itself, at most the accuracy asked for.
+        seconds: Processor time it took [s], attempts that stated more included.
     """
 
     choice: Choice
@@ -65,31 +67,56 @@ def choose(scene: Scene, accuracy: float, *, within: float | None = None, eviden
     Raises:
         InvalidInput: If nothing measured reaches that; the message says what is reachable.
     """
+    return choices(scene, accuracy, within=within, evidence=evidence)[0]
+
+
+def choices(scene: Scene, accuracy: float, *, within: float | None, evidence: Evidence | None) -> list[Choice]:
+    """All measured settings that reach it, fastest first; arguments and errors as in `choose`."""
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative error")
     like = list(usable(scene, (evidence or shipped()).measurements))
-    good = [m for m in like if SAFETY * m.bound <= accuracy]
-    best = min(good, key=lambda m: m.seconds, default=None)
-    if best is None or (within is not None and best.seconds > within):
+    good = sorted((m for m in like if SAFETY * m.bound <= accuracy), key=lambda m: m.seconds)
+    if not good or (within is not None and good[0].seconds > within):
         raise InvalidInput(_reachable(like, accuracy, within))
-    return Choice(
-        method=best.method,
-        settings=best.settings,
-        expected_error=SAFETY * best.bound,
-        expected_seconds=best.seconds,
-        evidence=best,
-    )
+    return [
+        Choice(
+            method=m.method,
+            settings=m.settings,
+            expected_error=SAFETY * m.bound,
+            expected_seconds=m.seconds,
+            evidence=m,
+        )
+        for m in good
+    ]
 
 
-def solve_to_accuracy(
-    scene: Scene, accuracy: float, *, within: float | None = None, evidence: Evidence | None = None
-) -> Outcome:
-    """Choose settings and solve; arguments and errors as in `choose`, errors of the method besides."""
-    choice = choose(scene, accuracy, within=within, evidence=evidence)
-    start = time.process_time()
-    answer = build(choice.method, choice.settings).solve(scene)
-    seconds = time.process_time() - start
-    return Outcome(choice=choice, answer=answer, stated_error=largest_stated_error(answer), seconds=seconds)
+def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None) -> Outcome:
+    """Solve with the cheapest measured settings for an accuracy; where the answer states less, with the next.
+
+    Args:
+        scene: What is to be solved.
+        accuracy: Largest relative error wanted, of any quantity; the answer states no larger one.
+        within: Processor time that may be spent [s], as far as it was measured on such scenes.
+        evidence: Measurements; by default those shipped with the package.
+
+    Raises:
+        InvalidInput: If nothing measured reaches that; the message says what is reachable.
+        NotConvergedError: If the answers of all measured settings, or of those there is time for, state larger errors.
+        ContactError: As raised by the method.
+    """
+    seconds, best = 0.0, np.inf
+    for choice in choices(scene, accuracy, within=within, evidence=evidence):
+        if within is not None and seconds + choice.expected_seconds > within:
+            break
+        start = time.process_time()
+        answer = build(choice.method, choice.settings).solve(scene)
+        seconds += time.process_time() - start
+        stated = largest_stated_error(answer)
+        if stated <= accuracy:
+            return Outcome(choice=choice, answer=answer, stated_error=stated, seconds=seconds)
+        best = min(best, stated)
+    message = f"accuracy = {accuracy:g}: answers to this scene state {best:.1e} at best, after {seconds:.2g} s"
+    raise NotConvergedError(f"{message}; ask for less, or allow more time", {"stated_error": best})
 
 
 def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measurement]:
@@ -104,7 +131,7 @@ def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measur
 def _reachable(usable: list[Measurement], accuracy: float, within: float | None) -> str:
     wanted = f"accuracy = {accuracy:g}" + ("" if within is None else f" within {within:g} s")
     if not usable:
-        return f"{wanted}: nothing was measured on scenes like this one; solve without --accuracy or run calibrate"
+        return f"{wanted}: nothing was measured on scenes like this one; solve without an accuracy or run calibrate"
     finest = min(usable, key=lambda m: m.bound)
     fastest = min(usable, key=lambda m: m.seconds)
     return (

@@ -50,7 +50,7 @@ def band_of(scene: Scene) -> float:
         if ratio <= band * (1 + 1e-9):
             return band
     raise InvalidInput(
-        f"a/h is about {ratio:.3g}, but accuracy was measured up to a/h = {BANDS[-1]:g}; solve without --accuracy and "
+        f"a/h is about {ratio:.3g}, but accuracy was measured up to a/h = {BANDS[-1]:g}; solve without an accuracy and "
         "read the stated errors"
     )
 

@@ -52,10 +52,11 @@ def _by_evidence(
     scene: Scene, accuracy: float, within: float | None, file: Path | None
 ) -> tuple[Solution, list[tuple[str, str]]]:
     """The answer with measured settings, and what was expected of them."""
-    from cases.evidence import solve_to_accuracy  # noqa: PLC0415 - only where it is asked for
+    from cases.evidence import solve as solve_by_evidence  # noqa: PLC0415 - only where it is asked for
     from cases.evidence.records import read  # noqa: PLC0415 - as above
 
-    found = solve_to_accuracy(scene, accuracy, within=within, evidence=None if file is None else read(file))
+    measured = None if file is None else read(file)
+    found = solve_by_evidence(scene, accuracy=accuracy, within=within, evidence=measured)
     choice = found.choice
     settings = ", ".join(f"{name} = {value}" for name, value in choice.settings.items())
     expected = f"error {choice.expected_error:.1e} in {duration(choice.expected_seconds)}"

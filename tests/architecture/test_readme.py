@@ -15,14 +15,14 @@ def blocks(language):
     return re.findall(rf"```{language}\n(.*?)```", TEXT, flags=re.DOTALL)
 
 
-def test_the_example_prints_what_the_readme_says(capsys):
-    (code,), (expected,) = blocks("python"), blocks("text")
+@pytest.mark.parametrize(("code", "expected"), list(zip(blocks("python"), blocks("text"), strict=True)))
+def test_an_example_prints_what_the_readme_says(code, expected, capsys):
     exec(compile(code, "README.md", "exec"), {})
     assert capsys.readouterr().out == expected
 
 
-def test_the_example_has_about_ten_lines():
-    assert 8 <= len(blocks("python")[0].strip().splitlines()) <= 12
+def test_the_examples_have_about_ten_lines():
+    assert all(8 <= len(code.strip().splitlines()) <= 12 for code in blocks("python"))
 
 
 @pytest.mark.parametrize("link", sorted(set(re.findall(r"\]\((?!https?:)([^)]+)\)", TEXT))))

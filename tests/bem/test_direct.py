@@ -16,6 +16,7 @@ from contact import (
     Layer,
     Method,
     NormalForces,
+    NotConvergedError,
     Paraboloid,
     Scene,
     Sphere,
@@ -186,12 +187,21 @@ def test_a_wrong_slope_is_seen(monkeypatch):
     assert path.contact_radius[0] != pytest.approx(1e-3, rel=5e-3)  # a^2 = R delta
 
 
-@pytest.mark.parametrize("accuracy", [2e-3, 1e-3])
-def test_an_accuracy_chooses_a_grid_that_states_it(accuracy):
-    path = Bem.for_accuracy(accuracy).solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=ContactRadii([2e-3])))
+@pytest.mark.parametrize(("accuracy", "points"), [(2e-3, 128), (1e-3, 256)])
+def test_an_accuracy_takes_as_many_points_as_state_it(accuracy, points):
+    path = Bem(accuracy=accuracy).solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=ContactRadii([2e-3])))
     assert max(float(path.error_estimate[name][0]) for name in path.ARRAYS) <= accuracy
-    with pytest.raises(InvalidInput, match="reach"):
-        Bem.for_accuracy(1e-6)
+    assert path.settings["points"] == points
+    assert path.settings["accuracy"] == accuracy
+
+
+def test_an_accuracy_out_of_reach_is_refused_with_what_is_reached():
+    scene = Scene(layer=LAYER, indenter=CONE, loading=ContactRadii([0.55e-3]))
+    with pytest.raises(NotConvergedError, match=r"128 points state \d\.\de-0\d of the .*, 2048 would about"):
+        Bem(accuracy=1e-6).solve(scene)
+    with pytest.raises(InvalidInput, match="accuracy must lie in"):
+        Bem(accuracy=1e-9)
+    assert Bem(accuracy=1e-3).refined() == Bem(accuracy=2.5e-4)
 
 
 def test_stated_errors_hold_beside_a_kink_and_at_the_end_of_the_profile():
