@@ -283,9 +283,9 @@ class ImpactHistory(Solution):
 def _frozen(name: str, values: ArrayLike, method: str) -> FloatArray:
     """A read-only float64 copy, refused if any entry is not finite."""
     array = np.array(values, dtype=np.float64)
-    bad = np.argwhere(~np.isfinite(array))
-    if bad.size:
-        place = ", ".join(str(i) for i in bad[0])
-        raise NotConvergedError(f"{method}: {name} is {array[tuple(bad[0])]} at entry ({place}); refused as an answer")
+    if not np.isfinite(array).all():
+        bad = np.argwhere(~np.isfinite(array))[0]
+        place = ", ".join(str(i) for i in bad)
+        raise NotConvergedError(f"{method}: {name} is {array[tuple(bad)]} at entry ({place}); refused as an answer")
     array.setflags(write=False)
     return array

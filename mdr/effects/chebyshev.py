@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from contact.validation import FloatArray
 
 _SAMPLES, _NEWTON_STEPS = 33, 4
+_SAMPLE_POINTS = np.linspace(-1.0, 1.0, _SAMPLES)
 _REACH = 2.0 / (_SAMPLES - 1)  # no maximum is farther from the best sample
 
 
@@ -50,15 +51,6 @@ def to_powers(count: int) -> FloatArray:
     return np.stack([_padded(chebyshev.cheb2poly(unit), count) for unit in _units(count)], axis=1)
 
 
-def horner(coefficients: FloatArray, z: FloatArray) -> FloatArray:
-    """Sum of coefficients[k] z^k over the first axis; z broadcasts against the others."""
-    value: FloatArray = coefficients[-1] * z + coefficients[-2]
-    for coefficient in coefficients[-3::-1]:
-        value *= z
-        value += coefficient
-    return value
-
-
 def powers(z: FloatArray, count: int) -> FloatArray:
     """1, z, z^2, ..., shape (count, *z.shape)."""
     ladder = np.empty((count, *z.shape))
@@ -78,17 +70,30 @@ def largest(coefficients: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
     Returns:
         Shape (lanes,).
     """
-    samples = np.linspace(-1.0, 1.0, _SAMPLES)
-    values = np.tensordot(powers(samples, coefficients.shape[0]).T, coefficients, 1)
-    first = coefficients[1:] * np.arange(1.0, coefficients.shape[0])[:, None, None]
-    second = first[1:] * np.arange(1.0, first.shape[0])[:, None, None]
-    z = samples[values.argmax(axis=0)]
+    count = coefficients.shape[0]
+    values = np.tensordot(_sample_powers(count), coefficients, 1)
+    z = _SAMPLE_POINTS[values.argmax(axis=0)]
+    first = _derivative(coefficients)
+    all_three = np.stack([coefficients, first, _derivative(first)])
     for _ in range(_NEWTON_STEPS):
-        slope, curvature = horner(first, z), horner(second, z)
+        _, slope, curvature = np.einsum("dkpl,kpl->dpl", all_three, powers(z, count))
         concave = -curvature * _REACH > np.abs(slope)  # otherwise the maximum is an end, or already found
         z = np.clip(z - np.where(concave, slope / np.where(concave, curvature, 1.0), 0.0), -1.0, 1.0)
-    found = np.maximum(values.max(axis=0), horner(coefficients, z))
+    found = np.maximum(values.max(axis=0), np.einsum("kpl,kpl->pl", coefficients, powers(z, count)))
     return np.asarray(np.where(present, found, -np.inf).max(axis=0))
+
+
+def _derivative(coefficients: FloatArray) -> FloatArray:
+    """Of polynomials in powers of z, padded to as many powers."""
+    slopes = np.zeros_like(coefficients)
+    slopes[:-1] = coefficients[1:] * np.arange(1.0, coefficients.shape[0])[:, None, None]
+    return slopes
+
+
+@cache
+def _sample_powers(count: int) -> FloatArray:
+    """Powers of z at the samples, shape (33, count)."""
+    return powers(_SAMPLE_POINTS, count).T
 
 
 def _units(count: int) -> FloatArray:

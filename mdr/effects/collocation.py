@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact import NotConvergedError
 from contact.validation import FloatArray
@@ -35,10 +36,6 @@ _STIFF = 0.02  # a step this short should converge by sweeps; where it does not,
 
 class Problem(Protocol):
     """Lanes of one kind of initial value problem."""
-
-    @property
-    def controlled(self) -> int:
-        """How many leading components of the state the error control watches."""
 
     @property
     def chain(self) -> Chain | None:
@@ -122,7 +119,7 @@ def integrate(
         problem: The right-hand sides.
         state: Initial states, shape (m, lanes).
         events: Where a lane may end.
-        tolerance: Local error within a step allowed in each controlled component relative to max(1, |component|), shape
+        tolerance: Local error within a step allowed in each component relative to max(1, |component|), shape
             (lanes,).
         first_step: Length of the first trial step, shape (lanes,).
         course: Slopes of an earlier step that ended in these states, if there was one.
@@ -157,7 +154,10 @@ class _Walk:
         course: Course,
     ) -> None:
         lanes = state.shape[1]
-        self.problem, self.events, self.tolerance = problem, events, tolerance
+        self.problem, self.tolerance = problem, tolerance
+        self.components = np.array([event.component for event in events])
+        self.targets = np.array([event.target for event in events])
+        self.directions = np.array([[event.direction] for event in events])
         self.state, self.size = state.copy(), first_step.copy()
         self.due, self.ended_by = np.full(lanes, -1, dtype=np.intp), np.full(lanes, -1, dtype=np.intp)
         self.error, self.stiff = np.zeros(lanes), np.zeros(lanes, dtype=np.bool_)
@@ -169,42 +169,41 @@ class _Walk:
 
     def step(self) -> None:
         """One trial step of every active lane, onto an event where the step is expected to reach one."""
-        start, size = self.state[:, self.active], self.size[self.active]
-        course = self._course(start)
-        due = self.due[self.active]
-        ahead = start + _ALMOST * size * course.mean(size)
-        due = np.where(due < 0, self._first_event(self.active, start, ahead), due)
-        landing = self._landing(due, start)
-        precision = self.tolerance[self.active] * np.maximum(1.0, np.abs(start[: self.problem.controlled]))
-        task = Task(start, course.aimed(size, landing), precision, landing, self.problem.chain)
-        self._settle(self._tried(task, course), due)
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # a wild trial has no finite error
+            start, size = self.state[:, self.active], self.size[self.active]
+            course = self._course(start)
+            due = self.due[self.active]
+            due = np.where(due < 0, self._first_event(start, start + _ALMOST * course.ahead(size)), due)
+            landing = self._landing(due, start)
+            precision = self.tolerance[self.active] * np.maximum(1.0, np.abs(start))
+            task = Task(start, course.aimed(size, landing), precision, landing, self.problem.chain)
+            self._settle(self._tried(task, course), due)
 
     def _settle(self, trial: Step, due: Lanes) -> None:
         """Keep what is good and ends where it should; set the size of each lane's next trial.
 
         After a failure the next trial is shorter than this one was anywhere, so that failures come to an end.
         """
-        lanes, good, start = self.active, trial.error <= 1.0, trial.task.start
-        passed = np.where(good, self._first_event(lanes, start, trial.end, but=due), -1)
+        lanes, good, end = self.active, trial.error <= 1.0, trial.end()
+        passed = np.where(good, self._first_event(trial.task.start, end, but=due), -1)
         kept = good & (passed < 0)
-        self._keep(trial, np.flatnonzero(kept), lanes)
+        self._keep(trial, end, kept)
         self.ended_by[lanes] = np.where(kept, due, -1)
         self.due[lanes] = passed
-        factor = np.clip(_SAFETY * np.maximum(trial.error, 1e-9) ** (-1.0 / STAGES), _SHRINK, _GROW)
+        factor = np.minimum(np.maximum(_SAFETY * np.maximum(trial.error, 1e-9) ** (-1.0 / STAGES), _SHRINK), _GROW)
         shortest = np.minimum(factor, 1.0) * np.minimum(trial.task.size, trial.size)
         next_size = np.where(good, np.where(passed < 0, factor, 1.0) * trial.size, shortest)
         self.size[lanes] = np.where(kept & (due >= 0), np.maximum(next_size, self.size[lanes]), next_size)
         self.course.follow(trial, lanes, ended=kept)
-        if (self.ended_by[lanes] >= 0).any():
+        if np.count_nonzero(self.ended_by[lanes] >= 0):
             self.active = lanes[self.ended_by[lanes] < 0]
             self.derivative = self.problem.derivative(self.active)
 
     def _course(self, start: FloatArray) -> Course:
         """Where the active lanes are heading."""
-        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is refused by name
-            course = self.course.take(self.active).completed(self.derivative, start)
-        lost = np.flatnonzero(~np.isfinite(course.slopes).all(axis=(0, 1)))
-        if lost.size:
+        course = self.course.take(self.active).completed(self.derivative, start)
+        if not np.isfinite(course.slopes).all():
+            lost = np.flatnonzero(~np.isfinite(course.slopes).all(axis=(0, 1)))
             raise NotConvergedError(
                 f"motion {self.active[lost[0]]} left all bounds: a relaxation time is far below its duration"
             )
@@ -212,46 +211,45 @@ class _Walk:
 
     def _landing(self, due: Lanes, start: FloatArray) -> Landing | None:
         """Which component must end where; a lane on no event aims at nothing."""
-        here = np.flatnonzero(due >= 0)
-        if not here.size:
+        if not np.count_nonzero(due >= 0):
             return None
-        component = np.array([e.component for e in self.events])[due[here]]
-        target = np.stack([e.target for e in self.events])[due[here], self.active[here]]
-        return Landing(here, component, target - start[component, here])
+        event = np.maximum(due, 0)
+        component = self.components[event]
+        target = self.targets[event, self.active]
+        return Landing(due >= 0, component, target - start[component, np.arange(component.size)])
 
     def _tried(self, task: Task, course: Course) -> Step:
         """A step by sweeps, and by Newton's method for lanes that turn out to be stiff."""
         lanes = self.active
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # a wild trial has no finite error
-            trial = swept_step(self.derivative, task, course)
-            self.sweeps += trial.sweeps
-            self.stiff[lanes] |= ~np.isfinite(trial.error) & (task.size < _STIFF)
-            hard = np.flatnonzero(self.stiff[lanes] & ~np.isfinite(trial.error))
-            if hard.size:
-                harder = newton_step(self.problem.derivative(lanes[hard]), task.take(hard))
-                trial.put(hard, harder)
-                self.sweeps += harder.sweeps
+        trial = swept_step(self.derivative, task, course)
+        self.sweeps += trial.sweeps
+        lost = ~np.isfinite(trial.error)
+        self.stiff[lanes] |= lost & (task.size < _STIFF)
+        hard = np.flatnonzero(self.stiff[lanes] & lost)
+        if hard.size:
+            harder = newton_step(self.problem.derivative(lanes[hard]), task.take(hard))
+            trial.put(hard, harder)
+            self.sweeps += harder.sweeps
         return trial
 
-    def _first_event(self, lanes: Lanes, start: FloatArray, end: FloatArray, but: Lanes | None = None) -> Lanes:
-        """Index of the event that each lane meets first, judged by linear interpolation; -1 for none."""
-        first, earliest = np.full(lanes.size, -1, dtype=np.intp), np.full(lanes.size, np.inf)
-        for number, event in enumerate(self.events):
-            gap = event.direction * (event.target[lanes] - start[event.component])
-            travel = event.direction * (end[event.component] - start[event.component])
-            reached = (travel >= gap) & (travel > 0.0)
-            if but is not None:
-                reached &= but != number
-            if reached.any():
-                share = np.where(reached, gap / np.where(reached, travel, 1.0), np.inf)
-                first, earliest = np.where(share < earliest, number, first), np.minimum(share, earliest)
-        return first
+    def _first_event(self, start: FloatArray, end: FloatArray, but: Lanes | None = None) -> Lanes:
+        """Index of the event that each active lane meets first, judged by linear interpolation; -1 for none."""
+        gap = self.directions * (self.targets[:, self.active] - start[self.components])
+        travel = self.directions * (end[self.components] - start[self.components])
+        reached = (travel >= gap) & (travel > 0.0)
+        if but is not None:
+            reached &= but != np.arange(reached.shape[0])[:, None]
+        if not np.count_nonzero(reached):
+            return np.full(self.active.size, -1, dtype=np.intp)
+        share = np.where(reached, gap / np.where(reached, travel, 1.0), np.inf)
+        return np.where(reached.any(axis=0), share.argmin(axis=0), -1)
 
-    def _keep(self, trial: Step, kept: Lanes, lanes: Lanes) -> None:
-        if kept.size:
-            self.pieces.append((lanes[kept], trial.task.start[:, kept], trial.polynomial()[:, :, kept]))
-            self.error[lanes[kept]] += self.tolerance[lanes[kept]] * (trial.error[kept] + SWEEP_TOLERANCE)
-            self.state[:, lanes[kept]] = trial.end[:, kept]
+    def _keep(self, trial: Step, end: FloatArray, kept: NDArray[np.bool_]) -> None:
+        if np.count_nonzero(kept):
+            lanes = self.active[kept]
+            self.pieces.append((lanes, trial.task.start[:, kept], trial.polynomial()[:, :, kept]))
+            self.error[lanes] += self.tolerance[lanes] * (trial.error[kept] + SWEEP_TOLERANCE)
+            self.state[:, lanes] = end[:, kept]
 
     def trajectory(self) -> Trajectory:
         """The record of all steps, padded with zeros where a lane has fewer than others."""
@@ -263,7 +261,7 @@ class _Walk:
         filled = np.zeros_like(counts)
         for lanes, start, piece in self.pieces:
             starts[:, filled[lanes], lanes] = start
-            steps[:, :, filled[lanes], lanes] = piece
+            steps[:, :, filled[lanes], lanes] = np.swapaxes(piece, 0, 1)
             filled[lanes] += 1
         return Trajectory(
             self.state, self.ended_by, counts, starts, steps, self.error, self.size, self.course, self.sweeps

@@ -31,46 +31,41 @@ _AIMS = 3  # Newton steps towards an event on the polynomial of the step before
 _NEAREST = 0.01  # share of a step at which an event is first looked for
 _LEAST, _MOST = 0.5, 1.5  # a sweep may change a length by
 _DIFFERENCE = 1e-7  # of a state: to differentiate its slopes
+_NUMBERS = np.arange(1.0, STAGES + 1.0)[:, None]
 
-_POINTS, _GAUSS_WEIGHTS = legendre.leggauss(STAGES)
-_ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(_POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
+POINTS, _GAUSS_WEIGHTS = legendre.leggauss(STAGES)
+_ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
 _INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ _ANALYSIS
-_TO_STAGES = 0.5 * legendre.legvander(_POINTS, STAGES) @ _INTEGRALS  # from slopes to states, for a unit step
-_TO_END = 0.5 * _GAUSS_WEIGHTS
+TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS  # from slopes to states, for a unit step
+TO_END = 0.5 * _GAUSS_WEIGHTS
 _AT_END = np.ones(STAGES) @ _ANALYSIS  # the slope there: all Legendre polynomials are 1
 _POWERS = np.stack([np.pad(legendre.leg2poly(u), (0, STAGES - i)) for i, u in enumerate(np.eye(STAGES + 1))], axis=1)
-_CHANGE = 0.5 * _POWERS @ _INTEGRALS  # from slopes to powers of z of the change of state
+CHANGE = 0.5 * _POWERS @ _INTEGRALS  # from slopes to powers of z of the change of state
 _WITHIN = _POWERS[:STAGES, :STAGES] @ _ANALYSIS  # from slopes to powers of z of themselves
 _ONWARD = _POWERS[:STAGES, :_CARRIED] @ _ANALYSIS[:_CARRIED]
 
 
 @dataclass(frozen=True)
 class Landing:
-    """Lanes that must end on an event.
+    """Where lanes must end.
 
     Attributes:
-        lanes: Which of those that step, shape (n,).
-        component: Of the state, shape (n,).
-        span: How far the component must go, shape (n,).
+        due: Which of those that step end on an event, shape (lanes,).
+        component: Of the state, shape (lanes,).
+        span: How far the component must go, shape (lanes,).
     """
 
-    lanes: Lanes
+    due: NDArray[np.bool_]
     component: Lanes
     span: FloatArray
 
-    def miss(self, size: FloatArray, slopes: FloatArray) -> FloatArray:
-        """How much longer the steps should be, by Newton's method, shape (n,)."""
-        own = slopes[self.component, :, self.lanes]
-        return np.asarray((self.span - size[self.lanes] * (own @ _TO_END)) / (own @ _AT_END))
+    def of(self, values: FloatArray) -> FloatArray:
+        """Each lane's component, from (m, ..., lanes) to (..., lanes)."""
+        return values[self.component, ..., np.arange(self.component.size)].T
 
-    def take(self, some: Lanes) -> Landing | None:
-        """Of some lanes only, numbered anew."""
-        place = {int(lane): number for number, lane in enumerate(some)}
-        here = [i for i, lane in enumerate(self.lanes) if int(lane) in place]
-        if not here:
-            return None
-        lanes = np.array([place[int(self.lanes[i])] for i in here], dtype=np.intp)
-        return Landing(lanes, self.component[here], self.span[here])
+    def take(self, lanes: Lanes) -> Landing:
+        """Of some lanes only."""
+        return Landing(self.due[lanes], self.component[lanes], self.span[lanes])
 
 
 @dataclass
@@ -78,7 +73,7 @@ class Course:
     """What an earlier step says about the next one.
 
     Attributes:
-        slopes: Powers of that step's z in [-1, 1], shape (10, m, lanes).
+        slopes: Powers of that step's z in [-1, 1], shape (m, 10, lanes).
         size: Its length, shape (lanes,).
         origin: The z where the next step starts: 1, or -1 where the step has to be repeated; shape (lanes,).
     """
@@ -90,14 +85,14 @@ class Course:
     @classmethod
     def unknown(cls, components: int, size: FloatArray) -> Course:
         """No earlier step: a first one starts with the slope at its beginning."""
-        return cls(np.full((STAGES, components, size.size), np.nan), size.copy(), np.full(size.size, -1.0))
+        return cls(np.full((components, STAGES, size.size), np.nan), size.copy(), np.full(size.size, -1.0))
 
     def completed(self, derivative: Derivative, start: FloatArray) -> Course:
         """With constant slopes where there was no earlier step, in place."""
-        new = np.flatnonzero(np.isnan(self.slopes[0, 0]))
-        if new.size:
+        new = np.isnan(self.slopes[0, 0])
+        if np.count_nonzero(new):
             self.slopes[:, :, new], self.origin[new] = 0.0, -1.0
-            self.slopes[0, :, new] = derivative(start[:, None])[:, 0, new].T
+            self.slopes[:, 0, new] = derivative(start[:, None])[:, 0, new]
         return self
 
     def copy(self) -> Course:
@@ -114,40 +109,41 @@ class Course:
 
     def follow(self, step: Step, lanes: Lanes, *, ended: NDArray[np.bool_]) -> None:
         """Remember a step of some lanes, ended or to be repeated; one that came to nothing says nothing."""
-        matrix = np.where(ended, _ONWARD[..., None], _WITHIN[..., None])
-        slopes = np.einsum("kjl,mjl->kml", matrix, step.slopes)
-        self.slopes[:, :, lanes] = np.where(np.isfinite(step.error), slopes, np.nan)
+        slopes = _ONWARD @ step.slopes
+        if np.count_nonzero(ended) < ended.size:
+            again = np.where(np.isfinite(step.error), _WITHIN @ step.slopes, np.nan)
+            slopes = np.where(ended, slopes, again)
+        self.slopes[:, :, lanes] = slopes
         self.size[lanes], self.origin[lanes] = step.size, np.where(ended, 1.0, -1.0)
 
     def guess(self, size: FloatArray) -> FloatArray:
         """Slopes at the stages of a step of this length, shape (m, stages, lanes)."""
-        z = self.origin + size / self.size * (1.0 + _POINTS[:, None])
-        return np.asarray(np.einsum("kml,kjl->mjl", self.slopes, powers(z, STAGES)))
+        z = self.origin + size / self.size * (1.0 + POINTS[:, None])
+        return np.asarray(np.einsum("mkl,kjl->mjl", self.slopes, powers(z, STAGES)))
 
-    def mean(self, size: FloatArray) -> FloatArray:
-        """Mean slope over a step of this length, shape (m, lanes)."""
-        return np.asarray(np.einsum("kml,kl->ml", self.slopes, self._means(size)))
+    def ahead(self, size: FloatArray) -> FloatArray:
+        """Change of state over a step of this length, shape (m, lanes)."""
+        ladder = powers(self.origin + 2.0 * size / self.size, STAGES + 1)[1:]
+        means = (ladder - self.origin**_NUMBERS) / _NUMBERS
+        return np.asarray(0.5 * self.size * np.add.reduce(self.slopes * means, axis=1))
 
     def aimed(self, size: FloatArray, landing: Landing | None) -> FloatArray:
         """The length that lands where it should if the course holds; the given one where it need not."""
         if landing is None:
             return size
-        aimed, lanes = size.copy(), landing.lanes
-        own = Course(self.slopes[:, landing.component, lanes], self.size[lanes], self.origin[lanes])
-        share = landing.span / (size[lanes] * np.sum(own.slopes * own._means(size[lanes]), axis=0))
-        at = size[lanes] * np.clip(np.where(share > 0.0, share, 1.0), _NEAREST, 1.0)
-        for _ in range(_AIMS):
-            end = own.origin + 2.0 * at / own.size
-            slope = np.sum(own.slopes * powers(end, STAGES), axis=0)
-            at = _lengthened(at, (landing.span - at * np.sum(own.slopes * own._means(at), axis=0)) / slope)
-        aimed[lanes] = at
-        return aimed
-
-    def _means(self, size: FloatArray) -> FloatArray:
-        """Means of 1, z, z^2, ... over a step of this length, shape (10, lanes)."""
-        way = 2.0 * size / self.size
-        first, last = powers(self.origin, STAGES + 1)[1:], powers(self.origin + way, STAGES + 1)[1:]
-        return np.asarray((last - first) / way / np.arange(1.0, STAGES + 1.0)[:, None])
+        slopes, from_start = landing.of(self.slopes), self.origin**_NUMBERS
+        means, z = slopes / _NUMBERS, self.origin + 2.0 * size / self.size
+        for attempt in range(_AIMS + 1):
+            ladder = powers(z, STAGES + 1)
+            way = 0.5 * self.size * np.add.reduce(means * (ladder[1:] - from_start))
+            at = 0.5 * self.size * (z - self.origin)
+            if attempt == 0:  # in proportion, then by Newton's method
+                share = landing.span / way
+                at = at * np.minimum(np.maximum(np.where(share > 0.0, share, 1.0), _NEAREST), 1.0)
+            else:
+                at = _lengthened(at, (landing.span - way) / np.add.reduce(slopes * ladder[:-1]))
+            z = self.origin + 2.0 * at / self.size
+        return np.where(landing.due, at, size)
 
 
 @dataclass(frozen=True)
@@ -157,7 +153,7 @@ class Task:
     Attributes:
         start: State at the start, shape (m, lanes).
         size: Length, to begin with where it must end on an event; shape (lanes,).
-        precision: Of the leading components, shape (watched, lanes).
+        precision: Of each component, shape (m, lanes).
         landing: Where some of the lanes must end.
         chain: A component whose slope is another component, times the slope of a third if there is one. It is taken
             from the newest of that other one, as Nystrom methods do, which halves the number of sweeps.
@@ -171,21 +167,21 @@ class Task:
 
     def take(self, lanes: Lanes) -> Task:
         """Some of the lanes."""
-        landing = self.landing.take(lanes) if self.landing is not None else None
+        landing = None if self.landing is None else self.landing.take(lanes)
         return Task(self.start[:, lanes], self.size[lanes], self.precision[:, lanes], landing, self.chain)
 
     def states(self, size: FloatArray, slopes: FloatArray) -> FloatArray:
         """At the stages, shape (m, stages, lanes)."""
-        state = self.start[:, None] + size * (_TO_STAGES @ slopes)
+        state = self.start[:, None] + size * (TO_STAGES @ slopes)
         if self.chain is not None:
             row, speed, clock = self.chain
             rate = state[speed] if clock is None else state[speed] * slopes[clock]
-            state[row] = self.start[row] + size * (_TO_STAGES @ rate)
+            state[row] = self.start[row] + size * (TO_STAGES @ rate)
         return np.asarray(state)
 
     def found(self, size: FloatArray, slopes: FloatArray, failed: NDArray[np.bool_], sweeps: int) -> Step:
         """The step with its error: the part that the last two of its polynomials have."""
-        tail = _largest(_ANALYSIS[-2:] @ slopes[: self.precision.shape[0]], self.precision / size)
+        tail = _largest(_ANALYSIS[-2:] @ slopes, self.precision / size)
         return Step(self, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweeps)
 
 
@@ -207,19 +203,18 @@ class Step:
     error: FloatArray
     sweeps: int
 
-    @property
     def end(self) -> FloatArray:
         """State at the end, exactly on its event where there is one."""
         start, landing = self.task.start, self.task.landing
-        end = start + self.size * np.einsum("j,mjl->ml", _TO_END, self.slopes)
+        end = start + self.size * (TO_END @ self.slopes)
         if landing is not None:
-            at = landing.component, landing.lanes
-            end[at] = start[at] + landing.span
+            at = landing.component[landing.due], np.flatnonzero(landing.due)
+            end[at] = start[at] + landing.span[landing.due]
         return np.asarray(end)
 
     def polynomial(self) -> FloatArray:
-        """Powers of z in [-1, 1] of the change of state, shape (11, m, lanes)."""
-        return np.asarray(np.einsum("kj,mjl->kml", _CHANGE, self.size * self.slopes))
+        """Powers of z in [-1, 1] of the change of state, shape (m, 11, lanes)."""
+        return np.asarray(CHANGE @ (self.size * self.slopes))
 
     def put(self, lanes: Lanes, other: Step) -> None:
         """Replace some lanes."""
@@ -235,62 +230,62 @@ def swept_step(derivative: Derivative, task: Task, course: Course) -> Step:
         task: The step.
         course: Where its stages are looked for first.
     """
-    size, watched = task.size, task.precision.shape[0]
+    size, allowed = task.size, task.precision / task.size
     slopes, before = course.guess(size), np.full(size.size, np.inf)
     moving, failed = np.ones(size.size, dtype=np.bool_), np.zeros(size.size, dtype=np.bool_)
     for sweep in range(1, _SWEEPS + 1):
         new = derivative(task.states(size, slopes))
-        change = _largest(new[:watched] - slopes[:watched], task.precision / size)
-        slopes = new if moving.all() else np.where(moving, new, slopes)
-        size, missed = _corrected(task, size, slopes, moving)
-        change = np.maximum(change, missed)
-        moving = moving & ~(change <= SWEEP_TOLERANCE)
-        failed |= moving & ((sweep > _PATIENCE) & ~(change < _SLOW * before) | (sweep == _SWEEPS))
-        moving, before = moving & ~failed, change
-        if not moving.any():
+        change = _largest(new - slopes, allowed)
+        slopes = new if np.count_nonzero(moving) == moving.size else np.where(moving, new, slopes)
+        if task.landing is not None:
+            size, missed = _corrected(task, task.landing, size, slopes, moving)
+            change = np.maximum(change, missed)
+        moving &= ~(change <= SWEEP_TOLERANCE)
+        if sweep > _PATIENCE:
+            failed |= moving & (~(change < _SLOW * before) | (sweep == _SWEEPS))
+            moving &= ~failed
+        if not np.count_nonzero(moving):
             break
+        before = change
     return task.found(size, slopes, failed, sweep)
 
 
 def newton_step(derivative: Derivative, task: Task) -> Step:
     """The same step by simplified Newton iteration, for slopes that answer fast: Gauss collocation is A-stable."""
-    components, lanes, watched = *task.start.shape, task.precision.shape[0]
+    components, lanes = task.start.shape
     base, size, count = task.start[:, None], task.size, components * STAGES
     jacobian = _jacobian(derivative, task.start)
     slopes, failed, sweep = np.repeat(derivative(base), STAGES, axis=1), np.full(lanes, True), 0
     while failed.any() and sweep < _SWEEPS:
         sweep += 1
-        residual = derivative(base + size * (_TO_STAGES @ slopes)) - slopes
+        residual = derivative(base + size * (TO_STAGES @ slopes)) - slopes
         if not np.all(np.isfinite(residual)):
             break
-        coupling = np.einsum("l,ij,abl->laibj", size, _TO_STAGES, jacobian).reshape(lanes, count, count)
+        coupling = np.einsum("l,ij,abl->laibj", size, TO_STAGES, jacobian).reshape(lanes, count, count)
         move = np.linalg.solve(np.eye(count) - coupling, np.moveaxis(residual, 2, 0).reshape(lanes, count, 1))
         update = np.moveaxis(move.reshape(lanes, components, STAGES), 0, 2)
-        change = _largest(update[:watched], task.precision / size)
+        change = _largest(update, task.precision / size)
         slopes = np.where(failed, slopes + update, slopes)  # a lane that has converged is left alone
-        size, missed = _corrected(task, size, slopes, failed)
-        failed = np.logical_and(failed, ~(np.maximum(change, missed) <= SWEEP_TOLERANCE))
+        if task.landing is not None:
+            size, missed = _corrected(task, task.landing, size, slopes, failed)
+            change = np.maximum(change, missed)
+        failed = np.logical_and(failed, ~(change <= SWEEP_TOLERANCE))
     return task.found(size, slopes, failed, sweep)
 
 
 def _corrected(
-    task: Task, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
-) -> tuple[FloatArray, FloatArray | float]:
-    """Lengths nearer to the event, and what the correction moves in units of the precision."""
-    landing = task.landing
-    if landing is None:
-        return size, 0.0
-    lanes, corrected, missed = landing.lanes, size.copy(), np.zeros(size.size)
-    miss = np.where(moving[lanes], landing.miss(size, slopes), 0.0)
-    corrected[lanes] = _lengthened(size[lanes], miss)
-    at_end = np.abs(np.einsum("j,mjl->ml", _AT_END, slopes[: task.precision.shape[0], :, lanes]))
-    missed[lanes] = np.max(at_end / task.precision[:, lanes], axis=0) * np.abs(miss)
-    return corrected, missed
+    task: Task, landing: Landing, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
+) -> tuple[FloatArray, FloatArray]:
+    """Lengths nearer to the event, by Newton's method, and what the correction moves in units of the precision."""
+    at_end = _AT_END @ slopes
+    miss = (landing.span - size * (TO_END @ landing.of(slopes))) / landing.of(at_end)
+    miss = np.where(landing.due & moving, miss, 0.0)
+    return _lengthened(size, miss), np.maximum.reduce(np.abs(at_end) / task.precision) * np.abs(miss)
 
 
 def _lengthened(size: FloatArray, miss: FloatArray) -> FloatArray:
     """Lengths after a correction that must not be wild."""
-    return np.where(np.isfinite(miss), np.clip(size + miss, _LEAST * size, _MOST * size), size)
+    return np.where(np.isfinite(miss), np.minimum(np.maximum(size + miss, _LEAST * size), _MOST * size), size)
 
 
 def _jacobian(derivative: Derivative, start: FloatArray) -> FloatArray:
@@ -301,5 +296,6 @@ def _jacobian(derivative: Derivative, start: FloatArray) -> FloatArray:
 
 
 def _largest(values: FloatArray, allowed: FloatArray) -> FloatArray:
-    """Largest magnitude over stages and components, in units of what is allowed; shape (lanes,)."""
-    return np.asarray(np.maximum.reduce(np.maximum.reduce(np.abs(values), axis=1) / allowed, axis=0))
+    """Largest magnitude over components and stages, in units of what is allowed; shape (lanes,)."""
+    shares = np.abs(values) / allowed[:, None]
+    return np.asarray(np.maximum.reduce(shares.reshape(-1, shares.shape[-1])))

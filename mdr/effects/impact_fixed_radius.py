@@ -31,11 +31,6 @@ class FlatPunchLanes:
     inertia: FloatArray
 
     @property
-    def controlled(self) -> int:
-        """All components."""
-        return 5 + int(self.weights.shape[0])
-
-    @property
     def chain(self) -> Chain:
         """d(delta) = v dt."""
         return 2, 3, None
@@ -52,7 +47,7 @@ class FlatPunchLanes:
 
     def start(self) -> FloatArray:
         """First touch at unit speed: only a bare dashpot pushes back at once."""
-        state = np.zeros((self.controlled, self.viscosity.size))
+        state = np.zeros((5 + self.weights.shape[0], self.viscosity.size))
         state[0], state[3] = self.viscosity, 1.0
         return state
 

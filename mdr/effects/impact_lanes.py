@@ -19,7 +19,7 @@ import numpy as np
 from contact.validation import FloatArray
 from mdr.effects.collocation_step import Chain, Derivative, Lanes
 from mdr.effects.impact_memory import Memory
-from mdr.effects.spring_table import MOMENT, SECOND_MOMENT, STIFFNESS, SpringTable
+from mdr.effects.spring_table import MOMENT, STIFFNESS, SpringTable
 
 
 @dataclass(frozen=True)
@@ -70,25 +70,25 @@ class ImpactLanes:
 
     def springs(self, y: FloatArray, section: int, rows: int) -> FloatArray:
         """g, dg/dy, k, dk/dy, P, Q in the lanes' units, shape (rows, stages, lanes)."""
-        return self.table.evaluate(y * self.units[6], rows, section) / self.units[:rows, None]
+        return self.springs_within(section, rows)(y)
+
+    def springs_within(self, section: int, rows: int) -> Derivative:
+        """The same as a function of y."""
+        within, length, units = self.table.within(section, rows), self.units[6], self.units[:rows, None]
+        return lambda y: within(y * length) / units
 
 
-def outline(branches: int) -> tuple[slice, slice, slice]:
-    """Where S_j, M_j and N_j = int E_j^2 S_j(t_c)^2 dk stand in the state y, t, v, S, M, N, dissipated."""
-    return slice(3, 3 + branches), slice(3 + branches, 3 + 2 * branches), slice(3 + 2 * branches, 3 + 3 * branches)
+def outline(branches: int) -> tuple[slice, slice]:
+    """Where S_j and M_j stand in the state y, t, v, S, M of the way in."""
+    return slice(3, 3 + branches), slice(3 + branches, 3 + 2 * branches)
 
 
 @dataclass(frozen=True)
 class Pressing:
-    """From first touch to the turn. State: y, t, v, S_j, M_j, N_j and the dissipated energy."""
+    """From first touch to the turn. State: y, t, v, S_j and M_j."""
 
     lanes: ImpactLanes
     section: int
-
-    @property
-    def controlled(self) -> int:
-        """All of them."""
-        return 4 + 3 * self.lanes.branches
 
     @property
     def chain(self) -> Chain:
@@ -97,22 +97,19 @@ class Pressing:
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/d(sigma)."""
-        own, section = self.lanes.take(lanes), self.section
-        shared, memory, squares = outline(own.branches)
+        own = self.lanes.take(lanes)
+        springs_at, (shared, memory) = own.springs_within(self.section, 5), outline(own.branches)
 
         def rhs(state: FloatArray) -> FloatArray:
             v, history, past = state[2], state[shared], state[memory]
-            springs = own.springs(state[0], section, 5)
-            g, g_y, k, k_y = springs[:4]
+            springs = springs_at(state[0])
+            g, g_y, k, k_y, _ = springs
             slopes = np.empty_like(state)
             slopes[0] = v
             slopes[1] = g_y
-            slopes[2] = -own.inertia * force(own, springs, g, v, k * history - past) * g_y  # Eq. (48) for any profile
+            slopes[2] = acceleration(own, springs, g, v, k * history - past) * g_y
             slopes[shared] = (own.weights * v - own.rates * history) * g_y
             slopes[memory] = k_y * v * history - own.rates * past * g_y
-            left = k * history**2 - 2.0 * history * past + state[squares]
-            slopes[squares] = k_y * v * history**2 - 2.0 * own.rates * state[squares] * g_y
-            slopes[-1] = own.inertia * dissipation(own, k, v, left) * g_y
             return slopes
 
         return rhs
@@ -120,17 +117,12 @@ class Pressing:
 
 @dataclass(frozen=True)
 class Receding:
-    """From the turn to the loss of contact. State: y, t, delta, v, S_j and the dissipated energy."""
+    """From the turn to the loss of contact. State: y, t, delta, v and S_j."""
 
     lanes: ImpactLanes
     section: int
     memory: Memory | None
     step: int
-
-    @property
-    def controlled(self) -> int:
-        """All of them."""
-        return 5 + self.lanes.branches
 
     @property
     def chain(self) -> Chain:
@@ -139,26 +131,25 @@ class Receding:
 
     def derivative(self, lanes: Lanes) -> Derivative:
         """d(state)/d(sigma)."""
-        own, section = self.lanes.take(lanes), self.section
+        own = self.lanes.take(lanes)
+        springs_at, branches = own.springs_within(self.section, 5), slice(4, 4 + own.branches)
         recall = self.memory.recall(self.step, lanes) if self.memory is not None else None
-        branches = own.branches
 
         def rhs(state: FloatArray) -> FloatArray:
-            delta, v, history = state[2], state[3], state[4 : 4 + branches]
-            springs = own.springs(state[0], section, 5)
-            g, g_y, k, k_y = springs[:4]
-            branch_force, front, fading, left = remembered(recall, own, state, k)
-            acceleration = -own.inertia * force(own, springs, delta, v, branch_force)
-            change = own.long_term * v + own.viscosity * acceleration
-            change = change + np.add.reduce(own.weights * v - own.rates * front)  # of the outermost spring's force
+            delta, v, history = state[2], state[3], state[branches]
+            springs = springs_at(state[0])
+            _, g_y, k, _, _ = springs
+            branch_force, front, fading = remembered(recall, own, state, k)
+            slowed = acceleration(own, springs, delta, v, branch_force)
+            gained = own.weights * v
+            change = own.long_term * v + own.viscosity * slowed
+            change += np.add.reduce(gained - own.rates * front)  # of the outermost spring's force
             slopes = np.empty_like(state)
             slopes[0] = change / (own.long_term + np.add.reduce(own.weights * fading))  # it stays zero
             slopes[1] = g_y
             slopes[2] = v * g_y
-            slopes[3] = acceleration * g_y
-            slopes[4 : 4 + branches] = (own.weights * v - own.rates * history) * g_y
-            released = 0.5 * (own.long_term * (delta - g) ** 2 + np.add.reduce(front**2 / own.weights))
-            slopes[-1] = own.inertia * (dissipation(own, k, v, left) * g_y - k_y * slopes[0] * released)
+            slopes[3] = slowed * g_y
+            slopes[branches] = (gained - own.rates * history) * g_y
             return slopes
 
         return rhs
@@ -166,18 +157,23 @@ class Receding:
 
 def remembered(
     recall: Derivative | None, own: ImpactLanes, state: FloatArray, k: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
-    """Per branch: k S - M, the outermost spring's s, E, and the integral of s^2 while the front recedes."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Per branch while the front recedes: k S - M, the outermost spring's s, and E."""
     n = own.branches
     history = state[4 : 4 + n]
     if recall is None:
-        return history, history, history, history  # no branches: four empty arrays
+        return history, history, history  # no branches: three empty arrays
     past = recall(state[0])
-    fading = np.exp(-(state[1] - past[0]) * own.rates)
-    front = history - fading * past[1 : 1 + n]
-    memory = fading * past[1 + n : 1 + 2 * n]
-    squares = fading**2 * past[1 + 2 * n :]
-    return k * history - memory, front, fading, k * history**2 - 2.0 * history * memory + squares
+    fading = np.exp((past[0] - state[1]) * own.rates)
+    faded = fading * past[1:].reshape(2, n, *state.shape[1:])
+    return k * history - faded[1], history - faded[0], fading
+
+
+def acceleration(
+    lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, v: FloatArray, branches: FloatArray
+) -> FloatArray:
+    """dv/dt, Eq. (48) for any profile."""
+    return np.asarray(-lanes.inertia * force(lanes, springs, delta, v, branches))
 
 
 def force(
@@ -186,14 +182,3 @@ def force(
     """Normal force, Eqs. (47) and (51); `branches` holds k S_j - M_j."""
     elastic_and_viscous = springs[STIFFNESS] * (lanes.long_term * delta + lanes.viscosity * v)
     return np.asarray(elastic_and_viscous - lanes.long_term * springs[MOMENT] + np.add.reduce(branches))
-
-
-def dissipation(lanes: ImpactLanes, k: FloatArray, v: FloatArray, squares: FloatArray) -> FloatArray:
-    """Power lost in the dashpots; `squares` holds the integrals of s_j^2."""
-    return np.asarray(lanes.viscosity * k * v**2 + np.add.reduce(lanes.rates / lanes.weights * squares))
-
-
-def stored(lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, squares: FloatArray) -> FloatArray:
-    """Energy of the springs in contact; divide by the unit M v0^2 / kappa to compare with the kinetic energy."""
-    long_term = (springs[STIFFNESS] * delta - 2.0 * springs[MOMENT]) * delta + springs[SECOND_MOMENT]
-    return np.asarray(0.5 * (lanes.long_term * long_term + np.add.reduce(squares / lanes.weights)))

@@ -111,7 +111,7 @@ def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:
     """Dimensionless force at z in [-1, 1] on every step, shape (len(z), steps, lanes)."""
     own = lanes.take(leg.lanes)
     state = states(leg.trajectory, z)
-    shared, memory, _ = outline(own.branches)
+    shared, memory = outline(own.branches)
     flat = state.reshape(state.shape[0], -1, state.shape[-1])
     springs = own.springs(flat[0], leg.section, 5)
     branches = springs[STIFFNESS] * flat[shared] - flat[memory]

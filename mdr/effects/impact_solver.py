@@ -98,7 +98,7 @@ class _Run:
     def press(self) -> tuple[tuple[Leg, ...], FloatArray, Lanes]:
         """The way in, section by section; the state at the turn and the section where each lane turned."""
         lanes, ends = self.lanes, self.lanes.table.section_ends
-        state = np.zeros((4 + 3 * lanes.branches, lanes.count))
+        state = np.zeros((3 + 2 * lanes.branches, lanes.count))
         state[2] = 1.0
         self.course = Course.unknown(state.shape[0], self.size)
         turned_in, going, legs = np.full(lanes.count, ends.size - 1), np.arange(lanes.count), []
@@ -116,9 +116,8 @@ class _Run:
     def recede(self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: Lanes) -> tuple[tuple[Leg, ...], FloatArray]:
         """The way out, back through the same sections, and the state at its end."""
         lanes, legs = self.lanes, []
-        state = np.zeros((5 + lanes.branches, lanes.count))
-        state[:2], state[4 : 4 + lanes.branches] = turn[:2], turn[outline(lanes.branches)[0]]
-        state[-1] = turn[-1]
+        state = np.zeros((4 + lanes.branches, lanes.count))
+        state[:2], state[4:] = turn[:2], turn[outline(lanes.branches)[0]]
         self.size *= _AFTER_TURN
         self.course = Course.unknown(state.shape[0], self.size)
         for leg in reversed(way_in):
@@ -154,8 +153,7 @@ class _Run:
         return trajectory
 
     def _memory(self, trajectory: Trajectory) -> Memory | None:
-        """Rows t, S_j, M_j and N_j: nothing to remember without branches."""
+        """Rows t, S_j and M_j: nothing to remember without branches."""
         if not self.lanes.branches:
             return None
-        last = outline(self.lanes.branches)[2].stop
-        return memory_of(trajectory, [1, *range(3, last)], turning_event=TURN)
+        return memory_of(trajectory, [1, *range(3, trajectory.final.shape[0])], turning_event=TURN)

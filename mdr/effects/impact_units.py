@@ -16,8 +16,6 @@ from mdr.effects.reference_springs import (
     Reference,
     contact_scale,
     coordinate_at,
-    elastic_energy,
-    elastic_force,
     reference,
     table_for_energy,
 )
@@ -98,10 +96,10 @@ def scaled(scenes: Sequence[Scene], references: Sequence[Reference], table: Spri
     relaxations = [relaxation_of(scene) for scene in scenes]
     modulus = np.array([r.instantaneous_modulus for r in relaxations])
     lag = np.array([r.viscosity for r in relaxations]) / modulus
-    y = coordinate_at(elastic_energy, table, 0.5 * mass * velocity**2 / (stiffness * depth**2))
+    y = coordinate_at(table.survey.energy, table, 0.5 * mass * velocity**2 / (stiffness * depth**2))
     impulse = mass * velocity / (stiffness * depth)
     force = np.divide(impulse, lag, out=np.full(lag.shape, np.inf), where=lag > 0.0)
-    y = np.minimum(y, coordinate_at(elastic_force, table, force))
+    y = np.minimum(y, coordinate_at(table.survey.force, table, force))
     rows = table.evaluate(y)
     g, k = rows[PROFILE], rows[STIFFNESS]
     units = np.stack([g, g / y, k, k / y, k * g, k * g**2, y])

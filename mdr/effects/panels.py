@@ -127,14 +127,24 @@ class Piecewise:
         powers = np.tensordot(chebyshev.to_powers(coefficients.shape[0]), coefficients, 1)
         return cls(edges, 0.5 * (edges[1:] + edges[:-1]), 2.0 / np.diff(edges), powers)
 
-    def __call__(self, y: FloatArray, rows: slice, first: int = 0, last: int | None = None) -> FloatArray:
-        """Some of the functions at y of any shape, by the panels from `first` to before `last` only."""
-        panel = self.panel(y, first, last)
-        z = (y - self.centres.take(panel)) * self.scales.take(panel)
-        ladder, powers = chebyshev.powers(z, self.powers.shape[0]), self.powers[:, rows].take(panel, axis=2)
-        return np.asarray(np.einsum("kr...,k...->r...", powers, ladder))
+    def __call__(self, y: FloatArray, rows: slice) -> FloatArray:
+        """Some of the functions at y of any shape."""
+        return self.within(rows)(y)
 
-    def panel(self, y: FloatArray, first: int = 0, last: int | None = None) -> NDArray[np.intp]:
+    def within(self, rows: slice, first: int = 0, last: int | None = None) -> Callable[[FloatArray], FloatArray]:
+        """Some of the functions, by the panels from `first` to before `last` only; no y lies outside."""
+        own = slice(first, self.centres.size if last is None else last)
+        edges, centres, scales = self.edges[own][1:], self.centres[own], self.scales[own]
+        powers = np.ascontiguousarray(self.powers[:, rows, own])
+
+        def functions(y: FloatArray) -> FloatArray:
+            panel = edges.searchsorted(y, side="right")
+            z = (y - centres.take(panel)) * scales.take(panel)
+            ladder = chebyshev.powers(z, powers.shape[0])
+            return np.asarray(np.einsum("kr...,k...->r...", powers.take(panel, axis=2), ladder))
+
+        return functions
+
+    def panel(self, y: FloatArray) -> NDArray[np.intp]:
         """The panel of each y, found by the edges between panels: none lies outside."""
-        end = self.centres.size if last is None else last
-        return np.asarray(self.edges[first + 1 : end].searchsorted(y, side="right") + first)
+        return np.asarray(self.edges[1:-1].searchsorted(y, side="right"))

@@ -17,12 +17,11 @@ from bem.flat_punch import FlatPunchSource
 from contact import Cone, InvalidInput, Layer, Paraboloid, PowerLaw, Profile
 from contact.validation import FloatArray
 from mdr.assembly import equivalent_system
-from mdr.effects.spring_table import MOMENT, PROFILE, SECOND_MOMENT, STIFFNESS, SpringTable, spring_table
+from mdr.effects.spring_table import SpringTable, spring_table
 
 _KEPT = 64  # tables
 _NEAR_RIM = 0.7  # of the rim's radius: beyond, trial radii no longer double
 _UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)  # of the rim's radius that trial radii stay away from it
-_SURVEY = np.geomspace(1e-7, 1.0, 281)  # of a table's range: where its energies are looked up
 
 
 @dataclass(frozen=True)
@@ -148,7 +147,7 @@ def table_for_energy(
     flat = indenter.flat_radius
     for end in growing_radii(indenter, flat + 2.0 ** math.ceil(math.log2(start - flat))):
         table = own_table(layer, indenter, end, flat_punch)
-        if elastic_energy(table, table.section_ends[-1:])[0] >= energy:
+        if table.survey.energy[-1] >= energy:
             return table
     raise InvalidInput(
         f"indenter: the impact presses it in beyond its rim at {indenter.max_radius:g} m; "
@@ -172,24 +171,13 @@ def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
         yield rim
 
 
-def elastic_energy(table: SpringTable, y: FloatArray) -> FloatArray:
-    """Energy of the springs when the front stands at y without adhesion, in the table's units."""
-    rows = table.evaluate(y)
-    g, k, moment, second = rows[PROFILE], rows[STIFFNESS], rows[MOMENT], rows[SECOND_MOMENT]
-    return np.asarray(0.5 * ((k * g - 2.0 * moment) * g + second))
+def coordinate_at(held: FloatArray, table: SpringTable, target: FloatArray) -> FloatArray:
+    """y where the springs hold an energy, or a force, to a few per cent: a unit for an impact, not a result.
 
-
-def elastic_force(table: SpringTable, y: FloatArray) -> FloatArray:
-    """Force of the springs when the front stands at y without adhesion, in the table's units."""
-    rows = table.evaluate(y, MOMENT + 1)
-    return np.asarray(rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT])
-
-
-def coordinate_at(
-    held: Callable[[SpringTable, FloatArray], FloatArray], table: SpringTable, target: FloatArray
-) -> FloatArray:
-    """y where the springs hold an energy, or a force, to a few per cent: a unit for an impact, not a result."""
-    y = _SURVEY * table.section_ends[-1]
-    values = held(table, y)
-    usable = values > 1e-14 * values[-1]  # below, the difference of moments is rounding
-    return np.asarray(np.exp(np.interp(np.log(target), np.log(values[usable]), np.log(y[usable]))))
+    Args:
+        held: Energy or force along the survey of the table.
+        table: The springs.
+        target: What they shall hold.
+    """
+    usable = held > 1e-14 * held[-1]  # below, the difference of moments is rounding
+    return np.asarray(np.exp(np.interp(np.log(target), np.log(held[usable]), np.log(table.survey.y[usable]))))

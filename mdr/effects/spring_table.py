@@ -8,7 +8,9 @@ F = k delta - P and the energy (k delta^2 - 2 P delta + Q) / 2.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Protocol
 
 import numpy as np
@@ -19,6 +21,7 @@ from mdr.effects import chebyshev
 from mdr.effects.panels import NODES, Panel, Piecewise, relative_tail, resolved_panels
 
 PROFILE, SLOPE, STIFFNESS, STIFFENING, MOMENT, SECOND_MOMENT = range(6)  # g, dg/dy, k, dk/dy, P, Q
+_SURVEY = np.geomspace(1e-7, 1.0, 281)  # of a table's range
 
 
 class Springs(Protocol):
@@ -32,6 +35,21 @@ class Springs(Protocol):
 
     def mdr_profile(self, x: FloatArray) -> FloatArray:
         """g(x) [m]."""
+
+
+@dataclass(frozen=True)
+class Survey:
+    """What springs without adhesion hold when their front stands at y, shape (n,) each, in the table's units.
+
+    Attributes:
+        y: Geometrically up to the end of the table.
+        energy: Of all springs in contact.
+        force: Of all springs in contact.
+    """
+
+    y: FloatArray
+    energy: FloatArray
+    force: FloatArray
 
 
 @dataclass(frozen=True)
@@ -69,9 +87,19 @@ class SpringTable:
 
     def evaluate(self, y: FloatArray, rows: int = 6, section: int | None = None) -> FloatArray:
         """The first `rows` of g, dg/dy, k, dk/dy, P, Q at y, shape (rows, n), seen from inside one section if named."""
-        if section is None:
-            return self.functions(y, slice(rows))
-        return self.functions(y, slice(rows), *self.section_panels[section : section + 2])
+        return self.functions(y, slice(rows)) if section is None else self.within(section, rows)(y)
+
+    @cached_property
+    def survey(self) -> Survey:
+        """Energies and forces to look up."""
+        y = _SURVEY * self.section_ends[-1]
+        rows = self.evaluate(y)
+        g, k, moment, second = rows[PROFILE], rows[STIFFNESS], rows[MOMENT], rows[SECOND_MOMENT]
+        return Survey(y, 0.5 * ((k * g - 2.0 * moment) * g + second), k * g - moment)
+
+    def within(self, section: int, rows: int = 6) -> Callable[[FloatArray], FloatArray]:
+        """The first `rows` as functions of y inside one section."""
+        return self.functions.within(slice(rows), *self.section_panels[section : section + 2])
 
 
 def spring_table(

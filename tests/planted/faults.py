@@ -399,7 +399,7 @@ TIME_STEPPING = [
     Fault(
         "quadrature of first order at a step's end",
         "time stepping",
-        set_to("mdr.effects.collocation_step:_TO_END", np.full(10, 0.1)),
+        set_to("mdr.effects.collocation_step:TO_END", np.full(10, 0.1)),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
@@ -432,7 +432,7 @@ TIME_STEPPING = [
     Fault(
         "half of the dissipation",
         "time stepping",
-        swap("mdr.effects.impact_lanes:dissipation", half_the_loss),
+        swap("mdr.effects.impact_energies:dissipation", half_the_loss),
         Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
     ),
 ]

@@ -7,7 +7,7 @@ import pytest
 
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
-from mdr.effects import adhesive_branch, flat_punch_restitution, impact_lanes
+from mdr.effects import adhesive_branch, flat_punch_restitution, impact_energies, impact_lanes
 from mdr.effects.impact import impact_batch
 from tests.mdr.viscoelastic_scenes import figure_12, kelvin_voigt_sphere
 from tests.verification import test_adhesion as adhesion
@@ -58,8 +58,8 @@ def test_springs_without_memory(monkeypatch):
     right = impact_lanes.remembered
 
     def forgetful(recall, own, state, k):
-        _, front, fading, left = right(recall, own, state, k)
-        return k * state[4 : 4 + own.branches], front, fading, left
+        _, front, fading = right(recall, own, state, k)
+        return k * state[4 : 4 + own.branches], front, fading
 
     monkeypatch.setattr(impact_lanes, "remembered", forgetful)
     with pytest.raises(AssertionError):
@@ -67,7 +67,7 @@ def test_springs_without_memory(monkeypatch):
 
 
 def test_dissipation_left_out_of_the_audit(monkeypatch):
-    monkeypatch.setattr(impact_lanes, "dissipation", lambda lanes, k, v, squares: 0.0 * k)
+    monkeypatch.setattr(impact_energies, "dissipation", lambda lanes, k, v, squares: 0.0 * k)
     with pytest.raises(AssertionError):
         impact.test_figure_12_restitution_peak_audit_and_self_convergence(1e-3)
 
