@@ -12,7 +12,7 @@ from contact.validation import FloatArray
 from mdr.effects.chebyshev import powers
 from mdr.effects.collocation import Trajectory
 from mdr.effects.collocation_step import CHANGE, POINTS, STAGES, TO_END, TO_STAGES
-from mdr.effects.impact_lanes import ImpactLanes, force, outline, remembered
+from mdr.effects.impact_lanes import ImpactLanes, force, missing, outline, remembered
 from mdr.effects.impact_memory import Memory
 from mdr.effects.impact_solver import Leg
 from mdr.effects.spring_table import MOMENT, PROFILE, SECOND_MOMENT, STIFFENING, STIFFNESS
@@ -55,13 +55,13 @@ def _pressing(lanes: ImpactLanes, leg: Leg, squares: FloatArray) -> tuple[FloatA
     """The rows but the last on the way in, the power lost, and the slopes of N_j, the latter two at Gauss points."""
     state, rate = _points(leg.trajectory), _rates(leg.trajectory)
     shared, memory = outline(lanes.branches)
-    history, past = state[shared], state[memory]
     springs = lanes.springs(state[0], leg.section, 6)
     g, k = springs[PROFILE], springs[STIFFNESS]
+    history, past = lanes.weights * g - state[shared], lanes.weights * springs[MOMENT] - state[memory]
     slopes = _fading(rate[0] * _at_gauss(springs[STIFFENING] * history**2), 2.0 * lanes.rates * rate[1], squares)
     met = _along(slopes, squares)[0].reshape(history.shape)
     strain = k * history**2 - 2.0 * history * past + met
-    f = force(lanes, springs, g, state[2], k * history - past)
+    f = force(lanes, springs, g, state[2], springs[MOMENT] + np.add.reduce(k * state[shared] - state[memory]))
     rows = np.stack([state[1], g, state[2], f, state[0], stored(lanes, springs, g, strain)])
     return rows, _at_gauss(dissipation(lanes, k, state[2], strain)) * rate[1], slopes
 
@@ -70,13 +70,14 @@ def _receding(lanes: ImpactLanes, leg: Leg, squares: Memory | None) -> tuple[Flo
     """The same on the way out, where springs that let go lose what they hold."""
     state, rate, own = _points(leg.trajectory), _rates(leg.trajectory), np.arange(1)
     springs = lanes.springs(state[0], leg.section, 6)
-    g, k, delta, history = springs[PROFILE], springs[STIFFNESS], state[2], state[4:]
+    g, k, delta = springs[PROFILE], springs[STIFFNESS], state[2]
     recall = leg.memory.recall(leg.step, own) if leg.memory is not None else None
-    branches, front, fading = remembered(recall, lanes, state, k)
+    history, front, memory, fading = remembered(recall, lanes, state, springs)
+    taken = missing(lanes, springs, state[4:], memory)
     met = fading**2 * squares.recall(leg.step, own)(state[0]) if squares is not None else history
-    strain = 2.0 * history * branches - k * history**2 + met
+    strain = k * history**2 - 2.0 * history * memory + met
     rows = np.stack(
-        [state[1], delta, state[3], force(lanes, springs, delta, state[3], branches), state[0]]
+        [state[1], delta, state[3], force(lanes, springs, delta, state[3], taken), state[0]]
         + [stored(lanes, springs, delta, strain)]
     )
     tip = 0.5 * lanes.inertia * (lanes.long_term * (delta - g) ** 2 + np.add.reduce(front**2 / lanes.weights))

@@ -19,7 +19,7 @@ import numpy as np
 from contact.validation import FloatArray
 from mdr.effects.collocation_step import Chain, Derivative, Lanes
 from mdr.effects.impact_memory import Memory
-from mdr.effects.spring_table import MOMENT, STIFFNESS, SpringTable
+from mdr.effects.spring_table import MOMENT, PROFILE, SLOPE, STIFFNESS, SpringTable
 
 
 @dataclass(frozen=True)
@@ -99,17 +99,20 @@ class Pressing:
         """d(state)/d(sigma)."""
         own = self.lanes.take(lanes)
         springs_at, (shared, memory) = own.springs_within(self.section, 5), outline(own.branches)
+        slowing = -own.inertia
 
         def rhs(state: FloatArray) -> FloatArray:
-            v, history, past = state[2], state[shared], state[memory]
+            v, relaxed, faded = state[2], state[shared], state[memory]
             springs = springs_at(state[0])
-            g, g_y, k, k_y, _ = springs
+            g, g_y, k, k_y, moment = springs
+            gaps = moment + np.add.reduce(k * relaxed - faded)
+            relaxation = own.rates * g_y
             slopes = np.empty_like(state)
             slopes[0] = v
             slopes[1] = g_y
-            slopes[2] = acceleration(own, springs, g, v, k * history - past) * g_y
-            slopes[shared] = (own.weights * v - own.rates * history) * g_y
-            slopes[memory] = k_y * v * history - own.rates * past * g_y
+            slopes[2] = force(own, springs, g, v, gaps) * (g_y * slowing)  # Eq. (48) for any profile
+            slopes[shared] = relaxation * (own.weights * g - relaxed)
+            slopes[memory] = k_y * v * relaxed + relaxation * (own.weights * moment - faded)
             return slopes
 
         return rhs
@@ -134,51 +137,46 @@ class Receding:
         own = self.lanes.take(lanes)
         springs_at, branches = own.springs_within(self.section, 5), slice(4, 4 + own.branches)
         recall = self.memory.recall(self.step, lanes) if self.memory is not None else None
+        slowing = -own.inertia
 
         def rhs(state: FloatArray) -> FloatArray:
-            delta, v, history = state[2], state[3], state[branches]
+            delta, v = state[2], state[3]
             springs = springs_at(state[0])
-            _, g_y, k, _, _ = springs
-            branch_force, front, fading = remembered(recall, own, state, k)
-            slowed = acceleration(own, springs, delta, v, branch_force)
-            gained = own.weights * v
+            g_y = springs[SLOPE]
+            history, front, memory, fading = remembered(recall, own, state, springs)
+            slowed = slowing * force(own, springs, delta, v, missing(own, springs, state[branches], memory))
             change = own.long_term * v + own.viscosity * slowed
-            change += np.add.reduce(gained - own.rates * front)  # of the outermost spring's force
+            change += np.add.reduce(own.weights * v - own.rates * front)  # of the outermost spring's force
             slopes = np.empty_like(state)
             slopes[0] = change / (own.long_term + np.add.reduce(own.weights * fading))  # it stays zero
             slopes[1] = g_y
             slopes[2] = v * g_y
             slopes[3] = slowed * g_y
-            slopes[branches] = (gained - own.rates * history) * g_y
+            slopes[branches] = own.rates * history * g_y
             return slopes
 
         return rhs
 
 
 def remembered(
-    recall: Derivative | None, own: ImpactLanes, state: FloatArray, k: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Per branch while the front recedes: k S - M, the outermost spring's s, and E."""
+    recall: Derivative | None, own: ImpactLanes, state: FloatArray, springs: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    """Per branch while the front recedes: S, the outermost spring's s, M, and E."""
     n = own.branches
-    history = state[4 : 4 + n]
+    history = own.weights * state[2] - state[4 : 4 + n]
     if recall is None:
-        return history, history, history  # no branches: three empty arrays
+        return history, history, history, history  # no branches: four empty arrays
     past = recall(state[0])
     fading = np.exp((past[0] - state[1]) * own.rates)
-    faded = fading * past[1:].reshape(2, n, *state.shape[1:])
-    return k * history - faded[1], history - faded[0], fading
+    front = history - fading * (own.weights * springs[PROFILE] - past[1 : 1 + n])
+    return history, front, fading * (own.weights * springs[MOMENT] - past[1 + n :]), fading
 
 
-def acceleration(
-    lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, v: FloatArray, branches: FloatArray
-) -> FloatArray:
-    """dv/dt, Eq. (48) for any profile."""
-    return np.asarray(-lanes.inertia * force(lanes, springs, delta, v, branches))
+def missing(own: ImpactLanes, springs: FloatArray, relaxed: FloatArray, memory: FloatArray) -> FloatArray:
+    """What gaps and relaxation take from k delta while the front recedes."""
+    return np.asarray(own.long_term * springs[MOMENT] + np.add.reduce(springs[STIFFNESS] * relaxed + memory))
 
 
-def force(
-    lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, v: FloatArray, branches: FloatArray
-) -> FloatArray:
-    """Normal force, Eqs. (47) and (51); `branches` holds k S_j - M_j."""
-    elastic_and_viscous = springs[STIFFNESS] * (lanes.long_term * delta + lanes.viscosity * v)
-    return np.asarray(elastic_and_viscous - lanes.long_term * springs[MOMENT] + np.add.reduce(branches))
+def force(lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, v: FloatArray, taken: FloatArray) -> FloatArray:
+    """Normal force, Eqs. (47) and (51); `taken` is what gaps and relaxation take from k delta."""
+    return np.asarray(springs[STIFFNESS] * (delta + lanes.viscosity * v) - taken)

@@ -14,7 +14,7 @@ from mdr.effects.collocation import states
 from mdr.effects.impact_lanes import ImpactLanes, force, outline
 from mdr.effects.impact_solver import Impacts, Leg
 from mdr.effects.impact_units import ScaledImpacts
-from mdr.effects.spring_table import PROFILE, STIFFNESS
+from mdr.effects.spring_table import MOMENT, PROFILE, STIFFNESS
 
 ROUNDING = 1e-14  # of results in units of the impact, added to what the tolerance changes
 _SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
@@ -114,8 +114,8 @@ def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:
     shared, memory = outline(own.branches)
     flat = state.reshape(state.shape[0], -1, state.shape[-1])
     springs = own.springs(flat[0], leg.section, 5)
-    branches = springs[STIFFNESS] * flat[shared] - flat[memory]
-    return force(own, springs, springs[PROFILE], flat[2], branches).reshape(state.shape[1:])
+    taken = springs[MOMENT] + np.add.reduce(springs[STIFFNESS] * flat[shared] - flat[memory])
+    return force(own, springs, springs[PROFILE], flat[2], taken).reshape(state.shape[1:])
 
 
 def _peak_force(lanes: ImpactLanes, leg: Leg) -> FloatArray:

@@ -368,8 +368,8 @@ WEAK_FORMS = [
 def forgets_nothing(remembered):
     """E = 1: what was remembered at first contact does not fade."""
 
-    def wrong(recall, own, state, k):
-        return remembered(recall, dataclasses.replace(own, rates=0 * own.rates), state, k)
+    def wrong(recall, own, state, springs):
+        return remembered(recall, dataclasses.replace(own, rates=0 * own.rates), state, springs)
 
     return wrong
 

@@ -57,9 +57,9 @@ def test_springs_without_memory(monkeypatch):
     """Forget when each spring was touched: the audit and the explicit scheme notice."""
     right = impact_lanes.remembered
 
-    def forgetful(recall, own, state, k):
-        _, front, fading = right(recall, own, state, k)
-        return k * state[4 : 4 + own.branches], front, fading
+    def forgetful(recall, own, state, springs):
+        history, front, memory, fading = right(recall, own, state, springs)
+        return history, front, 0.0 * memory, fading
 
     monkeypatch.setattr(impact_lanes, "remembered", forgetful)
     with pytest.raises(AssertionError):
