@@ -76,10 +76,8 @@ def _receding(lanes: ImpactLanes, leg: Leg, squares: Memory | None) -> tuple[Flo
     taken = missing(lanes, springs, state[4:], memory)
     met = fading**2 * squares.recall(leg.step, own)(state[0]) if squares is not None else history
     strain = k * history**2 - 2.0 * history * memory + met
-    rows = np.stack(
-        [state[1], delta, state[3], force(lanes, springs, delta, state[3], taken), state[0]]
-        + [stored(lanes, springs, delta, strain)]
-    )
+    f, held = force(lanes, springs, delta, state[3], taken), stored(lanes, springs, delta, strain)
+    rows = np.stack([state[1], delta, state[3], f, state[0], held])
     tip = 0.5 * lanes.inertia * (lanes.long_term * (delta - g) ** 2 + np.add.reduce(front**2 / lanes.weights))
     power = _at_gauss(dissipation(lanes, k, state[3], strain)) * rate[1]
     return rows, power - _at_gauss(tip * springs[STIFFENING]) * rate[0]
@@ -124,11 +122,10 @@ def _fading(source: FloatArray, decay: FloatArray, start: FloatArray) -> FloatAr
 
 def _memory_of_squares(memory: Memory, slopes: FloatArray, start: FloatArray) -> Memory:
     """N_j as the front met it; the memory may have room for steps that another lane took."""
-    room = ((0, 0), (0, memory.low.shape[0] - slopes.shape[1]), (0, 0))
-    slopes = np.pad(slopes, room)
     each = 2.0 * slopes @ TO_END
     starts = start[:, None] + np.cumsum(each, axis=-1) - each
-    return memory.remembering(starts[..., None], 2.0 * np.moveaxis(slopes @ CHANGE.T, -1, 0)[..., None])
+    steps = 2.0 * (slopes @ CHANGE.T).transpose(2, 0, 1)
+    return memory.first(slopes.shape[1]).remembering(starts[..., None], steps[..., None])
 
 
 def _with_losses(found: list[FloatArray], rows: FloatArray, power: FloatArray, lost: FloatArray) -> FloatArray:

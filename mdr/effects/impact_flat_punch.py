@@ -38,14 +38,22 @@ class _Problem:
     error: FloatArray
 
 
-def flat_punch_results(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, tolerance: float) -> ImpactResults:
+def flat_punch_results(
+    scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: float, *, tolerance: float
+) -> ImpactResults:
     """Many flat punches with the same number of relaxation times."""
     problem = _problem(scenes, flat_punch)
-    return _results(problem, _motion(problem, tolerance))
+    return _results(problem, _motion(problem, tolerance), accuracy)
 
 
 def flat_punch_history(
-    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, *, tolerance: float, settings: Mapping[str, Setting]
+    scene: Scene,
+    flat_punch: FlatPunchSource,
+    log: StageLog,
+    accuracy: float,
+    *,
+    tolerance: float,
+    settings: Mapping[str, Setting],
 ) -> ImpactHistory:
     """One flat punch with its whole history."""
     with log.stage("equivalent_system"):
@@ -54,7 +62,7 @@ def flat_punch_history(
         motion = _motion(problem, tolerance)
     log.count("steps", int(motion.counts.sum()))
     log.count("sweeps", motion.sweeps)
-    outcome = _results(problem, motion)
+    outcome = _results(problem, motion, accuracy)
     motion = motion.of(0)
     _, t, delta, v, *branches, lost = _samples(motion)
     depth, force_unit = problem.velocity * problem.time, _force_unit(problem)
@@ -119,11 +127,11 @@ def _force_unit(problem: _Problem) -> FloatArray:
     return problem.stiffness * problem.velocity * problem.time
 
 
-def _results(problem: _Problem, motion: Trajectory) -> ImpactResults:
+def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactResults:
     refuse_rest(motion.final[3, : problem.mass.size], problem.lanes.long_term)
     radius = np.tile(problem.radius, 2)
     both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
-    values, change = fine_and_change(both)
+    values, change = fine_and_change(both, accuracy)
     return ImpactResults(
         coefficient_of_restitution=values[0],
         contact_time=values[1] * problem.time,

@@ -21,14 +21,20 @@ _OUTCOMES = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_d
 
 
 def history(
-    scene: Scene, problem: ScaledImpacts, motion: Impacts, log: StageLog, *, settings: Mapping[str, Setting]
+    scene: Scene,
+    problem: ScaledImpacts,
+    motion: Impacts,
+    log: StageLog,
+    accuracy: float,
+    *,
+    settings: Mapping[str, Setting],
 ) -> ImpactHistory:
     """Samples of a single lane in SI units."""
     lanes = problem.lanes
     way_in, way_out = ([own for leg in way if (own := leg.of(0))] for way in (motion.way_in, motion.way_out))
     rows = samples(lanes, way_in, way_out)
     t, delta, v, f, y, held, lost = rows[:, distinct(rows[0])]
-    outcome = results(problem, motion)
+    outcome = results(problem, motion, accuracy)
     energy = float(problem.mass[0] * problem.velocity[0] ** 2)
     return ImpactHistory(
         scene=scene,

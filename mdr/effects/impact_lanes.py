@@ -3,7 +3,8 @@
 Springs of one layer share their history S_j: a spring x that was touched at t_c(x) carries
 s_j = S_j(t) - E_j S_j(t_c), E_j = exp(-(t - t_c)/tau_j). All springs in contact together carry k S_j - M_j, with one
 integral M_j = int E_j S_j(t_c) dk per branch. While the front recedes, M_j(t) = E_j M_j(t_c(a)):
-what the front once passed it passes again.
+what the front once passed it passes again. The state holds what relaxation has taken from the instantaneous response,
+g_j delta - S_j and g_j P - M_j: the stiffest part of the force then follows from the depth alone.
 
 Depth is measured in D, time in D/v0, stiffness in k_e, force in k_e D; kappa = k_e D^2 / (M v0^2). The independent
 variable sigma has dt = g_y d(sigma): then dy = v d(sigma) while pressing, and nothing is singular at first touch, at
@@ -79,13 +80,13 @@ class ImpactLanes:
 
 
 def outline(branches: int) -> tuple[slice, slice]:
-    """Where S_j and M_j stand in the state y, t, v, S, M of the way in."""
+    """Where g_j delta - S_j and g_j P - M_j stand in the state of the way in, behind y, t and v."""
     return slice(3, 3 + branches), slice(3 + branches, 3 + 2 * branches)
 
 
 @dataclass(frozen=True)
 class Pressing:
-    """From first touch to the turn. State: y, t, v, S_j and M_j."""
+    """From first touch to the turn. State: y, t, v, and per branch what has relaxed of S_j and of M_j."""
 
     lanes: ImpactLanes
     section: int
@@ -120,7 +121,7 @@ class Pressing:
 
 @dataclass(frozen=True)
 class Receding:
-    """From the turn to the loss of contact. State: y, t, delta, v and S_j."""
+    """From the turn to the loss of contact. State: y, t, delta, v, and per branch what has relaxed of S_j."""
 
     lanes: ImpactLanes
     section: int

@@ -1,4 +1,4 @@
-"""What the front met on its way in: contact time, S_j and M_j as functions of the front coordinate."""
+"""What the front met on its way in: contact time and what had relaxed, as functions of the front coordinate."""
 
 from __future__ import annotations
 
@@ -42,6 +42,11 @@ class Memory:
         """Some of the lanes."""
         low, way, rest, places = (values[..., lanes] for values in (self.low, self.way, self.rest, self.places))
         return Memory(low, way, rest, places, self.powers[..., lanes])
+
+    def first(self, steps: int) -> Memory:
+        """Of so many steps only."""
+        low, way, rest = (values[:steps] for values in (self.low, self.way, self.rest))
+        return Memory(low, way, rest, self.places[:, :steps], self.powers[:, :, :steps])
 
     def remembering(self, starts: FloatArray, steps: FloatArray) -> Memory:
         """The same of other components of the motion.

@@ -18,6 +18,7 @@ from mdr.effects.spring_table import MOMENT, PROFILE, STIFFNESS
 
 ROUNDING = 1e-14  # of results in units of the impact, added to what the tolerance changes
 _SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
+_CHANCE = 0.1  # of the accuracy: a closer agreement of two runs
 _REST = 1e-10  # of the approach speed
 _TIME = 1  # row of the contact time
 _NODES = 14  # of the force on each step
@@ -44,8 +45,13 @@ class ImpactResults:
     relative_error: FloatArray
 
 
-def results(scaled: ScaledImpacts, impacts: Impacts) -> ImpactResults:
+def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactResults:
     """Back to SI units.
+
+    Args:
+        scaled: The impacts and their units.
+        impacts: Their motions.
+        accuracy: That was asked for.
 
     Raises:
         NotConvergedError: If an indenter comes to rest in the layer.
@@ -60,7 +66,7 @@ def results(scaled: ScaledImpacts, impacts: Impacts) -> ImpactResults:
         peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
     radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
     both = np.stack([-impacts.end[3], impacts.end[1], peak, depth, radius])
-    values, change = fine_and_change(both)
+    values, change = fine_and_change(both, accuracy)
     change += _SPRINGS_TO_MOTION * lanes.table.error
     change[_TIME] += _SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
     return ImpactResults(
@@ -73,13 +79,14 @@ def results(scaled: ScaledImpacts, impacts: Impacts) -> ImpactResults:
     )
 
 
-def fine_and_change(both: FloatArray) -> tuple[FloatArray, FloatArray]:
+def fine_and_change(both: FloatArray, accuracy: float) -> tuple[FloatArray, FloatArray]:
     """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
 
-    One number may agree by chance, so the largest change of all but the contact time counts for each.
+    One number may agree by chance, so the largest change of all but the contact time counts for each; two runs may, so
+    an error is never stated far below the accuracy that their steps were chosen for.
     """
     fine, coarse = np.split(both, 2, axis=1)
-    change = np.abs(fine - coarse) / np.abs(fine) + ROUNDING
+    change = np.abs(fine - coarse) / np.abs(fine) + _CHANCE * accuracy + ROUNDING
     worst = np.delete(change, _TIME, axis=0).max(axis=0)
     change += worst
     change[_TIME] += worst * leaving(fine)

@@ -16,7 +16,7 @@ from mdr.effects.impact_memory import Memory, memory_of
 TURN, SECTION_END = 0, 1  # the events that end a section of the way in
 
 
-_FIRST_STEP = 1.4  # of the way that an elastic impact of the same energy goes, for a tolerance of one
+_FIRST_STEP = 1.5  # of the way that an elastic impact of the same energy goes, for a tolerance of one
 
 _AFTER_TURN = 0.4  # of the step before it; the front leaves its turn faster than it came
 COARSER = 5.0  # the tolerance of the second run of each impact, from which the error of the first is known
@@ -153,7 +153,7 @@ class _Run:
         return trajectory
 
     def _memory(self, trajectory: Trajectory) -> Memory | None:
-        """Rows t, S_j and M_j: nothing to remember without branches."""
+        """The time and what had relaxed: nothing to remember without branches."""
         if not self.lanes.branches:
             return None
         return memory_of(trajectory, [1, *range(3, trajectory.final.shape[0])], turning_event=TURN)

@@ -140,11 +140,17 @@ def _radius(start: FloatArray, way: FloatArray) -> FloatArray:
 
 def _section(springs: Springs, start: float, low: float, high: float) -> list[Panel]:
     """c_N, g and da/dy between two breakpoints, the first of them the radius `start`."""
+    beginning = springs.mdr_profile(np.array([start]))
 
     def sample(y: FloatArray) -> FloatArray:
-        x = _radius(np.array(start), y - low)
-        rate = 2.0 * (y - low) if start > 0.0 else np.ones_like(y)
-        return np.stack([springs.spring_stiffness(x), springs.mdr_profile(x), rate])
+        way = y - low
+        x = _radius(np.array(start), way)
+        rise = springs.mdr_profile(x) - beginning
+        if start == 0.0:
+            return np.stack([springs.spring_stiffness(x), rise, np.ones_like(y)])
+        rounded = np.sqrt(x - start)  # the way that a rounded radius stands for; beside a kink g rises with it
+        share = np.divide(way, rounded, out=np.ones_like(way), where=rounded > 0.0)
+        return np.stack([springs.spring_stiffness(x), beginning + rise * share, 2.0 * way])
 
     return resolved_panels(sample, low, high)
 
