@@ -233,7 +233,8 @@ class ImpactHistory(Solution):
         contact_radius: a [m], shape (n,).
         kinetic_energy: [J], shape (n,).
         stored_energy: Recoverable energy in the layer [J], shape (n,).
-        dissipated_energy: [J], shape (n,).
+        dissipated_energy: [J], shape (n,). What a part of the surface keeps when contact leaves it does no work on the
+            body any more: MDR counts it as dissipated at once, finite elements as stored until it has relaxed.
         peak_force: max F_N [N], between samples too.
         peak_depth: max delta [m].
         peak_contact_radius: max a [m].

@@ -87,7 +87,7 @@ class ProportionalSurface:
 
     @property
     def stored_energy(self) -> float:
-        """1/2 G_inf y C y + sum_j s_j C s_j / (2 G_j)."""
+        """1/2 G_inf y C y + sum_j s_j C s_j / (2 G_j), the free surface that still relaxes included."""
         energy = self._long_term * float(self._strain @ (self._compliance @ self._strain))
         for s, modulus in zip(self._branches, self._moduli, strict=True):
             energy += float(s @ (self._compliance @ s)) / modulus
