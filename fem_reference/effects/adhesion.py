@@ -26,6 +26,7 @@ from fem_reference.elastic import ContactSolver, Equilibrium
 Array = NDArray[np.float64]
 
 NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
+SPANS = (12.0, 100.0)  # half-spaces let go a paraboloid at 1/6 of the first radius, a cone at 1/40
 LARGEST_RATIO = 6.0  # of the radii that end one piece
 SAMPLES = 241
 
@@ -133,8 +134,10 @@ def branch_samples(branch: AdhesiveBranch) -> Array:
     return np.unique(np.concatenate([np.geomspace(ends[0], ends[-1], SAMPLES), ends]))
 
 
-def branch_of(scene: Scene, start: float | None, solve: ContactSolver, accuracy: float | None) -> AdhesiveBranch:
-    """The branch from a radius [m] (by default one where the contact is pressed) down past every pull-off.
+def branch_of(
+    scene: Scene, start: float | None, solve: ContactSolver, accuracy: float | None, span: float = SPANS[0]
+) -> AdhesiveBranch:
+    """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller.
 
     Raises:
         NotConvergedError: the interpolation between solved radii misses half the accuracy.
@@ -142,7 +145,7 @@ def branch_of(scene: Scene, start: float | None, solve: ContactSolver, accuracy:
     high = start or _first_radius(scene)
     kinks = [k for k in scene.indenter.kinks if k < high]
     smallest = min([high / 3, scene.layer.thickness, *kinks])
-    low = smallest / 4 if isinstance(scene.indenter, FlatPunch) or kinks else high / 12
+    low = 3 * smallest / span if isinstance(scene.indenter, FlatPunch) or kinks else high / span
     breaks = [low]
     for end in (*kinks, high):
         pieces = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(LARGEST_RATIO))))

@@ -73,10 +73,21 @@ class BranchPiece:
 
     @cached_property
     def interpolation_errors(self) -> dict[str, float]:
-        """Size of the last Chebyshev coefficients: relative for k_N and k_N', in [m] for delta_0 and [m^2] for F_2."""
-        return {name: float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
+        """Size of the last Chebyshev coefficients: relative for k_N and k_N', in [m] for delta_0 and [m^2] for F_2.
+
+        Those of a profile that is not analytic fall like a power of their number: more is left than the last two.
+        """
+        left = ROUGH if self._is_rough else 1.0
+        return {name: left * float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
+
+    @property
+    def _is_rough(self) -> bool:
+        """Whether the profile has breakpoints between the ends."""
+        indenter = self.contacts[-1].indenter
+        return any(r * indenter.contact_radius > self.low * (1 + 1e-9) for r in indenter.breakpoints)
 
 
+ROUGH = 3.0
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 
 
@@ -153,27 +164,31 @@ class AdhesiveBranch:
         values = np.array([getattr(piece, kind)[name] for piece in self.pieces])
         return np.asarray(values[np.searchsorted(ends, radius)])
 
-    def elongation_error(self, radius: Array) -> Array:
-        """Of dl, relative: half that of k_N'."""
-        slope = (self._stated(kind, "stiffness_slope", radius) for kind in ("errors", "interpolation_errors"))
-        return np.asarray(sum(slope) / 2)
+    def elongation_error(self, radius: Array, share: float = 1.0) -> Array:
+        """Of dl, relative: half that of k_N'.  ``share`` is one, or zero for the error of the interpolation alone."""
+        solved = share * self._stated("errors", "stiffness_slope", radius)
+        return np.asarray((solved + self._stated("interpolation_errors", "stiffness_slope", radius)) / 2)
 
-    def depth_error(self, radius: Array) -> Array:
-        """Of delta = delta_0 - dl [m]."""
-        smooth = np.abs(self._evaluate("smooth_depth", radius)) * self._stated("errors", "smooth_depth", radius)
-        interpolation = self._stated("interpolation_errors", "smooth_depth", radius)
-        return np.asarray(smooth + interpolation + self.elongation(radius) * self.elongation_error(radius))
+    def depth_error(self, radius: Array, share: float = 1.0) -> Array:
+        """Of delta = delta_0 - dl [m]; ``share`` as above."""
+        solved = share * np.abs(self._evaluate("smooth_depth", radius)) * self._stated("errors", "smooth_depth", radius)
+        interpolated = self._stated("interpolation_errors", "smooth_depth", radius)
+        return np.asarray(solved + interpolated + self.elongation(radius) * self.elongation_error(radius, share))
 
-    def force_error(self, radius: Array) -> Array:
-        """Of F / E* = F_0 - k_N dl [m^2], F_0 the force of smooth contact."""
+    def force_error(self, radius: Array, share: float = 1.0) -> Array:
+        """Of F / E* = F_0 - k_N dl [m^2], F_0 the force of smooth contact; ``share`` as above."""
         pulled = self.stiffness(radius) * self.elongation(radius)
-        smooth = np.abs(self.force(radius) + pulled) * self._stated("errors", "smooth_force", radius)
-        interpolation = self.stiffness(radius) * self._stated("interpolation_errors", "smooth_depth", radius)
-        interpolation += self._stated("interpolation_errors", "profile_force", radius)
-        stiffness = self._stated("errors", "stiffness", radius) + self._stated(
-            "interpolation_errors", "stiffness", radius
-        )
-        return np.asarray(smooth + interpolation + pulled * (stiffness + self.elongation_error(radius)))
+        solved = share * np.abs(self.force(radius) + pulled) * self._stated("errors", "smooth_force", radius)
+        interpolated = self.stiffness(radius) * self._stated("interpolation_errors", "smooth_depth", radius)
+        interpolated += self._stated("interpolation_errors", "profile_force", radius)
+        relative = share * self._stated("errors", "stiffness", radius) + self.elongation_error(radius, share)
+        relative += self._stated("interpolation_errors", "stiffness", radius)
+        return np.asarray(solved + interpolated + pulled * relative)
+
+    def waves(self, radius: float) -> float:
+        """Slope per ln a of the last Chebyshev polynomial around a radius: an error of interpolation tilts so much."""
+        piece = next((piece for piece in self.pieces if radius <= piece.high), self.pieces[-1])
+        return float(2 * (len(piece.contacts) - 1) / np.log(piece.high / piece.low))
 
 
 def solve_branch(

@@ -19,7 +19,7 @@ from contact import (
     Scene,
     StageLog,
 )
-from fem_reference.effects.adhesion import branch_of, branch_samples
+from fem_reference.effects.adhesion import SPANS, branch_of, branch_samples
 from fem_reference.effects.adhesive_branch import AdhesiveBranch
 from fem_reference.elastic import ContactSolver
 from fem_reference.prescribed_radius import PrescribedContact
@@ -29,6 +29,7 @@ Control = Literal["displacement", "force"]
 
 BEND = 1e-2  # of ln a, for second differences
 TILT = 6.0
+ROOT = 1e-12  # relative, of the search for an extremum
 
 CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
@@ -58,7 +59,7 @@ def detachment_path(
     loading = scene.loading
     if not isinstance(loading, Detachment):
         raise InvalidInput(f"loading = {type(loading).__name__}: this path needs a Detachment")
-    branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy)
+    branch = _branch_to_pull_off(scene, loading, solve, accuracy)
     radius = branch_samples(branch)[::-1]
     depth, force = branch.depth(radius), branch.force(radius)
     critical = [*_start(scene, branch), *_turning_points(branch, radius)]
@@ -96,6 +97,18 @@ def detachment_path(
     )
 
 
+def _branch_to_pull_off(
+    scene: Scene, loading: Detachment, solve: ContactSolver, accuracy: float | None
+) -> AdhesiveBranch:
+    """A branch long enough to become unstable, or the longest."""
+    for span in SPANS:
+        branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy, span)
+        load = branch.depth if loading.control == "displacement" else branch.force
+        if np.any(branch.slope(load, branch_samples(branch)) <= 0):
+            break
+    return branch
+
+
 def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, Array]:
     """Relative errors of the load and the place of pull-off; at the rim of a punch the place is exact.
 
@@ -106,7 +119,8 @@ def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest:
         (branch.depth, branch.depth_error) if pull_off.control == "displacement" else (branch.force, branch.force_error)
     )
     at_end = pull_off.contact_radius == branch.pieces[-1].high
-    place = 0.0 if at_end else place_error(branch, load, pull_off.contact_radius, float(error(here)[0]))
+    tilt = TILT * error(here)[0] + branch.waves(pull_off.contact_radius) * error(here, 0.0)[0]
+    place = 0.0 if at_end else place_error(load, pull_off.contact_radius, tilt) + ROOT
     depth = branch.depth_error(here) + place * here * np.abs(branch.slope(branch.depth, here))
     force = branch.force_error(there) + place * there * np.abs(branch.slope(branch.force, there))
     return {
@@ -116,15 +130,15 @@ def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest:
     }
 
 
-def place_error(branch: AdhesiveBranch, load: Callable[[Array], Array], radius: float, error: float) -> float:
-    """Relative error of the radius at which a load, known within an error, is stationary.
+def place_error(load: Callable[[Array], Array], radius: float, tilt: float) -> float:
+    """Relative error of the radius at which a load is stationary, its error changing by ``tilt`` per unit of ln a.
 
-    The error differs from one solved radius to the next, which tilts the load by a few times that error per unit of
-    ln a; measured: up to 3.4 times.
+    Errors of the contacts differ from one solved radius to the next: they tilt the load by up to `TILT` times their
+    size (measured: up to 3.4 times).
     """
     left, middle, right = load(radius * np.exp(np.array([-BEND, 0.0, BEND])))
     curvature = abs(left - 2 * middle + right) / BEND**2
-    return float(TILT * error / curvature)
+    return float(tilt / curvature)
 
 
 def presses_most_in_the_centre(contact: PrescribedContact) -> bool:
@@ -166,7 +180,7 @@ def slope_root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: floa
 
     if slope(low) * slope(high) >= 0:  # the slope jumps at a kink
         return high
-    return float(brentq(slope, low, high, xtol=1e-12 * high))
+    return float(brentq(slope, low, high, xtol=ROOT * high))
 
 
 def _pull_off(branch: AdhesiveBranch, radius: Array, control: Control, critical: list[CriticalPoint]) -> CriticalPoint:

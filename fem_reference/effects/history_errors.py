@@ -29,11 +29,14 @@ class KnownErrors:
         everywhere: of every quantity, from the outer edge and the thickness that stands for a half-space.
         radius: of contact radii, which are read from pressures on cells.
         exact: quantities that are input.
+        space: error of the contact set over what half the cells change: less than one for smooth profiles, whose errors
+            fall like the cells' square; next to a kink they fall like the cells, not evenly.
     """
 
     everywhere: float
     radius: float
     exact: frozenset[str]
+    space: float
 
 
 def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
@@ -47,8 +50,8 @@ def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
     """
     channels = [name for name in fine.ARRAYS if name != "time"]
     scalars = [*fine.SCALARS, *(name for name in DERIVED if hasattr(fine, name))]
-    space = {name: _channel_change(fine, wider, name) for name in channels}
-    space |= {name: _scalar_change(fine, wider, name) for name in scalars}
+    space = {name: known.space * _channel_change(fine, wider, name) for name in channels}
+    space |= {name: known.space * _scalar_change(fine, wider, name) for name in scalars}
     time = {name: _channel_change(wider, coarse, name) for name in channels}
     time |= {name: _scalar_change(wider, coarse, name) for name in scalars}
     judged = [name for name in ("indentation_depth", "normal_force", *scalars) if "radius" not in name]

@@ -18,7 +18,7 @@ from contact import Layer
 from fem_reference.certified import CertifiedContact
 from fem_reference.effects.adhesion import branch_samples
 from fem_reference.effects.adhesive_branch import AdhesiveBranch, solve_branch
-from fem_reference.effects.detachment import place_error, slope_root
+from fem_reference.effects.detachment import TILT, place_error, slope_root
 
 Array = NDArray[np.float64]
 
@@ -68,7 +68,7 @@ def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_max
         kind="maximum" if is_maximum else "minimum",
         ratio=radius / thickness,
         elongation=height / thickness,
-        ratio_error=place_error(branch, branch.elongation, radius, error * height),
+        ratio_error=place_error(branch.elongation, radius, TILT * error * height),
         elongation_error=error,
     )
 

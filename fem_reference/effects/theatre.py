@@ -40,6 +40,7 @@ TRUNCATION_SAFETY = 40.0  # on thin layers the force feels the outer edge so muc
 EDGE_SCATTER = 0.1  # cells between the true edge of the contact and the one read from the pressures
 RIM_SCATTER = 1.0  # the same next to a kink, where pressures do not end like sqrt(a - r)
 RIM_REACH = 2.0  # cells
+KINKED = 2.0  # measured: errors of truncated profiles reach 1.3 times what half the cells change
 
 
 @dataclass(frozen=True)
@@ -120,6 +121,7 @@ class Theatre:
             everywhere=thick + TRUNCATION_SAFETY * settings.truncation,
             radius=(RIM_SCATTER if at_rim else EDGE_SCATTER) * cell / peak_radius,
             exact=frozenset(name for name, is_exact in exact.items() if is_exact),
+            space=KINKED if self.scene.indenter.kinks else 1.0,
         )
 
     @property

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -55,6 +56,24 @@ def test_strip_has_cells_of_one_size():
 def test_a_section_of_a_hundred_million_radii_is_meshed():
     mesh = layer_mesh(1e8, 1e9, Grading(points=((1.0, 1e-7),), growth=0.5, max_cell=5e7)).mesh
     assert mesh.t.shape[1] < 3000
+
+
+@pytest.mark.parametrize(("gap", "cell"), [(0.5, 1e-10), (1e-6, 1e-11)])
+def test_cells_far_below_1e_8_of_the_radius_are_as_round_as_others(gap, cell):
+    mesh = layer_mesh(1.0, 4.0, Grading(points=((1 - gap, cell), (1.0, cell)), growth=0.5, max_cell=0.5)).mesh
+    corners = mesh.p[:, mesh.t] - np.array([[1.0], [0.0]])[:, None]
+    sides = corners - np.roll(corners, 1, axis=1)
+    area = np.abs(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]) / 2
+    roundness = 4 * np.sqrt(3) * area / np.sum(sides**2, axis=(0, 1))
+    near = np.hypot(*corners.mean(axis=1)) < 1e-7
+    assert near.sum() > 200
+    assert roundness[near].min() > 0.3  # below 0.01 where gmsh's origin is the axis
+
+
+def test_lines_of_1e14_cells_take_no_minutes():
+    start = time.process_time()
+    layer_mesh(80.0, 500.0, Grading(points=((1 - 7e-7, 7e-12), (1.0, 7e-12)), growth=0.7, max_cell=50.0))
+    assert time.process_time() - start < 5  # 0.3 s; more than 15 s for a line in one piece
 
 
 def test_gmsh_does_not_let_a_broken_pipe_end_the_process():

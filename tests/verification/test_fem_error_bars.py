@@ -6,6 +6,23 @@ import numpy as np
 import pytest
 
 from benchmarks.fem_error_bars import contacts, impacts
+from cases.stability.coverage import CoveragePlan, records_of
+from cases.stability.second_opinion import second_opinion
+from contact import (
+    Adhesion,
+    ContactRadii,
+    Detachment,
+    Impact,
+    Layer,
+    PowerLaw,
+    Scene,
+    Tabulated,
+    TruncatedCone,
+)
+from fem_reference import Fem
+from mdr import Mdr
+
+LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
 
 
 def every(ratios):
@@ -36,3 +53,65 @@ def test_error_bars_of_a_few():
 
 def test_error_bars_of_an_impact():
     assert every(impacts(1, seed=7)).min() >= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
+def test_requested_accuracies_of_random_scenes_are_covered(accuracy):
+    plan = CoveragePlan(method="fem", settings={"accuracy": accuracy}, family="elastic", count=80, only_radii=True)
+    for record in records_of(plan, seed=1):
+        assert record.covered >= 0.95, record.quantity
+        assert record.sharpness is None or record.sharpness < 10, record.quantity
+
+
+def test_error_of_the_edge_cell_follows_the_slope_of_the_depth():
+    """The depth of a profile r^9 on a half-space grows like a^9 (closed form), and errs nine times as the radius."""
+    indenter = PowerLaw(exponent=9.0, reference_radius=1.0, reference_height=0.1)
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.0),
+        indenter=indenter,
+        loading=ContactRadii(values=np.array([1.0])),
+    )
+    path = Fem(growth=0.4, edge_cell=1e-3).solve(scene)
+    opinion = second_opinion(path).values
+    for name in ("indentation_depth", "normal_force"):
+        error = abs(getattr(path, name)[0] / opinion[name][0] - 1)
+        assert error < path.error_estimate[name][0] < 5 * error  # 2.5 k_N'/k_N states less than the error
+
+
+@pytest.mark.parametrize("gap", [1e-3, pytest.param(1e-5, marks=pytest.mark.slow), 1e-7])
+def test_contacts_that_are_nearly_flat_punches(gap):
+    indenter = TruncatedCone(flat_radius=1 - gap, slope=0.1)
+    scene = Scene(layer=LAYER, indenter=indenter, loading=ContactRadii(values=np.array([1.0])))
+    path = Fem(order=4, growth=0.6, edge_cell=1e-5).solve(scene)
+    opinion = second_opinion(path).values
+    for name in ("indentation_depth", "normal_force", "contact_stiffness"):
+        error = abs(getattr(path, name)[0] / opinion[name][0] - 1)
+        assert error < path.error_estimate[name][0] < 2e-5  # errors were 1e-3 at a gap of 1e-7
+
+
+def test_radius_of_an_impact_that_ends_beside_the_flat_end():
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.4),
+        indenter=TruncatedCone(flat_radius=1.0, slope=0.01),
+        loading=Impact(mass=1.0, velocity=5e-4),
+    )
+    history, exact = Fem(growth=1.0).solve(scene), Mdr().solve(scene)
+    assert 1.0 < exact.peak_contact_radius < 1.02  # within a cell of the rim
+    for name in ("peak_contact_radius", "peak_force", "coefficient_of_restitution"):
+        error = abs(getattr(history, name) / getattr(exact, name) - 1)
+        assert error < history.error_estimate[name][0]
+    assert history.error_estimate["coefficient_of_restitution"][0] < 1e-5  # nothing is lost on an elastic layer
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_interpolation_of_a_measured_profile_is_judged_in_the_detachment(control):
+    radii = np.linspace(0.0, 2.0, 31)
+    rises = np.diff(radii**2 / 20) * (1 + 0.02 * np.random.default_rng(7).uniform(-1, 1, 30))
+    indenter = Tabulated(radii=radii, heights=np.concatenate([[0.0], np.cumsum(rises)]))
+    effects = (Adhesion(work_of_adhesion=2e-4),)
+    scene = Scene(layer=LAYER, indenter=indenter, loading=Detachment(control=control), effects=effects)
+    path, exact = Fem(growth=1.0, edge_cell=1e-4).solve(scene), Mdr().solve(scene)
+    for name in ("pull_off_force", "pull_off_depth", "pull_off_contact_radius"):
+        assert abs(getattr(path, name) / getattr(exact, name) - 1) < path.error_estimate[name][0]
