@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 H = TypeVar("H", bound=HistoryPath | ImpactHistory)
 
 DERIVED = ("coefficient_of_restitution", "contact_time")
-TYPICAL = 0.5  # of the mean change by space: the least that is believed of one number
+TYPICAL = 0.8  # of the mean change by space: the least that is believed of one number
 
 
 @dataclass(frozen=True, kw_only=True)
