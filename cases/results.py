@@ -494,7 +494,7 @@ class ErrorMap:
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
 class ScalingFit:
-    """Seconds against size, and the exponent of the larger sizes.
+    """Seconds against size, and the exponent of what grows beyond a fixed cost.
 
     Attributes:
         method: name in the method table.
@@ -505,6 +505,7 @@ class ScalingFit:
         half_width: of its 95 % interval.
         theory: exponent of the most expensive stage.
         because: which stage that is.
+        counters: of unknowns, iterations and the like, which no noise disturbs: the exponent of those that grow.
     """
 
     method: str
@@ -515,6 +516,7 @@ class ScalingFit:
     half_width: NotNegative
     theory: Finite
     because: str
+    counters: dict[str, Finite] = field(default_factory=dict)
 
 
 # -- figures: all numbers, no ink ----------------------------------------------------------------------------------

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
-from scipy import stats
+from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
 from cases.methods import build
@@ -17,6 +17,7 @@ from cases.status import Status
 from cases.work.forgetting import forget
 from contact import (
     ContactRadii,
+    Cost,
     DepthHistory,
     Impact,
     InvalidInput,
@@ -29,15 +30,19 @@ from contact import (
 from contact.validation import FloatArray
 
 NAME: Final = "scaling"
-REPEATS: Final = 3
+REPEATS: Final = 7
+BOOTSTRAPS: Final = 200
 CONFIDENCE: Final = 0.95
 SLACK: Final = 0.1
-FEWEST: Final = 5  # sizes, of which at least four are fitted
+FEWEST: Final = 5  # sizes
+LEAST_GROWTH: Final = 2.0  # of the seconds, above which a fixed cost can be told from what grows
+STEEPEST: Final = 6.0
 
 TEXT: Final = """
-One size grows and everything else stays: seconds of processor time, the shortest of three first solutions, against the
-size, both logarithmic. The exponent is the slope of the straight line through the larger half of the sizes, where
-fixed costs have faded, with its 95 % interval; beside it the exponent of the most expensive stage in theory.
+One size grows and everything else stays: seconds of processor time of first solutions, each size in turn and all of
+them seven times, the shortest of each. Seconds are c + k n^p; the exponent p comes with its 95 % interval, from the
+seven times drawn anew and from the fit without the smallest size; beside it the exponent of the most expensive stage in
+theory. Unknowns, iterations and the like are counted, without any noise: their exponents over the larger sizes.
 """
 
 
@@ -48,7 +53,7 @@ class ScalingPlan:
     Attributes:
         method: name in the method table.
         size: what grows, with its symbol.
-        sizes: at least five, growing.
+        sizes: at least five, growing, so far that what grows outweighs fixed costs.
         scene: the scene of a size.
         theory: exponent of the most expensive stage.
         because: which stage that is.
@@ -112,15 +117,15 @@ PLANS: Final = (
     ScalingPlan(
         method="mdr",
         size="a/h",
-        sizes=(1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0),
+        sizes=(0.01, 0.1, 1.0, 10.0, 20.0, 40.0, 80.0, 160.0),
         scene=_at_ratio,
         theory=3.0,
-        because="one dense factorisation of a/h panels serves all radii",
+        because="one dense factorisation of a/h panels serves all radii; beyond 160 another takes the same at any a/h",
     ),
     ScalingPlan(
         method="mdr",
         size="number of radii",
-        sizes=(64, 256, 1024, 4096, 16384, 65536),
+        sizes=(64, 1024, 16384, 65536, 262144, 1000000),
         scene=_radii,
         theory=1.0,
         because="each radius is one evaluation of piecewise polynomials",
@@ -128,7 +133,7 @@ PLANS: Final = (
     ScalingPlan(
         method="mdr",
         size="Prony terms",
-        sizes=(1, 2, 4, 8, 16, 32),
+        sizes=(1, 4, 16, 64, 256, 1024),
         scene=_terms,
         theory=1.0,
         because="one memory integral a branch",
@@ -136,7 +141,7 @@ PLANS: Final = (
     ScalingPlan(
         method="mdr",
         size="pieces of a depth history",
-        sizes=(4, 8, 16, 32, 64, 128),
+        sizes=(4, 16, 64, 256, 1024, 2048),
         scene=_steps,
         theory=1.0,
         because="each piece is one stretch of the springs' closed-form memory",
@@ -144,7 +149,7 @@ PLANS: Final = (
     ScalingPlan(
         method="integral_equation",
         size="a/h",
-        sizes=(1.0, 2.0, 5.0, 10.0, 20.0, 40.0),
+        sizes=(0.01, 0.1, 1.0, 5.0, 10.0, 20.0, 40.0, 60.0),
         scene=_at_ratio,
         theory=3.0,
         because="a dense system of a/h panels, and wavenumbers as many as nodes",
@@ -152,7 +157,7 @@ PLANS: Final = (
     ScalingPlan(
         method="bem",
         size="grid cells",
-        sizes=tuple(float(n**2) for n in (128, 192, 256, 384, 512, 768)),
+        sizes=tuple(float(n**2) for n in (128, 192, 256, 384, 512, 768, 1024)),
         scene=lambda _: _at_ratio(1.0),
         settings=lambda cells: {"points": round(cells**0.5)},
         theory=1.0,
@@ -161,7 +166,7 @@ PLANS: Final = (
     ScalingPlan(
         method="fem",
         size="a/h",
-        sizes=(1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0),
+        sizes=(1.0, 4.0, 16.0, 64.0, 256.0, 1000.0),
         scene=_at_ratio,
         settings=lambda _: {"order": 3, "edge_cell": 1e-5},
         theory=1.5,
@@ -190,55 +195,95 @@ def scaling_case(plans: Iterable[ScalingPlan] = PLANS, progress: Callable[[str],
 
 
 def fitted(plan: ScalingPlan) -> ScalingFit:
-    """Time every size and fit the exponent."""
-    seconds = tuple(_times(plan))
-    exponent, half_width = exponent_of(np.array(plan.sizes), np.array(seconds))
+    """Time every size, round by round, and fit the exponent."""
+    sizes, tasks = np.array(plan.sizes), [_task(plan, size) for size in plan.sizes]
+    _first_solution(*tasks[0])  # loads what the method imports on demand
+    rounds = [[_first_solution(*task) for task in tasks] for _ in range(REPEATS)]
+    samples = np.array([[seconds for seconds, _ in found] for found in rounds])
+    exponent, half_width = exponent_of(sizes, samples)
     return ScalingFit(
         method=plan.method,
         size=plan.size,
         sizes=tuple(map(float, plan.sizes)),
-        seconds=seconds,
+        seconds=tuple(samples.min(axis=0).tolist()),
         exponent=exponent,
         half_width=half_width,
         theory=plan.theory,
         because=plan.because,
+        counters=counter_exponents(sizes, [cost for _, cost in rounds[0]]),
     )
 
 
-def _times(plan: ScalingPlan) -> Iterator[float]:
-    for size in plan.sizes:
-        method, scene = build(plan.method, plan.settings(size)), plan.scene(size)
-        yield min(_first_solution(method, scene) for _ in range(REPEATS))
+def _task(plan: ScalingPlan, size: float) -> tuple[Method, Scene]:
+    return build(plan.method, plan.settings(size)), plan.scene(size)
 
 
-def _first_solution(method: Method, scene: Scene) -> float:
+def _first_solution(method: Method, scene: Scene) -> tuple[float, Cost]:
     forget()
     with threadpool_limits(limits=1):
         start = time.process_time()
-        method.solve(scene)
-        return max(time.process_time() - start, 1e-9)
+        answer = method.solve(scene)
+        return max(time.process_time() - start, 1e-9), answer.cost
 
 
-def exponent_of(sizes: FloatArray, seconds: FloatArray) -> tuple[float, float]:
-    """Slope of ln(seconds) over ln(size) in the larger half of the sizes, and half its 95 % interval.
+def exponent_of(sizes: FloatArray, samples: FloatArray) -> tuple[float, float]:
+    """p of c + k n^p through the shortest seconds, and half its 95 % interval.
+
+    Args:
+        sizes: n, shape (m,).
+        samples: Seconds, one row a round, shape (rounds, m).
 
     Raises:
         InvalidInput: with fewer than five sizes.
     """
     if len(sizes) < FEWEST:
         raise InvalidInput(f"{len(sizes)} sizes: an exponent with an interval needs at least {FEWEST}")
-    kept = slice(min(len(sizes) // 2, len(sizes) - 4), None)
-    x, y = np.log(sizes[kept]), np.log(seconds[kept])
-    found = stats.linregress(x, y)
-    spread = float(found.stderr) * float(stats.t.ppf(0.5 + CONFIDENCE / 2, x.size - 2))
-    return float(found.slope), spread
+    seconds, draw = samples.min(axis=0), np.random.default_rng(len(sizes))
+    found = _exponent(sizes, seconds)
+    spread = [abs(_exponent(sizes, _drawn_anew(samples, draw)) - found) for _ in range(BOOTSTRAPS)]
+    without_smallest = abs(_exponent(sizes[1:], seconds[1:]) - found)
+    return found, max(float(np.quantile(spread, CONFIDENCE)), without_smallest)
+
+
+def _drawn_anew(samples: FloatArray, draw: np.random.Generator) -> FloatArray:
+    """The shortest seconds of each size among as many rounds drawn with replacement."""
+    rounds = draw.integers(len(samples), size=samples.shape)
+    return np.asarray(np.take_along_axis(samples, rounds, axis=0).min(axis=0))
+
+
+def _exponent(sizes: FloatArray, seconds: FloatArray) -> float:
+    """p of the least squares of ln(c + k n^p); without c where hardly anything grows."""
+    n, t = np.log(sizes / sizes[-1]), np.log(seconds)
+    slope = float(np.clip((t[-1] - t[-2]) / (n[-1] - n[-2]), 0.1, STEEPEST))
+    if t[-1] - t.min() < np.log(LEAST_GROWTH):
+        return float(np.polyfit(n, t, 1)[0])
+
+    def residual(x: FloatArray) -> FloatArray:
+        return np.asarray(np.logaddexp(x[0], x[1] + x[2] * n) - t)
+
+    bounds = [-40.0, -40.0, 0.0], [40.0, 40.0, STEEPEST]
+    return float(least_squares(residual, [t.min() - 0.1, t[-1], slope], bounds=bounds).x[2])
+
+
+def counter_exponents(sizes: FloatArray, costs: Sequence[Cost]) -> dict[str, float]:
+    """Slope of ln(count) over ln(size) in the larger half of the sizes, of every count that grows."""
+    larger = np.log(sizes)[len(sizes) // 2 :]
+    counts = {name: [cost.counters[name] for cost in costs] for name in costs[0].counters}
+    counts["unknowns"] = [cost.unknowns for cost in costs]
+    grown = {name: values[len(sizes) // 2 :] for name, values in counts.items() if min(values) > 0}
+    return {
+        name: float(np.polyfit(larger, np.log(values), 1)[0])
+        for name, values in grown.items()
+        if values[-1] != values[0]
+    }
 
 
 def summary(fit: ScalingFit) -> str:
     """One line."""
+    counted = "".join(f", {name} {exponent:.2f}" for name, exponent in fit.counters.items())
     return (
         f"{fit.method}: seconds grow like {fit.size} to the {fit.exponent:.2f} +- {fit.half_width:.2f}, "
-        f"in theory {fit.theory:g} ({fit.because})"
+        f"in theory {fit.theory:g} ({fit.because}){counted}"
     )
 
 
