@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
-from bem.piecewise import chebyshev_sum
+from bem.piecewise import piecewise_sum
 from contact.validation import FloatArray
 
 MAX_SPLITS = 60
@@ -94,13 +94,13 @@ class MappedFunction:
 
     def at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Values at mapped positions."""
-        return chebyshev_sum(self.coefficients[piece], 2 * u - 1) * self._factor(piece, u)
+        return piecewise_sum(self.coefficients, piece, 2 * u - 1) * self._factor(piece, u)
 
     def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Derivative with respect to u at mapped positions."""
         lead = np.where(piece == 0, self.lead, 0.0)
-        regular = chebyshev_sum(self.coefficients[piece], 2 * u - 1)
-        slope = chebyshev_sum(self._slope_coefficients[piece], 2 * u - 1)
+        regular = piecewise_sum(self.coefficients, piece, 2 * u - 1)
+        slope = piecewise_sum(self._slope_coefficients, piece, 2 * u - 1)
         full: FloatArray = self._factor(piece, u) * slope + lead * u ** np.maximum(lead - 1, 0) * regular
         return full
 
