@@ -131,7 +131,7 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
     refuse_rest(motion.final[3, : problem.mass.size], problem.lanes.long_term)
     radius = np.tile(problem.radius, 2)
     both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
-    values, change = fine_and_change(both, accuracy)
+    values, change = fine_and_change(both, accuracy, motion.error)
     return ImpactResults(
         coefficient_of_restitution=values[0],
         contact_time=values[1] * problem.time,

@@ -33,6 +33,7 @@ def history(
     lanes = problem.lanes
     way_in, way_out = ([own for leg in way if (own := leg.of(0))] for way in (motion.way_in, motion.way_out))
     rows = samples(lanes, way_in, way_out)
+    rows[:2, -1] += motion.drift[0] * np.array([1.0, rows[2, -1]])
     t, delta, v, f, y, held, lost = rows[:, distinct(rows[0])]
     outcome = results(problem, motion, accuracy)
     energy = float(problem.mass[0] * problem.velocity[0] ** 2)

@@ -146,10 +146,9 @@ class Receding:
             g_y = springs[SLOPE]
             history, front, memory, fading = remembered(recall, own, state, springs)
             slowed = slowing * force(own, springs, delta, v, missing(own, springs, state[branches], memory))
-            change = own.long_term * v + own.viscosity * slowed
-            change += np.add.reduce(own.weights * v - own.rates * front)  # of the outermost spring's force
+            change = _change_in_front(own, v, slowed, front)
             slopes = np.empty_like(state)
-            slopes[0] = change / (own.long_term + np.add.reduce(own.weights * fading))  # it stays zero
+            slopes[0] = change / (own.long_term + np.add.reduce(own.weights * fading))  # the force there stays zero
             slopes[1] = g_y
             slopes[2] = v * g_y
             slopes[3] = slowed * g_y
@@ -157,6 +156,29 @@ class Receding:
             return slopes
 
         return rhs
+
+
+def _change_in_front(own: ImpactLanes, v: FloatArray, slowed: FloatArray, front: FloatArray) -> FloatArray:
+    """d/dt of the outermost spring's force."""
+    change = own.long_term * v + own.viscosity * slowed
+    return np.asarray(change + np.add.reduce(own.weights * v - own.rates * front))
+
+
+def drift(own: ImpactLanes, memory: Memory | None, end: FloatArray) -> FloatArray:
+    """The time from the end of a motion to where the last spring's force is zero, by Newton's method, shape (lanes,).
+
+    While the front recedes that force is kept at zero by its derivative, as well as steps are; a layer that is soft in
+    the long term needs a long way to make up for little of it.
+    """
+    state, recall = end[:, None], memory.recall(0, np.arange(own.count)) if memory is not None else None
+    springs = own.springs(state[0], 0, 5)
+    _, front, faded, _ = remembered(recall, own, state, springs)
+    delta, v = state[2], state[3]
+    slowed = -own.inertia * force(own, springs, delta, v, missing(own, springs, state[4:], faded))
+    left = own.long_term * (delta - springs[PROFILE]) + own.viscosity * v + np.add.reduce(front)
+    change = _change_in_front(own, v, slowed, front)
+    later = np.divide(-left, change, out=np.zeros_like(left), where=v < 0.0)  # at rest there is no end
+    return np.asarray(later[0])
 
 
 def remembered(

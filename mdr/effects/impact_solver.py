@@ -10,7 +10,7 @@ from contact import NotConvergedError
 from contact.validation import FloatArray
 from mdr.effects.collocation import Event, Problem, Trajectory, integrate
 from mdr.effects.collocation_step import STAGES, Course, Lanes
-from mdr.effects.impact_lanes import ImpactLanes, Pressing, Receding, outline
+from mdr.effects.impact_lanes import ImpactLanes, Pressing, Receding, drift, outline
 from mdr.effects.impact_memory import Memory, memory_of
 
 TURN, SECTION_END = 0, 1  # the events that end a section of the way in
@@ -56,6 +56,7 @@ class Impacts:
         turn: State at the turn, shape (m, 2 n).
         end: State at the loss of contact, shape (m', 2 n).
         within: Sum of the local errors within steps, shape (2 n,).
+        drift: Time from there to where the last spring's force is zero, shape (2 n,).
     """
 
     lanes: ImpactLanes
@@ -64,6 +65,7 @@ class Impacts:
     turn: FloatArray
     end: FloatArray
     within: FloatArray
+    drift: FloatArray
 
 
 def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
@@ -84,7 +86,7 @@ def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
     within = np.zeros(twice.count)
     for leg in way_in + way_out:
         within[leg.lanes] += leg.trajectory.error
-    return Impacts(twice, way_in, way_out, turn, end, within)
+    return Impacts(twice, way_in, way_out, turn, end, within, drift(twice, way_in[0].memory, end))
 
 
 class _Run:

@@ -79,10 +79,11 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("equivalent_system"):
         table, bed = _bed(scene, loading, law, flat_punch, gaps)
     with log.stage("history"):
-        found, change = _followed(law, bed, loading, _substeps(loading, fineness))
+        found, change, other = _followed(law, bed, loading, _substeps(loading, fineness))
     log.count("springs", bed.y.size)
     log.count("instants", loading.time.size)
-    contact = found.y >= 0.0
+    radius = _radius(scene, table, found.y)
+    moved = max(_change(radius, _radius(scene, table, other.y)), _ROUNDING)
     error = np.full(loading.time.size, max(change, _ROUNDING))
     if error[0] > _LARGEST_ERROR:
         raise NotConvergedError(
@@ -92,14 +93,18 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         scene=scene,
         method="mdr",
         settings=settings,
-        error_estimate=dict.fromkeys(("indentation_depth", "normal_force"), error),
+        error_estimate={
+            "indentation_depth": error,
+            "normal_force": error,
+            "contact_radius": np.full(error.size, moved),
+        },
         cost=log.cost(unknowns=bed.y.size),
         stages=log.records,
         notes=(_BENT,) if found.bent else (),
         time=loading.time,
         indentation_depth=found.depth,
         normal_force=found.force,
-        contact_radius=np.where(contact, _radius(scene, table, np.maximum(found.y, 0.0)), 0.0),
+        contact_radius=radius,
     )
 
 
@@ -124,20 +129,20 @@ def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np
 
 def _followed(
     law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
-) -> tuple[_Track, float]:
-    """The history, and how much it changes with half the springs and, under a force, with fewer substeps.
+) -> tuple[_Track, float, _Track]:
+    """The history, how much it changes with half the springs and with fewer substeps, and the one on half the springs.
 
     Between two instants a prescribed depth needs no substeps. Under a force their errors go with the second and fourth
     powers of their number, so three numbers of them have a limit (Romberg).
     """
     if isinstance(loading, DepthHistory):
         fine, half = (_follow(law, own, loading, substeps) for own in (bed, bed.coarser()))
-        return fine, _change(fine.force, half.force)
+        return fine, _change(fine.force, half.force), half
     fine, middle, coarse = (_follow(law, bed, loading, level * substeps) for level in _LEVELS)
     half = _follow(law, bed.coarser(), loading, substeps)
     depth, by_two = _limits(fine.depth, middle.depth, coarse.depth)
     change = _change(depth, by_two) + _change(coarse.depth, half.depth)
-    return _Track(depth, fine.force, fine.y, fine.bent), change
+    return _Track(depth, fine.force, fine.y, fine.bent), change, half
 
 
 def _limits(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -152,7 +157,9 @@ def _change(fine: FloatArray, coarse: FloatArray) -> float:
 
 
 def _radius(scene: Scene, table: SpringTable | None, y: FloatArray) -> FloatArray:
-    return np.full(y.shape, scene.indenter.max_radius) if table is None else table.radius(y)
+    """a [m], zero without contact."""
+    radius = np.full(y.shape, scene.indenter.max_radius) if table is None else table.radius(np.maximum(y, 0.0))
+    return np.where(y >= 0.0, radius, 0.0)
 
 
 def _bed(
