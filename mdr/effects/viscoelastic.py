@@ -249,6 +249,7 @@ def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, subs
         bent |= _check_circle(law, state, speed, float(instant))
         records.append((state.depth, *carried(law, bed, state, speed)))
     depth, force, y = np.array(records).T
+    y = np.where(force > _ROUNDING * force.max(), y, -1.0)  # what is held by a rounding error is no contact
     return _Track(depth, force if isinstance(loading, DepthHistory) else loading.force, y, bent)
 
 
