@@ -109,7 +109,7 @@ class AdhesiveBranch:
     work: float
 
     def _evaluate(self, name: str, radius: Array) -> Array:
-        values = np.empty_like(radius)
+        values = np.full_like(radius, np.nan)  # beyond the ends nothing is known
         for piece in self.pieces:
             inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
             values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))

@@ -120,7 +120,7 @@ def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest:
     )
     at_end = pull_off.contact_radius == branch.pieces[-1].high
     tilt = TILT * error(here)[0] + branch.waves(pull_off.contact_radius) * error(here, 0.0)[0]
-    place = 0.0 if at_end else place_error(load, pull_off.contact_radius, tilt) + ROOT
+    place = 0.0 if at_end else place_error(branch, load, pull_off.contact_radius, tilt) + ROOT
     depth = branch.depth_error(here) + place * here * np.abs(branch.slope(branch.depth, here))
     force = branch.force_error(there) + place * there * np.abs(branch.slope(branch.force, there))
     return {
@@ -130,13 +130,14 @@ def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest:
     }
 
 
-def place_error(load: Callable[[Array], Array], radius: float, tilt: float) -> float:
+def place_error(branch: AdhesiveBranch, load: Callable[[Array], Array], radius: float, tilt: float) -> float:
     """Relative error of the radius at which a load is stationary, its error changing by ``tilt`` per unit of ln a.
 
     Errors of the contacts differ from one solved radius to the next: they tilt the load by up to `TILT` times their
     size (measured: up to 3.4 times).
     """
-    left, middle, right = load(radius * np.exp(np.array([-BEND, 0.0, BEND])))
+    middle = np.clip(radius, branch.pieces[0].low * np.exp(BEND), branch.pieces[-1].high * np.exp(-BEND))
+    left, middle, right = load(middle * np.exp(np.array([-BEND, 0.0, BEND])))
     curvature = abs(left - 2 * middle + right) / BEND**2
     return float(tilt / curvature)
 

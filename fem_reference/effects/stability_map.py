@@ -68,7 +68,7 @@ def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_max
         kind="maximum" if is_maximum else "minimum",
         ratio=radius / thickness,
         elongation=height / thickness,
-        ratio_error=place_error(branch.elongation, radius, TILT * error * height),
+        ratio_error=place_error(branch, branch.elongation, radius, TILT * error * height),
         elongation_error=error,
     )
 
