@@ -105,7 +105,7 @@ def graded_points(
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)
     cells |= {
-        r: settings.edge_cell * min(r - left, right - r)
+        r: 0.5 * settings.edge_cell * min(r - left, right - r, thickness)
         for left, r, right in zip(ends, ends[1:], ends[2:], strict=False)
     }
     if indenter.has_sharp_tip:

@@ -91,7 +91,7 @@ def choices(scene: Scene, accuracy: float, *, within: float | None, evidence: Ev
 
 
 def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None) -> Outcome:
-    """Solve with the cheapest measured settings for an accuracy; where the answer states less, with the next.
+    """Solve with the cheapest measured settings for an accuracy; where the answer states a larger error, with the next.
 
     Args:
         scene: What is to be solved.
