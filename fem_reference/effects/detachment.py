@@ -185,16 +185,19 @@ def slope_root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: floa
 
 
 def _pull_off(branch: AdhesiveBranch, radius: Array, control: Control, critical: list[CriticalPoint]) -> CriticalPoint:
-    """Where contact is lost: at once if the first state is unstable, else at the first turning point."""
+    """Where contact is lost for good: at the lowest of the first state, if that is unstable, and the turning points.
+
+    A contact that jumps from a higher one comes to rest on the stable part of the branch before the lowest.
+    """
     load = branch.depth if control == "displacement" else branch.force
-    if branch.slope(load, radius[:1])[0] <= 0:
-        return _point(branch, float(radius[0]), control, "pull-off")
     lost = [p for p in critical if p.control == control and p.kind == "pull-off"]
+    if branch.slope(load, radius[:1])[0] <= 0:
+        lost.insert(0, _point(branch, float(radius[0]), control, "pull-off"))
     if not lost:
         raise NotConvergedError(
             f"the branch down to a = {radius[-1]:g} m stays stable under {control} control", {"radius": radius[-1]}
         )
-    return lost[0]
+    return min(lost, key=lambda p: p.indentation_depth if control == "displacement" else p.normal_force)
 
 
 def _in_newtons(point: CriticalPoint, modulus: float) -> CriticalPoint:

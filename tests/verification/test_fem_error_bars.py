@@ -131,3 +131,16 @@ def test_place_of_a_pull_off_just_inside_the_rim_of_a_punch():
     path, exact = Fem(order=3, edge_cell=1e-5).solve(scene), Mdr().solve(scene)
     error = abs(path.pull_off_contact_radius / exact.pull_off_contact_radius - 1)
     assert error < path.error_estimate["pull_off_contact_radius"][0]  # 6e-10 where the bend was read beyond the rim
+
+
+@pytest.mark.slow
+def test_a_punch_whose_stability_reverses_is_lost_at_the_lowest_turning_point():
+    """From a/h = 8 at nu = 0.365 contact jumps to the stable part of the branch and comes off at the maximum of dl."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.365)
+    effects = (Adhesion(work_of_adhesion=1e-4),)
+    scene = Scene(
+        layer=layer, indenter=FlatPunch(radius=8.0), loading=Detachment(control="displacement"), effects=effects
+    )
+    path = Fem(order=3, edge_cell=1e-5).solve(scene)
+    found, stated = path.pull_off_contact_radius, path.error_estimate["pull_off_contact_radius"][0]
+    assert abs(found / 1.91953 - 1) < stated < 0.02  # the maximum of Eq. (42), from the integral equation
