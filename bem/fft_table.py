@@ -22,6 +22,7 @@ LARGEST_RATIO: Final = 1e3
 ERROR_FLOOR: Final = 5e-7  # conjugate gradients stop at 1e-7 of the displacement; q may be off by a few times that
 LEAST_HALVED: Final = 2 * LEAST_ROWS - 1  # rows and columns that a table needs so that every other one is a table
 GAIN: Final = 4.0  # of reading on half the spacing; measured on 20 to 60 rows at least 3.2 with the grid's own error
+BEYOND: Final = 6  # rows beyond the ratio asked for: splines end less well than they run, felt over so many rows
 SPREAD: Final = 1.5  # factor in a/h either way over which the error's largest value counts: differences cross zero
 
 
@@ -65,7 +66,7 @@ class FftTable(Record):
         grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
         if not 0.0 < max_ratio <= LARGEST_RATIO * (1.0 + 1e-12):  # a quotient meant as 1000 may come out above it
             raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
-        rows = max(LEAST_HALVED, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1)
+        rows = max(LEAST_HALVED, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1 + BEYOND)
         poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0  # unbonded: nu plays no part
         return _build(self, layer.support, poissons_ratio, min(rows, self.ratios))
 

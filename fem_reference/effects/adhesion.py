@@ -26,6 +26,7 @@ from fem_reference.elastic import ContactSolver, Equilibrium
 Array = NDArray[np.float64]
 
 NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
+INTERPOLATED = 0.5  # of the accuracy
 SPANS = (12.0, 100.0)  # half-spaces let go a paraboloid at 1/6 of the first radius, a cone at 1/40
 LARGEST_RATIO = 6.0  # of the radii that end one piece
 SAMPLES = 241
@@ -140,7 +141,7 @@ def branch_of(
     """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller.
 
     Raises:
-        NotConvergedError: the interpolation between solved radii misses half the accuracy.
+        NotConvergedError: the interpolation between solved radii misses its share of the accuracy.
     """
     high = start or _first_radius(scene)
     kinks = [k for k in scene.indenter.kinks if k < high]
@@ -159,7 +160,7 @@ def branch_of(
 
     for nodes in NODES:
         branch = solve_branch(breaks, kinks, work_of_adhesion(scene), once, nodes)
-        if accuracy is None or branch.interpolation_error <= accuracy / 2:
+        if accuracy is None or branch.interpolation_error <= INTERPOLATED * accuracy:
             return branch
     raise NotConvergedError(
         f"accuracy {accuracy:g} was not reached along the branch", {"interpolation_error": branch.interpolation_error}

@@ -119,7 +119,8 @@ def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest:
         (branch.depth, branch.depth_error) if pull_off.control == "displacement" else (branch.force, branch.force_error)
     )
     at_end = pull_off.contact_radius == branch.pieces[-1].high
-    tilt = TILT * error(here)[0] + branch.waves(pull_off.contact_radius) * error(here, 0.0)[0]
+    interpolated = error(here, 0.0)[0]
+    tilt = TILT * (error(here)[0] - interpolated) + branch.waves(pull_off.contact_radius) * interpolated
     place = 0.0 if at_end else place_error(branch, load, pull_off.contact_radius, tilt) + ROOT
     depth = branch.depth_error(here) + place * here * np.abs(branch.slope(branch.depth, here))
     force = branch.force_error(there) + place * there * np.abs(branch.slope(branch.force, there))
