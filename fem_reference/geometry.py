@@ -19,6 +19,8 @@ import numpy as np
 from numpy.typing import NDArray
 from skfem import MeshTri
 
+from contact import NotConvergedError
+
 Array = NDArray[np.float64]
 
 MISSING_LIBRARIES = (
@@ -182,8 +184,15 @@ def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
 
 
 def named_layer_mesh(points: Array, triangles: NDArray[np.int64]) -> LayerMesh:
-    """Name the four boundaries of a rectangular section given by points (2, n) and triangles (3, m)."""
+    """Name the four boundaries of a rectangular section given by points (2, n) and triangles (3, m).
+
+    Raises:
+        NotConvergedError: If a triangle has no area.
+    """
     mesh = MeshTri(points, triangles)
+    (r0, r1, r2), (z0, z1, z2) = mesh.p[:, mesh.t]
+    if np.any((r1 - r0) * (z2 - z0) == (r2 - r0) * (z1 - z0)):
+        raise NotConvergedError("a triangle has no area: a kink lies closer to the contact's edge than cells can tell")
     outer_radius, thickness = points.max(axis=1)
     r, z = mesh.p[:, mesh.facets]
     on_boundary = np.isin(np.arange(mesh.facets.shape[1]), mesh.boundary_facets())

@@ -160,11 +160,18 @@ def branch_of(
 
     for nodes in NODES:
         branch = solve_branch(breaks, kinks, work_of_adhesion(scene), once, nodes)
-        if accuracy is None or branch.interpolation_error <= INTERPOLATED * accuracy:
+        if accuracy is None or _is_fine_enough(branch, INTERPOLATED * accuracy, nodes):
             return branch
     raise NotConvergedError(
-        f"accuracy {accuracy:g} was not reached along the branch", {"interpolation_error": branch.interpolation_error}
+        f"accuracy {accuracy:g} was not reached along the branch",
+        {"interpolation_error": branch.depth_interpolation_error},
     )
+
+
+def _is_fine_enough(branch: AdhesiveBranch, error: float, nodes: int) -> bool:
+    """Whether depth and force are interpolated within an error; the force gets one finer attempt, then it states it."""
+    force = nodes > NODES[0] or branch.force_interpolation_error <= error
+    return force and branch.depth_interpolation_error <= error
 
 
 def _first_radius(scene: Scene) -> float:

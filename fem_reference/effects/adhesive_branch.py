@@ -88,7 +88,7 @@ class BranchPiece:
 
 
 ROUGH = 3.0
-SAMPLES = 41  # radii at which errors of the interpolation are compared with an accuracy
+SAMPLES = 41  # radii at which the force's error is compared with an accuracy
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 
 
@@ -149,13 +149,22 @@ class AdhesiveBranch:
         return [contact for piece in self.pieces for contact in piece.contacts]
 
     @property
-    def interpolation_error(self) -> float:
-        """Of depth and force between the solved radii, relative to the terms whose differences they are."""
+    def depth_interpolation_error(self) -> float:
+        """Of the depth between the solved radii, relative to its largest term in each piece."""
+        found = []
+        for piece in self.pieces:
+            radii = np.array([contact.indenter.contact_radius for contact in piece.contacts])
+            largest = np.max(np.abs(self._evaluate("smooth_depth", radii)) + self.elongation(radii))
+            errors = piece.interpolation_errors
+            found.append(errors["stiffness_slope"] / 2 + errors["smooth_depth"] / largest)
+        return float(max(found))
+
+    @property
+    def force_interpolation_error(self) -> float:
+        """Of the force between the solved radii, relative to the terms whose difference it is there."""
         radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, SAMPLES)
-        elongation = self.elongation(radius)
-        depth = self.depth_error(radius, 0.0) / (np.abs(self._evaluate("smooth_depth", radius)) + elongation)
-        force = self.force_error(radius, 0.0) / (np.abs(self.force(radius)) + self.stiffness(radius) * elongation)
-        return float(max(depth.max(), force.max()))
+        terms = np.abs(self.force(radius)) + self.stiffness(radius) * self.elongation(radius)
+        return float(np.max(self.force_error(radius, 0.0) / terms))
 
     def _stated(self, kind: str, name: str, radius: Array) -> Array:
         """``errors`` or ``interpolation_errors`` of the piece around each radius."""

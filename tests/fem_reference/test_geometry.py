@@ -7,7 +7,8 @@ import time
 import numpy as np
 import pytest
 
-from fem_reference.geometry import Grading, layer_mesh
+from contact import NotConvergedError
+from fem_reference.geometry import Grading, layer_mesh, named_layer_mesh
 
 GRADING = Grading(points=((0.5, 1e-3), (1.0, 1e-5)), growth=0.5, max_cell=0.5)
 
@@ -90,3 +91,9 @@ def test_gmsh_does_not_let_a_broken_pipe_end_the_process():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
     assert done.stdout == "alive\n"
+
+
+def test_a_triangle_without_area_is_refused_by_name():
+    points = np.array([[0.0, 1.0, 2.0, 1.0], [0.0, 0.0, 0.0, 1.0]])
+    with pytest.raises(NotConvergedError, match="no area"):
+        named_layer_mesh(points, np.array([[0, 0], [1, 1], [3, 2]]))
