@@ -229,5 +229,5 @@ CASE = Case(
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
     methods=(MDR, FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,
-    work=elastic_costs(scene_name("bonded nu=0.5", 2.0)),
+    work=elastic_costs(scene_name("bonded nu=0.5", 2.0), periodic=True),
 )

@@ -47,8 +47,8 @@ BEM: Final = (
         )
         for tolerance in (1e-3, 1e-5)
     ),
-    MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"}),
 )
+PERIODIC: Final = MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"})
 TABLE: Final = tuple(
     MethodUse(label=f"{n} cells", method="mdr_table", settings={"cells": n, "ratios": 60, "radii": 200})
     for n in (64, 128)
@@ -62,7 +62,11 @@ FINEST_MDR_IN_TIME: Final = MethodUse(
 
 
 def elastic_costs(
-    scene: str, quantities: Sequence[str] = ("indentation_depth", "normal_force"), *, in_ci: bool = False
+    scene: str,
+    quantities: Sequence[str] = ("indentation_depth", "normal_force"),
+    *,
+    in_ci: bool = False,
+    periodic: bool = False,
 ) -> tuple[WorkStudy, ...]:
     """What depth and force cost on an elastic scene, with every method that solves it.
 
@@ -70,9 +74,11 @@ def elastic_costs(
         scene: its name within the case.
         quantities: whose error is measured; all share the same timed solutions.
         in_ci: whether the ci suite times finite elements too, and all settings of the fast method, not two alone.
+        periodic: whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
     """
     cheap = (*MDR[1:], *FEM[5:7]) if in_ci else MDR[1:3]
-    return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *BEM, *TABLE), FINEST_EQUATION, cheap)
+    grids = (*BEM, PERIODIC) if periodic else BEM
+    return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *grids, *TABLE), FINEST_EQUATION, cheap)
 
 
 def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
