@@ -117,7 +117,7 @@ def _state(scene: Scene, a: float) -> _State:
     length = a if scene.layer.is_half_space else scene.layer.thickness
     indenter, end = scene.indenter, a / length
     breaks = tuple(b / length for b in indenter.breakpoints if b < a)
-    t, v = _pieces(end, breaks)
+    t, v = _pieces(end, breaks, indenter.max_radius / length)
     profile = equivalent_profile(indenter, np.append(t, end) * length) / length
     punch, shape = _solve(scene.layer, t, v, np.array([np.ones_like(profile), profile]))
     depth = shape.edge / punch.edge
@@ -194,22 +194,25 @@ def _equal_panels(end: float, panels: int, count: int) -> tuple[FloatArray, Floa
     return _joined(_gauss(count, lower, upper) for lower, upper in pairwise(ends))
 
 
-def _pieces(a: float, breaks: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
-    """Nodes for loads that begin like a square root at each break and like any power at the tip."""
+def _pieces(a: float, breaks: tuple[float, ...], rim: float = math.inf) -> tuple[FloatArray, FloatArray]:
+    """Nodes for loads that begin like a square root at each break, like any power at the tip, and end at the rim."""
     ends = (*breaks, a)
     first = _FINEST * a
-    pieces = [_gauss(_PIECE_NODES, 0.0, first), *_doubling(first, first, ends[0])]
+    pieces = [_gauss(_PIECE_NODES, 0.0, first), *_doubling(first, first, ends[0], rim)]
     for start, end in zip(breaks, ends[1:], strict=True):
         size = min(start, end - start, 1.0)
         s, weights = _gauss(_PIECE_NODES, 0.0, 1.0)
-        pieces += [(start + size * s**2, 2 * size * s * weights), *_doubling(start + size, size, end)]
+        pieces += [(start + size * s**2, 2 * size * s * weights), *_doubling(start + size, size, end, rim)]
     return _joined(iter(pieces))
 
 
-def _doubling(start: float, size: float, end: float) -> Iterator[tuple[FloatArray, FloatArray]]:
-    """Pieces from start to end, each twice as long as the one before but at most one thickness."""
+def _doubling(start: float, size: float, end: float, rim: float) -> Iterator[tuple[FloatArray, FloatArray]]:
+    """Pieces from start to end, each twice as long as the one before but at most one thickness or half way to the rim.
+
+    A sphere's profile is singular at its rim, whose distance each piece keeps.
+    """
     while start < end:
-        size = min(2 * size, 1.0)
+        size = min(2 * size, 1.0, max(0.5 * (rim - start), _FINEST * end))
         yield _gauss(_PIECE_NODES, start, min(start + size, end))
         start += size
 

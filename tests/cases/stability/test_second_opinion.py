@@ -160,3 +160,14 @@ def test_the_branch_of_the_fast_method_on_a_layer_is_the_same():
     for name, values in found.values.items():
         error = np.abs(getattr(branch, name)[::20] - values) / branch.scale(name)[::20]
         assert np.max(error) < 1e-10, name
+
+
+@pytest.mark.parametrize("share", [0.9, 0.99, 0.9999])
+def test_a_sphere_that_is_almost_in_to_its_rim(share):
+    """F = E* ((a^2 + R^2)/2 ln((R + a)/(R - a)) - a R), Sneddon 1965: log-singular at a = R."""
+    layer, radius = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3), 2.0
+    a = share * radius
+    scene = Scene(layer=layer, indenter=Sphere(radius=radius), loading=ContactRadii([a]))
+    stretched = math.log((radius + a) / (radius - a))
+    expected = layer.contact_modulus * ((a**2 + radius**2) / 2 * stretched - a * radius)
+    assert second_opinion(Mdr().solve(scene)).values["normal_force"][0] == pytest.approx(expected, rel=1e-13)
