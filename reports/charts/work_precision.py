@@ -16,6 +16,7 @@ COLUMNS = (
     "scene", "quantity", "method", "setting", "status", "error", "bound", "seconds", "lower_quartile", "upper_quartile",
     "unknowns", "peak_memory_bytes", "on_front", "reason",
 )  # fmt: skip
+CROSSES_APART = 0.03  # of the width
 CAPTION = (
     "Each symbol is one setting: median time of repeated runs (bars: quartiles) and bound U of the relative error "
     "(error plus uncertainty of the reference, dotted line). Filled: on the Pareto front, nothing is both at least "
@@ -105,13 +106,11 @@ def _draw_references(axes: Axes, work: WorkPrecision) -> None:
 
 
 def _draw_failures(axes: Axes, points: Sequence[WorkPoint]) -> None:
-    """Crosses on the upper border, where they took their time; one entry in the legend."""
-    for method in dict.fromkeys(point.method for point in points):
-        look = look_of(method)
-        seconds = [point.seconds for point in points if point.method == method]
+    """Crosses side by side on the upper border, from the right: they have no time; one entry in the legend."""
+    for number, point in enumerate(points):
         axes.plot(
-            seconds, [1.0] * len(seconds), transform=axes.get_xaxis_transform(), color=look.colour, marker="x",
-            markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False,
+            [0.98 - CROSSES_APART * number], [1.0], transform=axes.transAxes, color=look_of(point.method).colour,
+            marker="x", markersize=8, markeredgewidth=2.0, linestyle="none", clip_on=False,
         )  # fmt: skip
     if points:
         axes.plot([], [], color=BLACK, marker="x", markeredgewidth=2.0, linestyle="none", label="failed")

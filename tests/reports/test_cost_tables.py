@@ -3,6 +3,7 @@
 import dataclasses
 
 from reports.case_tables import cheapest, digit_prices
+from reports.charts.work_precision import draw
 from reports.cost_tables import settings, shortest_times, speed_ups
 from reports.numbers import duration
 from tests.cases.example_run import example_run, work_precision
@@ -56,3 +57,11 @@ def test_a_digit_that_costs_almost_everything_does_not_fill_the_page():
     price = dataclasses.replace(WORK.prices[0], decades_per_digit=200.0)
     (row,) = digit_prices(dataclasses.replace(WORK, prices=(price,))).rows
     assert row[-1] == "over 1000 x"
+
+
+def test_settings_that_failed_have_no_time_and_spoil_no_figure():
+    failed = dataclasses.replace(WORK.points[0], bound=None, error=None, seconds=0.0, on_front=False)
+    drawing = draw(dataclasses.replace(WORK, points=(*WORK.points, failed)))
+    drawing.draw_without_rendering()  # a picture that collapsed warns, and a warning is an error
+    (axes,) = drawing.axes
+    assert axes.get_window_extent().width > drawing.bbox.width / 2
