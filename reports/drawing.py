@@ -8,6 +8,7 @@ import math
 import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import groupby
 
 import numpy as np
@@ -56,7 +57,7 @@ def plate_of(figure: Figure, *, case: str, command: str) -> Plate:
         name=f"{case}-{figure.name}",
         title=figure.title,
         caption=figure.caption,
-        paint=lambda: draw(figure),
+        paint=partial(draw, figure),
         columns=columns,
         rows=tuple(_rows(figure)),
         command=command,

@@ -2,23 +2,31 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from markupsafe import Markup
 
+from cases.executors import process_pool, serial
 from reports.plates import Plate, write_plate
 
 FOLDER = "figures"
 ROOM = 3_000_000
 """Bytes of SVG on one page; what comes later lies in the folder only, and the page says so."""
+EMPTY = Markup("")
+FEW = 8
+"""So many pictures are drawn sooner than a second process has started."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(kw_only=True)
 class Hung:
-    """A plate on the page; `svg` is empty when there was no room. `folder` is where its files lie."""
+    """A plate's place on the page; `svg` is empty until it is drawn, and if there was no room.
+
+    `folder` is where its files lie.
+    """
 
     plate: Plate
-    svg: Markup
+    svg: Markup = EMPTY
     folder: str = FOLDER
 
 
@@ -34,20 +42,27 @@ class Gallery:
         self._folder = directory / FOLDER
         self._folder.mkdir(parents=True, exist_ok=True)
         self._room = room
-        self._names: set[str] = set()
+        self._hung: dict[str, Hung] = {}
 
     def hang(self, plates: Iterable[Plate]) -> tuple[Hung, ...]:
-        """Draw the plates and return them for the page.
+        """Return the places of the plates on the page, in its order; `draw` fills them.
 
         Raises:
             ValueError: if a name comes twice; the files of one would overwrite those of the other.
         """
-        return tuple(self._hung(plate) for plate in plates)
+        return tuple(self._place(plate) for plate in plates)
 
-    def _hung(self, plate: Plate) -> Hung:
-        if plate.name in self._names:
+    def _place(self, plate: Plate) -> Hung:
+        if plate.name in self._hung:
             raise ValueError(f"two figures are called {plate.name!r}; rename one")
-        self._names.add(plate.name)
-        svg = write_plate(plate, self._folder)
-        self._room -= len(svg)
-        return Hung(plate=plate, svg=Markup(svg if self._room >= 0 else ""))
+        return self._hung.setdefault(plate.name, Hung(plate=plate))
+
+    def draw(self, jobs: int = 1) -> None:
+        """Draw all that hangs, in `jobs` processes if it is much; the pictures are the same."""
+        factory = process_pool if jobs > 1 and len(self._hung) > FEW else serial
+        places = list(self._hung.values())
+        with factory(jobs) as pool:
+            drawn = pool.map(partial(write_plate, directory=self._folder), [place.plate for place in places])
+            for place, svg in zip(places, drawn, strict=True):
+                self._room -= len(svg)
+                place.svg = Markup(svg if self._room >= 0 else "")

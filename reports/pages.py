@@ -25,11 +25,15 @@ from reports.tables import Table
 ROWS_ON_FIRST_SCREEN = 5
 
 
-def write_report(run: RunResult, directory: Path) -> Path:
-    """Write report.html and the figures (SVG, PNG, CSV) of `run` into `directory`; return the page's path."""
+def write_report(run: RunResult, directory: Path, jobs: int = 1) -> Path:
+    """Write report.html and the figures (SVG, PNG, CSV) of `run` into `directory`; return the page's path.
+
+    With more than one job many figures are drawn in so many processes.
+    """
     gallery = Gallery(directory)
     out = shlex.quote(str(directory))
     cases = [case_view(case, gallery, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
+    gallery.draw(jobs)
     page = directory / "report.html"
     write_whole(page, render(run, directory, cases))
     return page

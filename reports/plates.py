@@ -21,7 +21,7 @@ class Plate:
         name: file name without ending, unique in the run: "truncated_cone-work-precision-a_h-2".
         title: one line.
         caption: what is shown, symbols and uncertainties explained.
-        paint: makes the picture; called inside the common figure style.
+        paint: makes the picture; called inside the common figure style, maybe in another process.
         columns: heads of the data, with units.
         rows: the data drawn, digit for digit those of results.json.
         command: one shell line that makes the numbers and the figure again.
@@ -48,10 +48,17 @@ def write_plate(plate: Plate, directory: Path) -> str:
     """Write NAME.svg, NAME.png and NAME.csv into `directory` and return the SVG for the page."""
     with figure_style():
         drawing = plate.paint()
-        drawing.draw_without_rendering()
-        drawing.set_layout_engine("none")  # laid out once; both files show the same picture
+        _lay_out(drawing)
         svg = svg_text(drawing, key=plate.name)
         directory.joinpath(f"{plate.name}.png").write_bytes(png_bytes(drawing))
     directory.joinpath(f"{plate.name}.svg").write_text(svg, encoding="utf-8")
     directory.joinpath(f"{plate.name}.csv").write_text(plate.csv_text(), encoding="utf-8")
     return svg
+
+
+def _lay_out(drawing: Drawing) -> None:
+    """Lay out once, so that both files show the same picture, and nothing is drawn a third time for it."""
+    engine = drawing.get_layout_engine()
+    if engine is not None:
+        engine.execute(drawing)
+        drawing.set_layout_engine("none")

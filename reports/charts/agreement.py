@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -48,7 +49,7 @@ def _plate(case: CaseResult, claims: Sequence[Claim], rest: Sequence[Claim], num
         name=f"{case.name}-agreement-{number}",
         title="Differences between methods, with uncertainty",
         caption=CAPTION + beyond,
-        paint=lambda: draw(claims),
+        paint=partial(draw, claims),
         columns=COLUMNS,
         rows=tuple(_row(claim) for claim in (*claims, *rest)),
         command=command,

@@ -1,6 +1,7 @@
 """Error under refinement: symbols for the measured error, bars for the estimated one, dashes for the formal order."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -44,7 +45,7 @@ def _plate(case: CaseResult, panels: Sequence[Sequence[ConvergenceStudy]], numbe
         name=f"{case.name}-convergence-{number}",
         title="Convergence: error under refinement",
         caption=CAPTION,
-        paint=lambda: draw(panels),
+        paint=partial(draw, panels),
         columns=COLUMNS,
         rows=tuple(row for panel in panels for study in panel for row in _rows(study)),
         command=command,

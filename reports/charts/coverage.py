@@ -1,6 +1,7 @@
 """Stated over true errors: which share of answers lies below each ratio, one panel a family of scenes."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -29,7 +30,7 @@ def plates(case: CaseResult, command: str) -> list[Plate]:
     title = "Stated over true error"
     name = f"{case.name}-stated-over-true"
     return [
-        Plate(name=name, title=title, caption=CAPTION, paint=lambda: draw(shown), columns=COLUMNS, rows=rows,
+        Plate(name=name, title=title, caption=CAPTION, paint=partial(draw, shown), columns=COLUMNS, rows=rows,
               command=command)
     ]  # fmt: skip
 

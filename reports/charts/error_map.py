@@ -1,6 +1,7 @@
 """Signed errors over a/h and Poisson's ratio, with the region that is good to one percent framed."""
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -36,7 +37,7 @@ def _plate(case: CaseResult, maps: Sequence[ErrorMap], number: int, command: str
         name=file_name(case.name, f"{number}"),
         title=", ".join(found.title.partition(",")[0] for found in maps),
         caption=f"{CAPTION} Reference: {maps[0].reference}.",
-        paint=lambda: draw(maps),
+        paint=partial(draw, maps),
         columns=COLUMNS,
         rows=tuple(row for found in maps for row in _rows(found)),
         command=command,

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -41,7 +42,7 @@ def _plate(case: CaseResult, panels: Sequence[Sequence[Ladder]], number: int, co
         name=f"{case.name}-ladders-{number}",
         title="Stability: digits left where it gets hard",
         caption=CAPTION,
-        paint=lambda: draw(panels),
+        paint=partial(draw, panels),
         columns=COLUMNS,
         rows=tuple(_row(ladder, rung) for panel in panels for ladder in panel for rung in ladder.rungs),
         command=command,

@@ -1,6 +1,7 @@
 """Seconds against size, with the slope that theory expects."""
 
 from collections.abc import Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -33,7 +34,7 @@ def plates(case: CaseResult, command: str) -> list[Plate]:
             name=name,
             title=title,
             caption=CAPTION,
-            paint=lambda: draw(case.scaling),
+            paint=partial(draw, case.scaling),
             columns=COLUMNS,
             rows=rows,
             command=command,

@@ -1,6 +1,7 @@
 """What accuracy costs in time: error bound against seconds, the Pareto front solid, dominated settings faint."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -35,7 +36,7 @@ def plate(work: WorkPrecision, case: str, command: str) -> Plate:
         name=file_name(case, "work-precision", work.scene, work.quantity),
         title=f"Error against seconds: {work.quantity.replace('_', ' ')}, {work.scene}",
         caption=f"{CAPTION} Reference: {work.reference_source}.",
-        paint=lambda: draw(work),
+        paint=partial(draw, work),
         columns=COLUMNS,
         rows=tuple(_row(work, point) for point in work.points),
         command=command,

@@ -22,9 +22,13 @@ def rebuild(directory: Path) -> None:
     console().print(f"report: {directory / 'report.html'}")
 
 
+DRAWERS = 2
+"""Processes that draw figures."""
+
+
 def write_pages(run: RunResult, directory: Path) -> None:
     """report.html with its figures, summary.md and junit.xml."""
-    write_report(run, directory)
+    write_report(run, directory, jobs=DRAWERS)
     write_whole(directory / "summary.md", summary_text(run))
     write_whole(directory / "junit.xml", junit_text(run))
 

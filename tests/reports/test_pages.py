@@ -7,6 +7,7 @@ import re
 
 import pytest
 
+from reports import gallery as gallery_module
 from reports.charts import agreement, convergence, ladder, work_precision
 from reports.drawing import plate_of
 from reports.gallery import FOLDER, ROOM, Gallery
@@ -124,10 +125,25 @@ def test_pictures_leave_room_for_tables_below_five_megabytes():
 def test_a_picture_without_room_is_named_with_its_file(tmp_path):
     two = plates_of(passing_case())[:2]
     room = len(write_plate(two[0], tmp_path))
-    first, second = Gallery(tmp_path, room=room).hang(two)
+    gallery = Gallery(tmp_path, room=room)
+    first, second = gallery.hang(two)
+    gallery.draw()
     assert first.svg
     assert not second.svg
     assert (tmp_path / FOLDER / f"{second.plate.name}.svg").exists()
+
+
+def test_processes_draw_the_same_pictures_in_the_same_order(tmp_path, monkeypatch):
+    monkeypatch.setattr(gallery_module, "FEW", 1)
+    plates = plates_of(passing_case()) + plates_of(failing_case())
+    drawn = []
+    for jobs in (1, 2):
+        gallery = Gallery(tmp_path / str(jobs))
+        hung = gallery.hang(plates)
+        gallery.draw(jobs)
+        drawn.append([place.svg for place in hung])
+    assert drawn[0] == drawn[1]
+    assert all(f'id="{plate.name}-' in svg for plate, svg in zip(plates, drawn[1], strict=True))
 
 
 def test_two_figures_of_one_name_are_refused(tmp_path):
