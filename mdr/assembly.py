@@ -23,6 +23,7 @@ NODES = 24  # on each piece, where the flat-punch data do not prescribe their ow
 TABLE_NODES = 12  # with a table, whose functions are no smoother than its splines
 FIRST_OCTAVE = -5  # below a/h = 1/32 a table's functions are linear to its accuracy
 RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half-space profile
+SHARE = 0.01  # of the flat punch's error, below which a profile on coarse panels is resolved no further
 GAP = 1e-12  # relative distance below which two piece ends are one
 
 
@@ -159,9 +160,17 @@ def _half_space_function(
     grid, lead = _initial_grid(solution, indenter, unit, max_radius, count)
     scale = np.inf if isinstance(solution, HalfSpaceFlatPunch) else 1.0
     far = (indenter.max_radius - indenter.flat_radius) / unit
+    tolerance = max(RESOLVED, SHARE * _panel_error(solution))
     return resolve(
-        lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, tolerance=RESOLVED, scale=scale, far=far
+        lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, tolerance=tolerance, scale=scale, far=far
     )
+
+
+def _panel_error(solution: FlatPunchSolution) -> float:
+    """What the nodes of a panel leave of the flat punch's stiffness; other data have no panels."""
+    if not isinstance(solution, IntegralEquationSolution):
+        return 0.0
+    return float(solution.relative_error(solution.max_ratio))
 
 
 def _known_radius(solution: LargeRatioSolution, indenter: Profile, unit: float, max_radius: float) -> float:

@@ -72,6 +72,22 @@ def test_a_thick_layer_is_a_half_space_to_first_order_in_the_ratio(indenter):
     assert errors[1] < 2e-4
 
 
+@pytest.mark.parametrize("nodes", [6, 8, 12])
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
+def test_a_profile_is_resolved_as_finely_as_its_flat_punch(indenter, nodes):
+    """Coarse panels once cut the profile of a truncated cone into thousands of pieces, and took half a minute."""
+    coarse = equivalent_system(LAYER, indenter, 7e-3, IntegralEquation(nodes=nodes))
+    exact = system_of(LAYER, indenter)
+    assert coarse.profile.grid.left.size <= 2 * exact.profile.grid.left.size
+    radii = np.linspace(indenter.flat_radius, 7e-3, 23)[1:]
+    stated = coarse.relative_errors(radii)
+    for name, found, wanted in (
+        ("indentation_depth", coarse.mdr_profile(radii), exact.mdr_profile(radii)),
+        ("normal_force", coarse.elastic_force(radii), exact.elastic_force(radii)),
+    ):
+        assert np.all(np.abs(found / wanted - 1) <= stated[name])
+
+
 def test_the_flat_punch_has_no_profile():
     system = system_of(LAYER, FlatPunch(radius=4e-3), 4e-3)
     assert system.mdr_profile(4e-3) == 0.0
