@@ -9,6 +9,7 @@ from itertools import pairwise
 import numpy as np
 
 from contact import NotConvergedError
+from contact.validation import FloatArray
 from mdr.effects.bed_force import Bed, carried
 from mdr.effects.spring_bed import BedState, SpringLaw, advance, released_at_once, undeformed
 
@@ -37,8 +38,10 @@ class Ramp:
 def to_force(law: SpringLaw, bed: Bed, state: BedState, ramp: Ramp, substeps: int) -> tuple[BedState, float]:
     """Follow a ramp of force.
 
-    Substeps grow quadratically, since a layer creeps fastest after a change of rate. Within one the depth is linear.
-    With a bare dashpot, whose force knows the speed, equilibrium is asked for in the middle of the substep.
+    Substeps grow quadratically, since a layer creeps fastest after a change of rate; they shrink with the third power
+    towards a release, where the depth is a power of the force between 1/2 and 1. Within one the depth is linear.
+    With a bare dashpot, whose force knows the speed, equilibrium is asked for in the middle of the substep; then the
+    few springs that hold to the last carry no force as small as that before a release, and substeps do not shrink.
 
     Returns:
         The bed at the end, and the speed of the depth there [m/s].
@@ -46,7 +49,8 @@ def to_force(law: SpringLaw, bed: Bed, state: BedState, ramp: Ramp, substeps: in
     Raises:
         NotConvergedError: If no depth carries the force.
     """
-    instants = ramp.duration * (np.arange(substeps + 1) / substeps) ** 2
+    fades = ramp.end <= 0.0 and law.viscosity == 0.0
+    instants = ramp.duration * _graded(np.arange(substeps + 1) / substeps, fades=fades)
     share, speed = (0.5 if law.viscosity > 0.0 else 1.0), 0.0
     for begin, end in pairwise(instants):
         time = float(end - begin)
@@ -58,6 +62,11 @@ def to_force(law: SpringLaw, bed: Bed, state: BedState, ramp: Ramp, substeps: in
         speed = (depth - state.depth) / (share * time)
         state = advance(law, bed.profile, state, state.depth + speed * time, time)
     return state, speed
+
+
+def _graded(s: FloatArray, *, fades: bool) -> FloatArray:
+    """Shares of the duration for equidistant s in [0, 1]; the slope of the first is 12 s (1-s)^2."""
+    return np.asarray(s**2 * (6.0 - 8.0 * s + 3.0 * s**2) if fades else s**2)
 
 
 def pressed_at_once(law: SpringLaw, bed: Bed, force: float) -> BedState:

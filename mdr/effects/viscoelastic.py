@@ -41,6 +41,7 @@ _LEVELS = (4, 2, 1)  # times the fewest substeps
 _FEWEST, _MOST = -2, 2  # how often they may be doubled
 _FEWEST_GAPS = 8  # of a section between breakpoints
 _MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
+_SECOND_ORDER = 3.5  # times smaller with half the substeps; four in the limit
 _ROUNDING = 1e-12  # of sums over hundreds of springs
 _LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
@@ -140,15 +141,20 @@ def _followed(
         return fine, _change(fine.force, half.force), half
     fine, middle, coarse = (_follow(law, bed, loading, level * substeps) for level in _LEVELS)
     half = _follow(law, bed.coarser(), loading, substeps)
-    depth, by_two = _limits(fine.depth, middle.depth, coarse.depth)
-    change = _change(depth, by_two) + _change(coarse.depth, half.depth)
+    depth, error = _limit(fine.depth, middle.depth, coarse.depth)
+    change = float(error.max() / np.abs(depth).max()) + _change(coarse.depth, half.depth)
     return _Track(depth, fine.force, fine.y, fine.bent), change, half
 
 
-def _limits(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Without the errors of second and fourth order, and without those of second order only."""
+def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Without the errors of second and fourth order, and what is left of one c h^p.
+
+    With q = 2^p that is (4-q)(16-q)/(45 (q-1)) c h^p, at most a fifth of the change by the last extrapolation's two
+    values if p >= 2, and at most all of it if 1 <= p < 2: where the first changes fall slower than by four.
+    """
     first, second = fine + (fine - middle) / 3.0, middle + (middle - coarse) / 3.0
-    return first + (first - second) / 15.0, first
+    slow = np.abs(middle - coarse) < _SECOND_ORDER * np.abs(fine - middle)
+    return first + (first - second) / 15.0, np.abs(first - second) * np.where(slow, 1.0, 0.2)
 
 
 def _change(fine: FloatArray, coarse: FloatArray) -> float:
@@ -249,8 +255,9 @@ def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, subs
         bent |= _check_circle(law, state, speed, float(instant))
         records.append((state.depth, *carried(law, bed, state, speed)))
     depth, force, y = np.array(records).T
+    force = force if isinstance(loading, DepthHistory) else loading.force
     y = np.where(force > _ROUNDING * force.max(), y, -1.0)  # what is held by a rounding error is no contact
-    return _Track(depth, force if isinstance(loading, DepthHistory) else loading.force, y, bent)
+    return _Track(depth, force, y, bent)
 
 
 def _by_depth(law: SpringLaw, bed: Bed, loading: DepthHistory) -> Iterator[tuple[BedState, float]]:

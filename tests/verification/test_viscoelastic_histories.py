@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import quad
 
 from contact import (
+    Cone,
     DepthHistory,
     FlatPunch,
     ForceHistory,
@@ -81,6 +82,28 @@ def test_a_step_in_force_creeps(last, tolerance):
     exact = (creep(time) / HERTZ) ** (2.0 / 3.0)
     assert np.all(np.abs(answer.indentation_depth - exact) <= answer.uncertainty("indentation_depth"))
     assert np.all(answer.contact_radius[1:] > answer.contact_radius[:-1])
+
+
+@pytest.mark.parametrize(
+    ("indenter", "model", "tolerance"),
+    [
+        (Cone(slope=0.1), STANDARD, 1e-6),
+        (Paraboloid(radius_of_curvature=CURVATURE), KELVIN_VOIGT, 1e-3),
+    ],
+)
+def test_a_release_states_its_error(indenter, model, tolerance):
+    """Where the force goes to zero the depth is a root of it, and substeps of one size lose their order."""
+    release = Scene(
+        layer=incompressible(np.inf, TOTAL),
+        indenter=indenter,
+        loading=ForceHistory(time=[0.0, 1e-3, 2e-3, 4e-3], force=[0.0, 1.0, 1.0, 0.0]),
+        effects=(model,),
+    )
+    coarse, fine = Mdr(accuracy=1e-8).solve(release), Mdr(accuracy=1e-9).solve(release)
+    error = np.abs(coarse.indentation_depth - fine.indentation_depth)
+    assert np.all(error <= coarse.uncertainty("indentation_depth") + fine.uncertainty("indentation_depth"))
+    assert error.max() <= tolerance * fine.indentation_depth.max()
+    assert coarse.contact_radius[-1] == 0.0
 
 
 def test_kelvin_voigt_ramp():
