@@ -26,6 +26,7 @@ from contact.validation import FloatArray
 LARGEST_WAVENUMBER = 24.0  # 1 - chi is below 1e-17 beyond
 PANEL_PHASE = 6.0  # largest phase of a cosine on a panel of 16 wavenumbers: sixteen nodes for one period
 SLOPE_NODES = 48
+SMOOTH_NODES = 24  # exact for the cubics of tables: f' is a trigonometric polynomial of theta
 CROWDING = 15  # panels of the rule for g_hs shrink to 5e-10 of a stretch towards its ends
 
 
@@ -60,8 +61,8 @@ class DirectDensity:
         """
         unit = contact_radius if layer.is_half_space else layer.thickness
         a = contact_radius / unit
-        singular = np.array([0.0, indenter.flat_radius, *indenter.breakpoints]) / unit
-        panels = GradedPanels.between(singular, a, width, nodes)
+        sharp = np.array([0.0, indenter.flat_radius, *indenter.kinks]) / unit
+        panels = GradedPanels.between(sharp, np.array(indenter.breakpoints) / unit, a, width, nodes)
         x = np.append(panels.nodes, a)
         g_hs = half_space_load(indenter, unit * x) / unit
         flat, risen = _solve(layer, panels, np.column_stack([np.ones_like(x), g_hs])).T
@@ -127,17 +128,27 @@ class DirectDensity:
 def half_space_load(indenter: Profile, x: FloatArray) -> FloatArray:
     """g_hs = x int_0^(pi/2) f'(x sin(theta)) dtheta [m] at x >= 0 [m], between the profile's breakpoints.
 
-    The nodes crowd towards both ends of each stretch: f' may begin with any power of r, and grow steep towards x.
+    The nodes crowd towards both ends of a stretch that starts at the tip or a kink, or is the last: f' may begin there
+    with any power of r, or grow steep towards x. On the others it is analytic from end to end.
     """
-    s, weights = _crowded_rule()
     ends = [0.0, *(k for k in indenter.breakpoints if k < np.max(x)), np.inf]
     total = np.zeros_like(x)
     for start, stop in pairwise(ends):
-        low, high = (np.arcsin(np.clip(np.divide(r, x, out=np.ones_like(x), where=x > 0), 0, 1)) for r in (start, stop))
-        theta = low[:, None] + (high - low)[:, None] * s
-        inside = indenter.slope_at(np.clip(x[:, None] * np.sin(theta), start, np.minimum(x, stop)[:, None]))
-        total += np.where(x > start, (high - low) * (inside @ weights), 0.0)
+        is_smooth = start not in (0.0, *indenter.kinks) and stop < np.inf
+        beyond = x > start
+        total[beyond] += _over_stretch(indenter, x[beyond], (start, stop), is_smooth=is_smooth)
     return x * total
+
+
+def _over_stretch(indenter: Profile, x: FloatArray, stretch: tuple[float, float], *, is_smooth: bool) -> FloatArray:
+    """The part of the integral of f' over theta where r = x sin(theta) lies on a stretch [m] that starts before x."""
+    start, stop = stretch
+    s, weights = gauss_nodes(SMOOTH_NODES) if is_smooth else _crowded_rule()
+    low, high = np.arcsin(start / x), np.arcsin(np.minimum(stop / x, 1.0))
+    theta = low[:, None] + (high - low)[:, None] * s
+    inside = indenter.slope_at(np.clip(x[:, None] * np.sin(theta), start, np.minimum(x, stop)[:, None]))
+    part: FloatArray = (high - low) * (inside @ weights)
+    return part
 
 
 def _crowded_rule() -> tuple[FloatArray, FloatArray]:
@@ -158,13 +169,26 @@ def _solve(layer: Layer, panels: GradedPanels, loads: FloatArray) -> FloatArray:
     cosines = np.sqrt(2 / np.pi * weight) * np.cos(np.multiply.outer(np.append(panels.nodes, panels.ends[-1]), k))
     scaled = root[:, None] * cosines[:-1]
     try:
-        factor = cho_factor(np.eye(root.size) - scaled @ scaled.T, lower=True, check_finite=False)
+        inner = _resolved(scaled, root[:, None] * loads[:-1])
     except np.linalg.LinAlgError:
         message = f"the equation at a/h = {panels.ends[-1]:g} is singular to double precision; take a smaller a/h"
         raise NotConvergedError(message) from None
-    inner = cho_solve(factor, root[:, None] * loads[:-1], check_finite=False)
     edge = loads[-1] + cosines[-1] @ (scaled.T @ inner)  # the equation itself at x = a
     return np.vstack([inner / root[:, None], edge])
+
+
+def _resolved(scaled: FloatArray, loads: FloatArray) -> FloatArray:
+    """(I - S S^T)^-1 loads for S of nodes times wavenumbers; the smaller of S S^T and S^T S is factorised.
+
+    (I - S S^T)^-1 = I + S (I - S^T S)^-1 S^T, and both have the same smallest eigenvalue.
+    """
+    nodes, waves = scaled.shape
+    if waves < nodes:
+        dual: FloatArray = loads + scaled @ _resolved(scaled.T, scaled.T @ loads)
+        return dual
+    factor = cho_factor(np.eye(nodes) - scaled @ scaled.T, lower=True, check_finite=False)
+    solution: FloatArray = cho_solve(factor, loads, check_finite=False)
+    return solution
 
 
 def _wavenumbers(layer: Layer, distance: float) -> tuple[FloatArray, FloatArray]:

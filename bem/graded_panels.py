@@ -13,6 +13,7 @@ from contact.validation import FloatArray
 
 RATIO = 0.25  # of neighbouring panels that approach a singular point
 LEVELS = 20  # the last panel is 1e-12 of the first: a square root's slope leaves 1e-6 of itself there
+SMOOTHER_LEVELS = 8  # 2e-5: what Gauss nodes miss of the power 3/2 there is 1e-12 of the first panel's 1e-6
 NARROWEST = 1e-13  # of the distance from the centre
 TIP_LEVELS = 6  # towards r = 0, where smaller panels would lift rounding errors of phi'/t into the pressure
 
@@ -30,12 +31,21 @@ class GradedPanels:
     count: int
 
     @classmethod
-    def between(cls, singular: FloatArray, end: float, widest: float, count: int) -> GradedPanels:
-        """Panels on [0, end], none wider than `widest`, graded above each singular point of [0, end)."""
-        points = np.unique(np.concatenate([singular[(singular >= 0) & (singular < end)], [0.0, end]]))
+    def between(cls, singular: FloatArray, smoother: FloatArray, end: float, widest: float, count: int) -> GradedPanels:
+        """Panels on [0, end], none wider than `widest`, graded above each singular point of [0, end).
+
+        Args:
+            singular: Where the function begins like a root.
+            smoother: Where it begins like the power 3/2; those that are `singular` as well do not count.
+            end: Where the panels end.
+            widest: Largest panel.
+            count: Nodes of each panel.
+        """
+        points = np.unique(np.concatenate([singular, smoother, [0.0, end]]))
+        points = points[(points >= 0) & (points <= end)]
         ends = [points[:1]]
         for start, stop in pairwise(points):
-            levels = TIP_LEVELS if start == 0 else LEVELS
+            levels = TIP_LEVELS if start == 0 else LEVELS if start in singular else SMOOTHER_LEVELS
             steps = start + (stop - start) * RATIO ** np.arange(levels, -1, -1.0)
             ends.append(steps)
         coarse = np.unique(np.concatenate(ends))  # beside a distant point the smallest panels round to nothing

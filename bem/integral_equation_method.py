@@ -14,6 +14,7 @@ from pydantic import Field
 from scipy.optimize import toms748
 
 from bem.direct_density import DirectDensity
+from bem.panels import gauss_nodes
 from contact import (
     ContactPath,
     ContactRadii,
@@ -21,6 +22,7 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
+    Profile,
     Scene,
     StageLog,
     Supported,
@@ -34,6 +36,8 @@ ARRAYS = ContactPath.ARRAYS
 LARGEST_RATIO = 60.0  # a/h: a dense system of two thousand unknowns
 RADIUS_TOLERANCE = 1e-13
 SEARCHED = 10 * RADIUS_TOLERANCE  # what a prescribed depth or force may be missed by: powers of the radius up to six
+PRESSURES = 12  # looked at on each smooth stretch of the profile
+LEAST_TENSION = 1e-6  # of the largest pressure; rounding leaves 1e-9 in the centre
 ROUNDING = 1e-13  # what cancellation in graded panels leaves, besides the difference of two discretisations
 
 
@@ -71,7 +75,8 @@ class IntegralEquationMethod(Record):
         """Equilibria under prescribed radii, depths or forces, each radius solved by itself.
 
         Raises:
-            UnsupportedSceneError: If the scene has effects or a history, or a/h is beyond `LARGEST_RATIO`.
+            UnsupportedSceneError: If the scene has effects or a history, a/h is beyond `LARGEST_RATIO`, or the contact
+                is no single circle.
             InvalidInput: If the indenter ends too early.
             NotConvergedError: If the matrix is singular to double precision.
         """
@@ -82,6 +87,9 @@ class IntegralEquationMethod(Record):
         solver = _Solver(scene, self.panel_width, self.nodes, log)
         with log.stage("integral_equation"):
             contacts = [solver.contact(float(value)) for value in scene.loading.values]  # type: ignore[attr-defined]
+        with log.stage("one_circle"):
+            for contact in contacts:
+                _refuse_rings(contact, scene.indenter)
         with log.stage("error_estimate"):
             coarse = _Solver(scene, self.panel_width, self.nodes * 3 // 4, log)
             errors = _errors(contacts, [coarse.at_radius(c) for c in contacts], scene)
@@ -229,6 +237,25 @@ class _Solver:
         layer, indenter = self.scene.layer, self.scene.indenter
         length = np.sqrt(value / layer.contact_modulus) if isinstance(self.scene.loading, NormalForces) else value
         return float(min(layer.thickness, 10 * length, indenter.max_radius / 2))
+
+
+def _refuse_rings(contact: DirectContact, indenter: Profile) -> None:
+    """One circle of contact presses everywhere inside and touches nowhere outside."""
+    if contact.singular_edge:
+        return
+    density, unit = contact.density, contact.density.unit
+    breaks = np.array(indenter.breakpoints) / unit
+    ends = np.array([0.0, *breaks[breaks < density.contact_radius], density.contact_radius])
+    inside = (ends[:-1, None] + np.diff(ends)[:, None] * gauss_nodes(PRESSURES)[0]).ravel()
+    outside = breaks[breaks > density.contact_radius]
+    pressure = density.pressure(inside, contact.depth, singular_edge=False)
+    gap = density.displacement_outside(outside, contact.depth) - contact.depth + indenter.height(outside * unit) / unit
+    wrong = np.concatenate([inside[pressure < -LEAST_TENSION * pressure.max()], outside[gap < 0]])
+    if wrong.size:
+        a, where = density.contact_radius * unit, float(wrong[0]) * unit
+        what = "would be pulled" if where < a else "would touch"
+        message = f"a contact of radius {a:g} m {what} at r = {where:g} m: it is no single circle"
+        raise UnsupportedSceneError(f"{message}; smooth the profile or press less")
 
 
 def _errors(fine: list[DirectContact], coarse: list[DirectContact], scene: Scene) -> dict[str, FloatArray]:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bem.direct_density import _resolved
 from bem.integral_equation_method import IntegralEquationMethod
 from contact import (
     Adhesion,
@@ -16,6 +17,7 @@ from contact import (
     NormalForces,
     Paraboloid,
     Scene,
+    Tabulated,
     TruncatedCone,
     UnsupportedSceneError,
 )
@@ -85,6 +87,46 @@ def test_own_error_estimate_covers_the_error_of_coarse_settings():
         error = np.abs(getattr(coarse, name) / getattr(exact, name) - 1)
         assert np.all(error <= coarse.error_estimate[name]), name
         assert coarse.error_estimate[name].max() < 0.1
+
+
+def measured(rises):
+    """A table over two contact radii of 1 mm, from the rises of its steps [um]."""
+    heights = 1e-6 * np.concatenate([[0.0], np.cumsum(rises)])
+    return Tabulated(radii=np.linspace(0.0, 2e-3, heights.size), heights=heights)
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_measured_profiles_agree_with_mdr_on_few_nodes(layer):
+    """Bends that leave the slope continuous need fewer panels than kinks; MDR knows the same table by its own route."""
+    indenter = measured([1.0, 2.8, 5.1, 7.2, 8.8, 11.0, 13.1, 14.9])
+    scene = Scene(layer=LAYERS[layer], indenter=indenter, loading=IndentationDepths([2e-5]))
+    direct, mdr = IntegralEquationMethod().solve(scene), Mdr().solve(scene)
+    for name in ("contact_radius", "normal_force", "contact_stiffness"):
+        difference = np.abs(getattr(direct, name) / getattr(mdr, name) - 1)
+        assert np.all(difference <= direct.error_estimate[name] + mdr.error_estimate[name]), name
+    inside = np.linspace(0.05, 0.95, 7) * direct.contact_radius[0]
+    np.testing.assert_allclose(direct.pressure(inside), mdr.pressure(inside), rtol=1e-8)
+    bends = np.count_nonzero(indenter.breakpoints < direct.contact_radius[0])
+    assert direct.cost.unknowns <= 16 * (9 * bends + 10)  # nodes of a panel; panels at a bend, at the tip and beyond
+
+
+def test_either_way_to_invert_gives_the_solution():
+    draw = np.random.default_rng(3)
+    for shape in ((30, 8), (8, 30)):
+        scaled, loads = 0.1 * draw.normal(size=shape), draw.normal(size=(shape[0], 2))
+        expected = np.linalg.solve(np.eye(shape[0]) - scaled @ scaled.T, loads)
+        np.testing.assert_allclose(_resolved(scaled, loads), expected, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("rises", "radius", "what"),
+    [([9.0, 1.0, 0.1, 0.1], 0.9e-3, "pulled"), ([1.0, 3.0, 5.0, 7.0, 0.1, 0.1, 0.1, 0.1], 0.85e-3, "touch")],
+)
+def test_contact_that_is_no_single_circle_is_refused(rises, radius, what):
+    """One circle presses everywhere inside and touches nowhere outside."""
+    scene = Scene(layer=LAYERS["half-space"], indenter=measured(rises), loading=ContactRadii([radius]))
+    with pytest.raises(UnsupportedSceneError, match=what):
+        IntegralEquationMethod().solve(scene)
 
 
 def test_refusals():
