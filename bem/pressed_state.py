@@ -14,7 +14,7 @@ from bem.contact_edge import SLOPE_SCATTER, STEP, area_radius, slope
 from bem.grid import Grid, first_radius, grid_sequence, prolonged
 from bem.grid_punch import contact_stiffness, radius_of_stiffness
 from bem.operators import FreeSpaceOperator, Operator, PeriodicOperator
-from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog
+from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
 from contact.validation import FloatArray
 
 Boundary = Literal["free", "periodic"]
@@ -33,6 +33,7 @@ NOISE: Final = 5e-3  # of ln(k_N): smaller changes say nothing on the exponent
 COARSE_TOLERANCE: Final = 1e-5
 LARGEST_FILL: Final = 0.92  # contact radius over half a coarse box: room for a deeper contact
 LEAST_RADIUS: Final = 3.0  # cells
+RAGGED: Final = 2.0  # cells inside a circle's edge where every cell is pressed
 END_SHARE: Final = 0.02  # of the indenter's end: over which it is continued by its last slope
 
 
@@ -234,11 +235,18 @@ class Press:
         return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness)
 
     def _check_inside(self, answer: Equilibrium, grid: Grid, radius: float) -> None:
-        """The contact is one circle that ends within the indenter and the box."""
+        """The contact is one full circle that ends within the indenter and the box."""
         if radius > self.indenter.max_radius:
             raise InvalidInput(f"the contact reaches the end of the indenter at {self.indenter.max_radius:g} m")
         by_area = area_radius(answer.pressure, grid.cell_size)
-        outermost = float(np.max(grid.radius[answer.pressure > 0.0]))
+        pressed = answer.pressure > 0.0
+        hollow = grid.radius[~pressed & (grid.radius < by_area - RAGGED * grid.cell_size)]
+        if hollow.size:
+            raise UnsupportedSceneError(
+                f"nothing presses at r = {hollow.max():g} m within a contact of radius {radius:g} m: it is no single "
+                "circle; smooth the profile or press less"
+            )
+        outermost = float(np.max(grid.radius[pressed]))
         if abs(outermost - by_area) > 4.0 * grid.cell_size:
             raise NotConvergedError(
                 f"the contact is not one circle: cells to {outermost:g} m, area of a radius of {by_area:g} m"

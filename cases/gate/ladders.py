@@ -5,6 +5,7 @@ One file a method, ``baselines/ladders-<method>.json``, written by ``accept`` al
 
 import json
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
@@ -46,11 +47,17 @@ def _read(path: Path) -> tuple[Ladder, ...]:
 def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Claim]:
     """Return one regression claim for each ladder of the case; one that nobody accepted fails by its name.
 
-    Nothing is claimed as long as no ladder at all was accepted.
+    So does one that its method no longer climbs though it walks others and others walk it. Nothing is claimed as long
+    as no ladder at all was accepted.
     """
     before = {(ladder.name, ladder.method): ladder for ladder in accepted}
     for ladder in case.ladders if before else ():
         yield _claim(ladder, before.get((ladder.name, ladder.method)))
+    walked = {(ladder.name, ladder.method) for ladder in case.ladders}
+    names, methods = {name for name, _ in walked}, {method for _, method in walked}
+    for name, method in sorted(before.keys() - walked):
+        if name in names and method in methods:
+            yield _claim(replace(before[name, method], rungs=()), before[name, method])
 
 
 def _claim(ladder: Ladder, before: Ladder | None) -> Claim:

@@ -24,9 +24,9 @@ CLIMBERS: Final[Mapping[str, Mapping[str, Any]]] = {
 TEXT: Final = """
 A hard parameter is walked in steps from easy to hard by every method that supports the scene. Each rung is solved
 again with all inputs moved by one unit in the last place, in other units, amid other steps and on two threads: the
-digits that all these answers share are significant. Laws of mechanics and, where it reaches, an independent solution
-are checked on every rung. A rung may be refused by a named error; a number beyond its stated error, a warning or a
-crash is a failure.
+digits that all these answers share are significant. Laws of mechanics are checked on every rung; so are an
+independent solution, where it reaches, and the answer of the fast method. A rung may be refused by a named error; a
+number beyond its stated error, a warning or a crash is a failure.
 """
 
 
@@ -100,7 +100,7 @@ def no_silent_failure(ladder: Ladder) -> Claim:
         tolerance=0.5,
         fraction=2.0 * len(failed),
         origin=Origin.INDEPENDENT_METHOD,
-        source="laws of mechanics, repeats, and an integral equation of its own",
+        source="laws of mechanics, repeats, an integral equation of its own, and the fast method",
         because="a method may refuse a scene by name, but a number it gives has to lie within the error it states",
         derived_from="half a rung: not one may fail",
         message=summary(ladder) + worst,

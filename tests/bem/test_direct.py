@@ -216,6 +216,16 @@ def test_stated_errors_hold_beside_a_kink_and_at_the_end_of_the_profile():
                 assert error <= path.error_estimate[name][0] + 1e-9, (indenter, name)
 
 
+def test_a_dent_that_does_not_press_is_refused():
+    """Narrower than what the contact's area tells from a full circle; the integral equation finds tension there."""
+    r = np.linspace(0.0, 1.1e-3, 23)
+    rises = np.diff(r**2 / 0.02)
+    rises[10:12] = 0.0
+    dented = Tabulated(radii=r, heights=np.concatenate([[0.0], np.cumsum(rises)]))
+    with pytest.raises(UnsupportedSceneError, match=r"nothing presses at r = 0\.00049\d* m .* no single circle"):
+        solve(dented, IndentationDepths([2.5e-5]))
+
+
 def test_too_few_cells_in_a_periodic_box_are_refused():
     with pytest.raises(InvalidInput, match="too few"):
         solve(PARABOLOID, IndentationDepths([4e-7]), boundary="periodic")

@@ -45,6 +45,7 @@ def folder(tmp_path):
         ((14.0, 12.0, 9.0), Status.PASS),  # one rung further
         ((14.0, None, None), Status.DIFF),
         ((14.0, 10.9, None), Status.DIFF),
+        ((14.0,), Status.DIFF),  # a rung that is no longer walked
     ],
 )
 def test_no_rung_and_no_more_than_one_digit_may_be_lost(folder, digits, status):
@@ -56,6 +57,16 @@ def test_a_ladder_nobody_accepted_fails_by_its_name(folder):
     (claim,) = claims((ladder(14.0, method="fem"),), folder)
     assert (claim.status, claim.methods) == (Status.INCOMPARABLE, ("fem",))
     assert "never accepted" in claim.message
+
+
+def test_a_ladder_that_its_method_no_longer_climbs_fails_by_its_name(folder):
+    accept_ladders(folder, [ladder(9.0, method="fem")], NOW, reason="r")
+    other = dataclasses.replace(ladder(9.0, method="fem"), name="another walk")
+    lost = [c for c in claims((ladder(14.0, 12.0), other), folder) if (c.scene, c.methods) == ("walk", ("fem",))]
+    assert [(claim.status, claim.message) for claim in lost] == [
+        (Status.DIFF, "walk, fem, p = 1: not walked, but 9.0 digits were accepted")
+    ]
+    assert [c.scene for c in claims((ladder(14.0, 12.0),), folder)] == ["walk"]  # finite elements were not asked
 
 
 def test_losing_a_rung_is_accepted_only_when_told_to(folder):

@@ -90,6 +90,21 @@ def test_a_wrong_number_is_a_failure_even_if_all_repeats_agree():
     assert breakdown(ladder) == 0.1
 
 
+def test_a_wrong_number_in_motion_is_found_beside_the_fast_method():
+    """No second opinion knows impacts or detachments."""
+
+    class Heavier(Faulty):
+        def solve(self, scene):
+            path = Mdr().solve(scene)
+            return dataclasses.replace(path, peak_force=path.peak_force * (1 + 1e-5))
+
+    plan = LadderPlan(name="test", parameter="D", values=(0.5,), scene=damped_punch, quantity="peak_force")
+    (rung,) = climb(plan, Heavier(None)).rungs
+    assert rung.status is Status.FAIL
+    assert rung.residuals["fast method"] == pytest.approx(1e-5, rel=1e-2)
+    assert climb(plan, Mdr()).rungs[0].status is Status.PASS
+
+
 def test_a_named_refusal_and_a_crash_are_told_apart():
     refusal, crash = climb(PLAN, Faulty(broken)).rungs[1], climb(PLAN, Faulty(crashing)).rungs[1]
     assert (refusal.status, refusal.digits) == (Status.INVALID, None)
@@ -113,6 +128,7 @@ def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
     assert worsened(ladder(14.0, 12.0, 9.0, 5.0), accepted) == []
     assert worsened(ladder(14.0, 12.0, 7.9, None), accepted) == ["n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"]
     assert "NotConvergedError: x, but 12.0 digits" in worsened(ladder(14.0, None, 9.0, None), accepted)[0]
+    assert worsened(ladder(14.0, 12.0), accepted) == ["n, mdr, p = 0.01: not walked, but 9.0 digits were accepted"]
 
 
 def test_a_method_climbs_only_what_it_supports_and_what_it_is_asked_to():
