@@ -70,6 +70,15 @@ def _print_example(wanted: bool) -> None:
         raise typer.Exit
 
 
+def _seconds(text: str) -> float:
+    """A time in seconds, with or without its unit."""
+    number, unit = (text[:-2], 1e-3) if text.endswith("ms") else (text.removesuffix("s"), 1.0)
+    try:
+        return unit * float(number)
+    except ValueError:
+        raise typer.BadParameter(f"{text!r} is no time; write 0.1, 0.1s or 100ms") from None
+
+
 EXAMPLE = typer.Option("--example", is_eager=True, callback=_print_example, help="Print an example scene and stop.")
 
 
@@ -219,7 +228,10 @@ def solve(
         ),
     ] = None,
     within: Annotated[
-        float | None, typer.Option(metavar="SECONDS", help="Processor time that --accuracy may take.")
+        float | None,
+        typer.Option(
+            parser=_seconds, metavar="SECONDS", help="Processor time that --accuracy may take: 0.1, 0.1s or 100ms."
+        ),
     ] = None,
     evidence: Annotated[
         Path | None, typer.Option(help="Measurements of this machine from calibrate, in place of those shipped.")
@@ -331,7 +343,9 @@ def calibrate(
 
 @app.command()
 def campaign(
-    family: Annotated[str, typer.Argument(help="elastic, adhesive, impact or history.")] = "elastic",
+    family: Annotated[
+        str, typer.Argument(help="elastic, adhesive, impact, history (of depth) or creep (under a force).")
+    ] = "elastic",
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
     count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
     seed: Annotated[int, typer.Option(help="Of the scenes.")] = 1,

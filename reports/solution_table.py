@@ -44,7 +44,7 @@ def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
     heads = tuple(f"{SYMBOLS[name]} [{factors[name][1]}{UNITS[name]}]" for name in names)
     columns = [_column(solution, name, factors[name][0], shown) for name in names]
     omitted = len(solution) - len(shown)
-    skipped = f" {omitted} of {len(solution)} states are not printed; --csv writes all." if omitted else ""
+    skipped = f" {omitted} of {len(solution)} states are not printed; --write FILE.csv writes all." if omitted else ""
     return Table(
         title=_title(solution),
         note=f"{BRACKETS}{skipped}",

@@ -27,6 +27,7 @@ FAMILIES: Final[Mapping[str, Family]] = {
     "detachment": "adhesive",
     "impact": "impact",
     "history": "history",
+    "creep": "creep",
 }
 SMALLEST_RATIO: Final = 1e-3
 SAMPLE: Final = 16
@@ -57,6 +58,7 @@ CANDIDATES: Final[tuple[Candidate, ...]] = (
         Candidate(method="mdr", settings={"accuracy": accuracy}, kinds=_IN_TIME, sample=8)
         for accuracy in (1e-5, 1e-7, 1e-9, 1e-11)
     ),
+    *(Candidate(method="mdr", settings={"accuracy": a}, kinds=("creep",), sample=6) for a in (1e-7, 1e-9, 1e-11)),
     *(
         Candidate(method="fem", settings={"accuracy": accuracy}, kinds=("radii",), sample=4)
         for accuracy in (1e-2, 1e-3, 1e-4, 1e-5)

@@ -12,7 +12,7 @@ import numpy as np
 from cases.evidence.calibrate import largest_stated_error
 from cases.evidence.kinds import band_of, kind_of
 from cases.evidence.records import Evidence, Measurement, shipped
-from cases.methods import build
+from cases.methods import build, method_names
 from contact import InvalidInput, NotConvergedError, Scene, Solution
 
 SAFETY: Final = 2.0  # the sample's worst scene is not the world's worst
@@ -74,10 +74,12 @@ def choices(scene: Scene, accuracy: float, *, within: float | None, evidence: Ev
     """All measured settings that reach it, fastest first; arguments and errors as in `choose`."""
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative error")
+    if within is not None and not 0.0 < within < np.inf:
+        raise InvalidInput(f"within = {within:g}: must be positive and finite; give seconds of processor time")
     like = list(usable(scene, (evidence or shipped()).measurements))
     good = sorted((m for m in like if SAFETY * m.bound <= accuracy), key=lambda m: m.seconds)
     if not good or (within is not None and good[0].seconds > within):
-        raise InvalidInput(_reachable(like, accuracy, within))
+        raise InvalidInput(_reachable(scene, like, accuracy, within))
     return [
         Choice(
             method=m.method,
@@ -104,19 +106,28 @@ def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidenc
         NotConvergedError: If the answers of all measured settings, or of those there is time for, state larger errors.
         ContactError: As raised by the method.
     """
-    seconds, best = 0.0, np.inf
+    seconds, best, why = 0.0, np.inf, ""
     for choice in choices(scene, accuracy, within=within, evidence=evidence):
         if within is not None and seconds + choice.expected_seconds > within:
             break
         start = time.process_time()
-        answer = build(choice.method, choice.settings).solve(scene)
+        answer, failure = _tried(choice, scene)
         seconds += time.process_time() - start
-        stated = largest_stated_error(answer)
-        if stated <= accuracy:
+        stated = np.inf if answer is None else largest_stated_error(answer)
+        if answer is not None and stated <= accuracy:
             return Outcome(choice=choice, answer=answer, stated_error=stated, seconds=seconds)
-        best = min(best, stated)
-    message = f"accuracy = {accuracy:g}: answers to this scene state {best:.1e} at best, after {seconds:.2g} s"
-    raise NotConvergedError(f"{message}; ask for less, or allow more time", {"stated_error": best})
+        best, why = min(best, stated), failure or why
+    found = f"answers to this scene state {best:.1e} at best" if best < np.inf else f"no answer ({why})"
+    message = f"accuracy = {accuracy:g}: {found}, after {seconds:.2g} s; ask for less, or allow more time"
+    raise NotConvergedError(message, {"stated_error": best})
+
+
+def _tried(choice: Choice, scene: Scene) -> tuple[Solution | None, str]:
+    """The answer, or why these settings have none; finer ones may."""
+    try:
+        return build(choice.method, choice.settings).solve(scene), ""
+    except NotConvergedError as error:
+        return None, str(error)
 
 
 def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measurement]:
@@ -128,10 +139,12 @@ def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measur
             yield m
 
 
-def _reachable(usable: list[Measurement], accuracy: float, within: float | None) -> str:
+def _reachable(scene: Scene, usable: list[Measurement], accuracy: float, within: float | None) -> str:
     wanted = f"accuracy = {accuracy:g}" + ("" if within is None else f" within {within:g} s")
     if not usable:
-        return f"{wanted}: nothing was measured on scenes like this one; solve without an accuracy or run calibrate"
+        able = [name for name in method_names() if build(name, {}).supports(scene)]
+        remedy = f"name a method that models it ({', '.join(able)})" if able else "no method here models it"
+        return f"{wanted}: no measured method answers scenes like this one; {remedy}"
     finest = min(usable, key=lambda m: m.bound)
     fastest = min(usable, key=lambda m: m.seconds)
     return (

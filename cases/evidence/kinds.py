@@ -25,7 +25,7 @@ _TRIALS: Final = np.geomspace(1e-9, 1e9, 400)  # radii in units of a length of t
 
 
 def kind_of(scene: Scene) -> str:
-    """The kind of loading: "radii", "equilibrium", "detachment", "impact" or "history"."""
+    """The kind of loading: "radii", "equilibrium", "detachment", "impact", "history" or "creep"."""
     match scene.loading:
         case ContactRadii():
             return "radii"
@@ -33,8 +33,10 @@ def kind_of(scene: Scene) -> str:
             return "detachment"
         case Impact():
             return "impact"
-        case DepthHistory() | ForceHistory():
+        case DepthHistory():
             return "history"
+        case ForceHistory():
+            return "creep"
         case _:
             return "equilibrium"
 

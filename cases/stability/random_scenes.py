@@ -20,6 +20,7 @@ from contact import (
     Detachment,
     Effect,
     FlatPunch,
+    ForceHistory,
     Impact,
     IndentationDepths,
     KelvinVoigt,
@@ -38,7 +39,7 @@ from contact import (
     TruncatedParaboloid,
 )
 
-Family: TypeAlias = Literal["elastic", "adhesive", "impact", "history"]
+Family: TypeAlias = Literal["elastic", "adhesive", "impact", "history", "creep"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 
 RATIO = (1e-3, 1e3)  # contact radius over layer thickness
@@ -54,7 +55,7 @@ def random_scenes(seed: int, count: int, family: Family = "elastic", ratio: tupl
     Args:
         seed: Any integer.
         count: How many.
-        family: "elastic", "adhesive" (detachment), "impact" or "history" (prescribed depth in time, viscoelastic).
+        family: "elastic", "adhesive" (detachment), "impact", "history" or "creep" (prescribed depth or force in time).
         ratio: Range of contact radius over thickness.
     """
     return [random_scene(draw, family, ratio) for draw in _streams(seed, count)]
@@ -230,9 +231,20 @@ def _history(draw: Draw, ratio: tuple[float, float]) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
 
 
+def _creep(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """The force goes up, or is there at once, changes, and goes to zero or stays."""
+    layer, indenter, depth, effects, a = _moving_stage(draw, ratio)
+    time = np.concatenate([[0.0], np.cumsum(draw.uniform(0.1, 1.0, 3))])
+    top = layer.contact_modulus * min(a, 1e3) * depth * float(draw.uniform(0.05, 0.5))
+    begin, rest, end = draw.choice([0.0, 1.0]), draw.uniform(0.5, 1.0), draw.choice([0.0, draw.uniform(0.2, 1.0)])
+    loading = ForceHistory(time=time, force=top * np.array([begin, 1.0, rest, end]))
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
+
+
 _MAKERS: dict[Family, Callable[[Draw, tuple[float, float]], Scene]] = {
     "elastic": _elastic,
     "adhesive": _adhesive,
     "impact": _impact,
     "history": _history,
+    "creep": _creep,
 }

@@ -75,7 +75,8 @@ def pressed_at_once(law: SpringLaw, bed: Bed, force: float) -> BedState:
     def excess(depth: float) -> float:
         return carried(law, bed, undeformed(law, bed.profile, depth), 0.0)[0] - force
 
-    return undeformed(law, bed.profile, _root(excess, 0.0, float(bed.profile[np.isfinite(bed.profile)].max()), force))
+    guess = float(bed.profile[np.isfinite(bed.profile)].max()) or force / bed.core  # a punch is as stiff from the start
+    return undeformed(law, bed.profile, _root(excess, 0.0, guess, force))
 
 
 def _depth(law: SpringLaw, bed: Bed, state: BedState, target: float, time: float) -> float:

@@ -54,6 +54,11 @@ class SpringLaw:
             relaxation.times[:, None],
         )
 
+    @property
+    def is_elastic(self) -> bool:
+        """Whether forces know the present only."""
+        return self.viscosity == 0.0 and not np.any(self.weights)
+
     def pressed(self, branches: FloatArray, speed: float, time: FloatArray | float) -> FloatArray:
         """s_j after a time at constant speed."""
         decay = np.exp(-time / self.times)

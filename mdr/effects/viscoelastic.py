@@ -133,12 +133,12 @@ def _followed(
 ) -> tuple[_Track, float, _Track]:
     """The history, how much it changes with half the springs and with fewer substeps, and the one on half the springs.
 
-    Between two instants a prescribed depth needs no substeps. Under a force their errors go with the second and fourth
-    powers of their number, so three numbers of them have a limit (Romberg).
+    Between two instants a prescribed depth needs no substeps, nor does an elastic layer. Under a force their errors
+    go with the second and fourth powers of their number, so three numbers of them have a limit (Romberg).
     """
-    if isinstance(loading, DepthHistory):
-        fine, half = (_follow(law, own, loading, substeps) for own in (bed, bed.coarser()))
-        return fine, _change(fine.force, half.force), half
+    if isinstance(loading, DepthHistory) or law.is_elastic:
+        fine, half = (_follow(law, own, loading, np.ones_like(substeps)) for own in (bed, bed.coarser()))
+        return fine, max(_change(fine.force, half.force), _change(fine.depth, half.depth)), half
     fine, middle, coarse = (_follow(law, bed, loading, level * substeps) for level in _LEVELS)
     half = _follow(law, bed.coarser(), loading, substeps)
     depth, error = _limit(fine.depth, middle.depth, coarse.depth)

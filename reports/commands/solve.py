@@ -32,6 +32,8 @@ def solve(
     """
     for path in outputs:
         _check_ending(path)
+    if (within is not None or evidence is not None) and (accuracy is None or method):
+        raise InvalidInput("--within and --evidence choose a method for an --accuracy; give one, and no --method")
     scene = load_scene(scene_file)
     facts: list[tuple[str, str]] = []
     if accuracy is not None and not method:
@@ -76,12 +78,14 @@ def _solver(name: str, accuracy: float | None) -> Method:
 
 
 def _refuse_less(solution: Solution, accuracy: float) -> None:
-    """Refuse an answer whose own error estimate is larger than what was asked for."""
-    estimate = float(np.max(solution.error_estimate.get("normal_force", np.inf)))
+    """Refuse an answer that states a larger error of any quantity than was asked for, or none at all."""
+    stated = {name: float(np.max(error)) for name, error in solution.error_estimate.items()}
+    worst = max(stated, key=lambda name: stated[name], default="all quantities")
+    estimate = stated.get(worst, np.inf)
     if estimate > accuracy:
         raise NotConvergedError(
-            f"{solution.method} estimates the relative error of its force at {estimate:.1e}, asked for {accuracy:.1e}; "
-            "name another method with --method, or ask for less"
+            f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {estimate:.1e}, asked for "
+            f"{accuracy:.1e}; name another method with --method, or ask for less"
         )
 
 

@@ -228,6 +228,27 @@ def test_solve_refuses_an_answer_less_accurate_than_asked(hertz, capsys, monkeyp
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "-1"]) == 4
 
 
+@pytest.mark.parametrize("within", ["0.25", "0.25s", "250ms"])
+def test_a_time_may_have_a_unit(hertz, within, capsys):
+    assert run(["solve", hertz, "--accuracy", "1e-4", "--within", within]) == 0
+    assert "achieved: stated error" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("options", "complaint"),
+    [
+        (["--accuracy", "1e-4", "--within", "soon"], "'soon' is no time"),
+        (["--accuracy", "1e-4", "--within", "nan"], "must be positive and finite"),
+        (["--within", "1"], "for an --accuracy"),
+        (["--evidence", "nowhere.json"], "for an --accuracy"),
+        (["--accuracy", "1e-4", "--within", "1", "--method", "mdr"], "no --method"),
+    ],
+)
+def test_an_option_is_never_ignored(hertz, options, complaint, capsys):
+    assert run(["solve", hertz, *options]) == 4
+    assert complaint in capsys.readouterr().err.replace("\n", " ")
+
+
 def test_solve_refuses_an_unknown_ending_before_it_solves(hertz, capsys):
     assert run(["solve", hertz, "--write", "answer.xls"]) == 4
     assert ".csv" in capsys.readouterr().err

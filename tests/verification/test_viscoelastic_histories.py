@@ -237,6 +237,15 @@ def test_flat_punch_on_a_kelvin_voigt_layer():
     np.testing.assert_array_equal(answer.contact_radius[1:], 1e-3)
 
 
+@pytest.mark.parametrize("model", [None, STANDARD])
+def test_a_flat_punch_under_a_force_that_is_there_from_the_start(model):
+    """F = 8 G a delta on the half-space at once, and delta = F J(t)/(8 a) later."""
+    time = np.linspace(0.0, 3e-3, 4)
+    answer = solve(ForceHistory(time=time, force=np.full(4, 2.0)), model=model, indenter=FlatPunch(radius=1e-3))
+    expected = 2.0 / 8e-3 * (creep(time) if model else np.full(4, 1.0 / TOTAL))
+    np.testing.assert_allclose(answer.indentation_depth, expected, rtol=1e-7 if model else 1e-12)
+
+
 def test_what_is_refused():
     with pytest.raises(InvalidInput, match="without adhesion nothing pulls"):
         solve(ForceHistory(time=[0.0, 1.0], force=[1.0, -1.0]))

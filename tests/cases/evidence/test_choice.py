@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
+from bem.integral_equation_method import IntegralEquationMethod
 from cases.evidence import Evidence, Measurement, choose, shipped, solve
 from cases.evidence.calibrate import Candidate, calibrate, error_bound, sample_of
 from cases.evidence.kinds import BANDS, band_of, kind_of, rough_radius
@@ -13,6 +16,7 @@ from cases.stability.second_opinion import second_opinion
 from contact import (
     ContactRadii,
     FlatPunch,
+    Impact,
     IndentationDepths,
     InvalidInput,
     Layer,
@@ -20,6 +24,7 @@ from contact import (
     NotConvergedError,
     Paraboloid,
     Scene,
+    StandardSolid,
     Tabulated,
 )
 
@@ -65,6 +70,42 @@ def test_beyond_the_evidence_it_says_what_is_reachable(accuracy, within):
 def test_an_accuracy_that_is_none_is_refused(accuracy):
     with pytest.raises(InvalidInput, match="must lie between 0 and 1"):
         choose(SCENE, accuracy, evidence=EVIDENCE)
+
+
+@pytest.mark.parametrize("within", [0.0, -1.0, float("nan"), float("inf")])
+def test_a_time_that_is_none_is_refused(within):
+    with pytest.raises(InvalidInput, match="must be positive and finite"):
+        choose(SCENE, 1e-3, within=within, evidence=EVIDENCE)
+
+
+def test_a_scene_that_no_measured_method_models_is_refused_with_those_that_do():
+    """Compressible and viscoelastic: measured methods do not model it, and measuring them again does not help."""
+    solid = StandardSolid(
+        long_term_shear_modulus=0.5 * LAYER.shear_modulus,
+        maxwell_shear_modulus=0.5 * LAYER.shear_modulus,
+        viscosity=1.0,
+    )
+    scene = SCENE.replace(loading=Impact(mass=1.0, velocity=1e-2), effects=(solid,))
+    with pytest.raises(InvalidInput, match=r"no measured method answers scenes like this one.*\(fem"):
+        choose(scene, 1e-2)
+
+
+def test_where_settings_give_no_answer_the_next_ones_solve(monkeypatch):
+    solved = IntegralEquationMethod.solve
+
+    def failing(self, scene):
+        if self.nodes == 12:
+            raise NotConvergedError("too coarse")
+        return solved(self, scene)
+
+    monkeypatch.setattr(IntegralEquationMethod, "solve", failing)
+    kind = {"kind": "radii", "band": 1.0, "method": "integral_equation", "scenes": 9, "bound": 1e-9}
+    rows = [Measurement(settings={"nodes": n}, seconds=1e-3 * n, **kind) for n in (12, 24)]
+    evidence = Evidence(machine="none", revision="none", seed=0, measurements=tuple(rows))
+    assert solve(SCENE, accuracy=1e-6, evidence=evidence).choice.settings == {"nodes": 24}
+    hopeless = dataclasses.replace(evidence, measurements=tuple(rows[:1]))
+    with pytest.raises(NotConvergedError, match=r"no answer \(too coarse"):
+        solve(SCENE, accuracy=1e-6, evidence=hopeless)
 
 
 def test_a_layer_thinner_than_all_that_was_measured_is_refused():
