@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cases.advice.ablation import Ablation, ablations, change_without
+from cases.advice.ablation import Ablation, ablations_of, change_without, first_solution
 from cases.advice.numbers import Number, numbers
-from contact import InvalidInput, Method, Scene
+from contact import InvalidInput, Method, Scene, Solution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,20 +52,21 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
     """
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative change")
-    parts = ablations(method, scene)
+    whole = first_solution(method, scene)
+    parts = ablations_of(method, whole)
     droppable = tuple(part for part in parts if not part.matters(accuracy))
-    together, droppable = _together(method, scene, droppable, accuracy)
+    together, droppable = _together(method, whole, droppable, accuracy)
     needed = tuple(part for part in parts if part not in droppable)
-    found = numbers(scene, method.solve(scene))
+    found = numbers(scene, whole, accuracy)
     return Advice(accuracy=accuracy, needed=needed, droppable=droppable, together=together, numbers=tuple(found))
 
 
 def _together(
-    method: Method, scene: Scene, droppable: tuple[Ablation, ...], accuracy: float
+    method: Method, whole: Solution, droppable: tuple[Ablation, ...], accuracy: float
 ) -> tuple[float, tuple[Ablation, ...]]:
     """Small changes may add up: as long as they do, the part that moves most is needed after all."""
     while len(droppable) > 1:
-        change = change_without(method, scene, [part.part for part in droppable])
+        change = change_without(method, whole, [part.part for part in droppable])
         if change <= accuracy:
             return change, droppable
         most = max(droppable, key=lambda part: part.largest_change)
