@@ -12,15 +12,21 @@ chi = 1, and phi^ is known from the density and its derivatives at the edge, by 
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
 from bem.kernels import Support, compliance_kernel
 from bem.panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from contact.validation import FloatArray
 
+ComplexArray = NDArray[np.complex128]
+
 LARGEST_WAVENUMBER = 40.0
-NODES = 28  # of a unit panel in t and of a panel in k: cos(40 t) to 1e-13 over a unit
+NODES = 28  # of a unit panel in t: cos(40 t) to 1e-13
+WAVENUMBERS = 16  # of a panel in k, over which the square of a density's transform turns twice at most
 
 
 def energy_matrix(densities: FloatArray, width: float, support: Support, poissons_ratio: float) -> FloatArray:
@@ -36,17 +42,16 @@ def energy_matrix(densities: FloatArray, width: float, support: Support, poisson
         Symmetric matrix, shape (densities, densities).
     """
     unit = _on_unit_panels(densities, int(width))
-    panels = unit.shape[1]
-    size = 1 << int(np.ceil(np.log2(max(panels, 64))))
+    size = 1 << int(np.ceil(np.log2(max(unit.shape[1], 64))))
     step = 2 * np.pi / size
-    blocks = int(np.ceil(LARGEST_WAVENUMBER / step))
-    offsets, weights = gauss_nodes(NODES)
+    turns = int(np.ceil(LARGEST_WAVENUMBER / (2 * np.pi)))
+    k = step * np.arange(turns * size)
+    offsets, weights = gauss_nodes(WAVENUMBERS)
     energy = np.zeros((len(densities), len(densities)))
     for offset, weight in zip(step * offsets, step * weights, strict=True):
-        k = step * np.arange(blocks) + offset
-        transform = _transform(unit, k, offset, size)
-        energy += weight * (transform * compliance_kernel(k, support, poissons_ratio)) @ transform.T
-    return 2 / np.pi * (energy + _tail(densities, width, step * blocks))
+        transform = _transform(unit, offset, turns, size)
+        energy += weight * (transform * compliance_kernel(k + offset, support, poissons_ratio)) @ transform.T
+    return 2 / np.pi * (energy + _tail(densities, width, step * k.size))
 
 
 def _on_unit_panels(densities: FloatArray, parts: int) -> FloatArray:
@@ -56,20 +61,37 @@ def _on_unit_panels(densities: FloatArray, parts: int) -> FloatArray:
     return values.reshape(len(densities), -1, NODES)
 
 
-def _transform(unit: FloatArray, k: FloatArray, offset: float, size: int) -> FloatArray:
-    """int phi cos(kt) dt at k = offset + (2 pi/size) (0, 1, 2, ...), shape (densities, wavenumbers)."""
+def _transform(unit: FloatArray, offset: float, turns: int, size: int) -> FloatArray:
+    """int phi cos(kt) dt at k = offset + (2 pi/size) (0, 1, 2, ...), shape (densities, turns size).
+
+    On panel p, t = p + node: the sums of phi exp(ikp) over the panels have the period 2 pi in k. So k is a place in the
+    first period and a number of turns, and the phase exp(ik node) a product.
+    """
     nodes, weights = gauss_nodes(NODES)
-    turned = np.exp(1j * offset * np.arange(unit.shape[1]))[:, None] * unit
-    sums = size * np.fft.ifft(turned, size, axis=1)  # sum over panels p of phi_p exp(i k p); periodic in k
-    phases = weights * np.exp(1j * np.multiply.outer(k, nodes))
-    transform: FloatArray = np.einsum("kn,dkn->dk", phases, sums[:, np.arange(k.size) % size]).real
-    return transform
+    turned = np.exp(1j * offset * np.arange(unit.shape[1])) * unit.swapaxes(1, 2)
+    sums = size * np.fft.ifft(turned, size)  # shape (densities, NODES, size)
+    sums *= (weights * np.exp(1j * offset * nodes))[:, None] * _phases(size)
+    transform: FloatArray = (_turns(turns) @ sums).real
+    return transform.reshape(len(unit), -1)
+
+
+@cache
+def _phases(size: int) -> ComplexArray:
+    """exp(ik node) over the first period of k, shape (NODES, size)."""
+    return np.exp(2j * np.pi / size * np.multiply.outer(gauss_nodes(NODES)[0], np.arange(size)))
+
+
+@cache
+def _turns(turns: int) -> ComplexArray:
+    """exp(2 pi i turn node), shape (turns, NODES)."""
+    return np.exp(2j * np.pi * np.multiply.outer(np.arange(turns), gauss_nodes(NODES)[0]))
 
 
 def _tail(densities: FloatArray, width: float, k: float) -> FloatArray:
-    """int_k^inf phi_i^ phi_j^ dk from derivatives at the edge; what oscillates beyond the first order is left out.
+    """int_k^inf phi_i^ phi_j^ dk from derivatives at the edge, for whole a and k a multiple of 2 pi.
 
     phi^ = sin(ka) (phi/k - phi''/k^3 + phi''''/k^5) + cos(ka) (phi'/k^2 - phi'''/k^4) + ...
+    So sin(2ka) = 0 and cos(2ka) = 1 at the end; of what swings, orders beyond k^-3 are left out.
     """
     a = width * densities.shape[1]
     coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
@@ -77,7 +99,7 @@ def _tail(densities: FloatArray, width: float, k: float) -> FloatArray:
     p0, p1, p2, p3, p4 = ((2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(5))
     steady = _pair(p0, p0) / k + (_pair(p1, p1) - 2 * _pair(p0, p2)) / (3 * k**3)
     steady += (_pair(p2, p2) + 2 * _pair(p0, p4) - 2 * _pair(p1, p3)) / (5 * k**5)
-    swinging = _pair(p0, p0) * np.sin(2 * k * a) / (2 * a * k**2) + _pair(p0, p1) * np.cos(2 * k * a) / (a * k**3)
+    swinging = _pair(p0, p1) / (a * k**3) - _pair(p0, p0) / (2 * a**2 * k**3)
     tail: FloatArray = (steady + swinging) / 2
     return tail
 

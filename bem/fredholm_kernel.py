@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from bem.kernels import Support, one_minus_kernel
@@ -68,14 +69,14 @@ class FredholmKernel:
             Symmetric matrix of shape (panels count, panels count).
         """
         nodes, _ = gauss_nodes(count)
-        differences = np.concatenate(
-            [self(width * abs(nodes[:, None] - nodes))[None], self._blocks(panels - 1, width, 1 - nodes)]
-        )
-        sums = self._blocks(2 * panels - 1, width, nodes)
-        p, q = np.indices((panels, panels))
-        blocks = np.where((p >= q)[..., None, None], differences[abs(p - q)], differences[abs(p - q)].swapaxes(2, 3))
-        matrix: FloatArray = (blocks + sums[p + q]).swapaxes(1, 2).reshape(panels * count, panels * count) / 2
-        return matrix
+        near, further = self(width * abs(nodes[:, None] - nodes))[None], self._blocks(panels - 1, width, 1 - nodes)
+        differences = np.concatenate([further[::-1].swapaxes(1, 2), near, further])
+        blocks = np.empty((panels, count, panels, count))
+        by_difference = sliding_window_view(differences, panels, axis=0)[..., ::-1]  # block p - q
+        by_sum = sliding_window_view(self._blocks(2 * panels - 1, width, nodes), panels, axis=0)  # block p + q
+        np.add(np.moveaxis(by_difference, 3, 2), np.moveaxis(by_sum, 3, 2), out=blocks)
+        blocks /= 2
+        return blocks.reshape(panels * count, panels * count)
 
     def _blocks(self, blocks: int, width: float, other: FloatArray) -> FloatArray:
         """N(width (b + nodes_i + other_j)) for b = 0 .. blocks - 1, shape (blocks, count, count)."""

@@ -1,7 +1,7 @@
 """Flat punches much wider than the layer is thick, up to a/h = 1000.
 
 One factorisation on wide panels gives, for every radius at a panel's end, a few densities phi_i = A^-1 P_i(t^2/a^2).
-Rounding and the panels' width have cost them up to nine digits where the layer is bonded and incompressible. Within
+Rounding has cost them up to nine digits where the layer is bonded and incompressible. Within
 their span, however, the force is stationary: the Ritz value ``F = b^T G^-1 b`` with ``b_i = <1, phi_i>`` and the
 energies ``G_ij = <phi_i, A phi_j>``, computed without cancellation (`fourier_energy`), is wrong only by the square of
 what the span lacks. k_bar is then interpolated by a polynomial of ln k_bar in ln(a/h); its derivative gives c_bar.
@@ -22,7 +22,7 @@ from bem.fourier_energy import energy_matrix
 from bem.fredholm_kernel import FredholmKernel
 from bem.kernels import Support
 from bem.panels import gauss_nodes
-from bem.triangular import cholesky_lower, solve_lower
+from bem.triangular import equation_factor, solve_lower
 from contact import InvalidInput
 from contact.validation import FloatArray
 
@@ -34,10 +34,11 @@ ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above i
 FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
 OVERLAP = 120.0  # compared with the narrow panels' from here on, and used where those end
 PANEL_WIDTH = 8.0
-PANEL_NODES = 32
-RITZ_DENSITIES = 5
-RADII = 34
-DEGREE = 20  # of ln k_bar in ln(a/h): nearly incompressible layers turn from film to bed within the range
+PANEL_NODES = 36
+RITZ_DENSITIES = 4
+RADII = 42
+DEGREE = 26  # of ln k_bar in ln(a/h): nearly incompressible layers turn from film to bed within the range
+LAST_TERMS = 2  # of the fit, by which it is judged
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,18 +125,28 @@ class LargeRatioSolution:
     @cached_property
     def log_stiffness(self) -> Chebyshev:
         """ln k_bar over ln(a/h)."""
-        ratios, stiffness, *_ = self._punches
-        return Chebyshev.fit(np.log(ratios), np.log(stiffness), DEGREE)
+        return self._fitted(DEGREE)
 
     @cached_property
     def error(self) -> float:
-        """Bound of the relative error of both stiffnesses: twice what overlap and Ritz values show."""
+        """Bound of the relative error of both stiffnesses: twice what overlap, fit and Ritz values show."""
         overlap = np.linspace(OVERLAP, self.near.max_ratio, 9)
         k = self._stiffness(overlap)
         c = self.wide_spring_stiffness(overlap)
         k_error = np.abs(k / self.near.normalized_contact_stiffness(overlap) - 1)
         c_error = np.abs(c / self.near.normalized_spring_stiffness(overlap) - 1)
-        return 2 * (float(np.max(np.maximum(k_error, c_error))) + self._punches[2])
+        return 2 * (float(np.max(np.maximum(k_error, c_error))) + self._fit_error + self._punches[2])
+
+    @property
+    def _fit_error(self) -> float:
+        """What the last terms of the fit make of ln k_bar and of its slope, which is largest at the end."""
+        log_ratio = np.linspace(np.log(OVERLAP), np.log(LARGEST_RATIO), 4 * DEGREE)
+        last = self.log_stiffness - self._fitted(DEGREE - LAST_TERMS)
+        return float(np.max(np.abs(last(log_ratio))) + np.max(np.abs(last.deriv()(log_ratio))))
+
+    def _fitted(self, degree: int) -> Chebyshev:
+        ratios, stiffness, *_ = self._punches
+        return Chebyshev.fit(np.log(ratios), np.log(stiffness), degree)
 
     @cached_property
     def _punches(self) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
@@ -159,9 +170,8 @@ def _wide_punches(
 ) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
     """Ratios, k_bar there, the largest relative difference that the last Ritz density makes, and the densities."""
     ratios = _radii_at_panel_ends()
-    root = np.sqrt(PANEL_WIDTH * np.tile(gauss_nodes(PANEL_NODES)[1], int(LARGEST_RATIO / PANEL_WIDTH)))
-    lower = _factorise(support, poissons_ratio, root)
-    punches = [_ritz_punch(lower, root, float(a), support, poissons_ratio) for a in ratios]
+    trials = _trial_densities(support, poissons_ratio, ratios)
+    punches = [_ritz_punch(trial, support, poissons_ratio) for trial in trials]
     best, fewer = (np.array([punch[item] for punch in punches]) for item in (0, 1))
     densities = {float(a): punch[2] for a, punch in zip(ratios, punches, strict=True)}
     return ratios, best / ratios, float(np.max(np.abs(fewer / best - 1))), densities
@@ -174,30 +184,30 @@ def _radii_at_panel_ends() -> FloatArray:
     return np.unique(PANEL_WIDTH * np.rint(points / PANEL_WIDTH))
 
 
-def _factorise(support: Support, poissons_ratio: float, root: FloatArray) -> FloatArray:
-    """Lower factor of I - sqrt(w) K sqrt(w) on wide panels."""
-    panels = root.size // PANEL_NODES
-    matrix = FredholmKernel.of_layer(support, poissons_ratio).panel_matrix(panels, PANEL_WIDTH, PANEL_NODES)
-    matrix *= -2 / np.pi * root
-    matrix *= root[:, None]
-    matrix[np.diag_indices_from(matrix)] += 1
-    return cholesky_lower(matrix, LARGEST_RATIO)
+def _trial_densities(support: Support, poissons_ratio: float, ratios: FloatArray) -> list[FloatArray]:
+    """phi_i = A^-1 P_i(t^2/a^2) for every radius a, each of shape (RITZ_DENSITIES, panels, nodes).
+
+    A load that ends at a leaves nothing beyond in C^-T, so one solution serves the leading sections of all radii.
+    """
+    nodes, weights = gauss_nodes(PANEL_NODES)
+    panels = np.arange(int(LARGEST_RATIO / PANEL_WIDTH))
+    kernel = FredholmKernel.of_layer(support, poissons_ratio).panel_matrix(panels.size, PANEL_WIDTH, PANEL_NODES)
+    t, root = PANEL_WIDTH * (panels[:, None] + nodes).ravel(), np.sqrt(PANEL_WIDTH * np.tile(weights, panels.size))
+    inside = (t[:, None] < ratios)[..., None]
+    loads = np.polynomial.legendre.legvander(2 * np.minimum(t[:, None] / ratios, 1.0) ** 2 - 1, RITZ_DENSITIES - 1)
+    lower = equation_factor(kernel, root, LARGEST_RATIO)
+    half = solve_lower(lower, root[:, None] * (loads * inside).reshape(t.size, -1)).reshape(loads.shape) * inside
+    densities = solve_lower(lower, half.reshape(t.size, -1), transposed=True) / root[:, None]
+    by_radius = np.moveaxis(densities.reshape(panels.size, PANEL_NODES, ratios.size, RITZ_DENSITIES), (2, 3), (0, 1))
+    return [density[:, : int(a / PANEL_WIDTH)] for density, a in zip(by_radius, ratios, strict=True)]
 
 
-def _ritz_punch(
-    lower: FloatArray, root: FloatArray, ratio: float, support: Support, poissons_ratio: float
-) -> tuple[float, float, FloatArray]:
+def _ritz_punch(trial: FloatArray, support: Support, poissons_ratio: float) -> tuple[float, float, FloatArray]:
     """F/(2 E*) of a flat punch pressed in by 1, from all Ritz densities and from one less, and its density."""
-    panels = int(ratio / PANEL_WIDTH)
-    n, nodes = panels * PANEL_NODES, gauss_nodes(PANEL_NODES)[0]
-    t = PANEL_WIDTH * (np.arange(panels)[:, None] + nodes).ravel()
-    loads = root[:n, None] * np.polynomial.legendre.legvander(2 * (t / ratio) ** 2 - 1, RITZ_DENSITIES - 1)
-    half = solve_lower(lower[:n, :n], loads)
-    densities = solve_lower(lower[:n, :n], half, transposed=True) / root[:n, None]
-    energy = energy_matrix(densities.T.reshape(-1, panels, PANEL_NODES), PANEL_WIDTH, support, poissons_ratio)
-    load = densities.T @ root[:n] ** 2
+    energy = energy_matrix(trial, PANEL_WIDTH, support, poissons_ratio)
+    load = PANEL_WIDTH * np.sum(trial @ gauss_nodes(PANEL_NODES)[1], axis=1)
     shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
-    return float(load @ shares), float(load[:-1] @ fewer), (densities @ shares).reshape(panels, PANEL_NODES)
+    return float(load @ shares), float(load[:-1] @ fewer), np.tensordot(shares, trial, axes=1)
 
 
 def _stationary(energy: FloatArray, load: FloatArray) -> FloatArray:

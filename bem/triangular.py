@@ -13,11 +13,12 @@ from contact import NotConvergedError
 from contact.validation import FloatArray
 
 
-def cholesky_lower(matrix: FloatArray, ratio: float) -> FloatArray:
-    """Lower factor of a symmetric matrix, which is overwritten.
+def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> FloatArray:
+    """Lower factor of I - sqrt(w) K sqrt(w), K = (2/pi) L.
 
     Args:
-        matrix: Shape (n, n).
+        kernel: L at the nodes, shape (n, n), symmetric; it is overwritten, since it may fill a hundred megabytes.
+        root: sqrt(w), shape (n,).
         ratio: Largest a/h, for the message.
 
     Raises:
@@ -25,8 +26,12 @@ def cholesky_lower(matrix: FloatArray, ratio: float) -> FloatArray:
     """
     from scipy.linalg import cholesky  # noqa: PLC0415  # see the module's docstring
 
+    kernel *= 2 / np.pi
+    kernel *= root[:, None]
+    kernel *= -root
+    kernel[np.diag_indices_from(kernel)] += 1
     try:
-        lower: FloatArray = cholesky(matrix, lower=True, overwrite_a=True, check_finite=False)
+        lower: FloatArray = cholesky(kernel, lower=True, overwrite_a=True, check_finite=False)
     except np.linalg.LinAlgError:
         message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
         raise NotConvergedError(message) from None

@@ -28,7 +28,7 @@ import numpy as np
 
 from bem.fredholm_kernel import FredholmKernel
 from bem.panels import gauss_nodes, lagrange_matrix, partial_panel_interpolation
-from bem.triangular import cholesky_lower, solve_lower
+from bem.triangular import equation_factor, solve_lower
 from contact.validation import FloatArray
 
 
@@ -56,10 +56,11 @@ class VolterraFactor:
         Raises:
             NotConvergedError: If the matrix is not positive definite in double precision.
         """
-        K = 2 / np.pi * kernel.panel_matrix(panels, panel_width, count)
+        K = kernel.panel_matrix(panels, panel_width, count)
+        own = 2 / np.pi * np.array([K[s : s + count, s : s + count] for s in range(0, len(K), count)])
         root = np.sqrt(panel_width * np.tile(gauss_nodes(count)[1], panels))
-        lower = cholesky_lower(np.eye(panels * count) - root[:, None] * K * root, panels * panel_width)
-        schur = _schur_kernels(K, lower, root, count)
+        lower = equation_factor(K, root, panels * panel_width)
+        schur = _schur_kernels(own, lower, root)
         return cls(panel_width, lower, schur, _edge_resolvents(schur, panel_width))
 
     @property
@@ -128,13 +129,13 @@ class VolterraFactor:
         return matrix
 
 
-def _schur_kernels(K: FloatArray, lower: FloatArray, root: FloatArray, count: int) -> FloatArray:
-    """K~ = K + K A^-1 K over the earlier panels, from the rows of the factor left of each diagonal block."""
-    schur = np.empty((root.size // count, count, count))
+def _schur_kernels(own: FloatArray, lower: FloatArray, root: FloatArray) -> FloatArray:
+    """K~ = K + K A^-1 K over the earlier panels, from the rows of the factor left of each diagonal block of K."""
+    schur, count = own.copy(), own.shape[1]
     for p, kernel in enumerate(schur):
-        own = slice(p * count, (p + 1) * count)
-        row = lower[own, : own.start] / root[own, None]
-        kernel[:] = K[own, own] + row @ row.T
+        start, stop = p * count, (p + 1) * count
+        row = lower[start:stop, :start] / root[start:stop, None]
+        kernel[:] += row @ row.T
     return schur
 
 

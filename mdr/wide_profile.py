@@ -13,19 +13,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.polynomial import Chebyshev
 
-from bem.large_ratio import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
+from bem.large_ratio import FIRST_RATIO, LAST_TERMS, PANEL_WIDTH, LargeRatioSolution
 from bem.panels import lagrange_matrix
 from contact.validation import FloatArray
 from mdr.layer_profile import edge_values
 from mdr.mapped_pieces import MappedFunction, MappedGrid
 
-DEGREE = 16  # of ln M in ln x, or two less than the number of radii within reach
+DEGREE = 24  # of ln M in ln x, or two less than the number of radii within reach
 
 
 def wide_profile(
     solution: LargeRatioSolution, load: MappedFunction, flat_radius: float
 ) -> tuple[MappedFunction, float]:
-    """g on the load's grid, and the relative error seen where narrow and wide panels overlap.
+    """g on the load's grid, and its relative error, seen where narrow and wide panels overlap and in the fit's end.
 
     Args:
         solution: Flat punches up to large ratios.
@@ -40,15 +40,16 @@ def wide_profile(
     edge = edge_values(near.factor, MappedFunction(inner, load.node_values[within], load.lead), flat_radius)
     values = np.empty_like(x)
     values[within] = edge / near.edge_density(np.minimum(x[within], near.max_ratio))
-    far = _moment_fit(solution, load, flat_radius)
+    far, shorter = _moment_fits(solution, load, flat_radius)
     values[~within] = _slope_over_springs(solution, far, x[~within])
     overlap = within & (x[:, 0] > 1.5 * FIRST_RATIO)
     seen = np.max(np.abs(_slope_over_springs(solution, far, x[overlap]) / values[overlap] - 1))
+    seen += np.max(np.abs(_slope_over_springs(solution, shorter, x[~within]) / values[~within] - 1))
     return MappedFunction(grid, values, load.lead), 2 * float(seen)
 
 
-def _moment_fit(solution: LargeRatioSolution, load: MappedFunction, flat_radius: float) -> Chebyshev:
-    """ln M over ln x from the densities at the known radii."""
+def _moment_fits(solution: LargeRatioSolution, load: MappedFunction, flat_radius: float) -> list[Chebyshev]:
+    """ln M over ln x from the densities at the known radii, and the same with a few terms less, to judge it."""
     grid = load.grid
     x = flat_radius + grid.nodes
     panel = np.floor(x[:, 0] / PANEL_WIDTH).astype(np.intp)
@@ -60,7 +61,8 @@ def _moment_fit(solution: LargeRatioSolution, load: MappedFunction, flat_radius:
     for ratio in radii:
         inside = panel < round(ratio / PANEL_WIDTH)
         moments.append(float(np.sum(onto_nodes[inside] * solution.densities[ratio][panel[inside]])))
-    return Chebyshev.fit(np.log(radii), np.log(moments), min(DEGREE, len(radii) - 2))
+    degree = min(DEGREE, len(radii) - 2)
+    return [Chebyshev.fit(np.log(radii), np.log(moments), n) for n in (degree, degree - LAST_TERMS)]
 
 
 def _slope_over_springs(solution: LargeRatioSolution, fit: Chebyshev, x: FloatArray) -> FloatArray:

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 import bem.large_ratio
+from bem.fredholm_kernel import FredholmKernel
 from bem.integral_equation import IntegralEquation
-from bem.large_ratio import LargeRatioSolution
+from bem.large_ratio import PANEL_WIDTH, LargeRatioSolution, _trial_densities
+from bem.panels import gauss_nodes
 from contact import InvalidInput, Layer
 
 LAYERS = {
@@ -19,17 +21,45 @@ RATIOS = np.array([161.0, 240.0, 333.0, 500.0, 777.0, 1000.0])
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LAYERS)
 def test_other_panels_give_the_same_within_the_stated_error(name, monkeypatch):
-    """The density that enters differs in the third digit at a/h = 1000; the Ritz value does not in the twelfth."""
+    """The density that enters differs in the fourth digit at a/h = 1000; the Ritz value does not in the twelfth."""
     layer = LAYERS[name]
     solution = IntegralEquation().solution(layer, 1000.0)
-    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 28)
+    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 40)
     other = LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: solution.near)
     assert other.log_stiffness is not solution.log_stiffness
     assert solution.error < 1e-8
     for quantity in ("normalized_contact_stiffness", "normalized_spring_stiffness"):
         differences = np.abs(getattr(other, quantity)(RATIOS) / getattr(solution, quantity)(RATIOS) - 1)
-        assert np.all(differences < 1e-9)
+        assert np.all(differences < 1e-12)
         assert np.all(differences < solution.relative_error(RATIOS))
+
+
+@pytest.mark.slow
+def test_the_stated_error_covers_the_turn_from_film_to_bed(monkeypatch):
+    """At nu = 0.4999 k_bar turns from (a/h)^3 to a/h within the range: more radii and terms than the method's own."""
+    solution, ratios = IntegralEquation().solution(LAYERS["bonded 0.4999"], 1000.0), np.geomspace(161.0, 1000.0, 300)
+    stiffness, springs = solution.normalized_contact_stiffness(ratios), solution.normalized_spring_stiffness(ratios)
+    error = solution.relative_error(ratios)
+    monkeypatch.setattr(bem.large_ratio, "RADII", 60)
+    monkeypatch.setattr(bem.large_ratio, "DEGREE", 36)
+    other = LargeRatioSolution("bonded", 0.4999, lambda: solution.near)
+    assert np.all(np.abs(stiffness / other.normalized_contact_stiffness(ratios) - 1) < error)
+    assert np.all(np.abs(springs / other.normalized_spring_stiffness(ratios) - 1) < error)
+
+
+def test_one_solution_serves_the_densities_of_all_radii(monkeypatch):
+    """A phi_i = P_i(t^2/a^2) on [0, a] for each radius by itself."""
+    monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
+    ratios = np.array([16.0, 24.0, 40.0])
+    nodes, weights = gauss_nodes(bem.large_ratio.PANEL_NODES)
+    for ratio, trial in zip(ratios, _trial_densities("unbonded", 0.0, ratios), strict=True):
+        panels = int(ratio / PANEL_WIDTH)
+        t = PANEL_WIDTH * (np.arange(panels)[:, None] + nodes).ravel()
+        kernel = FredholmKernel.of_layer("unbonded", 0.0).panel_matrix(panels, PANEL_WIDTH, nodes.size)
+        loads = np.polynomial.legendre.legvander(2 * (t / ratio) ** 2 - 1, len(trial) - 1).T
+        density = trial.reshape(len(trial), -1)
+        answer = density - 2 / np.pi * (density * PANEL_WIDTH * np.tile(weights, panels)) @ kernel
+        np.testing.assert_allclose(answer, loads, atol=1e-12 * np.abs(density).max())
 
 
 @pytest.mark.slow

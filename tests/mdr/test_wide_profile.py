@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import bem.large_ratio
+import mdr.wide_profile
 from bem.integral_equation import IntegralEquation
 from bem.large_ratio import LargeRatioSolution
 from contact import Cone, ContactRadii, InvalidInput, Layer, Paraboloid, Scene, Sphere, TruncatedCone
@@ -35,19 +36,27 @@ def test_thin_layer_profile_is_approached_with_first_order(name, indenter):
 def test_other_panels_give_the_same_within_the_stated_error(indenter, monkeypatch):
     layer, x = LAYERS["bonded 0.5"], np.array([170.0, 333.0, 700.0, 890.0])
     system = equivalent_system(layer, indenter, 900.0, SOURCE)
-    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 28)
-
-    class Other:
-        def solution(self, layer, ratio):
-            near = SOURCE.solution(layer, 160.0)
-            return LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: near)
-
-        def refined(self):
-            return self
-
-    other = equivalent_system(layer, indenter, 900.0, Other())
+    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 40)
+    other = equivalent_system(layer, indenter, 900.0, AnewBeyondNear())
     bound = system.relative_error
     assert bound["indentation_depth"] < 1e-8
+    np.testing.assert_allclose(other.mdr_profile(x), system.mdr_profile(x), rtol=bound["indentation_depth"])
+    np.testing.assert_allclose(other.elastic_force(x), system.elastic_force(x), rtol=bound["normal_force"])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("nu", "flat_radius", "end"), [(0.4999, 0.0, 200.0), (0.4999, 0.0, 1000.0), (0.3, 38.0, 240.0)]
+)
+def test_the_stated_error_covers_what_more_terms_change(nu, flat_radius, end, monkeypatch):
+    """Few radii within reach, a layer that turns from film to bed, a rim beside the first radius: hard to fit."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu)
+    indenter = TruncatedCone(flat_radius=flat_radius, slope=1.0) if flat_radius else INDENTERS[0]
+    system, x = equivalent_system(layer, indenter, end, SOURCE), np.linspace(161.0, end, 200)
+    monkeypatch.setattr(bem.large_ratio, "RADII", 60)
+    monkeypatch.setattr(bem.large_ratio, "DEGREE", 36)
+    monkeypatch.setattr(mdr.wide_profile, "DEGREE", 32)
+    other, bound = equivalent_system(layer, indenter, end, AnewBeyondNear()), system.relative_error
     np.testing.assert_allclose(other.mdr_profile(x), system.mdr_profile(x), rtol=bound["indentation_depth"])
     np.testing.assert_allclose(other.elastic_force(x), system.elastic_force(x), rtol=bound["normal_force"])
 
@@ -78,6 +87,17 @@ def test_breakpoints_far_out_and_short_indenters_are_refused_at_once():
     layer = LAYERS["unbonded"].replace(thickness=1e-3)
     with pytest.raises(InvalidInput, match=r"ends at 0\.5 m"):
         equivalent_system(layer, Sphere(radius=0.5), 0.4999, KnownRadii())
+
+
+class AnewBeyondNear:
+    """The source, with flat punches on wide panels made anew by settings that a test has changed."""
+
+    def solution(self, layer, ratio):
+        near = SOURCE.solution(layer, 160.0)
+        return LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: near)
+
+    def refined(self):
+        return self
 
 
 class KnownRadii:
