@@ -230,6 +230,9 @@ class _Solver:
                 raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
             low, high = high, high + np.log(2)
         while residual(low) > 0:
+            if np.exp(low) < np.finfo(float).eps * flat:
+                message = f"loading.values = {value:g}: the contact is as wide as the flat end to the last digit"
+                raise InvalidInput(f"{message}; press more, or take a flat punch")
             low, high = low - np.log(2), low
         return flat + float(np.exp(toms748(residual, low, high, xtol=RADIUS_TOLERANCE)))
 
@@ -250,7 +253,8 @@ def _refuse_rings(contact: DirectContact, indenter: Profile) -> None:
     outside = breaks[breaks > density.contact_radius]
     pressure = density.pressure(inside, contact.depth, singular_edge=False)
     gap = density.displacement_outside(outside, contact.depth) - contact.depth + indenter.height(outside * unit) / unit
-    wrong = np.concatenate([inside[pressure < -LEAST_TENSION * pressure.max()], outside[gap < 0]])
+    least = LEAST_TENSION + 10 * _rounding_of_excess(indenter, density.contact_radius * unit)
+    wrong = np.concatenate([inside[pressure < -least * pressure.max()], outside[gap < 0]])
     if wrong.size:
         a, where = density.contact_radius * unit, float(wrong[0]) * unit
         what = "would be pulled" if where < a else "would touch"
@@ -258,26 +262,29 @@ def _refuse_rings(contact: DirectContact, indenter: Profile) -> None:
         raise UnsupportedSceneError(f"{message}; smooth the profile or press less")
 
 
-def _errors(fine: list[DirectContact], coarse: list[DirectContact], scene: Scene) -> dict[str, FloatArray]:
-    """Relative differences of two discretisations at the same radii, for what was not prescribed.
+def _rounding_of_excess(indenter: Profile, contact_radius: FloatArray | float) -> FloatArray:
+    """How far rounding of a moves the excess a - b over a flat end, relative to it; depth and force move as much."""
+    flat_radius = 0.0 if isinstance(indenter, FlatPunch) else indenter.flat_radius
+    return np.asarray(np.finfo(float).eps / (1 - flat_radius / np.asarray(contact_radius)))
 
-    Beside a flat end the excess a - b, and with it depth and force, is known no better than a rounds.
-    """
+
+def _errors(fine: list[DirectContact], coarse: list[DirectContact], scene: Scene) -> dict[str, FloatArray]:
+    """Relative differences of two discretisations at the same radii, for what was not prescribed."""
     exact = np.array([contact.answer for contact in fine])
-    excess = 1.0 if isinstance(scene.indenter, FlatPunch) else 1 - scene.indenter.flat_radius / exact[:, :1]
-    rounding = ROUNDING + np.finfo(float).eps / excess
-    difference = 2 * np.abs(np.array([contact.answer for contact in coarse]) / exact - 1) + rounding
+    rounding = ROUNDING + _rounding_of_excess(scene.indenter, exact[:, 0])
+    difference = 2 * np.abs(np.array([contact.answer for contact in coarse]) / exact - 1) + rounding[:, None]
     depth, force, stiffness = difference[:, 1:].T
     nothing = np.zeros_like(depth)
     if isinstance(scene.indenter, FlatPunch):
         by_depth = isinstance(scene.loading, IndentationDepths)
         depth, force = (nothing, stiffness) if by_depth else (stiffness, nothing)
         return dict(zip(ARRAYS, (nothing, depth, force, stiffness), strict=True))
+    searched = SEARCHED + rounding
     match scene.loading:
         case ContactRadii():
             radius = nothing
         case IndentationDepths():
-            radius, depth, force = depth + RADIUS_TOLERANCE, nothing + SEARCHED, force + 2 * depth + SEARCHED
+            radius, depth, force = depth + RADIUS_TOLERANCE, searched, force + 2 * depth + searched
         case _:
-            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + SEARCHED, nothing + SEARCHED
+            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + searched, searched
     return dict(zip(ARRAYS, (radius, depth, force, stiffness), strict=True))

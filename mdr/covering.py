@@ -22,6 +22,7 @@ from mdr.equivalent_system import EquivalentSystem
 from mdr.half_space_profile import half_space_profile
 
 FIRST_RATIO = 10.0  # a/h beyond which the half-space says nothing about the radius on a layer
+LEAST_EXCESS = 1e-12  # over the flat end, relative to it; the next floating-point numbers tell no radii apart
 TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)  # in units of a length made of the loading
 
 
@@ -108,7 +109,7 @@ def _first_radius(scene: Scene) -> float:
     depth, force = _half_space_answer(scene.indenter, excess)
     answer = scene.layer.contact_modulus * force if is_force else depth
     guess = np.interp(wanted, answer, excess)  # between neighbouring trial radii, which differ by a fifth
-    return flat + min(1.02 * float(guess), limit)
+    return flat + max(min(1.02 * float(guess), limit), LEAST_EXCESS * flat)
 
 
 def _half_space_answer(indenter: Profile, excess: FloatArray) -> tuple[FloatArray, FloatArray]:

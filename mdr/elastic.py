@@ -114,12 +114,11 @@ def _radius_and_depth(system: EquivalentSystem, scene: Scene) -> tuple[FloatArra
     punch = np.full_like(values, scene.indenter.radius) if isinstance(scene.indenter, FlatPunch) else None
     if isinstance(scene.loading, ContactRadii):
         return values, system.mdr_profile(values)
-    if isinstance(scene.loading, IndentationDepths):
-        return system.contact_radius_at_depth(values) if punch is None else punch, values
+    by_depth = isinstance(scene.loading, IndentationDepths)
     if punch is not None:
-        return punch, values / system.contact_stiffness(punch)
-    radius = system.contact_radius_at_force(values)
-    return radius, system.mdr_profile(radius)
+        return punch, values if by_depth else values / system.contact_stiffness(punch)
+    excess = system.excess_at_depth(values) if by_depth else system.excess_at_force(values)
+    return system.flat_radius + excess, values if by_depth else system.profile_beyond(excess)
 
 
 def _errors(

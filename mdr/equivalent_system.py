@@ -96,14 +96,14 @@ class EquivalentSystem:
         """F_N [N] of the non-adhesive contact with this radius, Eqs. (3) and (4)."""
         return self.force(contact_radius, self.mdr_profile(contact_radius))
 
-    def contact_radius_at_depth(self, indentation_depth: ArrayLike) -> FloatArray:
-        """a [m] with g(a) = delta, Eq. (3); 0 <= delta <= g(max_radius)."""
+    def excess_at_depth(self, indentation_depth: ArrayLike) -> FloatArray:
+        """a - b [m] with g(a) = delta, Eq. (3); 0 <= delta <= g(max_radius)."""
         depth = np.asarray(indentation_depth, dtype=float) / self.length_unit
         curve = _Curve(self.profile.at, self.profile.slope_at, self.profile.lead)
         return self._invert(depth, curve, "indentation_depth", self.length_unit)
 
-    def contact_radius_at_force(self, normal_force: ArrayLike) -> FloatArray:
-        """a [m] whose elastic force is F_N; 0 <= F_N <= elastic_force(max_radius)."""
+    def excess_at_force(self, normal_force: ArrayLike) -> FloatArray:
+        """a - b [m] of the elastic contact with this force F_N; 0 <= F_N <= elastic_force(max_radius)."""
         force = np.asarray(normal_force, dtype=float) / self._force_unit
         lead = self.profile.lead + (0.0 if self.flat_radius else float(self.profile.grid.power[0]))
         return self._invert(force, _Curve(self._force_at, self._force_slope_at, lead), "normal_force", self._force_unit)
@@ -170,7 +170,7 @@ class EquivalentSystem:
         return self.max_radius / self.length_unit
 
     def _invert(self, target: FloatArray, curve: _Curve, name: str, unit: float) -> FloatArray:
-        """Radius [m] where an increasing curve takes the target value."""
+        """Excess [m] over the flat radius where an increasing curve takes the target value."""
         grid = self.profile.grid
         pieces = np.arange(len(grid.left))
         ends = curve.value(pieces, np.ones(pieces.size))
@@ -183,7 +183,7 @@ class EquivalentSystem:
         share = np.clip((target - before) / (ends[piece] - before), 0.0, 1.0)
         start = share ** np.where(piece == 0, 1 / max(curve.lead, 1.0), 1.0)
         u = _safeguarded_newton(curve, piece, target, start)
-        return self.flat_radius + self.length_unit * (grid.left[piece] + grid.width[piece] * u ** grid.power[piece])
+        return self.length_unit * (grid.left[piece] + grid.width[piece] * u ** grid.power[piece])
 
 
 @dataclass(frozen=True)

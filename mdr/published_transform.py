@@ -38,7 +38,9 @@ def published_profile(
     grid, flat = half_space.grid, indenter.flat_radius / unit
     x = flat + grid.nodes
     layer, plain = _weighted_heights(solution, indenter, unit, x)
-    share = MappedFunction(grid, solution.normalized_contact_stiffness(x) * layer / plain, 0.0)
+    at_edge = 2 * np.asarray(solution.smooth_pressure(np.ones_like(x), x))  # the quotient as the risen part vanishes
+    risen = np.divide(layer, plain, out=at_edge, where=plain > 0)  # 0/0 where x is no larger than b in floating point
+    share = MappedFunction(grid, solution.normalized_contact_stiffness(x) * risen, 0.0)
     moment = half_space.integral()
     slope = share.derivative(grid.nodes)
     g = share.node_values * half_space.node_values + slope * moment.node_values  # d(rho M_hs)/dx

@@ -61,6 +61,28 @@ def test_depths_and_forces_find_the_radius(layer):
         np.testing.assert_allclose(path.normal_force, by_radius.normal_force, rtol=1e-12)
 
 
+@pytest.mark.parametrize("layer", LAYERS)
+def test_beside_a_flat_end_the_search_states_what_rounding_of_the_radius_costs(layer):
+    """The excess a - b is 1e-13 of b: the radius found misses the force asked for by 1e-4."""
+    indenter, scale = TruncatedCone(flat_radius=0.45e-3, slope=0.3), LAYERS[layer].contact_modulus * 1e-6
+    scene = Scene(layer=LAYERS[layer], indenter=indenter, loading=NormalForces([1e-7 * scale]))
+    direct, mdr = IntegralEquationMethod().solve(scene), Mdr().solve(scene)
+    assert abs(direct.normal_force[0] / scene.loading.values[0] - 1) <= direct.error_estimate["normal_force"][0]
+    for name in ("indentation_depth", "normal_force"):
+        assert abs(getattr(direct, name)[0] / getattr(mdr, name)[0] - 1) <= direct.error_estimate[name][0], name
+
+
+def test_a_contact_no_wider_than_its_flat_end_is_refused():
+    """The search once halved the excess for ever."""
+    scene = Scene(
+        layer=LAYERS["half-space"],
+        indenter=TruncatedCone(flat_radius=0.45e-3, slope=0.3),
+        loading=IndentationDepths([1e-16]),
+    )
+    with pytest.raises(InvalidInput, match="as wide as the flat end"):
+        IntegralEquationMethod().solve(scene)
+
+
 def test_unbonded_flat_punch_at_unit_ratio():
     """k_bar = 2.198621365666: settles the tenth digit of a value that is printed elsewhere as 2.19862136617."""
     layer = Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3, support="unbonded")

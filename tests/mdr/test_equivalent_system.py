@@ -43,8 +43,12 @@ def system_of(layer, indenter, max_radius=7e-3):
 def test_radius_depth_and_force_invert_each_other(layer, indenter):
     system = system_of(layer, indenter)
     radii = np.linspace(indenter.flat_radius, 7e-3, 23)[1:]
-    np.testing.assert_allclose(system.contact_radius_at_depth(system.mdr_profile(radii)), radii, rtol=1e-13)
-    np.testing.assert_allclose(system.contact_radius_at_force(system.elastic_force(radii)), radii, rtol=2e-13)
+    np.testing.assert_allclose(
+        system.flat_radius + system.excess_at_depth(system.mdr_profile(radii)), radii, rtol=1e-13
+    )
+    np.testing.assert_allclose(
+        system.flat_radius + system.excess_at_force(system.elastic_force(radii)), radii, rtol=2e-13
+    )
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=["bonded", "unbonded", "half-space"])
@@ -115,6 +119,6 @@ def test_beyond_the_range_is_refused_with_the_value():
     with pytest.raises(InvalidInput, match=r"radius = 0\.008 m"):
         system.mdr_profile(8e-3)
     with pytest.raises(InvalidInput, match="indentation_depth"):
-        system.contact_radius_at_depth(1.0)
+        system.excess_at_depth(1.0)
     with pytest.raises(InvalidInput, match="normal_force"):
-        system.contact_radius_at_force(-1.0)
+        system.excess_at_force(-1.0)

@@ -116,6 +116,18 @@ def test_hertz():
     np.testing.assert_allclose(path.surface_displacement(r), outside, rtol=1e-11)
 
 
+@pytest.mark.parametrize("indenter", [i for i in INDENTERS if i.flat_radius], ids=lambda i: type(i).__name__)
+@pytest.mark.parametrize("force", [1e-5, 1e-10, 1e-30])
+def test_a_flat_end_pressed_by_almost_nothing_is_a_punch(indenter, force):
+    """Closed form F = 2 E* b delta: the contact outgrows b by less than a floating-point number tells."""
+    layer, b = LAYERS["half-space"], indenter.flat_radius
+    path = solve(layer, indenter, NormalForces([force]))
+    assert path.normal_force[0] == pytest.approx(force, rel=1e-14)
+    assert path.indentation_depth[0] == pytest.approx(force / (2 * layer.contact_modulus * b), rel=1e-9)
+    again = solve(layer, indenter, IndentationDepths(path.indentation_depth))
+    assert again.normal_force[0] == pytest.approx(force, rel=1e-14)
+
+
 def test_flat_punch_on_the_half_space():
     """F = 2 E* a delta, p = E* delta/(pi sqrt(a^2 - r^2)), w = (2 delta/pi) arcsin(a/r)."""
     layer, a = LAYERS["half-space"], 1e-3

@@ -79,3 +79,12 @@ def test_a_table_gives_no_displacement_outside(tabulated):
     assert path.surface_displacement([0.5])[0] == pytest.approx(path.indentation_depth[0] - 0.15)
     with pytest.raises(InvalidInput, match="no displacement outside"):
         path.surface_displacement([1.5])
+
+
+def test_a_truncated_cone_pressed_in_by_nothing_but_rounding_is_a_punch(tabulated):
+    """Contact radius and flat end are equal in floating point: the quotient of heights once was 0/0."""
+    indenter = TruncatedCone(flat_radius=0.45, slope=0.3)
+    scene = Scene(layer=LAYER, indenter=indenter, loading=IndentationDepths([2e-10]))
+    punch = Scene(layer=LAYER, indenter=FlatPunch(radius=0.45), loading=IndentationDepths([2e-10]))
+    answer, wanted = Mdr(flat_punch=tabulated).solve(scene), Mdr().solve(punch)
+    assert abs(answer.normal_force[0] / wanted.normal_force[0] - 1) <= answer.error_estimate["normal_force"][0]
