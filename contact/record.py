@@ -93,6 +93,6 @@ def shown(value: object) -> str:
     head = value[: _SHOWN + 1] if isinstance(value, str | bytes) else value
     try:
         text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
-    except ValueError:  # an integer of more digits than Python prints
+    except (ValueError, RecursionError):  # an integer of more digits than Python prints, or tables in tables in tables
         text = f"a huge {type(value).__name__}"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

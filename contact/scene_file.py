@@ -38,9 +38,11 @@ def load_scene(path: str | Path) -> Scene:
     """
     file = Path(path)
     try:
-        if file.stat().st_size > MAX_BYTES:
-            raise InvalidInput(f"{file}: {file.stat().st_size} bytes are more than a scene can have ({MAX_BYTES})")
-        text = file.read_text(encoding="utf-8")
+        with file.open("rb") as stream:
+            content = stream.read(MAX_BYTES + 1)  # a device has no size and no end
+        if len(content) > MAX_BYTES:
+            raise InvalidInput(f"{file}: more than a scene can have ({MAX_BYTES} bytes)")
+        text = content.decode("utf-8")
     except OSError as error:
         raise InvalidInput(f"{file}: cannot be read ({error.strerror}); check the path") from None
     except UnicodeDecodeError as error:

@@ -13,6 +13,7 @@ from pydantic import PlainValidator, WithJsonSchema
 
 FloatArray: TypeAlias = NDArray[np.float64]
 
+SMALLEST, LARGEST = 1e-75, 1e75  # of magnitudes in any units: products of four fit into double precision
 MAX_ENTRIES = 1_000_000  # a longer list in a scene is a mistake or an attack, never a measurement
 
 
@@ -29,6 +30,13 @@ def _number(value: object, remedy: str) -> float:
         raise ValueError(f"must fit into double precision; {remedy}") from None
 
 
+def _in_bounds(number: float, remedy: str) -> float:
+    """A number that is zero, infinite, or of a magnitude whose products neither overflow nor vanish."""
+    if number != 0.0 and math.isfinite(number) and not SMALLEST <= abs(number) <= LARGEST:
+        raise ValueError(f"must have a magnitude between {SMALLEST:g} and {LARGEST:g}; use other units, and {remedy}")
+    return number
+
+
 def positive(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     """A finite number above zero."""
 
@@ -36,7 +44,7 @@ def positive(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
         number = _number(value, remedy)
         if not 0.0 < number < math.inf:
             raise ValueError(f"must be positive and finite; {remedy}")
-        return number
+        return _in_bounds(number, remedy)
 
     return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
 
@@ -48,7 +56,7 @@ def positive_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
         number = _number(value, remedy)
         if not number > 0.0:
             raise ValueError(f"must be positive; {remedy}")
-        return number
+        return _in_bounds(number, remedy)
 
     return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
 
@@ -61,7 +69,7 @@ def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, With
         if not (low <= number <= high and math.isfinite(number)):
             limits = f"lie in [{low:g}, {high:g}]" if math.isfinite(high) else f"be finite and at least {low:g}"
             raise ValueError(f"must {limits}; {remedy}")
-        return number
+        return number if math.isfinite(high) else _in_bounds(number, remedy)
 
     schema: dict[str, Any] = {"type": "number", "minimum": low}
     return PlainValidator(validate), WithJsonSchema(schema | ({"maximum": high} if math.isfinite(high) else {}))
@@ -83,6 +91,9 @@ def _as_vector(value: object, remedy: str) -> FloatArray:
     bad = np.flatnonzero(~np.isfinite(vector))
     if bad.size:
         raise ValueError(f"must be finite, but entry {bad[0]} is {vector[bad[0]]}; {remedy}")
+    extreme = np.flatnonzero((vector != 0.0) & ((np.abs(vector) < SMALLEST) | (np.abs(vector) > LARGEST)))
+    if extreme.size:
+        _in_bounds(float(vector[extreme[0]]), remedy)
     vector.setflags(write=False)
     return vector
 

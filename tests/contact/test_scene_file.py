@@ -100,6 +100,20 @@ SCENES = (
 )
 
 
+EXAMPLE_SCENE_TABLES = """
+[layer]
+thickness = 1e-3
+youngs_modulus = 1e6
+poissons_ratio = 0.45
+[indenter]
+kind = "cone"
+slope = 0.1
+[loading]
+kind = "indentation_depths"
+values = [2e-6]
+"""
+
+
 def write(folder, text):
     file = folder / "scene.toml"
     file.write_text(text, encoding="utf-8")
@@ -160,6 +174,31 @@ def test_a_missing_file_a_folder_and_a_binary_are_refused(tmp_path):
     (tmp_path / "b.toml").write_bytes(b"\xff\xfe\x00")
     with pytest.raises(InvalidInput, match="not a text file"):
         load_scene(tmp_path / "b.toml")
+
+
+def test_a_device_without_an_end_is_refused():
+    """It has no size to look at; reading it ended with the memory."""
+    with pytest.raises(InvalidInput, match="more than a scene can have"):
+        load_scene("/dev/zero")
+
+
+def test_tables_in_tables_are_refused_however_deep(tmp_path):
+    file = tmp_path / "deep.toml"
+    file.write_text(".".join("a" * 3000) + " = 1\n" + EXAMPLE_SCENE_TABLES)
+    with pytest.raises(InvalidInput, match="a: no such table"):
+        load_scene(file)
+    file.write_text(EXAMPLE_SCENE_TABLES + ".".join("a" * 3000) + " = 1\n")
+    with pytest.raises(InvalidInput, match="a = a huge dict"):
+        load_scene(file)
+
+
+@pytest.mark.parametrize(("value", "place"), [("1e-300", "loading.values"), ("1e300", "loading.values")])
+def test_numbers_whose_products_leave_double_precision_are_refused(tmp_path, value, place):
+    """They divided by zero, or never ended, far inside."""
+    file = tmp_path / "extreme.toml"
+    file.write_text(EXAMPLE_SCENE_TABLES.replace("2e-6", value))
+    with pytest.raises(InvalidInput, match=f"{place}.*between 1e-75 and 1e[+]75"):
+        load_scene(file)
 
 
 def test_a_huge_file_is_refused_before_it_is_read(tmp_path):
