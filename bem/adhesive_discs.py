@@ -11,6 +11,7 @@ from bem.adhering_disc import FARTHEST, is_measured
 from bem.adhesive_branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesive_history import Held, at_radii, followed
 from bem.adhesive_withdrawal import Control, Withdrawal, stable, strength
+from bem.grid import refuse_unresolved
 from bem.pixel_disc import measured_disc
 from bem.surface_fields import AdheringFields, FieldSequence
 from contact import (
@@ -28,6 +29,7 @@ from contact import (
 from contact.solution import Setting
 from contact.validation import FloatArray
 
+LEAST_LAYER: Final = 12.0  # cells, so that the ring of the coarse grid begins within half the layer's thickness
 EDGE_ERROR: Final = 0.3  # over the cells across the box: what an edge value may be off besides the grids' difference,
 MEASURED_ERROR: Final = 0.1  # and where the half-space measures it
 FLOOR: Final = 1e-6  # of the linear solutions
@@ -58,6 +60,7 @@ class AdheringDiscs:
 
         Raises:
             InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
+            UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
         """
         fine, coarse = self._branches()
         states, others = self._states(fine), self._states(coarse)
@@ -65,6 +68,7 @@ class AdheringDiscs:
             {name: np.array([getattr(state, name) for state in steps]) for name in ContactPath.ARRAYS}
             for steps in (states, others)
         )
+        self._refuse_unresolved(float(values["contact_radius"].max()))
         times, floor = self._times(values["contact_radius"]), self._floor(fine)
         errors = {name: times * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
         errors["normal_force"] += self._cancelled(
@@ -87,9 +91,14 @@ class AdheringDiscs:
         )
 
     def detachment(self, control: Control) -> DetachmentPath:
-        """The whole equilibrium branch of a withdrawal, in order of decreasing radius."""
+        """The whole equilibrium branch of a withdrawal, in order of decreasing radius.
+
+        Raises:
+            UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
+        """
         fine, coarse = self._branches()
         start = self._start(fine)
+        self._refuse_unresolved(start)
         withdrawal = Withdrawal(fine, start)
         pull_off, other = withdrawal.pull_off(control), Withdrawal(coarse, start).pull_off(control)
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
@@ -173,6 +182,10 @@ class AdheringDiscs:
         if is_measured(self.scene.layer, self.scene.indenter):
             return 0.0
         return self._floor(branch) * float(np.max(np.abs(pushed))) / (float(np.max(np.abs(force))) or np.inf)
+
+    def _refuse_unresolved(self, radius: float) -> None:
+        """The ring that tells the edge value has to lie where the edge value is made: within about one thickness."""
+        refuse_unresolved(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
 
     def _times(self, radius: FloatArray) -> FloatArray:
         """How often the difference of two grids counts.

@@ -23,6 +23,7 @@ AREA_SHIFT: Final = 0.11  # cells
 AREA_SCATTER: Final = 0.05  # cells, largest seen from 128 to 1024 cells
 STEP: Final = 0.03  # of ln(depth), either way
 SLOPE_SCATTER: Final = 0.01  # relative to s/a
+THIN_SCATTER: Final = 0.05  # times (s/h)^2, likewise: measured 0.7 of it at h = s, nu = 1/2, and 0.4 for nu = 0.3
 
 
 def area_radius(pressure: FloatArray, cell_size: float) -> float:

@@ -10,7 +10,7 @@ from typing import ClassVar, Final, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from bem.grid import LEAST_CELLS, Grid
+from bem.grid import LEAST_CELLS, Grid, UnresolvedLayer
 from bem.grid_punch import grid_punch
 from bem.pressed_state import Boundary, Prescribed, Press, PressedState
 from bem.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
@@ -121,7 +121,8 @@ class Bem(Record):
         """The equilibria of the scene.
 
         Raises:
-            UnsupportedSceneError: If `supports` says no.
+            UnsupportedSceneError: If `supports` says no, the contact is no single circle, or the layer is thinner than
+                the cells resolve.
             InvalidInput: If nothing adheres, a force pulls too much, or the contact outgrows the indenter.
             NotConvergedError: If a tolerance was missed, or the accuracy with as many points as there may be.
         """
@@ -143,7 +144,12 @@ class Bem(Record):
     def _solve_to_accuracy(self, scene: Scene, accuracy: float) -> ContactPath | DetachmentPath:
         """More and more points, until the stated errors hold or even the finest grid would not do."""
         for points in ACCURACY_POINTS:
-            path = dataclasses.replace(self, points=points, accuracy=None).solve(scene)
+            try:
+                path = dataclasses.replace(self, points=points, accuracy=None).solve(scene)
+            except UnresolvedLayer:
+                if points == ACCURACY_POINTS[-1]:
+                    raise
+                continue
             errors = {name: float(np.max(error)) for name, error in path.error_estimate.items() if name != "pressure"}
             worst = max(errors, key=lambda name: errors[name])
             if errors[worst] <= accuracy:

@@ -10,6 +10,7 @@ from typing import Final
 
 import numpy as np
 
+from contact import Layer, UnsupportedSceneError
 from contact.validation import FloatArray
 
 LEAST_CELLS: Final = 48  # of the coarsest grid of a sequence
@@ -33,6 +34,24 @@ class Grid:
         """r of the cell centres [m], shape (cells/2, cells/2)."""
         centre = self.cell_size * (np.arange(self.cells // 2) + 0.5)
         return np.asarray(np.hypot(centre[:, None], centre))
+
+
+class UnresolvedLayer(UnsupportedSceneError):
+    """The layer is too thin for the cells: two such grids may agree on what neither of them resolves."""
+
+
+def refuse_unresolved(layer: Layer, cell_size: float, least: float) -> None:
+    """Ask for a layer that is so many cells thick.
+
+    Raises:
+        UnresolvedLayer: If it is thinner.
+    """
+    spanned = layer.thickness / cell_size
+    if spanned < least:
+        raise UnresolvedLayer(
+            f"the layer of thickness {layer.thickness:g} m is {spanned:.2g} cells thick and needs {least:g}; "
+            f"take {least / spanned:.1f} times as many points, or ask mdr or fem"
+        )
 
 
 def prolonged(field: FloatArray) -> FloatArray:

@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from math import exp, log
+from math import ceil, exp, log, log2
 from typing import Final, Literal
 
 import numpy as np
 
 from bem.conjugate_gradients import Equilibrium, solve_contact
-from bem.contact_edge import SLOPE_SCATTER, STEP, area_radius, slope
-from bem.grid import Grid, first_radius, grid_sequence, prolonged
+from bem.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius, slope
+from bem.grid import Grid, first_radius, grid_sequence, prolonged, refuse_unresolved
 from bem.grid_punch import contact_stiffness, radius_of_stiffness
 from bem.operators import FreeSpaceOperator, Operator, PeriodicOperator
+from bem.pixel_disc import FILL as DISC_FILL
 from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
 from contact.validation import FloatArray
 
@@ -27,6 +28,8 @@ FIRST_BOX: Final = (
 FILL: Final = 0.88  # contact radius over half the box
 IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
 STIFFNESS_CELLS: Final = 256  # of the flat punch behind k_N: its own error is below 1e-5 for a < 5 h
+STIFFNESS_LAYER: Final = 2.0  # cells that the layer under that punch is thick, if the grid has as many
+LEAST_LAYER: Final = 1.0  # cells; layers thinner than one are all the same to a grid
 CLOSE: Final = 1e-3  # of ln(k_N): from here on one step of the secant is enough
 NEAR: Final = 3e-2  # of a first guess
 NOISE: Final = 5e-3  # of ln(k_N): smaller changes say nothing on the exponent
@@ -132,10 +135,19 @@ class Press:
     def reach(self, prescribed: Prescribed, value: float, points: int) -> tuple[PressedState, PressedState]:
         """The equilibria with the prescribed depth, force or radius on `points` cells and on half as many.
 
-        Each grid starts from the answer of the one before; the first box is found on a coarse grid.
+        Raises:
+            UnresolvedLayer: If the layer is thinner than a cell.
         """
-        if prescribed == "radius":
-            return self._reach_radius(value, points)
+        reach = self._reach_radius if prescribed == "radius" else self._reach_depth_or_force
+        fine, coarse = reach(prescribed, value, points)
+        cell = max(fine.grid.cell_size, self._punch_cell(points, fine.contact_radius))
+        refuse_unresolved(self.layer, cell, LEAST_LAYER)
+        return fine, coarse
+
+    def _reach_depth_or_force(
+        self, prescribed: Prescribed, value: float, points: int
+    ) -> tuple[PressedState, PressedState]:
+        """Each grid starts from the answer of the one before; the first box is found on a coarse grid."""
         with self.log.stage("first_guess"):
             guess = self._near_force(value) if prescribed == "force" else self._coarse(value)
         radius = area_radius(guess.answer.pressure, guess.bed.grid.cell_size)
@@ -153,10 +165,10 @@ class Press:
                 radius = states[-1].contact_radius
         return states[1], states[0]
 
-    def _reach_radius(self, radius: float, points: int) -> tuple[PressedState, PressedState]:
+    def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[PressedState, PressedState]:
         """The depth at which the contact is as stiff as the flat punch of this radius, Eq. (5)."""
         with self.log.stage("contact_stiffness"):
-            stiffness = contact_stiffness(self.layer, radius, min(points, STIFFNESS_CELLS))
+            stiffness = contact_stiffness(self.layer, radius, self._punch_cells(points, radius))
         with self.log.stage("first_guess"):
             guess, exponent = self._coarse_root(Coarse.stiffness, stiffness, self._depth_scale(radius))
         depth, start = guess.answer.indentation_depth, None
@@ -221,7 +233,7 @@ class Press:
         """With the radius of the flat punch that is as stiff."""
         with self.log.stage("contact_stiffness"):
             stiffness = bed.stiffness(answer)
-            radius = radius_of_stiffness(self.layer, stiffness, near, min(bed.grid.cells, STIFFNESS_CELLS))
+            radius = radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(bed.grid.cells, near))
         return self._state(bed, answer, radius, stiffness)
 
     def _state(self, bed: Bed, answer: Equilibrium, radius: float, stiffness: float) -> PressedState:
@@ -231,8 +243,20 @@ class Press:
                 f"a contact of radius {radius:g} m spans too few of the {bed.grid.cells} cells of its box; "
                 'take more points, or boundary="free"'
             )
-        scatter = SLOPE_SCATTER * bed.grid.cell_size
+        punch_cell = self._punch_cell(bed.grid.cells, radius)
+        scatter = (
+            SLOPE_SCATTER * bed.grid.cell_size + THIN_SCATTER * punch_cell * (punch_cell / self.layer.thickness) ** 2
+        )
         return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness)
+
+    def _punch_cells(self, cells: int, radius: float) -> int:
+        """Cells of the flat punch behind k_N."""
+        thin = 2.0 * STIFFNESS_LAYER / DISC_FILL * radius / self.layer.thickness
+        return min(cells, 2 ** ceil(log2(max(STIFFNESS_CELLS, thin))))
+
+    def _punch_cell(self, cells: int, radius: float) -> float:
+        """Their size [m]."""
+        return 2.0 * radius / (DISC_FILL * self._punch_cells(cells, radius))
 
     def _check_inside(self, answer: Equilibrium, grid: Grid, radius: float) -> None:
         """The contact is one full circle that ends within the indenter and the box."""

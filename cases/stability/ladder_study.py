@@ -16,7 +16,7 @@ CLIMBERS: Final[Mapping[str, Mapping[str, Any]]] = {
     "mdr": {},
     "mdr_table": {"cells": 128, "ratios": 60, "radii": 200},
     "integral_equation": {},
-    "bem": {"points": 128},
+    "bem": {"points": 256},
     "fem": {"order": 3, "edge_cell": 1e-5},
 }
 """Settings at which each method climbs: what is watched are digits that repeats share, not the size of errors."""

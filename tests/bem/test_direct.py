@@ -226,6 +226,26 @@ def test_a_dent_that_does_not_press_is_refused():
         solve(dented, IndentationDepths([2.5e-5]))
 
 
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_thin_layers_are_within_the_stated_errors_or_refused(nu):
+    """At a/h = 50 the layer is 1.1 of 128 cells thick; k_N was up to 1.8e-3 off where 7e-4 was stated."""
+    layer = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=nu)
+    for ratio in (30.0, 50.0):
+        loading = ContactRadii([ratio * 1e-3])
+        path = solve(PARABOLOID, loading, layer)
+        exact = Mdr().solve(path.scene)
+        for name in path.ARRAYS:
+            error = abs(getattr(path, name)[0] / getattr(exact, name)[0] - 1.0)
+            assert error <= path.error_estimate[name][0] + 1e-9, (ratio, name)
+    with pytest.raises(UnsupportedSceneError, match=r"0\.56 cells thick and needs 1; take 1\.8 times as many points"):
+        solve(PARABOLOID, ContactRadii([0.1]), layer)
+
+
+def test_an_accuracy_on_a_thin_layer_takes_the_points_that_resolve_it():
+    path = Bem(accuracy=2e-2).solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=ContactRadii([60e-3])))
+    assert path.settings["points"] == 256
+
+
 def test_too_few_cells_in_a_periodic_box_are_refused():
     with pytest.raises(InvalidInput, match="too few"):
         solve(PARABOLOID, IndentationDepths([4e-7]), boundary="periodic")
