@@ -252,7 +252,7 @@ class Press:
     def _punch_cells(self, cells: int, radius: float) -> int:
         """Cells of the flat punch behind k_N."""
         thin = 2.0 * STIFFNESS_LAYER / DISC_FILL * radius / self.layer.thickness
-        return min(cells, 2 ** ceil(log2(max(STIFFNESS_CELLS, thin))))
+        return min(cells, 1 << ceil(log2(max(STIFFNESS_CELLS, thin))))
 
     def _punch_cell(self, cells: int, radius: float) -> float:
         """Their size [m]."""
