@@ -423,6 +423,8 @@ def _ended_by(error: Exception) -> int:
         return _complain(str(error), USAGE)
     if isinstance(error, NotConvergedError):
         return _complain(f"no answer: {error}", 1)
+    if isinstance(error, OSError) and error.strerror:
+        return _complain(f"{error.filename or 'a file'}: {error.strerror}; name another place, or make room", USAGE)
     traceback.print_exc()
     return _complain(f"internal error ({type(error).__name__}); please report the lines above", INTERNAL_ERROR)
 

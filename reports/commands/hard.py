@@ -82,6 +82,8 @@ def published(study: Callable[[], CaseResult], out: Path | None) -> int:
 
     if out is None:
         return FAILED if study().status.is_failure else 0
+    if out.exists() and not out.is_dir():  # said before the study, not after
+        raise InvalidInput(f"--out {out}: a file is in the way; name a folder")
     run = run_of((make() for make in [study]), out)
     write_pages(run, out)
     _say(f"report: {out / 'report.html'}")
@@ -98,6 +100,8 @@ def calibrate(out: Path, seed: int) -> None:
     from cases.evidence.records import write  # noqa: PLC0415
     from cases.stamp import revision  # noqa: PLC0415
 
+    if out.is_dir() or not out.parent.is_dir():
+        raise InvalidInput(f"{out}: no file can be there; check that the folder exists")
     write(out, measured(seed=seed, revision=revision(), progress=lambda line: console().print(line, markup=False)))
     console().print(f"written: {out}; use it with solve --accuracy .. --evidence {out}", markup=False)
 

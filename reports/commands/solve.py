@@ -93,6 +93,8 @@ def _check_ending(path: Path) -> None:
     if path.suffix not in ENDINGS:
         known = ", ".join(f"{ending} ({name})" for ending, name in ENDINGS.items())
         raise InvalidInput(f"--write {path}: the ending says the format; use one of {known}")
+    if path.is_dir() or not path.parent.is_dir():
+        raise InvalidInput(f"--write {path}: no file can be there; check that the folder exists")
 
 
 def _write(solution: Solution, path: Path) -> None:

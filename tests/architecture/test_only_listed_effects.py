@@ -39,6 +39,7 @@ print(json.dumps({
 }))
 """
 
+COARSE_TABLE = '{"cells": 64, "ratios": 60, "radii": 100}'
 COARSE_FEM = '{"order": 2, "edge_cell": 1e-2}'
 
 
@@ -116,6 +117,20 @@ def test_the_direct_integral_equation_loads_no_other_method():
     found = solved("integral_equation", "elastic")
     assert [m for m in found["modules"] if m.startswith(("mdr", "fem_reference")) or "transforms" in m] == []
     assert found["stages"] == ["error_estimate", "integral_equation"]
+
+
+@pytest.mark.parametrize(
+    ("method", "settings", "stages"),
+    [
+        ("fem", COARSE_FEM, ["assemble", "factor", "mesh", "recover", "solve"]),
+        ("bem", '{"points": 96}', ["contact", "contact_stiffness", "first_guess", "operator"]),
+        ("mdr_table", COARSE_TABLE, ["flat_punch_data", "force", "mdr_profile"]),
+    ],
+)
+def test_an_elastic_scene_runs_exactly_its_stages(method, settings, stages):
+    found = solved(method, "elastic", settings)
+    assert found["stages"] == stages
+    assert [m for m in found["modules"] if "effects" in m or "adhe" in m or "detach" in m] == []
 
 
 def test_a_planted_import_is_seen():

@@ -9,7 +9,9 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
+    DepthHistory,
     FlatPunch,
+    ForceHistory,
     Impact,
     IndentationDepths,
     KelvinVoigt,
@@ -61,6 +63,21 @@ def test_no_viscosity_is_an_elastic_impact(name, indenter):
     with_zero, elastic = Mdr().solve(scene.replace(effects=(VISCOUS[name],))), Mdr().solve(scene)
     assert difference(with_zero, elastic, NUMBERS) < ZERO
     assert float(np.max(np.abs(with_zero.dissipated_energy))) <= ZERO * with_zero.kinetic_energy[0]
+
+
+@pytest.mark.parametrize("name", VISCOUS)
+@pytest.mark.parametrize("indenter", [*INDENTERS, FlatPunch(radius=1.0)], ids=lambda i: type(i).__name__)
+@pytest.mark.parametrize("kind", ["depth", "force"])
+def test_no_viscosity_is_an_elastic_history(name, indenter, kind):
+    time = [0.0, 1.0, 2.0]
+    loading = (
+        DepthHistory(time=time, depth=[0.0, 0.05, 0.02])
+        if kind == "depth"
+        else ForceHistory(time=time, force=[0.0, 0.05, 0.02])
+    )
+    scene = Scene(layer=LAYER, indenter=indenter, loading=loading)
+    with_zero, elastic = Mdr().solve(scene.replace(effects=(VISCOUS[name],))), Mdr().solve(scene)
+    assert difference(with_zero, elastic, ("normal_force", "indentation_depth", "contact_radius")) < ZERO
 
 
 @pytest.mark.parametrize("scene", ADHESIVE[:6], ids=lambda s: f"{type(s.indenter).__name__}-{type(s.loading).__name__}")

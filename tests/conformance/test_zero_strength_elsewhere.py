@@ -7,6 +7,7 @@ import pytest
 
 from bem.direct import Bem
 from bem.integral_equation_method import IntegralEquationMethod
+from cases.methods import build
 from contact import (
     Adhesion,
     Cone,
@@ -52,6 +53,21 @@ def test_finite_elements_without_work_of_adhesion_are_finite_elements_without_ad
     assert difference(with_zero, COARSE.solve(RADII), ("contact_radius", "indentation_depth", "normal_force")) < ZERO
 
 
+@pytest.mark.parametrize("scene", [RADII, RADII.replace(loading=IndentationDepths([0.05]))], ids=["radii", "depths"])
+def test_boundary_elements_without_work_of_adhesion_are_boundary_elements_without_adhesion(scene):
+    """Adhesion has a solver of its own there (discs under the grid's pressure); without work it is not asked."""
+    with_zero = Bem(points=96).solve(scene.replace(effects=(Adhesion(work_of_adhesion=0.0),)))
+    bare = Bem(points=96).solve(scene)
+    assert difference(with_zero, bare, ("contact_radius", "indentation_depth", "normal_force")) < ZERO
+
+
+def test_tables_without_work_of_adhesion_are_tables_without_adhesion():
+    table = build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100})
+    scene = RADII.replace(indenter=PARABOLOID)
+    with_zero = table.solve(scene.replace(effects=(Adhesion(work_of_adhesion=0.0),)))
+    assert difference(with_zero, table.solve(scene), ("contact_radius", "indentation_depth", "normal_force")) < ZERO
+
+
 @pytest.mark.parametrize("name", NO_VISCOSITY)
 def test_finite_elements_without_viscosity_are_an_elastic_impact(name):
     with_zero, elastic = COARSE.solve(IMPACT.replace(effects=(NO_VISCOSITY[name],))), COARSE.solve(IMPACT)
@@ -77,6 +93,21 @@ def test_solving_other_scenes_between_changes_no_bit(method):
     after = method.solve(PUNCH)
     for name in before.ARRAYS:
         assert getattr(before, name).tobytes() == getattr(after, name).tobytes()
+
+
+def test_effects_of_finite_elements_in_between_change_no_bit():
+    before = COARSE.solve(PUNCH)
+    COARSE.solve(RADII.replace(effects=(Adhesion(work_of_adhesion=1e-4),)))
+    COARSE.solve(HISTORY.replace(effects=(KelvinVoigt(shear_modulus=1.0, viscosity=1e-2),)))
+    after = COARSE.solve(PUNCH)
+    for name in before.ARRAYS:
+        assert getattr(before, name).tobytes() == getattr(after, name).tobytes()
+
+
+def test_a_little_adhesion_is_seen_by_boundary_elements():
+    bare = Bem(points=96).solve(RADII)
+    little = Bem(points=96).solve(RADII.replace(effects=(Adhesion(work_of_adhesion=1e-6),)))
+    assert difference(little, bare, ("normal_force",)) > ZERO
 
 
 @pytest.mark.parametrize(

@@ -254,6 +254,20 @@ def test_solve_refuses_an_unknown_ending_before_it_solves(hertz, capsys):
     assert ".csv" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("ending", [".csv", ".h5", ".svg"])
+def test_solve_refuses_a_place_where_no_file_can_be_before_it_solves(hertz, tmp_path, ending, capsys):
+    (tmp_path / f"folder{ending}").mkdir()
+    for file in (tmp_path / "nowhere" / f"a{ending}", tmp_path / f"folder{ending}"):
+        assert run(["solve", hertz, "--write", str(file)]) == 4
+        assert "no file can be there" in capsys.readouterr().err.replace("\n", " ")
+
+
+def test_a_full_disk_is_one_clear_line(hertz, tmp_path, capsys):
+    (tmp_path / "full.csv").symlink_to("/dev/full")
+    assert run(["solve", hertz, "--method", "fake", "--write", str(tmp_path / "full.csv")]) == 4
+    assert "No space left on device" in capsys.readouterr().err.replace("\n", " ")
+
+
 def test_the_example_scene_is_a_scene(tmp_path, capsys):
     assert run(["solve", "--example"]) == 0
     path = tmp_path / "example.toml"

@@ -78,3 +78,18 @@ def test_an_answer_lists_the_stages_that_ran_and_no_others(scene, capsys):
     line = next(line for line in capsys.readouterr().out.splitlines() if line.startswith("stages: "))
     assert "flat punch data" in line
     assert "adhes" not in line
+
+
+@pytest.mark.parametrize(
+    "command", [["ladders", "--out"], ["scaling", "--out"], ["cost", "--out"], ["maps", "--out"], ["run", "--out"]]
+)
+def test_a_file_in_the_way_of_a_report_is_refused_before_the_study(command, tmp_path, capsys):
+    (tmp_path / "report").write_text("mine")
+    assert run([*command, str(tmp_path / "report")]) == 4
+    assert "report" in capsys.readouterr().err.replace("\n", " ")
+    assert (tmp_path / "report").read_text() == "mine"
+
+
+def test_measurements_that_could_not_be_written_are_not_begun(tmp_path, capsys):
+    assert run(["calibrate", str(tmp_path / "nowhere" / "measured.json")]) == 4
+    assert "no file can be there" in capsys.readouterr().err.replace("\n", " ")
