@@ -24,11 +24,11 @@ def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
 
 
 def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int) -> RunResult:
-    """Add the quick studies to a finished run of a suite and write it again; an interrupt leaves it incomplete."""
+    """Add the studies of its suite to a finished run and write it again; an interrupt leaves it incomplete."""
     clock = time.perf_counter()
     try:
         with executor(jobs) as pool:
-            futures = [pool.submit(study) for study in QUICK]
+            futures = [pool.submit(study) for study in (NIGHTLY if run.suite == "nightly" else QUICK)]
             studies = tuple(future.result() for future in futures)
     except KeyboardInterrupt:
         run, studies = replace(run, complete=False), ()
@@ -46,6 +46,14 @@ def quick_ladders() -> CaseResult:
     return ladder_case(chosen(LADDERS, QUICK_LADDERS), {"mdr": {}})
 
 
+def all_ladders() -> CaseResult:
+    """All ladders by every method that climbs them."""
+    from cases.stability.ladder_study import ladder_case  # noqa: PLC0415 - imported where it is carried out
+    from cases.stability.ladder_table import LADDERS  # noqa: PLC0415
+
+    return ladder_case(LADDERS)
+
+
 def quick_coverage() -> CaseResult:
     """Stated errors of the fast method on a few scenes."""
     from cases.stability.coverage import QUICK_PLANS, coverage_case  # noqa: PLC0415
@@ -61,3 +69,4 @@ def quick_maps() -> CaseResult:
 
 
 QUICK: tuple[Callable[[], CaseResult], ...] = (quick_coverage, quick_ladders, quick_maps)
+NIGHTLY: tuple[Callable[[], CaseResult], ...] = (quick_coverage, all_ladders, quick_maps)

@@ -1,10 +1,15 @@
 """A suite's report contains quick studies of stability, coverage and closed forms, and they pass."""
 
+import dataclasses
+
 import pytest
 
 from cases import studies
 from cases.executors import serial
+from cases.results import Ladder
 from cases.results_files import read_run
+from cases.stability import ladder_study
+from cases.stability.ladder_table import LADDERS
 from tests.cases.example_run import example_run
 
 SLOW = {studies.quick_ladders: pytest.mark.slow}
@@ -34,3 +39,15 @@ def test_studies_join_a_finished_run(tmp_path, monkeypatch):
     run = studies.with_studies(example_run(), tmp_path, serial, 1)
     assert [case.name for case in run.cases[len(example_run().cases) :]] == ["error_maps"]
     assert read_run(tmp_path) == run
+
+
+def test_the_nightly_suite_walks_all_ladders_by_all_methods(tmp_path, monkeypatch):
+    def glanced_at(plan, method, label):
+        return Ladder(name=plan.name, parameter="p", unit="1", method=label, quantity=plan.quantity, rungs=())
+
+    monkeypatch.setattr(studies, "NIGHTLY", (studies.all_ladders,))
+    monkeypatch.setattr(ladder_study, "climb", glanced_at)
+    nightly = dataclasses.replace(example_run(), suite="nightly")
+    case = studies.with_studies(nightly, tmp_path, serial, 1).cases[-1]
+    assert {ladder.name for ladder in case.ladders} == {plan.name for plan in LADDERS}
+    assert {ladder.method for ladder in case.ladders} == set(ladder_study.CLIMBERS)
