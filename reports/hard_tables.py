@@ -2,6 +2,7 @@
 
 from cases.results import CaseResult, CoverageRecord, ErrorMap, Ladder
 from cases.stability.ladders import breakdown, fewest_digits
+from cases.status import Status
 from cases.work.error_maps import UNBONDED, good_range
 from reports.method_names import display_name
 from reports.numbers import small
@@ -17,13 +18,14 @@ def ladders(case: CaseResult) -> Table | None:
     return Table(
         title="Breakdown rungs and digits",
         note="Digits are those that perturbed repeats share on the worst rung that was climbed. Residual: the largest "
-        "of any law of mechanics there, an independent solution included, and the largest error the method states.",
+        "of any law of mechanics there, independent answers included, and the largest error the method states. Why a "
+        "method refused is said below the figures.",
         heads=(
             "ladder",
             "method",
             "parameter",
             "walked",
-            "stops at",
+            "how far",
             "fewest digits",
             "iterations",
             "residual",
@@ -46,12 +48,17 @@ def _ladder_row(ladder: Ladder) -> tuple[str, ...]:
         display_name(ladder.method),
         ladder.parameter,
         f"{small(ladder.rungs[0].value)} .. {small(ladder.rungs[-1].value)}{unit}",
-        "climbed to the end" if stop is None else f"{small(stop)}{unit}",
+        "climbed to the end" if stop is None else f"{_gave_up(ladder, stop)} {small(stop)}{unit}",
         "" if digits is None else f"{digits:.1f}",
         f"{max(iterations)}" if iterations else "",
         small(max(laws)) if laws else "",
         small(max(stated)) if stated else "",
     )
+
+
+def _gave_up(ladder: Ladder, stop: float) -> str:
+    (rung,) = (rung for rung in ladder.rungs if rung.value == stop)
+    return "fails at" if rung.status is Status.FAIL else "refuses"
 
 
 def coverage(case: CaseResult) -> Table | None:

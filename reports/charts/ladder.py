@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterable, Sequence
 from functools import partial
+from itertools import groupby
 
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
@@ -98,9 +99,16 @@ def _falls(rungs: Sequence[Rung]) -> bool:
 
 
 def refusals(case: CaseResult) -> Iterable[str]:
-    """One sentence for each rung where a method refused."""
+    """One sentence for each stretch of rungs that a method refused, with what the first of them said."""
     for ladder in case.ladders:
-        for rung in ladder.rungs:
-            if rung.digits is None:
-                place = f"{display_name(ladder.method)}, {ladder.name}, {ladder.parameter} = {rung.value:.3g}"
-                yield f"{place}: {worded(rung.reason)}"
+        for was_refused, stretch in groupby(ladder.rungs, key=lambda rung: rung.digits is None):
+            if was_refused:
+                yield _refusal(ladder, list(stretch))
+
+
+def _refusal(ladder: Ladder, rungs: Sequence[Rung]) -> str:
+    values = f"{rungs[0].value:.3g}"
+    if len(rungs) > 1:
+        values += f" to {rungs[-1].value:.3g} ({len(rungs)} rungs)"
+    place = f"{display_name(ladder.method)}, {ladder.name}, {ladder.parameter} = {values}"
+    return f"{place}: {worded(rungs[0].reason)}"

@@ -6,8 +6,13 @@ import dataclasses
 
 import pytest
 
+from cases.results import Ladder, Rung
 from cases.stability.coverage import QUICK_PLANS
+from cases.status import Status
+from reports import hard_tables
+from reports.charts.ladder import refusals
 from reports.command_line import EXAMPLE_SCENE, run
+from tests.cases.example_run import passing_case
 
 
 @pytest.fixture
@@ -62,6 +67,24 @@ def test_ladders_write_a_run_with_their_table(tmp_path):
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Breakdown rungs and digits" in page
     assert "climbed to the end" in page
+
+
+def test_a_refusal_and_a_failure_are_told_apart_and_said_once():
+    def rungs(*ends):
+        return tuple(Rung(value=10.0**k, status=s, reason=r, digits=d) for k, (s, r, d) in enumerate(ends))
+
+    fine, refused = (Status.PASS, "", 9.0), (Status.INVALID, "NotConvergedError: too thin", None)
+    walks = {"mdr": (fine, fine), "bem": (fine, refused, refused), "fem": (fine, (Status.FAIL, "beyond", 9.0), fine)}
+    ladders = tuple(
+        Ladder(name="walk", parameter="p", unit="1", method=name, quantity="normal_force", rungs=rungs(*ends))
+        for name, ends in walks.items()
+    )
+    case = dataclasses.replace(passing_case(), ladders=ladders)
+    table = hard_tables.ladders(case)
+    assert table is not None
+    column = table.heads.index("how far")
+    assert [row[column] for row in table.rows] == ["climbed to the end", "refuses 10", "fails at 10"]
+    assert list(refusals(case)) == ["BEM, walk, p = 10 to 100 (2 rungs): NotConvergedError: too thin"]
 
 
 @pytest.mark.slow
