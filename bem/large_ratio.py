@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.polynomial import Chebyshev
@@ -20,14 +19,13 @@ from numpy.typing import ArrayLike
 
 from bem.fourier_energy import energy_matrix
 from bem.fredholm_kernel import FredholmKernel
+from bem.integral_equation_solution import IntegralEquationSolution
 from bem.kernels import Support
 from bem.panels import gauss_nodes
-from bem.triangular import equation_factor, solve_lower
+from bem.triangular import solve_lower
+from bem.volterra_factor import VolterraFactor
 from contact import InvalidInput
 from contact.validation import FloatArray
-
-if TYPE_CHECKING:
-    from bem.integral_equation import IntegralEquationSolution
 
 LARGEST_RATIO = 1000.0
 ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above it
@@ -35,6 +33,7 @@ FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
 OVERLAP = 120.0  # compared with the narrow panels' from here on, and used where those end
 PANEL_WIDTH = 8.0
 PANEL_NODES = 36
+DENSITY_TRUNCATION = 3e-8  # 1.618^-36: densities are analytic within 2 of panels that are 8 wide
 RITZ_DENSITIES = 4
 RADII = 42
 DEGREE = 26  # of ln k_bar in ln(a/h): nearly incompressible layers turn from film to bed within the range
@@ -43,7 +42,7 @@ LAST_TERMS = 2  # of the fit, by which it is judged
 
 @dataclass(frozen=True, eq=False)
 class LargeRatioSolution:
-    """k_bar and c_bar up to a/h = 1000, made when first asked for; the pressure up to where `near` ends.
+    """k_bar and c_bar up to a/h = 1000, made when first asked for.
 
     Attributes:
         support: "bonded" or "unbonded".
@@ -94,18 +93,22 @@ class LargeRatioSolution:
         return self._punches[3]
 
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
-        """q as from `near`.
+        """q from `near` or `wide`."""
+        rho, ratio = np.broadcast_arrays(np.asarray(rho, dtype=float), self._covered(ratio))
+        q, beyond = np.empty(rho.shape), ratio > self.near.max_ratio
+        for solution, there in ((self.near, ~beyond), (self.wide, beyond)):
+            q[there] = solution.smooth_pressure(rho[there], ratio[there])
+        return q
 
-        Raises:
-            InvalidInput: Beyond `near`, where only stiffnesses are known.
-        """
+    def one_contact(self, ratio: float) -> IntegralEquationSolution:
+        """The factor that solves for the pressure under one contact."""
+        return self.near if ratio <= self.near.max_ratio else self.wide
+
+    def density_error(self, ratio: ArrayLike) -> FloatArray:
+        """Relative error of pressures beyond that of the stiffness: what `wide` makes of k_bar, and its polynomials."""
         ratio = self._covered(ratio)
-        if np.any(ratio > self.near.max_ratio):
-            raise InvalidInput(
-                f"a/h = {np.max(ratio):g}: pressures are known up to a/h = {self.near.max_ratio:g}; depth, force and "
-                f"stiffness up to {LARGEST_RATIO:g}"
-            )
-        return self.near.smooth_pressure(rho, ratio)
+        lost = np.abs(self.wide.normalized_contact_stiffness(ratio) / self._stiffness(ratio) - 1)
+        return np.where(ratio <= self.near.max_ratio, 0.0, lost + DENSITY_TRUNCATION)
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar and c_bar."""
@@ -121,6 +124,13 @@ class LargeRatioSolution:
     def near(self) -> IntegralEquationSolution:
         """Solution for smaller ratios."""
         return self.make_near()
+
+    @cached_property
+    def wide(self) -> IntegralEquationSolution:
+        """Solution on wide panels, which has lost digits where the layer is nearly incompressible."""
+        kernel, panels = FredholmKernel.of_layer(self.support, self.poissons_ratio), int(LARGEST_RATIO / PANEL_WIDTH)
+        factor = VolterraFactor.of_kernel(kernel, panels, PANEL_WIDTH, PANEL_NODES)
+        return IntegralEquationSolution(self.support, self.poissons_ratio, kernel, factor)
 
     @cached_property
     def log_stiffness(self) -> Chebyshev:
@@ -150,7 +160,7 @@ class LargeRatioSolution:
 
     @cached_property
     def _punches(self) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
-        return _wide_punches(self.support, self.poissons_ratio)
+        return _wide_punches(self.wide)
 
     def _stiffness(self, ratio: FloatArray) -> FloatArray:
         stiffness: FloatArray = np.exp(self.log_stiffness(np.log(np.maximum(ratio, FIRST_RATIO))))
@@ -166,12 +176,11 @@ class LargeRatioSolution:
 
 
 def _wide_punches(
-    support: Support, poissons_ratio: float
+    wide: IntegralEquationSolution,
 ) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
     """Ratios, k_bar there, the largest relative difference that the last Ritz density makes, and the densities."""
     ratios = _radii_at_panel_ends()
-    trials = _trial_densities(support, poissons_ratio, ratios)
-    punches = [_ritz_punch(trial, support, poissons_ratio) for trial in trials]
+    punches = [_ritz_punch(trial, wide) for trial in _trial_densities(wide.factor, ratios)]
     best, fewer = (np.array([punch[item] for punch in punches]) for item in (0, 1))
     densities = {float(a): punch[2] for a, punch in zip(ratios, punches, strict=True)}
     return ratios, best / ratios, float(np.max(np.abs(fewer / best - 1))), densities
@@ -184,28 +193,25 @@ def _radii_at_panel_ends() -> FloatArray:
     return np.unique(PANEL_WIDTH * np.rint(points / PANEL_WIDTH))
 
 
-def _trial_densities(support: Support, poissons_ratio: float, ratios: FloatArray) -> list[FloatArray]:
+def _trial_densities(factor: VolterraFactor, ratios: FloatArray) -> list[FloatArray]:
     """phi_i = A^-1 P_i(t^2/a^2) for every radius a, each of shape (RITZ_DENSITIES, panels, nodes).
 
     A load that ends at a leaves nothing beyond in C^-T, so one solution serves the leading sections of all radii.
     """
-    nodes, weights = gauss_nodes(PANEL_NODES)
-    panels = np.arange(int(LARGEST_RATIO / PANEL_WIDTH))
-    kernel = FredholmKernel.of_layer(support, poissons_ratio).panel_matrix(panels.size, PANEL_WIDTH, PANEL_NODES)
-    t, root = PANEL_WIDTH * (panels[:, None] + nodes).ravel(), np.sqrt(PANEL_WIDTH * np.tile(weights, panels.size))
+    panels, width = np.arange(factor.panels)[:, None], factor.panel_width
+    t, root = width * (panels + gauss_nodes(factor.count)[0]).ravel(), np.sqrt(np.tile(factor.weights, factor.panels))
     inside = (t[:, None] < ratios)[..., None]
     loads = np.polynomial.legendre.legvander(2 * np.minimum(t[:, None] / ratios, 1.0) ** 2 - 1, RITZ_DENSITIES - 1)
-    lower = equation_factor(kernel, root, LARGEST_RATIO)
-    half = solve_lower(lower, root[:, None] * (loads * inside).reshape(t.size, -1)).reshape(loads.shape) * inside
-    densities = solve_lower(lower, half.reshape(t.size, -1), transposed=True) / root[:, None]
-    by_radius = np.moveaxis(densities.reshape(panels.size, PANEL_NODES, ratios.size, RITZ_DENSITIES), (2, 3), (0, 1))
-    return [density[:, : int(a / PANEL_WIDTH)] for density, a in zip(by_radius, ratios, strict=True)]
+    half = solve_lower(factor.lower, root[:, None] * (loads * inside).reshape(t.size, -1)).reshape(loads.shape) * inside
+    densities = solve_lower(factor.lower, half.reshape(t.size, -1), transposed=True) / root[:, None]
+    by_radius = np.moveaxis(densities.reshape(panels.size, -1, ratios.size, RITZ_DENSITIES), (2, 3), (0, 1))
+    return [density[:, : round(a / width)] for density, a in zip(by_radius, ratios, strict=True)]
 
 
-def _ritz_punch(trial: FloatArray, support: Support, poissons_ratio: float) -> tuple[float, float, FloatArray]:
+def _ritz_punch(trial: FloatArray, wide: IntegralEquationSolution) -> tuple[float, float, FloatArray]:
     """F/(2 E*) of a flat punch pressed in by 1, from all Ritz densities and from one less, and its density."""
-    energy = energy_matrix(trial, PANEL_WIDTH, support, poissons_ratio)
-    load = PANEL_WIDTH * np.sum(trial @ gauss_nodes(PANEL_NODES)[1], axis=1)
+    energy = energy_matrix(trial, wide.factor.panel_width, wide.support, wide.poissons_ratio)
+    load = np.sum(trial @ wide.factor.weights, axis=1)
     shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
     return float(load @ shares), float(load[:-1] @ fewer), np.tensordot(shares, trial, axes=1)
 

@@ -7,7 +7,8 @@ import numpy as np
 from bem.contact_density import ContactDensity
 from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
-from bem.integral_equation import LARGEST_FACTORISED_RATIO, IntegralEquationSolution
+from bem.integral_equation import LARGEST_FACTORISED_RATIO
+from bem.integral_equation_solution import IntegralEquationSolution
 from bem.large_ratio import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.validation import FloatArray
@@ -78,6 +79,8 @@ def contact_fields(
     """
     unit = contact_radius if layer.is_half_space else layer.thickness
     density, table, ratio, delta = None, None, contact_radius / unit, depth / unit
+    if isinstance(flat_punch, LargeRatioSolution):
+        flat_punch = flat_punch.one_contact(ratio)
     if isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution):
         profile = _half_space_function(flat_punch, indenter, unit, contact_radius)
     else:
@@ -100,6 +103,13 @@ def contact_fields(
         table=table,
         edge_density=_edge_density(profile, density, delta) if edge else 0.0,
     )
+
+
+def density_error(flat_punch: FlatPunchSolution, ratio: FloatArray) -> FloatArray:
+    """What solving for a contact's pressure adds to the relative error of its depth."""
+    if isinstance(flat_punch, LargeRatioSolution):
+        return flat_punch.density_error(ratio)
+    return np.zeros_like(ratio)
 
 
 def _edge_density(profile: MappedFunction, density: ContactDensity | None, delta: float) -> float:

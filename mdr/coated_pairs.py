@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 
 from bem.flat_punch import FlatPunchSource
 from bem.fredholm_kernel import FredholmKernel
-from bem.integral_equation import LARGEST_FACTORISED_RATIO, RUNGS, IntegralEquation, IntegralEquationSolution
+from bem.integral_equation import LARGEST_FACTORISED_RATIO, RUNGS, IntegralEquation
+from bem.integral_equation_solution import IntegralEquationSolution
 from bem.volterra_factor import VolterraFactor
 from contact import CoatedPair, InvalidInput, Layer
 from contact.record import Record, record

@@ -11,7 +11,7 @@ from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.solution import Setting
 from contact.validation import FloatArray
-from mdr.assembly import contact_fields
+from mdr.assembly import contact_fields, density_error
 from mdr.covering import covering_system
 from mdr.equivalent_system import EquivalentSystem
 from mdr.surface_fields import ContactFields
@@ -127,12 +127,13 @@ def _errors(
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
     errors = system.relative_errors(radius)
     stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
+    density = density_error(system.flat_punch, radius / system.length_unit)
     exact = np.zeros_like(radius)
     if isinstance(scene.indenter, FlatPunch):
         linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         depth_given = given == "IndentationDepths"
         return linear | {
-            "pressure": PRESSURE_SHARE * stiffness,
+            "pressure": PRESSURE_SHARE * (stiffness + density),
             "indentation_depth": exact if depth_given else stiffness,
             "normal_force": stiffness if depth_given else exact,
         }
@@ -148,5 +149,5 @@ def _errors(
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
         "normal_force": exact if given == "NormalForces" else errors["normal_force"] * spread,
         "contact_stiffness": stiffness + growth * moved,
-        "pressure": PRESSURE_SHARE * errors["indentation_depth"],
+        "pressure": PRESSURE_SHARE * (errors["indentation_depth"] + density),
     }

@@ -15,7 +15,7 @@ from reports.style import GREY, look_of, mark_decades
 COLUMNS = ("method", "size", "value", "cpu_seconds")
 CAPTION = (
     "Processor time of a first solution. Dashed: the slope of the most expensive stage in theory, through the largest "
-    "size. In the titles the fitted exponent of the larger half of the sizes with its 95 % interval."
+    "size. In the titles the exponent p fitted beyond fixed costs, c + k n^p, with its 95 % interval."
 )
 
 
@@ -59,6 +59,13 @@ def _draw_fit(axes: Axes, fit: ScalingFit) -> None:
     axes.set_title(f"{display_name(fit.method)}: {fit.exponent:.2f} ± {fit.half_width:.2f}")
     axes.plot(fit.sizes[half:], slope, color=GREY, linestyle="--", linewidth=1.0, label=f"slope {fit.theory:g}")
     axes.plot(fit.sizes, fit.seconds, color=look.colour, marker=look.marker, linestyle="none")
+    axes.set_ylim(_at_least_a_decade(*axes.get_ylim()))
     mark_decades(axes.xaxis)
     mark_decades(axes.yaxis)
     axes.legend(loc="upper left")
+
+
+def _at_least_a_decade(low: float, high: float) -> tuple[float, float]:
+    """Limits so far apart that the noise of times that do not grow looks like noise."""
+    middle, half = (low * high) ** 0.5, max((high / low) ** 0.5, 10**0.5)
+    return middle / half, middle * half

@@ -6,7 +6,7 @@ import pytest
 import bem.large_ratio
 from bem.fredholm_kernel import FredholmKernel
 from bem.integral_equation import IntegralEquation
-from bem.large_ratio import PANEL_WIDTH, LargeRatioSolution, _trial_densities
+from bem.large_ratio import DENSITY_TRUNCATION, PANEL_WIDTH, LargeRatioSolution, _trial_densities
 from bem.panels import gauss_nodes
 from contact import InvalidInput, Layer
 
@@ -52,7 +52,8 @@ def test_one_solution_serves_the_densities_of_all_radii(monkeypatch):
     monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
     ratios = np.array([16.0, 24.0, 40.0])
     nodes, weights = gauss_nodes(bem.large_ratio.PANEL_NODES)
-    for ratio, trial in zip(ratios, _trial_densities("unbonded", 0.0, ratios), strict=True):
+    factor = LargeRatioSolution("unbonded", 0.0, lambda: None).wide.factor
+    for ratio, trial in zip(ratios, _trial_densities(factor, ratios), strict=True):
         panels = int(ratio / PANEL_WIDTH)
         t = PANEL_WIDTH * (np.arange(panels)[:, None] + nodes).ravel()
         kernel = FredholmKernel.of_layer("unbonded", 0.0).panel_matrix(panels, PANEL_WIDTH, nodes.size)
@@ -87,8 +88,24 @@ def test_a_ratio_beyond_the_range_is_refused_at_once():
         IntegralEquation().solution(LAYERS["unbonded"], 1000.0).normalized_contact_stiffness(1001.0)
 
 
-@pytest.mark.slow
-def test_the_pressure_is_refused_beyond_the_narrow_panels():
-    solution = IntegralEquation().solution(LAYERS["unbonded"], 1000.0)
-    with pytest.raises(InvalidInput, match="a/h = 500"):
-        solution.smooth_pressure(0.5, 500.0)
+@pytest.mark.parametrize("name", LAYERS)
+def test_pressures_on_wide_panels_equal_those_on_narrow_ones(name, monkeypatch):
+    """Wide panels end at a/h = 40 here, narrow ones at 10, so that the test is fast; q is close to 1."""
+    monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
+    layer, rho = LAYERS[name], np.array([1e-3, 0.5, 0.9, 0.99, 1.0])
+    near, narrow = (IntegralEquation().solution(layer, ratio) for ratio in (10.0, 40.0))
+    solution = LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: near)
+    for ratio in (9.0, 11.0, 28.0, 40.0):
+        expected = narrow.smooth_pressure(rho, ratio)
+        np.testing.assert_allclose(solution.smooth_pressure(rho, ratio), expected, rtol=0, atol=10 * DENSITY_TRUNCATION)
+
+
+@pytest.mark.parametrize("ratio", [28.0, 40.0])
+def test_the_middle_of_a_wide_punch_feels_no_edge(ratio, monkeypatch):
+    """p = E* delta/h on an unbonded layer but for exp(-pi (a - r)/h), p_bar = pi a p/(2 k_bar E* delta)."""
+    monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
+    near = IntegralEquation().solution(LAYERS["unbonded"], 10.0)
+    solution, rho = LargeRatioSolution("unbonded", 0.0, lambda: near), np.array([1e-3, 0.3, 0.6])
+    pressure = solution.smooth_pressure(rho, ratio) / np.sqrt(1 - rho**2)
+    expected = np.pi * ratio / (2 * solution.wide.normalized_contact_stiffness(ratio))
+    np.testing.assert_allclose(pressure, expected, rtol=1e-7)

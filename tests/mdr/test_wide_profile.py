@@ -7,7 +7,19 @@ import bem.large_ratio
 import mdr.wide_profile
 from bem.integral_equation import IntegralEquation
 from bem.large_ratio import LargeRatioSolution
-from contact import Cone, ContactRadii, InvalidInput, Layer, Paraboloid, Scene, Sphere, TruncatedCone
+from bem.panels import gauss_nodes
+from contact import (
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Paraboloid,
+    Scene,
+    Sphere,
+    TruncatedCone,
+)
 from mdr import Mdr, equivalent_system
 from mdr.asymptotic import thin_profile
 
@@ -72,13 +84,42 @@ def test_narrow_and_wide_panels_meet_without_a_jump():
 
 
 @pytest.mark.slow
-def test_the_pressure_is_refused_where_only_moments_are_known():
-    path = Mdr(flat_punch=SOURCE).solve(
-        Scene(layer=LAYERS["unbonded"], indenter=INDENTERS[0], loading=ContactRadii([500.0]))
-    )
-    assert path.surface_displacement([1.0])[0] == pytest.approx(path.indentation_depth[0] - 0.5)
-    with pytest.raises(InvalidInput, match="pressures are known up to"):
-        path.pressure([1.0])
+@pytest.mark.parametrize("radius", [300.0, 1000.0])
+def test_pressure_in_the_middle_of_thin_layers(radius):
+    """Closed forms of the film, exact but for exp(-(a - r)/h): chi(q)/q = 1/2 + O(q^4), 2 q^2/3 + O(q^4) at nu = 1/2.
+
+    Unbonded p = E* (delta - f)/h. Bonded compressible p = M delta/h, M the confined modulus. Bonded incompressible
+    laplace p = -3 E* delta/(4 h^3).
+    """
+    r = radius * np.array([0.1, 0.5, 0.9])
+    path = _pressed("unbonded", 0.3, INDENTERS[0], ContactRadii([radius]))
+    expected = path.scene.layer.contact_modulus * (path.indentation_depth[0] - r**2 / 2)
+    np.testing.assert_allclose(path.pressure(r), expected, rtol=1e-7)
+    punch, depth = FlatPunch(radius=radius), IndentationDepths([1e-3])
+    confined = 0.7 / (1.3 * 0.4)
+    np.testing.assert_allclose(_pressed("bonded", 0.3, punch, depth).pressure(r), 1e-3 * confined, rtol=1e-7)
+    path = _pressed("bonded", 0.5, punch, depth)
+    fall = path.pressure(r[:1]) - path.pressure(r[1:])
+    expected = 3 / 16 * path.scene.layer.contact_modulus * 1e-3 * (r[1:] ** 2 - r[0] ** 2)
+    np.testing.assert_allclose(fall, expected, rtol=path.error_estimate["pressure"][0])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nu", [0.3, 0.4999, 0.5])
+@pytest.mark.parametrize("radius", [165.0, 333.0, 1000.0])
+def test_pressures_add_up_to_the_force(nu, radius):
+    """The force comes from Ritz values, the pressure from one solution for this contact."""
+    path = _pressed("bonded", nu, INDENTERS[0], ContactRadii([radius]))
+    s = np.concatenate([k * radius / 100 + gauss_nodes(8)[0] * radius / 100 for k in range(100)])
+    weights = np.tile(gauss_nodes(8)[1], 100) * radius / 100
+    r = np.sqrt((radius - s) * (radius + s))
+    force = 2 * np.pi * float(np.sum(path.pressure(r) * s * weights))  # r dr = -s ds
+    assert force == pytest.approx(path.normal_force[0], rel=path.error_estimate["pressure"][0])
+
+
+def _pressed(support, nu, indenter, loading):
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu, support=support)
+    return Mdr(flat_punch=SOURCE).solve(Scene(layer=layer, indenter=indenter, loading=loading))
 
 
 def test_breakpoints_far_out_and_short_indenters_are_refused_at_once():

@@ -5,7 +5,7 @@ import pytest
 
 import bem.fredholm_kernel
 import bem.integral_equation
-from bem.integral_equation import IntegralEquationSolution
+from bem.integral_equation_solution import IntegralEquationSolution
 from bem.kernels import one_minus_kernel
 from contact import Layer, NotConvergedError
 from mdr.equivalent_system import EquivalentSystem

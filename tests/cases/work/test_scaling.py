@@ -42,9 +42,17 @@ def test_counters_have_exponents_without_noise():
 
 
 def test_growth_faster_than_in_theory_fails():
-    plan = dataclasses.replace(PLANS[1], sizes=(64, 128, 256, 512, 1024))
+    plan = next(plan for plan in PLANS if plan.size == "number of radii")
+    plan = dataclasses.replace(plan, sizes=(64, 128, 256, 512, 1024))
     fit = fitted(plan)
     assert len(fit.seconds) == 5
     assert fit.counters == {}  # the same unknowns whatever the number of radii
     assert grows_no_faster(dataclasses.replace(fit, exponent=0.9, half_width=0.2)).status is Status.PASS
     assert grows_no_faster(dataclasses.replace(fit, exponent=1.5, half_width=0.2)).status is Status.FAIL
+
+
+def test_the_plans_of_contact_width_cover_five_decades():
+    """From a/h = 1e-2 to 1e3, the largest ratio that is covered."""
+    sizes = [size for plan in PLANS if plan.method == "mdr" and plan.size.startswith("a/h") for size in plan.sizes]
+    assert (min(sizes), max(sizes)) == (1e-2, 1e3)
+    assert sorted(sizes) == sizes
