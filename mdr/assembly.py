@@ -25,6 +25,8 @@ TABLE_NODES = 12  # with a table, whose functions are no smoother than its splin
 FIRST_OCTAVE = -5  # below a/h = 1/32 a table's functions are linear to its accuracy
 RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half-space profile
 SHARE = 0.01  # of the flat punch's error, below which a profile on coarse panels is resolved no further
+_FLATTEST = 16.0  # exponent at first touch; u^4n leaves double precision beyond 30, and errs by 1e-11 from 23 on
+_CLOSE = (1e-9, 1e-4, 1e-1)  # to first touch, relative
 GAP = 1e-12  # relative distance below which two piece ends are one
 
 
@@ -256,11 +258,25 @@ def _apart(points: FloatArray, others: FloatArray) -> FloatArray:
 
 
 def _leading_exponent(indenter: Profile, scale: float) -> float:
-    """n in g_hs ~ (x - b)^n at first touch, from two points very close to it."""
-    near, far = half_space_profile(indenter, scale * np.array([1e-9, 2e-9]))
-    exponent = float(np.log2(far / near))
-    halves = round(2 * exponent) / 2
-    return halves if abs(exponent - halves) < 1e-6 else exponent
+    """n in g_hs ~ (x - b)^n at first touch, from two points very close to it, or less close for r^100.
+
+    Raises:
+        InvalidInput: If the profile does not rise there.
+        UnsupportedSceneError: If it rises too flatly for the pieces to keep its digits.
+    """
+    for step in _CLOSE:
+        near, far = half_space_profile(indenter, scale * step * np.array([1.0, 2.0]))
+        if near > 0.0:
+            exponent = float(np.log2(far / near))
+            if exponent > _FLATTEST:
+                raise UnsupportedSceneError(
+                    f"indenter: rises like r^{exponent:.3g}; mdr takes r^{_FLATTEST:g} at most, ask fem"
+                )
+            halves = round(2 * exponent) / 2
+            return halves if abs(exponent - halves) < 1e-6 else exponent
+    raise InvalidInput(
+        f"indenter: does not rise within {scale:g} m of first touch; a flat end needs a truncated profile or a punch"
+    )
 
 
 def _springs_at_nodes(solution: FlatPunchSolution, g_hs: MappedFunction, flat: float) -> FloatArray:

@@ -214,3 +214,23 @@ def test_import_is_light():
     code = "import sys, mdr; print([m for m in ('pyfftw', 'skfem', 'gmsh', 'matplotlib') if m in sys.modules])"
     loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert loaded.strip() == "[]"
+
+
+@pytest.mark.parametrize("exponent", [25.3, 70.0, 150.0])
+def test_a_profile_too_flat_at_its_tip_is_refused_by_name(exponent):
+    """Zero was divided by zero from r^31 on, and forces were 1e-10 off at r^27 where 1e-13 was stated."""
+    indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=0.1)
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5), indenter=indenter, loading=ContactRadii([1.0])
+    )
+    with pytest.raises(UnsupportedSceneError, match="rises like r"):
+        Mdr().solve(scene)
+
+
+def test_a_table_that_begins_flat_is_refused_by_name():
+    table = Tabulated(radii=[0.0, 0.2, 0.4, 1.5], heights=[0.0, 0.0, 0.01, 0.4])
+    scene = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3), indenter=table, loading=ContactRadii([1.0])
+    )
+    with pytest.raises(InvalidInput, match=r"does not rise within 0\.2 m of first touch"):
+        Mdr().solve(scene)
