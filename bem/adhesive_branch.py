@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from math import pi
 from typing import Final, Literal
@@ -19,11 +19,13 @@ from bem.grid import first_radius
 from contact import Adhesion, FlatPunch, Profile, Scene
 from contact.validation import FloatArray
 
-NODES: Final = 16  # contact radii solved on each piece of the branch
+NODES: Final = 16  # contact radii solved on each piece of the branch,
+BROKEN_NODES: Final = 32  # and on one with breakpoints, whose kinks a layer leaves in higher derivatives
 SCOUT_CELLS: Final = 64
 KNOTS: Final = 2000  # of a measured profile's values on the half-space
 SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
 GROWTH: Final = 1.6  # of the largest radius while the branch is too short
+FIRST_RATIO: Final = 4.0  # a/h beyond which the half-space says nothing about the radius on a layer
 
 Quantity = Literal["indentation_depth", "normal_force"]
 
@@ -53,10 +55,11 @@ class Piece:
         """Through solutions at Chebyshev points."""
         broken = any(inner < r < outer for r in indenter.breakpoints)
         half_space = half_space_values(indenter, outer) if broken else _ones
-        t = 0.5 + 0.5 * chebyshev.chebpts1(NODES)
+        nodes = BROKEN_NODES if broken else NODES
+        t = 0.5 + 0.5 * chebyshev.chebpts1(nodes)
         radius = inner + (outer - inner) * t**2
         values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in map(solve, radius.tolist())])
-        series = chebyshev.chebfit(2.0 * t - 1.0, values / half_space(radius).T, NODES - 1)
+        series = chebyshev.chebfit(2.0 * t - 1.0, values / half_space(radius).T, nodes - 1)
         return cls(inner, outer, np.asarray(series, dtype=np.float64), half_space)
 
     def at(self, radius: FloatArray) -> FloatArray:
@@ -115,6 +118,14 @@ class AdhesiveBranch:
     def largest_radius(self) -> float:
         """Where the branch ends [m]."""
         return self.pieces[-1].outer
+
+    def cut(self) -> AdhesiveBranch:
+        """The branch without the last quarter of its orders: how far turning points move shows what is left out.
+
+        Beside breakpoints the orders decay like a power, so that the last ones say less than the sum of those beyond.
+        """
+        pieces = (replace(piece, series=piece.series[: 3 * len(piece.series) // 4]) for piece in self.pieces)
+        return replace(self, pieces=tuple(pieces))
 
     @property
     def truncation(self) -> float:
@@ -197,12 +208,13 @@ def adhesive_length(scene: Scene) -> float:
 def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], bool]) -> float:
     """A largest radius [m] with which a branch is long enough, or the indenter's end; looked for on a coarse grid.
 
-    It grows from where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*).
+    It grows from where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*), or from some
+    thicknesses of a layer, which is stiffer.
     """
     indenter = scene.indenter
     if isinstance(indenter, FlatPunch):
         return indenter.radius
-    radius = GROWTH * max(_balance_radius(scene), indenter.flat_radius)
+    radius = GROWTH * max(min(_balance_radius(scene), FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
     while radius < indenter.max_radius:
         if enough(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads)):
             return radius

@@ -7,7 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from bem.adhesive_branch import SCOUT_CELLS
-from bem.adhesive_path import CellHistory, branch_errors, detachment_branch, stable_under_force, start_radius
+from bem.adhesive_path import (
+    CellHistory,
+    branch_errors,
+    detachment_branch,
+    refuse_unresolved,
+    stable_under_force,
+    start_radius,
+)
 from bem.adhesive_withdrawal import Control
 from bem.grid_punch import contact_stiffness
 from contact import ContactPath, DetachmentPath, IndentationDepths, Scene, StageLog, UnsupportedSceneError
@@ -72,6 +79,7 @@ class AdheringCells:
             )
         end = fine.pull_off(control)
         errors = branch_errors(fine, coarse, control)
+        refuse_unresolved(errors, self.points)
         return DetachmentPath(
             scene=self.scene,
             method="bem",

@@ -10,6 +10,7 @@ import numpy as np
 from bem.adhering_disc import FARTHEST, is_measured
 from bem.adhesive_branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesive_history import Held, at_radii, followed
+from bem.adhesive_path import refuse_unresolved
 from bem.adhesive_withdrawal import Control, Withdrawal, stable, strength
 from bem.grid import refuse_unresolved
 from bem.pixel_disc import measured_disc
@@ -101,11 +102,16 @@ class AdheringDiscs:
         self._refuse_unresolved(start)
         withdrawal = Withdrawal(fine, start)
         pull_off, other = withdrawal.pull_off(control), Withdrawal(coarse, start).pull_off(control)
+        cut = Withdrawal(fine.cut(), start).pull_off(control)
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
         depth, force, floor = fine.depth(radius), fine.force(radius), self._floor(fine)
         share = dict.fromkeys(pull_off, floor) | {"pull_off_depth": floor * _swing(depth, pull_off["pull_off_depth"])}
         times = self._times(np.array([pull_off["pull_off_contact_radius"]]))
-        errors = {name: times * abs(other[name] / value - 1.0) + share[name] for name, value in pull_off.items()}
+        errors = {
+            name: times * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]
+            for name, value in pull_off.items()
+        }
+        refuse_unresolved(errors, self.points)
         errors["indentation_depth"] = self._times(radius) * _difference(depth, coarse.depth(radius)) + floor
         errors["normal_force"] = self._times(radius) * _difference(force, coarse.force(radius)) + floor
         errors["normal_force"] += self._cancelled(fine, fine.stiffness(radius) * depth, force)

@@ -15,8 +15,10 @@ from contact import (
     InvalidInput,
     Layer,
     NormalForces,
+    NotConvergedError,
     Paraboloid,
     Scene,
+    Tabulated,
     TruncatedCone,
     UnsupportedSceneError,
 )
@@ -161,6 +163,7 @@ def test_pull_off_force_converges_to_a_part_in_a_thousand_at_512(layer):
     assert errors[2] < errors[0] / 4.0  # order above one
 
 
+<<<<<<< HEAD
 @pytest.mark.parametrize("indenter", [FlatPunch(radius=8e-3), SPHERE], ids=lambda i: type(i).__name__)
 def test_a_layer_thinner_than_the_ring_that_tells_the_edge_is_refused(indenter):
     """At a/h = 8, nu = 0.38 two grids agreed within 7 % on a pull-off that was 15 % off."""
@@ -168,3 +171,31 @@ def test_a_layer_thinner_than_the_ring_that_tells_the_edge_is_refused(indenter):
     loading = Detachment() if isinstance(indenter, FlatPunch) else ContactRadii([8e-3])
     with pytest.raises(UnsupportedSceneError, match=r"cells thick and needs 12; take 1\.\d times as many points"):
         Bem(points=128).solve(scene(layer, indenter, loading))
+=======
+def test_a_pull_off_that_the_grid_does_not_resolve_is_refused():
+    """On a thin layer under strong adhesion 128 points once said -2e12 N, where -9 N is right."""
+    layer = Layer(thickness=1.6e-3, youngs_modulus=6.7e7, poissons_ratio=0.5)
+    thin = Scene(
+        layer=layer,
+        indenter=Cone(slope=3e-5),
+        loading=Detachment(control="displacement"),
+        effects=(Adhesion(work_of_adhesion=4.6e-3),),
+    )
+    with pytest.raises(NotConvergedError, match="do not resolve where contact is lost"):
+        Bem(points=128).solve(thin)
+
+
+def test_measured_profiles_on_layers_pull_off_within_their_stated_errors():
+    """Against MDR. What the polynomials of the branch leave of kinks moves the pull-off: radius 4.5e-3 off at first."""
+    radii = np.array([0.0, 0.35, 0.69, 1.01, 1.11, 1.26, 1.39, 1.71, 1.9, 2.03, 2.36, 2.57])
+    measured = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.0),
+        indenter=Tabulated(radii=radii, heights=1e-3 * radii**2.1),
+        loading=Detachment(control="force"),
+        effects=(Adhesion(work_of_adhesion=8e-8),),
+    )
+    cells, exact = Bem(points=128).solve(measured), Mdr().solve(measured)
+    assert cells.pull_off_contact_radius == pytest.approx(exact.pull_off_contact_radius, rel=2e-3)
+    for name in ("pull_off_force", "pull_off_depth", "pull_off_contact_radius"):
+        assert abs(getattr(cells, name) / getattr(exact, name) - 1) <= cells.error_estimate[name][0], name
+>>>>>>> f38cbfb (Detachment by boundary elements: an unresolved pull-off is refused; branches of measured profiles by more radii, with errors that see the orders left out)
