@@ -107,8 +107,7 @@ class LargeRatioSolution:
     def density_error(self, ratio: ArrayLike) -> FloatArray:
         """Relative error of pressures beyond that of the stiffness: what `wide` makes of k_bar, and its polynomials."""
         ratio = self._covered(ratio)
-        lost = np.abs(self.wide.normalized_contact_stiffness(ratio) / self._stiffness(ratio) - 1)
-        return np.where(ratio <= self.near.max_ratio, 0.0, lost + DENSITY_TRUNCATION)
+        return np.where(ratio <= self.near.max_ratio, 0.0, self._lost(ratio))
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar and c_bar."""
@@ -131,6 +130,17 @@ class LargeRatioSolution:
         kernel, panels = FredholmKernel.of_layer(self.support, self.poissons_ratio), int(LARGEST_RATIO / PANEL_WIDTH)
         factor = VolterraFactor.of_kernel(kernel, panels, PANEL_WIDTH, PANEL_NODES)
         return IntegralEquationSolution(self.support, self.poissons_ratio, kernel, factor)
+
+    @cached_property
+    def wide_alone(self) -> WideSolution:
+        """The wide panels for all radii: seven digits, but for profiles with breakpoints anywhere."""
+        wide = self.wide
+        return WideSolution(wide.support, wide.poissons_ratio, wide.kernel, wide.factor, self._lost)
+
+    def _lost(self, ratio: FloatArray) -> FloatArray:
+        """What `wide` makes of k_bar, from `FIRST_RATIO` on, and its polynomials."""
+        ratio = np.maximum(ratio, FIRST_RATIO)
+        return np.abs(self.wide.normalized_contact_stiffness(ratio) / self._stiffness(ratio) - 1) + DENSITY_TRUNCATION
 
     @cached_property
     def log_stiffness(self) -> Chebyshev:
@@ -173,6 +183,21 @@ class LargeRatioSolution:
             raise InvalidInput(f"a/h = {ratio[~covered].flat[0]:g}: this solution covers [0, {LARGEST_RATIO:g}]")
         limited: FloatArray = np.minimum(ratio, LARGEST_RATIO)
         return limited
+
+
+@dataclass(frozen=True)
+class WideSolution(IntegralEquationSolution):
+    """One factor on wide panels, judged by Ritz values.
+
+    Attributes:
+        lost: Relative error of its k_bar at each ratio.
+    """
+
+    lost: Callable[[FloatArray], FloatArray]
+
+    def relative_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of k_bar and c_bar."""
+        return super().relative_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
 
 
 def _wide_punches(

@@ -7,7 +7,6 @@ import numpy as np
 from bem.contact_density import ContactDensity
 from bem.flat_punch import FlatPunchSolution, FlatPunchSource
 from bem.half_space import HalfSpaceFlatPunch
-from bem.integral_equation import LARGEST_FACTORISED_RATIO
 from bem.integral_equation_solution import IntegralEquationSolution
 from bem.large_ratio import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
@@ -49,7 +48,10 @@ def equivalent_system(
     unit = max_radius if layer.is_half_space else layer.thickness
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
     if isinstance(solution, LargeRatioSolution) and not isinstance(indenter, FlatPunch):
-        max_radius = _known_radius(solution, indenter, unit, max_radius)
+        if max(indenter.flat_radius, *indenter.breakpoints, 0.0) > FIRST_RATIO / 2 * unit:
+            solution = solution.wide_alone
+        else:
+            max_radius = _known_radius(solution, indenter, unit, max_radius)
     g_hs = _half_space_function(solution, indenter, unit, max_radius)
     springs = _springs_at_nodes(solution, g_hs, indenter.flat_radius / unit)
     profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
@@ -187,10 +189,6 @@ def _panel_error(solution: FlatPunchSolution) -> float:
 
 def _known_radius(solution: LargeRatioSolution, indenter: Profile, unit: float, max_radius: float) -> float:
     """The next radius at which the flat punch's density is known; profiles there are fitted, not integrated."""
-    last = max((indenter.flat_radius, *indenter.breakpoints)) / unit
-    if last > FIRST_RATIO / 2:
-        message = f"a/h = {max_radius / unit:g}: beyond {LARGEST_FACTORISED_RATIO:g} a profile must be smooth from"
-        raise InvalidInput(f"{message} r/h = {FIRST_RATIO / 2:g} on, but it has a breakpoint at {last:g}")
     radius = unit * solution.reach(max_radius / unit)
     if radius > indenter.max_radius:
         message = f"the indenter ends at {indenter.max_radius:g} m, but its answer at {max_radius:g} m takes it"

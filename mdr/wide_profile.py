@@ -5,7 +5,7 @@ By Betti's theorem the profile's moment is the flat punch's density weighted wit
     M(x) = int_0^x c_bar g dx = <phi_1(.; x), g_hs>,    so    g = M'/c_bar.
 
 The densities are known at some thirty radii. There ln M is fitted by a polynomial in ln x, and the fit is
-differentiated; that needs a profile without breakpoints at such radii. Lengths count in layer thicknesses.
+differentiated; profiles with breakpoints at such radii take the wide panels alone. Lengths count in layer thicknesses.
 """
 
 from __future__ import annotations

@@ -5,9 +5,12 @@ import pytest
 
 import bem.large_ratio
 import mdr.wide_profile
+from bem.fredholm_kernel import FredholmKernel
 from bem.integral_equation import IntegralEquation
+from bem.integral_equation_solution import IntegralEquationSolution
 from bem.large_ratio import LargeRatioSolution
 from bem.panels import gauss_nodes
+from bem.volterra_factor import VolterraFactor
 from contact import (
     Cone,
     ContactRadii,
@@ -122,9 +125,25 @@ def _pressed(support, nu, indenter, loading):
     return Mdr(flat_punch=SOURCE).solve(Scene(layer=layer, indenter=indenter, loading=loading))
 
 
-def test_breakpoints_far_out_and_short_indenters_are_refused_at_once():
-    with pytest.raises(InvalidInput, match="breakpoint at 250"):
-        equivalent_system(LAYERS["unbonded"], TruncatedCone(flat_radius=250.0, slope=1.0), 500.0, SOURCE)
+@pytest.mark.slow
+@pytest.mark.parametrize(("nu", "largest"), [(0.3, 2e-7), (0.4999, 5e-7), (0.5, 3e-6)])
+def test_breakpoints_far_out_take_the_wide_panels_alone(nu, largest):
+    """Against panels half as wide, up to a/h = 300: ten digits, at nu = 1/2 nine."""
+    layer, indenter = (
+        Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu),
+        TruncatedCone(flat_radius=250.0, slope=1.0),
+    )
+    kernel = FredholmKernel.of_layer("bonded", nu)
+    narrower = IntegralEquationSolution("bonded", nu, kernel, VolterraFactor.of_kernel(kernel, 75, 4.0, 32))
+    system, x = equivalent_system(layer, indenter, 300.0, SOURCE), 250.0 + np.geomspace(1e-3, 50.0, 40)
+    other, bound = equivalent_system(layer, indenter, 300.0, Given(narrower)), system.relative_error
+    assert bound["indentation_depth"] < largest
+    np.testing.assert_allclose(system.mdr_profile(x), other.mdr_profile(x), rtol=bound["indentation_depth"])
+    np.testing.assert_allclose(system.elastic_force(x), other.elastic_force(x), rtol=bound["normal_force"])
+    np.testing.assert_allclose(system.contact_stiffness(x), other.contact_stiffness(x), rtol=bound["contact_stiffness"])
+
+
+def test_short_indenters_are_refused_at_once():
     layer = LAYERS["unbonded"].replace(thickness=1e-3)
     with pytest.raises(InvalidInput, match=r"ends at 0\.5 m"):
         equivalent_system(layer, Sphere(radius=0.5), 0.4999, KnownRadii())
@@ -136,6 +155,19 @@ class AnewBeyondNear:
     def solution(self, layer, ratio):
         near = SOURCE.solution(layer, 160.0)
         return LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: near)
+
+    def refined(self):
+        return self
+
+
+class Given:
+    """A source of one solution."""
+
+    def __init__(self, given):
+        self.given = given
+
+    def solution(self, layer, ratio):
+        return self.given
 
     def refined(self):
         return self
