@@ -12,7 +12,7 @@ from bem.adhesive_branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesive_history import Held, at_radii, followed
 from bem.adhesive_path import refuse_unresolved
 from bem.adhesive_withdrawal import Control, Withdrawal, stable, strength
-from bem.grid import refuse_unresolved
+from bem.grid import refuse_thin_layer
 from bem.pixel_disc import measured_disc
 from bem.surface_fields import AdheringFields, FieldSequence
 from contact import (
@@ -69,7 +69,7 @@ class AdheringDiscs:
             {name: np.array([getattr(state, name) for state in steps]) for name in ContactPath.ARRAYS}
             for steps in (states, others)
         )
-        self._refuse_unresolved(float(values["contact_radius"].max()))
+        self._refuse_thin_layer(float(values["contact_radius"].max()))
         times, floor = self._times(values["contact_radius"]), self._floor(fine)
         errors = {name: times * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
         errors["normal_force"] += self._cancelled(
@@ -99,7 +99,7 @@ class AdheringDiscs:
         """
         fine, coarse = self._branches()
         start = self._start(fine)
-        self._refuse_unresolved(start)
+        self._refuse_thin_layer(start)
         withdrawal = Withdrawal(fine, start)
         pull_off, other = withdrawal.pull_off(control), Withdrawal(coarse, start).pull_off(control)
         cut = Withdrawal(fine.cut(), start).pull_off(control)
@@ -189,9 +189,9 @@ class AdheringDiscs:
             return 0.0
         return self._floor(branch) * float(np.max(np.abs(pushed))) / (float(np.max(np.abs(force))) or np.inf)
 
-    def _refuse_unresolved(self, radius: float) -> None:
+    def _refuse_thin_layer(self, radius: float) -> None:
         """The ring that tells the edge value has to lie where the edge value is made: within about one thickness."""
-        refuse_unresolved(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
+        refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
 
     def _times(self, radius: FloatArray) -> FloatArray:
         """How often the difference of two grids counts.

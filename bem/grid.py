@@ -40,7 +40,7 @@ class UnresolvedLayer(UnsupportedSceneError):
     """The layer is too thin for the cells: two such grids may agree on what neither of them resolves."""
 
 
-def refuse_unresolved(layer: Layer, cell_size: float, least: float) -> None:
+def refuse_thin_layer(layer: Layer, cell_size: float, least: float) -> None:
     """Ask for a layer that is so many cells thick.
 
     Raises:

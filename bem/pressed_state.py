@@ -11,7 +11,7 @@ import numpy as np
 
 from bem.conjugate_gradients import Equilibrium, solve_contact
 from bem.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius, slope
-from bem.grid import Grid, first_radius, grid_sequence, prolonged, refuse_unresolved
+from bem.grid import Grid, first_radius, grid_sequence, prolonged, refuse_thin_layer
 from bem.grid_punch import contact_stiffness, radius_of_stiffness
 from bem.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.pixel_disc import FILL as DISC_FILL
@@ -141,7 +141,7 @@ class Press:
         reach = self._reach_radius if prescribed == "radius" else self._reach_depth_or_force
         fine, coarse = reach(prescribed, value, points)
         cell = max(fine.grid.cell_size, self._punch_cell(points, fine.contact_radius))
-        refuse_unresolved(self.layer, cell, LEAST_LAYER)
+        refuse_thin_layer(self.layer, cell, LEAST_LAYER)
         return fine, coarse
 
     def _reach_depth_or_force(
