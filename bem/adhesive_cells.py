@@ -11,7 +11,6 @@ from bem.adhesive_path import (
     CellHistory,
     branch_errors,
     detachment_branch,
-    refuse_unresolved,
     stable_under_force,
     start_radius,
 )
@@ -79,7 +78,6 @@ class AdheringCells:
             )
         end = fine.pull_off(control)
         errors = branch_errors(fine, coarse, control)
-        refuse_unresolved(errors, self.points)
         return DetachmentPath(
             scene=self.scene,
             method="bem",

@@ -10,7 +10,6 @@ import numpy as np
 from bem.adhering_disc import FARTHEST, is_measured
 from bem.adhesive_branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesive_history import Held, at_radii, followed
-from bem.adhesive_path import refuse_unresolved
 from bem.adhesive_withdrawal import Control, Withdrawal, stable, strength
 from bem.grid import refuse_thin_layer
 from bem.pixel_disc import measured_disc
@@ -111,7 +110,6 @@ class AdheringDiscs:
             name: times * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]
             for name, value in pull_off.items()
         }
-        refuse_unresolved(errors, self.points)
         errors["indentation_depth"] = self._times(radius) * _difference(depth, coarse.depth(radius)) + floor
         errors["normal_force"] = self._times(radius) * _difference(force, coarse.force(radius)) + floor
         errors["normal_force"] += self._cancelled(fine, fine.stiffness(radius) * depth, force)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
@@ -16,12 +15,11 @@ from bem.detachment import FOLD, LOST, AdheringIndenter, AdheringState, strength
 from bem.grid import Grid
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import FILL, disc, measured_disc
-from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, NotConvergedError, Scene, StageLog
+from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, Scene, StageLog
 from contact.validation import FloatArray
 
 AHEAD: Final = 1.2  # start radius over that of the least force; nearer, and the grid would resolve it better still
 LARGEST_EXPONENT: Final = 4.0  # of k_N over a, on a thin incompressible layer
-UNRESOLVED: Final = 0.5  # error of the radius of pull-off, relative
 ROOM: Final = 1.05  # radius of the grid's disc over the largest contact
 PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "contact_radius": "pull_off_contact_radius"}
 
@@ -196,20 +194,6 @@ def _spread(values: FloatArray, force: FloatArray, force_error: float) -> float:
     least = int(np.argmin(force))
     near = values[force <= force[least] * (1.0 - force_error)]
     return float(np.max(np.abs(near / values[least] - 1.0)))
-
-
-def refuse_unresolved(errors: Mapping[str, FloatArray | float], points: int) -> None:
-    """Where contact is lost has to be known: half of the radius as its error would say nothing of the rest.
-
-    Depth and force at pull-off pass through zero; their errors relative to themselves may be large, and right.
-
-    Raises:
-        NotConvergedError: If the grid is too coarse for the radius.
-    """
-    error = float(np.max(errors["pull_off_contact_radius"]))
-    if error > UNRESOLVED:
-        message = f"{points} points do not resolve where contact is lost; take more, or give initial_contact_radius"
-        raise NotConvergedError(message, {"error of the radius": error})
 
 
 def stable_under_force(branch: Branch) -> npt.NDArray[np.bool_]:

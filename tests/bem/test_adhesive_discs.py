@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from bem.adhering_disc import AdheringDisc
-from bem.adhesive_path import refuse_unresolved
 from bem.direct import Bem
 from contact import (
     Adhesion,
@@ -16,7 +15,6 @@ from contact import (
     InvalidInput,
     Layer,
     NormalForces,
-    NotConvergedError,
     Paraboloid,
     Scene,
     Tabulated,
@@ -184,8 +182,6 @@ def test_a_pull_off_that_the_grid_does_not_resolve_is_refused():
     )
     with pytest.raises(UnsupportedSceneError, match=r"0\.58 cells thick"):
         Bem(points=128).solve(thin)
-    with pytest.raises(NotConvergedError, match="do not resolve where contact is lost"):
-        refuse_unresolved({"pull_off_force": 2.0, "pull_off_depth": 2.0, "pull_off_contact_radius": 2.0}, 128)
 
 
 def test_measured_profiles_on_layers_pull_off_within_their_stated_errors():
