@@ -34,6 +34,7 @@ End: TypeAlias = Literal["refused", "accepted", "altered", "crashed"]
 Kind: TypeAlias = Literal["mapping", "toml", "hdf5", "json", "writing"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
+HUGE_INTEGER = "9" * 5000
 LONGEST_MESSAGE = 2000  # characters; a message is for a person
 
 Draw: TypeAlias = np.random.Generator
@@ -247,7 +248,12 @@ def _toml_value(value: Any) -> str:
 
 
 def _printed(value: Any) -> str:
-    return "9" * 5000 if isinstance(value, int) else f"{value!s:.1000}"  # such an integer Python itself does not print
+    if isinstance(value, int):
+        return HUGE_INTEGER
+    try:
+        return f"{value!s:.1000}"
+    except ValueError:  # it holds an integer that Python itself does not print
+        return HUGE_INTEGER
 
 
 def _stored(draw: Draw) -> ContactPath:

@@ -50,6 +50,11 @@ def test_two_thousand_hostile_inputs_within_bounded_memory_and_time():
     assert time.monotonic() - start < 120
 
 
+def test_the_writer_of_damaged_scenes_prints_whatever_it_is_given():
+    """An integer that Python refuses to print, inside a list of sets, once counted as a crash of the reader."""
+    assert hostile_trial("toml", 777, 521).end == "refused"
+
+
 def test_a_trial_can_be_repeated():
     first, second = hostile_trials(3, 10), hostile_trials(3, 10)
     assert [(t.kind, t.number, t.end) for t in first] == [(t.kind, t.number, t.end) for t in second]
