@@ -141,10 +141,20 @@ class MappedFunction:
         return tail
 
     def relative_error(self) -> float:
-        """Last coefficients and rounding, relative to the smallest value on each piece without u^lead: the worst."""
-        size = np.abs(self.coefficients)
-        error = size[:, -2:].max(axis=1) + 4 * EPS * size.max(axis=1)
-        return float(np.max(error / np.maximum(np.abs(self._regular).min(axis=1), TINY)))
+        """What the orders left out and rounding may add up to, relative to the smallest value on each piece: the worst.
+
+        Values count without u^lead. The ends of a piece lie beyond its outermost node, where interpolation magnifies
+        what the orders leave out by up to the Lebesgue constant.
+        """
+        size, smallest = np.abs(self.coefficients), np.minimum(np.abs(self._regular).min(axis=1), self._at_start)
+        error = _magnification(self.grid.count) * size[:, -2:].max(axis=1) + 4 * EPS * size.max(axis=1)
+        return float(np.max(error / np.maximum(smallest, TINY)))
+
+    @property
+    def _at_start(self) -> FloatArray:
+        """Size of the value at the left end of each piece, without u^lead."""
+        signs = (-1.0) ** np.arange(self.grid.count)
+        return np.asarray(np.abs(self.coefficients @ signs))
 
     def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         return np.where(piece == 0, u**self.lead, 1.0)
@@ -164,6 +174,13 @@ class MappedFunction:
     @cached_property
     def _slope_coefficients(self) -> FloatArray:
         return np.asarray(self.coefficients @ _slope_of_chebyshev(self.grid.count).T)
+
+
+@cache
+def _magnification(count: int) -> float:
+    """1 + the Lebesgue constant of the Gauss nodes, which they take at the ends: 1 + sum |l_j(1)|."""
+    ends = np.polynomial.chebyshev.chebvander(1.0, count - 1)
+    return float(1.0 + np.abs(ends @ chebyshev_from_nodes(count)).sum())
 
 
 @cache

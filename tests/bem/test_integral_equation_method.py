@@ -19,6 +19,7 @@ from contact import (
     Scene,
     Tabulated,
     TruncatedCone,
+    TruncatedParaboloid,
     UnsupportedSceneError,
 )
 from mdr import Mdr
@@ -47,6 +48,18 @@ def test_direct_solution_agrees_with_mdr(layer, indenter):
     np.testing.assert_allclose(
         direct.surface_displacement(outside, 1), mdr.surface_displacement(outside, 1), atol=1e-11 * scale
     )
+
+
+def test_mdr_states_what_its_profile_leaves_out_at_the_start_of_a_piece():
+    """Just beyond the end of a piece g is small, interpolation at its worst: 1.2e-12 off, 5.7e-13 stated once."""
+    layer, indenter = LAYERS["bonded"], TruncatedParaboloid(flat_radius=1.9087e-8, radius_of_curvature=40.0)
+    radii = layer.thickness * np.array([3.2105e-4, 2.43067e-3])
+    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii(radii))
+    direct, mdr = IntegralEquationMethod().solve(scene), Mdr().solve(scene)
+    for name in ("indentation_depth", "normal_force"):
+        stated = mdr.error_estimate[name] + direct.error_estimate[name]
+        assert np.all(np.abs(getattr(mdr, name) / getattr(direct, name) - 1) <= stated), name
+        assert np.all(mdr.error_estimate[name] < 2e-11)
 
 
 @pytest.mark.parametrize("layer", LAYERS)
