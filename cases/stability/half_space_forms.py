@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from functools import singledispatch
 from itertools import pairwise
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from contact import (
@@ -26,6 +28,8 @@ from contact import (
     TruncatedParaboloid,
 )
 from contact.validation import FloatArray
+
+Extended: TypeAlias = NDArray[np.longdouble]
 
 
 @singledispatch
@@ -62,12 +66,14 @@ def _(indenter: Cone, x: FloatArray) -> FloatArray:
 @equivalent_profile.register
 def _(indenter: TruncatedCone, x: FloatArray) -> FloatArray:
     b = indenter.flat_radius
-    return indenter.slope * x * np.arctan2(_leg(x, b), b)  # arccos(b/x) without cancellation at x = b
+    angle: FloatArray = np.arctan2(_leg(x, b), b)  # arccos(b/x) without cancellation at x = b
+    return indenter.slope * x * angle
 
 
 @equivalent_profile.register
 def _(indenter: TruncatedParaboloid, x: FloatArray) -> FloatArray:
-    return x * _leg(x, indenter.flat_radius) / indenter.radius_of_curvature
+    leg: FloatArray = _leg(x, indenter.flat_radius)
+    return x * leg / indenter.radius_of_curvature
 
 
 @equivalent_profile.register
@@ -80,13 +86,14 @@ def _(indenter: PowerLaw, x: FloatArray) -> FloatArray:
 @equivalent_profile.register
 def _(indenter: Tabulated, x: FloatArray) -> FloatArray:
     curve = PchipInterpolator(indenter.radii, indenter.heights)
-    integral: FloatArray = np.zeros_like(x)
-    for (start, end), cubic in zip(pairwise(indenter.radii), curve.c.T, strict=True):
-        integral = integral + _piece(x, float(start), float(end), cubic)
-    return x * integral
+    extended = np.asarray(x, dtype=np.longdouble)  # the three integrals of a piece cancel where it is narrow
+    integral = np.zeros_like(extended)
+    for (start, end), cubic in zip(pairwise(indenter.radii.astype(np.longdouble)), curve.c.T, strict=True):
+        integral += _piece(extended, start, end, cubic)
+    return np.asarray(extended * integral, dtype=np.float64)
 
 
-def _piece(x: FloatArray, start: float, end: float, cubic: FloatArray) -> FloatArray:
+def _piece(x: Extended, start: np.longdouble, end: np.longdouble, cubic: FloatArray) -> Extended:
     """int f'(r)/sqrt(x^2 - r^2) dr over [start, end] below x, f = c0 s^3 + c1 s^2 + c2 s + c3 with s = r - start."""
     first, last = np.minimum(start, x), np.minimum(end, x)
     roots = _leg(x, first), _leg(x, last)
@@ -94,13 +101,12 @@ def _piece(x: FloatArray, start: float, end: float, cubic: FloatArray) -> FloatA
     linear = roots[0] - roots[1]  # int r/sqrt
     square = 0.5 * (x**2 * angle - last * roots[1] + first * roots[0])  # int r^2/sqrt
     c0, c1, c2, _ = cubic
-    integral: FloatArray = (
+    integral: Extended = (
         3 * c0 * (square - 2 * start * linear + start**2 * angle) + 2 * c1 * (linear - start * angle) + c2 * angle
     )
     return integral
 
 
-def _leg(x: FloatArray, b: FloatArray | float) -> FloatArray:
+def _leg(x: Any, b: Any) -> Any:
     """sqrt(x^2 - b^2), zero for x < b, with all its digits near b."""
-    leg: FloatArray = np.sqrt(np.maximum((x - b) * (x + b), 0.0))
-    return leg
+    return np.sqrt(np.maximum((x - b) * (x + b), 0.0))

@@ -111,6 +111,18 @@ def test_closed_forms_are_the_integral(indenter, x):
     assert float(equivalent_profile(indenter, np.array([x]))[0]) == pytest.approx(x * sum(pieces), rel=1e-11)
 
 
+@pytest.mark.parametrize("x", [0.20001, 0.8600011965566239, 0.9999])
+def test_narrow_pieces_of_a_table_lose_no_digits(x):
+    """Their integrals are small differences of large numbers; Gauss quadrature of each piece has no difference."""
+    radii = np.linspace(0.0, 1.0, 41)
+    table = Tabulated(radii=radii, heights=radii**2.5 * (1 + 0.01 * np.sin(37 * radii)))
+    ends = np.arcsin(np.append(radii[radii < x], x) / x)
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    angles = ends[:-1, None] + np.diff(ends)[:, None] * (1 + nodes) / 2
+    expected = x * float(np.diff(ends) / 2 @ table.slope_at(x * np.sin(angles)) @ weights)
+    assert float(equivalent_profile(table, np.array([x]))[0]) == pytest.approx(expected, rel=5e-15)
+
+
 def test_beyond_its_reach_it_says_so():
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
     radius = 1.01 * LARGEST_RATIO
