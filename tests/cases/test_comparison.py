@@ -41,8 +41,8 @@ def test_a_changed_number_is_measured_against_both_uncertainties(factor, change)
     one = fast_run("scene")
     _, force = pair(one, with_force(one, factor)).numbers
     assert force.change is change
-    assert force.difference == pytest.approx(factor - 1, rel=1e-3)
-    assert force.uncertainty == pytest.approx(2**0.5 * 1e-12)  # two equal uncertainties of 1e-12
+    assert force.difference == pytest.approx(factor - 1, rel=1e-3, abs=0.0)
+    assert force.uncertainty == pytest.approx(2**0.5 * 1e-12, rel=1e-12, abs=0.0)  # two equal uncertainties of 1e-12
 
 
 def test_a_method_without_uncertainty_gives_no_verdict():

@@ -201,7 +201,7 @@ def test_timing_runs_come_last_and_give_a_work_precision_record(tmp_path):
     events = []
     result = run(fake_case(work=True), tmp_path, progress=events.append)
     record = result.cases[0].work_precision[0]
-    assert [p.error for p in record.points] == pytest.approx([1e-2, 1e-4])
+    assert [p.error for p in record.points] == pytest.approx([1e-2, 1e-4], rel=1e-12, abs=0.0)
     assert all(len(p.samples) == 7 for p in record.points)
     last = [e.label for e in events if e.kind == "finished"][-2:]
     assert all("cost" in label for label in last)

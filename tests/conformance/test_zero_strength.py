@@ -85,6 +85,9 @@ def test_solving_other_scenes_between_changes_no_bit(scene):
     before = Mdr().solve(scene)
     Mdr().solve(scene.replace(effects=(Adhesion(work_of_adhesion=1e-3),)))
     Mdr().solve(Scene(layer=LAYER, indenter=INDENTERS[0], loading=Impact(mass=0.1, velocity=0.05)))
+    for loading in (DepthHistory(time=[0.0, 1.0], depth=[0.0, 0.05]), Impact(mass=0.1, velocity=0.05)):
+        viscous = KelvinVoigt(shear_modulus=1.0, viscosity=1e-2)
+        Mdr().solve(Scene(layer=LAYER, indenter=INDENTERS[0], loading=loading, effects=(viscous,)))
     after = Mdr().solve(scene)
     for name in before.ARRAYS:
         assert getattr(before, name).tobytes() == getattr(after, name).tobytes()

@@ -145,7 +145,7 @@ def test_unequal_lengths_bad_steps_and_bad_radii_are_refused():
 
 def test_uncertainty_is_relative_error_times_scale():
     solution = path(normal_force=np.array([1.0, 2.0, 4.0]), error_estimate={"normal_force": np.full(3, 0.1)})
-    assert solution.uncertainty("normal_force") == pytest.approx([0.1, 0.2, 0.4], rel=1e-15)
+    assert solution.uncertainty("normal_force") == pytest.approx([0.1, 0.2, 0.4], rel=1e-15, abs=0.0)
     with pytest.raises(InvalidInput, match=r"states no error of 'contact_radius'; it does for: normal_force"):
         solution.uncertainty("contact_radius")
 

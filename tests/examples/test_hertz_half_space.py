@@ -37,7 +37,7 @@ def test_the_mistake_is_caught_and_the_report_shows_where(tmp_path, capsys):
     assert {claim.status for claim in depth} == {Status.PASS}
     assert {claim.status for claim in force} == {Status.FAIL}
     for claim in force:  # E for E*: the relative error is -nu^2, nu = 0.3
-        assert claim.observed == pytest.approx(-0.09, rel=1e-9)
+        assert claim.observed == pytest.approx(-0.09, rel=1e-9, abs=0.0)
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     worst = page[page.index('id="worst"') : page.index('id="matrix"')]
     assert "half-space force" in worst

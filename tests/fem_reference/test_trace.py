@@ -15,11 +15,11 @@ def test_moments_of_hats_integrate_polynomials_exactly(stride):
     assert moments.shape == (9, 8 // stride + 1)
     # sum of all hats is one, their combination with their own radii is r: int r^3 . {1, r} 2 pi r dr = 2 pi {1/5, 1/6}
     hats = moments.T @ RADII**3
-    assert hats.sum() == pytest.approx(2 * np.pi / 5, rel=1e-14)
-    assert hats @ RADII[::stride] == pytest.approx(2 * np.pi / 6, rel=1e-14)
+    assert hats.sum() == pytest.approx(2 * np.pi / 5, rel=1e-14, abs=0.0)
+    assert hats @ RADII[::stride] == pytest.approx(2 * np.pi / 6, rel=1e-14, abs=0.0)
     # the hat at the axis, 1 - r/c, is a cone: int 2 pi r dr = pi c^2 / 3
     c = RADII[stride]
-    assert moments.sum(axis=0)[0] == pytest.approx(np.pi * c**2 / 3, rel=1e-14)
+    assert moments.sum(axis=0)[0] == pytest.approx(np.pi * c**2 / 3, rel=1e-14, abs=0.0)
 
 
 def test_no_radii_have_no_values():

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -51,10 +52,15 @@ def test_stage_records_name_what_ran():
     assert "adhesion" not in impact
 
 
+def seconds_of(call):
+    """Processor time; beside other work the least of several calls says what it costs."""
+    start = time.process_time()
+    call()
+    return time.process_time() - start
+
+
 @pytest.mark.slow
 def test_time_grows_at_most_linearly_with_the_number_of_relaxation_times():
-    import time
-
     import numpy as np
 
     from bem.integral_equation import IntegralEquation
@@ -70,8 +76,5 @@ def test_time_grows_at_most_linearly_with_the_number_of_relaxation_times():
             relaxation_times=np.geomspace(2e-4, 5e-3, count) if count > 1 else np.array([1e-3]),
         )
         scenes = [figure_12(1e-3).replace(effects=(model,))] * 100
-        impact_batch(scenes, source)
-        start = time.process_time()
-        impact_batch(scenes, source)
-        seconds.append(time.process_time() - start)
+        seconds.append(min(seconds_of(lambda scenes=scenes: impact_batch(scenes, source)) for _ in range(3)))
     assert seconds[2] - seconds[0] < 1.5 * 63.0 / 15.0 * max(seconds[1] - seconds[0], 0.05 * seconds[0])

@@ -213,7 +213,7 @@ def test_solve_prints_numbers_with_error_bars_and_writes_files(hertz, tmp_path, 
     assert "18.315" in output  # Hertz: 4/3 E* a^3 / R at a = 0.5 mm, E* = 1e6/0.91 Pa
     with open(files[0], encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
-    assert float(rows[1]["normal_force_N"]) == pytest.approx(4 / 3 * (1e6 / 0.91) * 1e-9 / 0.01, rel=1e-14)
+    assert float(rows[1]["normal_force_N"]) == pytest.approx(4 / 3 * (1e6 / 0.91) * 1e-9 / 0.01, rel=1e-14, abs=0.0)
     assert float(rows[1]["normal_force_uncertainty_N"]) == 0.0
     with h5py.File(files[1]) as stored:
         assert stored["arrays/normal_force"][1] == float(rows[1]["normal_force_N"])

@@ -60,7 +60,7 @@ def test_nasa_tutorial():
 def test_a_pure_power_law_returns_its_order_at_any_two_ratios(order, r21, r32, constant):
     lengths = (1.0, r21, r21 * r32)
     values = [constant * h**order for h in lengths]
-    assert observed_order(values, lengths) == pytest.approx(order, rel=1e-7)
+    assert observed_order(values, lengths) == pytest.approx(order, rel=1e-7, abs=0.0)
 
 
 def test_equal_values_have_no_order():
@@ -98,9 +98,9 @@ def test_safety_factor_trusts_the_formal_order_only_within_ten_percent():
 
 def test_a_zero_crossing_does_not_blow_up_the_index():
     at_zero = grid_convergence_index(1e-12, 2e-6, 2.0, 1.0, safety=1.25, scale=1.0)
-    assert at_zero == pytest.approx(1.25 * 2e-6, rel=1e-5)
+    assert at_zero == pytest.approx(1.25 * 2e-6, rel=1e-5, abs=0.0)
 
 
 def test_growing_differences_have_a_negative_order():
     """With the modulus of the textbook formula this diverging sequence would be reported as second order."""
-    assert observed_order((1.0, 5.0, 6.0), (1, 2, 4)) == pytest.approx(-2.0)
+    assert observed_order((1.0, 5.0, 6.0), (1, 2, 4)) == pytest.approx(-2.0, rel=1e-12, abs=0.0)

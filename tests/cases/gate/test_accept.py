@@ -73,8 +73,8 @@ def test_a_change_is_shown_in_tolerances_and_in_uncertainty(tmp_path):
     assert {(c.method, c.record.quantity) for c in changes} == {("mdr", "normal_force")}
     change = changes[0]
     assert change.values == (1.5, 1.5 * (1 + 1e-7))
-    assert change.in_tolerances == pytest.approx(100, rel=1e-3)
-    assert change.in_uncertainty == pytest.approx(1e5, rel=1e-3)  # U is 1e-12 of the force
+    assert change.in_tolerances == pytest.approx(100, rel=1e-3, abs=0.0)
+    assert change.in_uncertainty == pytest.approx(1e5, rel=1e-3, abs=0.0)  # U is 1e-12 of the force
 
 
 def test_accepting_the_same_again_changes_no_byte(tmp_path):

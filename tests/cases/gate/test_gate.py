@@ -39,7 +39,7 @@ def test_a_change_of_1e_7_with_tolerance_1e_9_always_fails(folder, method, facto
     assert {(claim.status, claim.quantity, claim.methods) for claim in found} == {
         (Status.DIFF, "normal_force", (method,))
     }
-    assert all(claim.fraction == pytest.approx(100, rel=1e-3) for claim in found)
+    assert all(claim.fraction == pytest.approx(100, rel=1e-3, abs=0.0) for claim in found)
 
 
 def test_a_change_of_half_a_tolerance_passes(folder):
@@ -53,7 +53,7 @@ def test_only_the_worst_step_is_shown_with_its_accepted_value(tmp_path):
     folder = accepted(tmp_path, with_force("mdr", three_steps(4.0)))
     (claim, *_) = failures(with_force("mdr", three_steps(4.1)), folder)
     assert (claim.observed, claim.expected) == (4.1, 4.0)
-    assert claim.tolerance == pytest.approx(4e-9)
+    assert claim.tolerance == pytest.approx(4e-9, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize(

@@ -39,9 +39,9 @@ def test_a_nudged_scene_is_one_unit_in_the_last_place_away(towards, sign):
     assert np.sign(nudged.layer.youngs_modulus - layer.youngs_modulus) == sign
     assert np.sign(nudged.layer.thickness - layer.thickness) == sign
     assert np.all(np.sign(nudged.loading.values - scene.loading.values) == sign)
-    assert nudged.layer.youngs_modulus == pytest.approx(layer.youngs_modulus, rel=3e-16)
-    assert nudged.layer.thickness == pytest.approx(layer.thickness, rel=3e-16)
-    assert nudged.loading.values == pytest.approx(scene.loading.values, rel=3e-16)
+    assert nudged.layer.youngs_modulus == pytest.approx(layer.youngs_modulus, rel=3e-16, abs=0.0)
+    assert nudged.layer.thickness == pytest.approx(layer.thickness, rel=3e-16, abs=0.0)
+    assert nudged.loading.values == pytest.approx(scene.loading.values, rel=3e-16, abs=0.0)
     assert nudged.indenter == scene.indenter
 
 

@@ -27,7 +27,7 @@ def test_truncated_cone_on_the_half_space(flat, depth, force):
     a, modulus = truncated_cone.THICKNESS, scene.layer.contact_modulus
     assert truncated_cone.half_space_depth(scene)[0] / (a * truncated_cone.SLOPE) == pytest.approx(depth, abs=5.1e-7)
     expected = force * modulus * a**2 * truncated_cone.SLOPE
-    assert truncated_cone.half_space_force(scene)[0] == pytest.approx(expected, rel=1e-6)
+    assert truncated_cone.half_space_force(scene)[0] == pytest.approx(expected, rel=1e-6, abs=0.0)
 
 
 @pytest.mark.parametrize(
@@ -53,8 +53,8 @@ def test_kelvin_voigt_restitution(damping, restitution):
 
 def test_restitution_is_continuous_through_critical_damping():
     below, at, above = (flat_punch_impact.restitution(d) for d in (1 - 1e-9, 1.0, 1 + 1e-9))
-    assert below == pytest.approx(at, rel=1e-8)
-    assert above == pytest.approx(at, rel=1e-8)
+    assert below == pytest.approx(at, rel=1e-8, abs=0.0)
+    assert above == pytest.approx(at, rel=1e-8, abs=0.0)
 
 
 def test_damping_ratio_of_the_scenes():
@@ -62,7 +62,7 @@ def test_damping_ratio_of_the_scenes():
     for damping in (0.1, 1.0, 3.0):
         eta = flat_punch_impact.viscosity(damping)
         a, mass, modulus = flat_punch_impact.RADIUS, flat_punch_impact.MASS, flat_punch_impact.SHEAR_MODULUS
-        assert eta * math.sqrt(2 * a / (mass * modulus)) == pytest.approx(damping)
+        assert eta * math.sqrt(2 * a / (mass * modulus)) == pytest.approx(damping, rel=1e-12, abs=0.0)
 
 
 def test_hermanowicz_fits_are_continuous_and_close_to_the_separate_solution():
@@ -70,23 +70,23 @@ def test_hermanowicz_fits_are_continuous_and_close_to_the_separate_solution():
         (flat_punch_stiffness.hermanowicz_bonded, 1.2),
         (flat_punch_stiffness.hermanowicz_unbonded, 1.65),
     ):
-        assert fit(joint) == pytest.approx(fit(joint * (1 + 1e-12)), rel=1.6e-3)  # twice 0.08 %
+        assert fit(joint) == pytest.approx(fit(joint * (1 + 1e-12)), rel=1.6e-3, abs=0.0)  # twice 0.08 %
     bonded = [flat_punch_stiffness.hermanowicz_bonded(r) for r in flat_punch_stiffness.STIFFNESS_RATIOS]
     unbonded = [flat_punch_stiffness.hermanowicz_unbonded(r) for r in flat_punch_stiffness.STIFFNESS_RATIOS]
-    assert bonded == pytest.approx(flat_punch_stiffness.STIFFNESS["bonded nu=0.5"], rel=1.2e-4)
-    assert unbonded == pytest.approx(flat_punch_stiffness.STIFFNESS["unbonded"], rel=8e-4)
+    assert bonded == pytest.approx(flat_punch_stiffness.STIFFNESS["bonded nu=0.5"], rel=1.2e-4, abs=0.0)
+    assert unbonded == pytest.approx(flat_punch_stiffness.STIFFNESS["unbonded"], rel=8e-4, abs=0.0)
 
 
 def test_hayes_agrees_with_the_separate_solution_as_well_as_stated():
     for label, row in flat_punch_stiffness.HAYES.items():
         at = dict(zip(flat_punch_stiffness.HAYES_RATIOS, row, strict=True))
         for ratio, kbar in zip((0.2, 1.0, 2.0), flat_punch_stiffness.STIFFNESS[label], strict=True):
-            assert at[ratio] == pytest.approx(kbar, rel=1e-3 + 8e-3 * ratio)
+            assert at[ratio] == pytest.approx(kbar, rel=1e-3 + 8e-3 * ratio, abs=0.0)
 
 
 def test_hermanowicz_force_of_the_paraboloid():
     for depth, force in paraboloid.TABULATED["bonded nu=0.5"].values():
-        assert paraboloid.hermanowicz(depth) == pytest.approx(force, rel=1e-3)
+        assert paraboloid.hermanowicz(depth) == pytest.approx(force, rel=1e-3, abs=0.0)
 
 
 def test_jkr_state_lies_on_the_jkr_branch():
@@ -95,7 +95,7 @@ def test_jkr_state_lies_on_the_jkr_branch():
     a, modulus = paraboloid_adhesion.jkr_radius(scene)[0], scene.layer.contact_modulus
     radius, gamma = paraboloid_adhesion.RADIUS_OF_CURVATURE, paraboloid_adhesion.WORK_OF_ADHESION
     force = 4 * modulus * a**3 / (3 * radius) - math.sqrt(8 * math.pi * modulus * gamma * a**3)
-    assert force == pytest.approx(paraboloid_adhesion.jkr_force(scene)[0], rel=1e-12)
+    assert force == pytest.approx(paraboloid_adhesion.jkr_force(scene)[0], rel=1e-12, abs=0.0)
 
 
 def test_jkr_depth_turns_at_the_closed_form_radius():
@@ -109,14 +109,14 @@ def test_jkr_depth_turns_at_the_closed_form_radius():
 
     slope = (depth(a * 1.001) - depth(a * 0.999)) / (0.002 * a)
     assert abs(slope) < 1e-3 * a / paraboloid_adhesion.RADIUS_OF_CURVATURE
-    assert depth(a) == pytest.approx(paraboloid_adhesion.jkr_depth(scene)[0], rel=1e-12)
+    assert depth(a) == pytest.approx(paraboloid_adhesion.jkr_depth(scene)[0], rel=1e-12, abs=0.0)
 
 
 def test_kendall_force_is_stiffness_times_depth():
     scene = flat_punch_adhesion.HALF_SPACE[0].scene
     stiffness = 2 * scene.layer.contact_modulus * scene.indenter.flat_radius
     depth, force = flat_punch_adhesion.kendall_depth(scene)[0], flat_punch_adhesion.kendall_force(scene)[0]
-    assert force == pytest.approx(stiffness * depth, rel=1e-12)
+    assert force == pytest.approx(stiffness * depth, rel=1e-12, abs=0.0)
 
 
 def test_sneddon_depths_by_quadrature():
@@ -127,7 +127,7 @@ def test_sneddon_depths_by_quadrature():
         scene = case_scene.scene
         a = float(scene.loading.values[0])
         depth = a * float(weight @ scene.indenter.slope_at(a * np.sin(angle)))
-        assert half_space_limits.depth(scene)[0] == pytest.approx(depth, rel=1e-12)
+        assert half_space_limits.depth(scene)[0] == pytest.approx(depth, rel=1e-12, abs=0.0)
 
 
 def test_thin_layer_cone_force_by_quadrature():
@@ -140,4 +140,4 @@ def test_thin_layer_cone_force_by_quadrature():
         r, weight = (high - low) / 2 * (t + 1) + low, (high - low) / 2 * w
         pressed = scene.indenter.height(a) - scene.indenter.height(r)
         total += float(weight @ (2 * np.pi * r * pressed)) * scene.layer.confined_modulus / scene.layer.thickness
-    assert thin_layer_limits.cone_force(scene) == pytest.approx(total, rel=1e-12)
+    assert thin_layer_limits.cone_force(scene) == pytest.approx(total, rel=1e-12, abs=0.0)

@@ -31,5 +31,5 @@ def test_half_space_pressure_is_the_solver_s():
 
 def test_profiles_end_where_the_closed_forms_say():
     half_space, thin = profile_limits("bonded nu=0.5", CONE, A, np.array([A]))
-    assert half_space.y[0] == pytest.approx(2 * np.pi / 3)  # a arccos(1/2) / (a - a/2)
-    assert thin.y[0] == pytest.approx(2.5 / 3 * 0.25 / 0.5)  # Eq. (37) with b/a = 1/2
+    assert half_space.y[0] == pytest.approx(2 * np.pi / 3, rel=1e-12, abs=0.0)  # a arccos(1/2) / (a - a/2)
+    assert thin.y[0] == pytest.approx(2.5 / 3 * 0.25 / 0.5, rel=1e-12, abs=0.0)  # Eq. (37) with b/a = 1/2

@@ -36,7 +36,7 @@ def test_verdicts(difference, u, expected):
 
 def test_uncertainties_add_in_squares():
     judged = judge_agreement(0.0, {"mdr": 3e-6, "fem": 4e-6}, tolerance=TOLERANCE)
-    assert judged.fraction == pytest.approx(0.5)
+    assert judged.fraction == pytest.approx(0.5, rel=1e-12, abs=0.0)
 
 
 def test_inconclusive_names_the_coarser_method():

@@ -87,4 +87,9 @@ def test_coverage_and_sharpness():
         Check(quantity="q", error=1e-10, stated=1e-12, allowance=1e-9),  # below what the referee can tell
     ]
     found = coverage(checks)
-    assert (found.count, found.covered, found.decided, found.sharpness) == (4, 0.75, 3, pytest.approx(2.0))
+    assert (found.count, found.covered, found.decided, found.sharpness) == (
+        4,
+        0.75,
+        3,
+        pytest.approx(2.0, rel=1e-12, abs=0.0),
+    )

@@ -63,7 +63,9 @@ def test_flat_punch_stiffness(support, nu):
     for ratio, expected in STIFFNESS[support, nu].items():
         scene = Scene(layer=layer, indenter=FlatPunch(radius=ratio), loading=IndentationDepths([1.0]))
         found = second_opinion(answer(scene, ratio)).values["contact_stiffness"][0]
-        assert found / (2 * layer.contact_modulus * ratio) == pytest.approx(expected, rel=3e-12)  # printed digits
+        assert found / (2 * layer.contact_modulus * ratio) == pytest.approx(
+            expected, rel=3e-12, abs=0.0
+        )  # printed digits
 
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # E* = 4
@@ -72,9 +74,9 @@ HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # E* = 4
 def test_hertz():
     scene = Scene(layer=HALF_SPACE, indenter=Paraboloid(radius_of_curvature=2.0), loading=ContactRadii([0.3]))
     found = second_opinion(answer(scene, 0.3)).values
-    assert found["indentation_depth"][0] == pytest.approx(0.3**2 / 2.0, rel=1e-13)
-    assert found["normal_force"][0] == pytest.approx(4 / 3 * 4.0 * 0.3**3 / 2.0, rel=1e-13)  # F = 4/3 E* a^3/R
-    assert found["contact_stiffness"][0] == pytest.approx(2 * 4.0 * 0.3, rel=1e-13)
+    assert found["indentation_depth"][0] == pytest.approx(0.3**2 / 2.0, rel=1e-13, abs=0.0)
+    assert found["normal_force"][0] == pytest.approx(4 / 3 * 4.0 * 0.3**3 / 2.0, rel=1e-13, abs=0.0)  # F = 4/3 E* a^3/R
+    assert found["contact_stiffness"][0] == pytest.approx(2 * 4.0 * 0.3, rel=1e-13, abs=0.0)
 
 
 def test_truncated_cone_on_the_half_space_at_a_prescribed_depth():
@@ -84,7 +86,7 @@ def test_truncated_cone_on_the_half_space_at_a_prescribed_depth():
     found = second_opinion(answer(scene, 1.0 + 1e-7)).values  # a slightly wrong radius is corrected
     assert found["contact_radius"][0] == pytest.approx(1.0, abs=1e-12)
     force, _ = quad(lambda x: 2 * 4.0 * (depth - 0.1 * x * math.acos(0.5 / x)), 0.5, 1.0)
-    assert found["normal_force"][0] == pytest.approx(force + 2 * 4.0 * depth * 0.5, rel=1e-10)
+    assert found["normal_force"][0] == pytest.approx(force + 2 * 4.0 * depth * 0.5, rel=1e-10, abs=0.0)
 
 
 INDENTERS = [
@@ -108,7 +110,7 @@ def test_closed_forms_are_the_integral(indenter, x):
         return float(indenter.slope_at(x * math.sin(angle)))
 
     pieces = [quad(slope, low, high, epsabs=1e-13, epsrel=1e-13)[0] for low, high in pairwise(ends)]
-    assert float(equivalent_profile(indenter, np.array([x]))[0]) == pytest.approx(x * sum(pieces), rel=1e-11)
+    assert float(equivalent_profile(indenter, np.array([x]))[0]) == pytest.approx(x * sum(pieces), rel=1e-11, abs=0.0)
 
 
 @pytest.mark.parametrize("x", [0.20001, 0.8600011965566239, 0.9999])
@@ -182,4 +184,4 @@ def test_a_sphere_that_is_almost_in_to_its_rim(share):
     scene = Scene(layer=layer, indenter=Sphere(radius=radius), loading=ContactRadii([a]))
     stretched = math.log((radius + a) / (radius - a))
     expected = layer.contact_modulus * ((a**2 + radius**2) / 2 * stretched - a * radius)
-    assert second_opinion(Mdr().solve(scene)).values["normal_force"][0] == pytest.approx(expected, rel=1e-13)
+    assert second_opinion(Mdr().solve(scene)).values["normal_force"][0] == pytest.approx(expected, rel=1e-13, abs=0.0)

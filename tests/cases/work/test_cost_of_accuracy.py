@@ -67,19 +67,19 @@ def test_front_keeps_ties_within_the_null_spread():
 
 def test_crossover_is_the_smallest_tolerance_where_the_fast_method_wins():
     taus = [10.0**-k for k in range(1, 11)]
-    assert crossover(FAST, SLOW, taus) == pytest.approx(1e-6)
-    assert crossover(SLOW, FAST, [1e-1]) == pytest.approx(1e-1)
+    assert crossover(FAST, SLOW, taus) == pytest.approx(1e-6, rel=1e-12, abs=0.0)
+    assert crossover(SLOW, FAST, [1e-1]) == pytest.approx(1e-1, rel=1e-12, abs=0.0)
     assert crossover([run("never", 1.0, 1.0)], SLOW, taus) is None
 
 
 def test_price_of_a_digit():
-    assert price_of_a_digit(FAST[0], FAST[1]) == pytest.approx(1 / 3)
+    assert price_of_a_digit(FAST[0], FAST[1]) == pytest.approx(1 / 3, rel=1e-12, abs=0.0)
     with pytest.raises(InvalidInput, match="not more accurate"):
         price_of_a_digit(FAST[1], FAST[2])
 
 
 def test_degrees():
-    assert degree_of_accuracy(1e-6) == pytest.approx(6)
-    assert degree_of_size(1000) == pytest.approx(3)
-    assert degree_of_efficacy(1e-6, 0.1) == pytest.approx(7)
-    assert true_static_scaling(1000, 0.5, 1e-6) == pytest.approx(4000)
+    assert degree_of_accuracy(1e-6) == pytest.approx(6, rel=1e-12, abs=0.0)
+    assert degree_of_size(1000) == pytest.approx(3, rel=1e-12, abs=0.0)
+    assert degree_of_efficacy(1e-6, 0.1) == pytest.approx(7, rel=1e-12, abs=0.0)
+    assert true_static_scaling(1000, 0.5, 1e-6) == pytest.approx(4000, rel=1e-12, abs=0.0)

@@ -21,7 +21,7 @@ def test_all_samples_are_kept_and_summed_up():
     timing = summed_up([0.3, 0.1, 0.2, 0.4, 0.5])
     assert timing.samples == (0.3, 0.1, 0.2, 0.4, 0.5)
     assert (timing.minimum, timing.lower_quartile, timing.median, timing.upper_quartile) == (0.1, 0.2, 0.3, 0.4)
-    assert timing.spread == pytest.approx(1 / 3)
+    assert timing.spread == pytest.approx(1 / 3, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize("bad", [[], [0.0], [math.nan], [-1.0]])
@@ -41,7 +41,7 @@ def test_a_fast_call_is_looped_and_a_warm_up_is_not_counted(monkeypatch):
         clock[0] += 0.001
 
     timing = timed(call, samples=3, shortest=0.01)
-    assert timing.samples == pytest.approx((0.001, 0.001, 0.001))
+    assert timing.samples == pytest.approx((0.001, 0.001, 0.001), rel=1e-12, abs=0.0)
     assert len(calls) == 2 + 3 * 10
 
 
@@ -57,7 +57,7 @@ def test_a_slowdown_of_one_and_a_half_fails_at_least_nineteen_times_of_twenty():
 
 def test_the_interval_contains_the_ratio_of_a_noiseless_pair():
     measured = slowdown([1.0] * 7, [1.25] * 7)
-    assert (measured.lower, measured.ratio, measured.upper) == pytest.approx((1.25, 1.25, 1.25))
+    assert (measured.lower, measured.ratio, measured.upper) == pytest.approx((1.25, 1.25, 1.25), rel=1e-12, abs=0.0)
 
 
 def test_a_wide_interval_is_ambiguous():
