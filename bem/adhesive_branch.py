@@ -35,47 +35,50 @@ class Piece:
     """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
 
     In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
-    breakpoints in between is followed by no polynomial; its values are divided by those on the half-space, integrals of
-    the profile that have the same breakpoints, and what a layer makes of them is smooth.
+    breakpoints in between is followed by no polynomial; there only what the layer adds to the half-space is one. That
+    is an integral over the half-space's share and smoother by one order than it; their quotient would keep its kinks.
 
     Attributes:
         inner: Least radius [m].
         outer: Largest radius [m].
-        series: Chebyshev coefficients of edge values, stiffness and moment, over the half-space's if there is one.
-        half_space: The same on the half-space at radii, shape (4, n); or ones.
+        series: Chebyshev coefficients of edge values, stiffness and moment, less those of the half-space if it counts.
+        half_space: What is added to them at radii, shape (4, n): the half-space's share, or zeros.
+        scales: Largest values of the four, shape (4,).
     """
 
     inner: float
     outer: float
     series: FloatArray
     half_space: Callable[[FloatArray], FloatArray]
+    scales: FloatArray
 
     @classmethod
     def through(cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]) -> Piece:
         """Through solutions at Chebyshev points."""
         broken = any(inner < r < outer for r in indenter.breakpoints)
-        half_space = half_space_values(indenter, outer) if broken else _ones
+        half_space = half_space_values(indenter, outer) if broken else _zeros
         nodes = BROKEN_NODES if broken else NODES
         t = 0.5 + 0.5 * chebyshev.chebpts1(nodes)
         radius = inner + (outer - inner) * t**2
         values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in map(solve, radius.tolist())])
-        series = chebyshev.chebfit(2.0 * t - 1.0, values / half_space(radius).T, nodes - 1)
-        return cls(inner, outer, np.asarray(series, dtype=np.float64), half_space)
+        series = chebyshev.chebfit(2.0 * t - 1.0, values - half_space(radius).T, nodes - 1)
+        scales = np.abs(values).max(axis=0)
+        return cls(inner, outer, np.asarray(series, dtype=np.float64), half_space, scales)
 
     def at(self, radius: FloatArray) -> FloatArray:
         """The four at radii of this piece, shape (4, n)."""
         t = np.sqrt(np.clip((radius - self.inner) / (self.outer - self.inner), 0.0, 1.0))
-        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series) * self.half_space(radius))
+        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series) + self.half_space(radius))
 
     @property
     def truncation(self) -> float:
         """What the last two orders contribute, relative to the largest value."""
-        size = np.abs(self.series)
-        return float(np.max(size[-2:].sum(axis=0) / np.maximum(size.max(axis=0), np.finfo(float).tiny)))
+        last = np.abs(self.series[-2:]).sum(axis=0)
+        return float(np.max(last / np.maximum(self.scales, np.finfo(float).tiny)))
 
 
-def _ones(radius: FloatArray) -> FloatArray:
-    return np.ones((4, *radius.shape))
+def _zeros(radius: FloatArray) -> FloatArray:
+    return np.zeros((4, *radius.shape))
 
 
 def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray], FloatArray]:

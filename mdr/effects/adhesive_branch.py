@@ -23,6 +23,7 @@ DEPTH, FORCE = 0, 1
 _TIP = 1e-5  # of the largest y: below it, depth and force have left the tip with a known sign
 _EDGE = 1e-6  # how far outside its panel a root may lie; whether it is one is decided by the signs beside it
 _NEWTON_STEPS, _ROUNDING = 60, 1e-13  # a Newton step this short has squared its error already
+_Y_ROUNDING = float(np.finfo(float).eps)  # of a position and of the middle of its panel, half of it each
 
 
 class AdheringSprings(Protocol):
@@ -59,7 +60,7 @@ class AdhesiveBranch:
         coefficients: Chebyshev coefficients of the two slopes, shape (count, 2, panels).
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
         section_radii: a [m] there.
-        truncation: What the polynomials leave out of delta [m] and F [N], shape (2,).
+        truncation: What the polynomials leave out of delta [m] and F [N], and the rounding of y moves, shape (2,).
     """
 
     functions: Piecewise
@@ -177,8 +178,13 @@ def adhesive_branch(
         coefficients=rows[:, 2:4],
         section_ends=ends,
         section_radii=radii,
-        truncation=np.max([panel.tails for panel in panels], axis=0),
+        truncation=np.max([panel.tails for panel in panels], axis=0) + _Y_ROUNDING * ends[-1] * _steepest(panels),
     )
+
+
+def _steepest(panels: list[Panel]) -> FloatArray:
+    """Largest slopes of depth and force by y: a section beside a flat end hardly outgrown is short and steep."""
+    return np.asarray(np.max([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels], axis=0))
 
 
 def _sampler(

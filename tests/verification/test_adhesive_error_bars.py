@@ -8,12 +8,14 @@ from cases.stability.random_scenes import random_scenes
 from contact import (
     Adhesion,
     ContactRadii,
+    Detachment,
     FlatPunch,
     IndentationDepths,
     Layer,
     NormalForces,
     Paraboloid,
     Scene,
+    TruncatedCone,
 )
 from mdr import Mdr
 from mdr.effects import adhesion
@@ -101,3 +103,19 @@ def test_stated_errors_of_random_scenes_cover_the_change_by_refinement(number):
             assert np.all(change <= stated + other.error_estimate[quantity] + 3e-15), quantity
             if not isinstance(scene.indenter, FlatPunch):
                 assert np.all(stated < 1e-8)
+
+
+@pytest.mark.parametrize("growth", range(0, 24, 2))
+def test_a_flat_end_that_is_hardly_outgrown_detaches_like_a_punch(growth):
+    """The branch beyond the flat end is 1e-14 to 1e-12 of it long: roundings of the way along it count."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+    flat, adhesion = 11.0 * 1.01**growth, Adhesion(work_of_adhesion=1e-16 * 1.3**growth)
+    cone, punch = TruncatedCone(flat_radius=flat, slope=0.08), FlatPunch(radius=flat)
+    found, expected = (
+        Mdr().solve(Scene(layer=layer, indenter=indenter, loading=Detachment(), effects=(adhesion,)))
+        for indenter in (cone, punch)
+    )
+    for name in ("pull_off_depth", "pull_off_force"):
+        stated = float(found.error_estimate[name][0] + expected.error_estimate[name][0])
+        assert stated < 3e-8
+        assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=stated, abs=0.0)
