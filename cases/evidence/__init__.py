@@ -3,7 +3,8 @@
 - ``kinds``: scenes that cost alike, told apart without solving them
 - ``records``: what was measured, and the file it is kept in
 - ``calibrate``: measure again on this machine
-- ``choice``: the cheapest measured settings for a requested accuracy, and the answer with what it achieved
+- ``choice``: measured settings in the order worth trying for an accuracy, and the first answer that achieves it
+- ``audit``: random scenes solved to random accuracies: is it met, and in about the shortest time?
 """
 
 from cases.evidence.choice import Choice, Outcome, choose, solve

@@ -1,4 +1,4 @@
-"""The cheapest measured settings that reach a requested accuracy, and the answer with what it achieved."""
+"""Measured settings in the order worth trying for a requested accuracy, and the first answer that achieves it."""
 
 from __future__ import annotations
 
@@ -15,8 +15,7 @@ from cases.evidence.records import Evidence, Measurement, shipped
 from cases.methods import build, method_names
 from contact import InvalidInput, NotConvergedError, Scene, Solution
 
-SAFETY: Final = 2.0  # the sample's worst scene is not the world's worst
-MOST_REFUSED: Final = 0.2  # share of the sample that a setting may have refused by name
+SAFETY: Final = 2.0  # a scene at hand is another than the sample's
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,8 +25,9 @@ class Choice:
     Attributes:
         method: Name in the method table.
         settings: Of the method.
-        expected_error: Worst relative error on the sample, times `SAFETY`.
+        expected_error: Median relative error on the sample, as stated or as found against a reference.
         expected_seconds: Median processor time on the sample [s].
+        reached: In how many scenes of the sample that error, times `SAFETY`, is within the accuracy asked for.
         evidence: The measurement behind it.
     """
 
@@ -35,6 +35,7 @@ class Choice:
     settings: Mapping[str, bool | int | float | str]
     expected_error: float
     expected_seconds: float
+    reached: int
     evidence: Measurement
 
 
@@ -56,7 +57,18 @@ class Outcome:
 
 
 def choose(scene: Scene, accuracy: float, *, within: float | None = None, evidence: Evidence | None = None) -> Choice:
-    """The fastest measured settings whose worst error times `SAFETY` is within the accuracy.
+    """The measured settings to try first; arguments and errors as in `choices`."""
+    return choices(scene, accuracy, within=within, evidence=evidence)[0]
+
+
+def choices(
+    scene: Scene, accuracy: float, *, within: float | None = None, evidence: Evidence | None = None
+) -> list[Choice]:
+    """Measured settings worth trying, in an order that takes little time on the average.
+
+    Settings that take T seconds and reach the accuracy in a share p of the sample come in the order of T/p, as in any
+    search that ends with the first success. After settings that failed, coarser ones of the same method fail too:
+    they are left out. So are settings that reached the accuracy in no scene of the sample.
 
     Args:
         scene: What is to be solved.
@@ -67,33 +79,40 @@ def choose(scene: Scene, accuracy: float, *, within: float | None = None, eviden
     Raises:
         InvalidInput: If nothing measured reaches that; the message says what is reachable.
     """
-    return choices(scene, accuracy, within=within, evidence=evidence)[0]
-
-
-def choices(scene: Scene, accuracy: float, *, within: float | None, evidence: Evidence | None) -> list[Choice]:
-    """All measured settings that reach it, fastest first; arguments and errors as in `choose`."""
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative error")
     if within is not None and not 0.0 < within < np.inf:
         raise InvalidInput(f"within = {within:g}: must be positive and finite; give seconds of processor time")
     like = list(usable(scene, (evidence or shipped()).measurements))
-    good = sorted((m for m in like if SAFETY * m.bound <= accuracy), key=lambda m: m.seconds)
-    if not good or (within is not None and good[0].seconds > within):
+    able = [m for m in like if m.reached(accuracy / SAFETY) and (within is None or m.seconds <= within)]
+    if not able:
         raise InvalidInput(_reachable(scene, like, accuracy, within))
-    return [
-        Choice(
-            method=m.method,
-            settings=m.settings,
-            expected_error=SAFETY * m.bound,
-            expected_seconds=m.seconds,
-            evidence=m,
-        )
-        for m in good
-    ]
+    ordered = sorted(able, key=lambda m: m.seconds / m.share(accuracy / SAFETY))
+    return [_choice(m, accuracy) for m in _ever_finer(ordered)]
+
+
+def _choice(measurement: Measurement, accuracy: float) -> Choice:
+    return Choice(
+        method=measurement.method,
+        settings=measurement.settings,
+        expected_error=measurement.typical,
+        expected_seconds=measurement.seconds,
+        reached=measurement.reached(accuracy / SAFETY),
+        evidence=measurement,
+    )
+
+
+def _ever_finer(measurements: Iterable[Measurement]) -> Iterable[Measurement]:
+    """Without those that are no finer on their sample than an earlier one of the same method."""
+    finest: dict[str, float] = {}
+    for m in measurements:
+        if m.typical < finest.get(m.method, np.inf):
+            finest[m.method] = m.typical
+            yield m
 
 
 def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None) -> Outcome:
-    """Solve with the cheapest measured settings for an accuracy; where the answer states a larger error, with the next.
+    """The first answer that states no larger error than wanted, settings tried in the order of `choices`.
 
     Args:
         scene: What is to be solved.
@@ -103,13 +122,13 @@ def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidenc
 
     Raises:
         InvalidInput: If nothing measured reaches that; the message says what is reachable.
-        NotConvergedError: If the answers of all measured settings, or of those there is time for, state larger errors.
+        NotConvergedError: If the answers of all these settings, or of those there is time for, state larger errors.
         ContactError: As raised by the method.
     """
     seconds, best, why = 0.0, np.inf, ""
     for choice in choices(scene, accuracy, within=within, evidence=evidence):
         if within is not None and seconds + choice.expected_seconds > within:
-            break
+            continue
         start = time.process_time()
         answer, failure = _tried(choice, scene)
         seconds += time.process_time() - start
@@ -134,8 +153,7 @@ def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measur
     """Measurements of scenes like this one, by methods that support it."""
     kind, band = kind_of(scene), band_of(scene)
     for m in measurements:
-        like = m.kind == kind and m.band == band and m.refused <= MOST_REFUSED * m.scenes
-        if like and build(m.method, m.settings).supports(scene):
+        if m.kind == kind and m.band == band and build(m.method, m.settings).supports(scene):
             yield m
 
 
@@ -145,9 +163,16 @@ def _reachable(scene: Scene, usable: list[Measurement], accuracy: float, within:
         able = [name for name in method_names() if build(name, {}).supports(scene)]
         remedy = f"name a method that models it ({', '.join(able)})" if able else "no method here models it"
         return f"{wanted}: no measured method answers scenes like this one; {remedy}"
-    finest = min(usable, key=lambda m: m.bound)
-    fastest = min(usable, key=lambda m: m.seconds)
+    best = SAFETY * min(m.best for m in usable)
+    surest, fastest = min(usable, key=lambda m: (m.refused, m.worst)), min(usable, key=lambda m: m.seconds)
     return (
-        f"{wanted} is beyond what was measured on such scenes; the finest reaches {SAFETY * finest.bound:.1e} in "
-        f"{finest.seconds:.2g} s ({finest.method}), the fastest {SAFETY * fastest.bound:.1e} in {fastest.seconds:.2g} s"
+        f"{wanted} is beyond what was measured on such scenes; the finest reaches {_reach(surest)}, the fastest "
+        f"{_reach(fastest)}, and the best is {best:.1e}"
+    )
+
+
+def _reach(found: Measurement) -> str:
+    return (
+        f"{SAFETY * found.worst:.1e} in {len(found.bounds)} of {found.scenes} scenes ({found.method}, "
+        f"{found.seconds:.2g} s)"
     )

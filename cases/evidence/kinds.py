@@ -8,6 +8,7 @@ import numpy as np
 
 from cases.stability.half_space_forms import equivalent_profile
 from contact import (
+    Adhesion,
     ContactRadii,
     DepthHistory,
     Detachment,
@@ -48,17 +49,22 @@ def band_of(scene: Scene) -> float:
         InvalidInput: If the layer is thinner against the contact than anything that was measured.
     """
     ratio = rough_radius(scene) / scene.layer.thickness
-    for band in BANDS:
-        if ratio <= band * (1 + 1e-9):
-            return band
-    raise InvalidInput(
-        f"a/h is about {ratio:.3g}, but accuracy was measured up to a/h = {BANDS[-1]:g}; solve without an accuracy and "
-        "read the stated errors"
-    )
+    band = band_above(ratio)
+    if band is None:
+        raise InvalidInput(
+            f"a/h is about {ratio:.3g}, but accuracy was measured up to a/h = {BANDS[-1]:g}; solve without an accuracy "
+            "and read the stated errors"
+        )
+    return band
+
+
+def band_above(ratio: float) -> float | None:
+    """The upper end of the band that a ratio a/h lies in; None beyond the last."""
+    return next((band for band in BANDS if ratio <= band * (1 + 1e-9)), None)
 
 
 def rough_radius(scene: Scene) -> float:
-    """Contact radius [m]: the prescribed one, or the half-space's under the largest load."""
+    """Contact radius [m]: the prescribed one, or the half-space's under the largest load, of adhesion alone if none."""
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
     if isinstance(scene.loading, ContactRadii):
@@ -89,8 +95,12 @@ def _wanted(scene: Scene, g: FloatArray, load: FloatArray, radii: FloatArray) ->
         case Impact(mass=mass, velocity=velocity):
             energy = np.concatenate([[0.0], np.cumsum(np.diff(g) * (load[1:] + load[:-1]) / 2)])
             return energy, 0.5 * mass * velocity**2 / modulus
+        case Detachment(initial_contact_radius=None):  # load = 2 a dl, dl = sqrt(2 pi Delta gamma a/E*): no outer force
+            adhesion = scene.effect(Adhesion)
+            work = 0.0 if adhesion is None else adhesion.work_of_adhesion
+            return load / radii**1.5, 2.0 * float(np.sqrt(2.0 * np.pi * work / modulus))
         case Detachment(initial_contact_radius=start):
-            return radii, radii[0] if start is None else start
+            return radii, start
         case DepthHistory(depth=values):
             return g, float(values.max())
         case _:

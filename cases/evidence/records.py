@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import statistics
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
@@ -28,20 +29,47 @@ class Measurement:
         band: Largest a/h of the sample.
         method: Name in the method table.
         settings: Of the method.
-        bound: Largest of U = error + reference uncertainty and of the stated error, relative, over all quantities.
+        bounds: Of each answer, in ascending order: the larger of U = error + reference uncertainty and of the stated
+            error, relative, over all quantities.
         seconds: Median processor time of a first solution [s].
-        scenes: Size of the sample.
-        refused: How many of them the method refused by name.
+        refused: How many scenes the method refused by name.
     """
 
     kind: str
     band: _Positive
     method: str
     settings: dict[str, bool | int | float | str]
-    bound: _Positive
+    bounds: Annotated[tuple[_Positive, ...], Field(min_length=1)]
     seconds: _Positive
-    scenes: int
-    refused: int = 0
+    refused: Annotated[int, Field(ge=0)] = 0
+
+    @property
+    def scenes(self) -> int:
+        """Size of the sample."""
+        return len(self.bounds) + self.refused
+
+    @property
+    def best(self) -> float:
+        """Smallest bound of the sample."""
+        return min(self.bounds)
+
+    @property
+    def typical(self) -> float:
+        """Median bound of the sample."""
+        return statistics.median(self.bounds)
+
+    @property
+    def worst(self) -> float:
+        """Largest bound of the sample; refused scenes have none."""
+        return max(self.bounds)
+
+    def reached(self, accuracy: float) -> int:
+        """In how many scenes the bound is within a relative accuracy; in refused ones it is not."""
+        return sum(bound <= accuracy for bound in self.bounds)
+
+    def share(self, accuracy: float) -> float:
+        """In which share of the sample the bound is within a relative accuracy."""
+        return self.reached(accuracy) / self.scenes
 
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
@@ -96,6 +124,7 @@ def _parsed(text: str, place: str) -> Evidence:
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise InvalidInput(f"{place}: {where:.200}: {first['msg']}, got {shown(first['input'])}") from None
+        wrong = f"{place}: {where:.200}: {first['msg']}, got {shown(first['input'])}"
+        raise InvalidInput(f"{wrong}; measure it anew with contact-verify calibrate") from None
     except ValueError as error:
         raise InvalidInput(f"{place}: not readable as JSON ({error!s:.160})") from None

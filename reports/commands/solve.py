@@ -62,8 +62,9 @@ def _by_evidence(
     choice = found.choice
     settings = ", ".join(f"{name} = {value}" for name, value in choice.settings.items())
     expected = f"error {choice.expected_error:.1e} in {duration(choice.expected_seconds)}"
+    reached = f"reached in {choice.reached} of {choice.evidence.scenes} measured scenes"
     return found.answer, [
-        ("chosen", f"{choice.method} ({settings}), measured on {choice.evidence.scenes} scenes"),
+        ("chosen", f"{choice.method} ({settings}), {reached}"),
         ("expected", expected),
         ("achieved", f"stated error {found.stated_error:.1e} in {duration(found.seconds)} of processor time"),
     ]
