@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
+from functools import partial
 from itertools import count as counting
 from itertools import islice
 from typing import Final
@@ -113,7 +114,7 @@ def _reason(error: Exception) -> str:
 
 
 def _request(scene: Scene, accuracy: float, evidence: Evidence) -> Request:
-    outcome, seconds = timed_first(lambda: solve(scene, accuracy=accuracy, evidence=evidence))
+    outcome, seconds = timed_first(partial(solve, scene, accuracy=accuracy, evidence=evidence))
     achieved = error_bound(outcome.answer)
     rivals = [m for m in usable(scene, evidence.measurements) if m.seconds <= _WORTH_TIMING * seconds]
     fastest = min([seconds, *(_seconds_if_good(scene, accuracy, rival) for rival in rivals)])
@@ -122,7 +123,7 @@ def _request(scene: Scene, accuracy: float, evidence: Evidence) -> Request:
 
 def _seconds_if_good(scene: Scene, accuracy: float, rival: Measurement) -> float:
     try:
-        answer, seconds = timed_first(lambda: build(rival.method, rival.settings).solve(scene))
+        answer, seconds = timed_first(partial(build(rival.method, rival.settings).solve, scene))
     except ContactError:
         return float("inf")
     return seconds if error_bound(answer) <= accuracy else float("inf")

@@ -6,7 +6,7 @@ import platform
 import time
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from itertools import islice
 from typing import Final, TypeVar
 
@@ -126,7 +126,7 @@ def measure(candidate: Candidate, kind: str, band: float, scenes: list[Scene]) -
     bounds, seconds, refused = [], [], 0
     for scene in scenes:
         try:
-            answer, spent = timed_first(lambda scene=scene: build(candidate.method, candidate.settings).solve(scene))
+            answer, spent = timed_first(partial(build(candidate.method, candidate.settings).solve, scene))
             stated = largest_stated_error(answer)  # what a user sees
             bounds.append(max(error_bound(answer), stated, _LEAST_BOUND))
             seconds.append(spent)

@@ -166,13 +166,11 @@ def _reachable(scene: Scene, usable: list[Measurement], accuracy: float, within:
     best = SAFETY * min(m.best for m in usable)
     surest, fastest = min(usable, key=lambda m: (m.refused, m.worst)), min(usable, key=lambda m: m.seconds)
     return (
-        f"{wanted} is beyond what was measured on such scenes; the finest reaches {_reach(surest)}, the fastest "
-        f"{_reach(fastest)}, and the best is {best:.1e}"
+        f"{wanted} is beyond what was measured on such scenes; reached was {best:.1e} in the best of them, "
+        f"{_reached(surest)}, and {_reached(fastest)} the fastest way"
     )
 
 
-def _reach(found: Measurement) -> str:
-    return (
-        f"{SAFETY * found.worst:.1e} in {len(found.bounds)} of {found.scenes} scenes ({found.method}, "
-        f"{found.seconds:.2g} s)"
-    )
+def _reached(found: Measurement) -> str:
+    answered = f"{len(found.bounds)} of {found.scenes}"
+    return f"{SAFETY * found.worst:.1e} in {answered} ({found.method}, {found.seconds:.2g} s)"

@@ -95,12 +95,12 @@ def _wanted(scene: Scene, g: FloatArray, load: FloatArray, radii: FloatArray) ->
         case Impact(mass=mass, velocity=velocity):
             energy = np.concatenate([[0.0], np.cumsum(np.diff(g) * (load[1:] + load[:-1]) / 2)])
             return energy, 0.5 * mass * velocity**2 / modulus
-        case Detachment(initial_contact_radius=None):  # load = 2 a dl, dl = sqrt(2 pi Delta gamma a/E*): no outer force
+        case Detachment(initial_contact_radius=float(start)):
+            return radii, start
+        case Detachment():  # load = 2 a dl, dl = sqrt(2 pi Delta gamma a/E*): no outer force
             adhesion = scene.effect(Adhesion)
             work = 0.0 if adhesion is None else adhesion.work_of_adhesion
             return load / radii**1.5, 2.0 * float(np.sqrt(2.0 * np.pi * work / modulus))
-        case Detachment(initial_contact_radius=start):
-            return radii, start
         case DepthHistory(depth=values):
             return g, float(values.max())
         case _:

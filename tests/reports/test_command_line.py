@@ -3,6 +3,7 @@
 import csv
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -247,6 +248,11 @@ def test_a_time_may_have_a_unit(hertz, within, capsys):
 def test_an_option_is_never_ignored(hertz, options, complaint, capsys):
     assert run(["solve", hertz, *options]) == 4
     assert complaint in capsys.readouterr().err.replace("\n", " ")
+
+
+def test_an_accuracy_says_how_often_its_settings_reached_it(hertz, capsys):
+    assert run(["solve", hertz, "--accuracy", "1e-4"]) == 0
+    assert re.search(r"chosen: mdr \(nodes = \d+\), reached in \d+ of \d+ measured scenes\n", capsys.readouterr().out)
 
 
 def test_solve_refuses_an_unknown_ending_before_it_solves(hertz, capsys):

@@ -1,20 +1,40 @@
 """The audit of requested accuracies sees requests that are missed and times that are wasted."""
 
+from __future__ import annotations
+
 import pytest
 
-from cases.evidence import Evidence, Measurement
+from cases.evidence import Evidence, Measurement, audit, choice
 from cases.evidence.audit import Request, accuracy_is_met, audit_case, time_is_short
 from cases.status import Status
+from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
+from mdr import Mdr
 
 GOOD = Request(accuracy=1e-6, achieved=1e-7, seconds=1.0, fastest=0.8)
 MISSED = Request(accuracy=1e-6, achieved=3e-6, seconds=1.0, fastest=0.8)
 
 
+def promising(bounds, *, kinds=("radii", "equilibrium")):
+    """Evidence by number of nodes, for all bands; finer settings take longer."""
+    rows = [
+        Measurement(kind=kind, band=band, method="mdr", settings={"nodes": n}, bounds=(bound,), seconds=1e-3 * n)
+        for kind in kinds
+        for band in (1.0, 10.0, 25.0)
+        for n, bound in bounds.items()
+    ]
+    return Evidence(machine="none", revision="none", seed=0, measurements=tuple(rows))
+
+
 @pytest.mark.parametrize(("missed", "status"), [(2, Status.PASS), (3, Status.FAIL)])
 def test_two_requests_in_a_hundred_may_be_missed(missed, status):
-    claim = accuracy_is_met([GOOD] * (100 - missed) + [MISSED] * missed, refused=0)
+    claim = accuracy_is_met([GOOD] * (100 - missed) + [MISSED] * missed, {})
     assert claim.status is status
-    assert "by a factor 3" in claim.message
+    assert "largest error over accuracy 3" in claim.message
+
+
+def test_refusals_are_told_by_their_reasons():
+    claim = accuracy_is_met([GOOD], {"whose answers state more": 2, "beyond the evidence": 3})
+    assert "5 refused (3 beyond the evidence, 2 whose answers state more)" in claim.message
 
 
 @pytest.mark.parametrize(("fastest", "status"), [(0.51, Status.PASS), (0.49, Status.FAIL)])
@@ -23,12 +43,37 @@ def test_half_of_all_requests_take_at_most_twice_the_fastest_time(fastest, statu
     assert time_is_short([slow] * 3).status is status
 
 
-def test_evidence_that_promises_too_much_is_found_out():
-    lie = [
-        Measurement(kind=kind, band=band, method="mdr", settings={"nodes": 8}, bound=1e-12, seconds=0.01, scenes=10)
-        for kind in ("radii", "equilibrium")
-        for band in (1.0, 10.0, 25.0)
-    ]
-    evidence = Evidence(machine="none", revision="none", seed=0, measurements=tuple(lie))
-    found = audit_case(count=3, seed=2, evidence=evidence)
-    assert found.claims[0].status is Status.FAIL
+def test_evidence_that_promises_too_much_costs_answers_but_no_accuracy():
+    """Answers say themselves that they are worse; handing them out had been counted as misses."""
+    met, _ = audit_case(count=3, seed=2, evidence=promising({8: 1e-12})).claims
+    assert met.status is Status.PASS
+    assert "whose answers state more" in met.message
+
+
+def test_answers_that_promise_too_much_are_found_out(monkeypatch):
+    monkeypatch.setattr(choice, "largest_stated_error", lambda _: 0.0)
+    met, _ = audit_case(count=3, seed=2, evidence=promising({8: 1e-12})).claims
+    assert met.status is Status.FAIL
+
+
+def test_failed_attempts_count_in_the_time(monkeypatch):
+    """A clock that ticks once for each solution: six nodes state too much, 24 of them solve."""
+    ticks, solved = [], Mdr.solve
+    monkeypatch.setattr(Mdr, "solve", lambda self, scene: ticks.append(1) or solved(self, scene))
+
+    def ticking(solve):
+        before = len(ticks)
+        return solve(), float(len(ticks) - before)
+
+    monkeypatch.setattr(audit, "timed_first", ticking)
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=5.0), loading=ContactRadii([0.5]))
+    requests = iter([(scene, 1e-10)])
+    monkeypatch.setattr(audit, "_requests", lambda _: requests)
+    _, short = audit_case(count=1, evidence=promising({6: 1e-12, 24: 1e-13})).claims
+    assert short.observed == 2.0  # over one for 24 nodes alone
+
+
+def test_an_audit_without_an_answer_ends():
+    with pytest.raises(InvalidInput, match="no request was answered"):
+        audit_case(count=1, evidence=promising({8: 1e-12}, kinds=("creep",)))
