@@ -53,15 +53,6 @@ class Bed:
         start = self.section(spring).start
         return float(self.y[start + 1] - self.y[start])
 
-    def coarser(self) -> Bed:
-        """Every second spring of each section, if there are that many."""
-        if self.y.size < _FEW:
-            return self
-        kept = [np.arange(own.start, own.stop, 2) for own in self.sections()]
-        starts = (0, *np.cumsum([own.size for own in kept])[:-1].tolist())
-        index = np.concatenate(kept)
-        return Bed(self.y[index], self.radius[index], self.profile[index], self.density[index], self.core, starts)
-
 
 def released_front(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray) -> float:
     """y of the outermost contact where the spring force falls to zero, seen from inside."""
@@ -75,15 +66,25 @@ def released_front(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray) ->
     return float(bed.y[last] + _way_to_zero(inner, bed.step(last)))
 
 
-def touched_front(bed: Bed, touching: NDArray[np.bool_], gaps: FloatArray) -> float:
+def touched_front(bed: Bed, state: BedState) -> float:
     """y of the outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
-    first = int(np.flatnonzero(touching)[-1]) + 1
+    first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
         return float(bed.y[-1])
-    stop = bed.section(first).stop
-    if stop - first < _NEEDED and stop < bed.y.size:
-        return _by_radius(bed, first - 1, (first, stop + 1), gaps)
-    return float(bed.y[first] - _way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+    gaps, stop = state.surface + bed.profile - state.depth, bed.section(first).stop
+    if stop - first >= _NEEDED or stop == bed.y.size:
+        return float(bed.y[first] - _way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+    if not state.surface[first:stop].any():  # where nothing has been pressed, the gap goes on inside the contact
+        last = slice(stop - _NEEDED, stop)
+        zero = _zero(bed.y[last], bed.profile[last] - state.depth)
+        return float(min(max(zero, bed.y[first - 1]), bed.y[first]))
+    return _by_radius(bed, first - 1, (first, stop + 1), gaps)
+
+
+def _zero(y: FloatArray, values: FloatArray) -> float:
+    """Where a function that increases through three points vanishes: inverse quadratic interpolation."""
+    (a, b, c), (p, q, r) = y, values
+    return float(a * q * r / ((p - q) * (p - r)) + b * p * r / ((q - p) * (q - r)) + c * p * q / ((r - p) * (r - q)))
 
 
 def _by_radius(bed: Bed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
@@ -92,7 +93,8 @@ def _by_radius(bed: Bed, last: int, pair: tuple[int, int], values: FloatArray) -
     low, high = bed.radius[last], bed.radius[last + 1]
     zero = min(max(a + (b - a) * u / (u - v), low), high) if u != v else low
     start = bed.section(last + 1).start
-    return float(bed.y[start] + np.sqrt(max(zero - bed.radius[start], 0.0)))
+    way = zero - float(bed.radius[start])
+    return float(bed.y[start] + (np.sqrt(max(way, 0.0)) if bed.radius[start] > 0.0 else way))  # see `SpringTable`
 
 
 def _way_to_zero(values: FloatArray, step: float) -> float:
@@ -150,7 +152,7 @@ def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[fl
     if law.viscosity == 0.0 or speed <= 0.0:
         y = released_front(bed, state.touching, forces)
         return total_force(bed, state.touching, forces, y, 0.0), y
-    y = touched_front(bed, state.touching, state.surface + bed.profile - state.depth)
+    y = touched_front(bed, state)
     return total_force(bed, state.touching, forces, y, _continued(bed, state.touching, forces, y)), y
 
 

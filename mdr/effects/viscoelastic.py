@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,13 +36,15 @@ from mdr.effects.spring_bed import BedState, SpringLaw, advance, undeformed
 from mdr.effects.spring_table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 
 ACCURACY = 1e-9  # of the method's time integration, for which the next two numbers stand; one digit more doubles both
-_GAPS = 640  # between springs; even, so that every second spring reaches from end to end
+_GAPS = 640  # between springs
 _FINENESS = 400  # substeps of a whole force history, at least four an interval
 _LEVELS = (4, 2, 1)  # times the fewest substeps
 _FEWEST, _MOST = -2, 2  # how often they may be doubled
-_FEWEST_GAPS = 8  # of a section between breakpoints
+_FEWEST_GAPS = 16  # of a section between breakpoints
+_SHARES = (1.0, 0.7, 0.5)  # of the springs: where the front lies between two of them, fewer may err as much by chance,
+_CAUTION: Final = 2.0  # so two numbers of them tell the error, times this
+_SEARCHED = 64  # points of each section, among which the largest front is looked for
 _MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
-_SECOND_ORDER = 3.5  # times smaller with half the substeps; four in the limit
 _ROUNDING = 1e-12  # of sums over hundreds of springs
 _LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
@@ -70,7 +73,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     Raises:
         InvalidInput: If a force is negative or nothing is ever pressed.
         UnsupportedSceneError: If the contact would leave a gap inside itself.
-        NotConvergedError: If half the springs give another answer.
+        NotConvergedError: If fewer springs give another answer.
     """
     log, loading = StageLog(), scene.loading
     if not isinstance(loading, DepthHistory | ForceHistory):
@@ -78,18 +81,22 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     law, doublings = SpringLaw.of(relaxation_of(scene)), _doublings(settings)
     gaps, fineness = int(_GAPS * 2.0**doublings), int(_FINENESS * 2.0**doublings)
     with log.stage("equivalent_system"):
-        table, bed = _bed(scene, loading, law, flat_punch, gaps)
+        table, beds = _beds(scene, loading, law, flat_punch, gaps)
     with log.stage("history"):
-        found, change, other = _followed(law, bed, loading, _substeps(loading, fineness))
-    log.count("springs", bed.y.size)
+        found = _followed(law, beds, loading, _substeps(loading, fineness))
+    log.count("springs", beds[0].y.size)
     log.count("instants", loading.time.size)
-    radius = _radius(scene, table, found.y)
-    moved = max(_change(radius, _radius(scene, table, other.y)), _ROUNDING)
-    error = np.full(loading.time.size, max(change, _ROUNDING))
-    if error[0] > _LARGEST_ERROR:
-        raise NotConvergedError(
-            "the springs do not resolve this history", {"change with twice as many": float(error[0])}
+    radius = _radius(scene, table, found.track.y)
+    by_springs, by_steps = (
+        max(
+            (_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs), default=0.0
         )
+        for pairs in (found.by_springs, found.by_steps)
+    )
+    moved = max(_CAUTION * by_springs + by_steps, _ROUNDING)
+    error = np.full(loading.time.size, max(found.error, _ROUNDING))
+    if error[0] > _LARGEST_ERROR:
+        raise NotConvergedError("the springs do not resolve this history", {"change with fewer": float(error[0])})
     return HistoryPath(
         scene=scene,
         method="mdr",
@@ -99,12 +106,12 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
             "normal_force": error,
             "contact_radius": np.full(error.size, moved),
         },
-        cost=log.cost(unknowns=bed.y.size),
+        cost=log.cost(unknowns=beds[0].y.size),
         stages=log.records,
-        notes=(_BENT,) if found.bent else (),
+        notes=(_BENT,) if found.track.bent else (),
         time=loading.time,
-        indentation_depth=found.depth,
-        normal_force=found.force,
+        indentation_depth=found.track.depth,
+        normal_force=found.track.force,
         contact_radius=radius,
     )
 
@@ -128,33 +135,54 @@ def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np
     return counts
 
 
+@dataclass(frozen=True)
+class _Found:
+    """A history and what tells its errors.
+
+    Attributes:
+        track: The history.
+        by_springs: Pairs that differ in the number of springs only.
+        by_steps: Pairs that differ in the number of substeps only.
+        error: Of depth and force, relative to their largest values.
+    """
+
+    track: _Track
+    by_springs: list[tuple[_Track, _Track]]
+    by_steps: list[tuple[_Track, _Track]]
+    error: float
+
+
 def _followed(
-    law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
-) -> tuple[_Track, float, _Track]:
-    """The history, how much it changes with half the springs and with fewer substeps, and the one on half the springs.
+    law: SpringLaw, beds: list[Bed], loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
+) -> _Found:
+    """The history on the first bed, and how much it changes on the others and with fewer substeps.
 
     Between two instants a prescribed depth needs no substeps, nor does an elastic layer. Under a force their errors
     go with the second and fourth powers of their number, so three numbers of them have a limit (Romberg).
     """
     if isinstance(loading, DepthHistory) or law.is_elastic:
-        fine, half = (_follow(law, own, loading, np.ones_like(substeps)) for own in (bed, bed.coarser()))
-        return fine, max(_change(fine.force, half.force), _change(fine.depth, half.depth)), half
-    fine, middle, coarse = (_follow(law, bed, loading, level * substeps) for level in _LEVELS)
-    half = _follow(law, bed.coarser(), loading, substeps)
+        fine, *others = (_follow(law, bed, loading, np.ones_like(substeps)) for bed in beds)
+        pairs = [(fine, other) for other in others]
+        return _Found(fine, pairs, [], _largest_change(pairs))
+    fine, middle, coarse = (_follow(law, beds[0], loading, level * substeps) for level in _LEVELS)
+    pairs = [(coarse, _follow(law, bed, loading, substeps)) for bed in beds[1:]]
     depth, error = _limit(fine.depth, middle.depth, coarse.depth)
-    change = float(error.max() / np.abs(depth).max()) + _change(coarse.depth, half.depth)
-    return _Track(depth, fine.force, fine.y, fine.bent), change, half
+    change = float(error.max() / np.abs(depth).max()) + _largest_change(pairs)
+    return _Found(_Track(depth, fine.force, fine.y, fine.bent), pairs, [(fine, middle)], change)
+
+
+def _largest_change(pairs: list[tuple[_Track, _Track]]) -> float:
+    """Of force or depth, whichever is not prescribed, with caution."""
+    return _CAUTION * max(max(_change(one.force, other.force), _change(one.depth, other.depth)) for one, other in pairs)
 
 
 def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Without the errors of second and fourth order, and what is left of one c h^p.
+    """Without the errors of second and fourth order, and twice what the last extrapolation has changed.
 
-    With q = 2^p that is (4-q)(16-q)/(45 (q-1)) c h^p, at most a fifth of the change by the last extrapolation's two
-    values if p >= 2, and at most all of it if 1 <= p < 2: where the first changes fall slower than by four.
+    Of one c h^p with p >= 1 what is left is no more than that change; releases leave several powers, which may cancel.
     """
     first, second = fine + (fine - middle) / 3.0, middle + (middle - coarse) / 3.0
-    slow = np.abs(middle - coarse) < _SECOND_ORDER * np.abs(fine - middle)
-    return first + (first - second) / 15.0, np.abs(first - second) * np.where(slow, 1.0, 0.2)
+    return first + (first - second) / 15.0, 2.0 * np.abs(first - second)
 
 
 def _change(fine: FloatArray, coarse: FloatArray) -> float:
@@ -168,35 +196,37 @@ def _radius(scene: Scene, table: SpringTable | None, y: FloatArray) -> FloatArra
     return np.where(y >= 0.0, radius, 0.0)
 
 
-def _bed(
+def _beds(
     scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
-) -> tuple[SpringTable | None, Bed]:
-    """Springs out to the largest radius that the history can reach."""
+) -> tuple[SpringTable | None, list[Bed]]:
+    """Springs out to the largest radius that the history can reach, in each of the `_SHARES`."""
     prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     _refuse_idle(loading, prescribed)
     if is_flat(scene):
         end = scene.indenter.max_radius
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
-        return None, Bed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
+        bed = Bed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
+        return None, [bed, bed]
     largest = float(prescribed.max())
     for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
         table = own_table(scene.layer, scene.indenter, radius, flat_punch)
-        y = np.linspace(0.0, float(table.section_ends[-1]), gaps + 1)
+        y = np.concatenate([np.linspace(*ends, _SEARCHED) for ends in pairwise(table.section_ends)])
         reached = _reached(table, y, loading, law)
         if np.interp(y[-1] / _MARGIN, y, reached) >= largest:
             break
     if reached[-1] < largest:
         raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
     end = min(_MARGIN * float(np.interp(largest, reached, y)), float(y[-1]))
-    return table, _bed_up_to(table, end, gaps, pointed=scene.indenter.flat_radius == 0.0)
+    pointed = scene.indenter.flat_radius == 0.0
+    return table, [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in _SHARES]
 
 
-def _bed_up_to(table: SpringTable, end: float, gaps: int, *, pointed: bool) -> Bed:
-    """Springs up to y = end, each section between breakpoints with its share of the gaps, an even number."""
+def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed: bool) -> Bed:
+    """Springs up to y = end, each section between breakpoints with its share of the gaps."""
     ends = np.append(table.section_ends[table.section_ends < end], end)
-    lengths = np.diff(ends)
-    shares = [max(2 * round(0.5 * gaps * length / end), _FEWEST_GAPS) for length in lengths]
+    lengths = np.sqrt(np.diff(table.radius(ends)))  # y itself is a radius before the first breakpoint
+    shares = [max(round(gaps * part), fewest) for part in lengths / lengths.sum()]
     places = [np.linspace(low, high, share + 1) for (low, high), share in zip(pairwise(ends), shares, strict=True)]
     rows = np.concatenate([table.evaluate(y, section=i) for i, y in enumerate(places)], axis=1)
     radius = np.concatenate([table.radius_within(y, i) for i, y in enumerate(places)])

@@ -6,15 +6,18 @@ from scipy.integrate import quad
 
 from contact import (
     Cone,
+    ContactRadii,
     DepthHistory,
     FlatPunch,
     ForceHistory,
+    IndentationDepths,
     InvalidInput,
     KelvinVoigt,
     Paraboloid,
     PronySeries,
     Scene,
     StandardSolid,
+    Tabulated,
     TruncatedCone,
     UnsupportedSceneError,
 )
@@ -29,6 +32,7 @@ STANDARD = StandardSolid(
     viscosity=GLASSY_BRANCH * RELAXATION_TIME,
 )
 KELVIN_VOIGT = KelvinVoigt(shear_modulus=TOTAL, viscosity=TOTAL * RELAXATION_TIME)
+LEGENDRE = np.polynomial.legendre.leggauss(32)
 HERTZ = 16.0 / 3.0 * np.sqrt(CURVATURE)  # F = HERTZ G delta^1.5 on an incompressible half-space
 
 
@@ -221,6 +225,57 @@ def test_a_worn_cone_and_its_flat_end():
     assert answer.contact_radius[in_contact].min() >= 5e-4
     assert not in_contact[-1]
     assert answer.normal_force[~in_contact].max(initial=0.0) == 0.0
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e-3, 1.0, 1e6])
+@pytest.mark.parametrize("model", [None, STANDARD, KELVIN_VOIGT])
+def test_a_measured_profile_of_any_size(unit, model):
+    """Lee and Radok 1960 up to the turn. Springs had been shared out between breakpoints by numbers with units."""
+    radii = np.array([0.0, 0.2, 0.45, 0.6, 0.9, 1.3, 1.5])
+    heights = 0.05 * np.array([0.0, 0.03, 0.2, 0.4, 0.85, 1.8, 2.4])
+    indenter, depth = Tabulated(radii=unit * radii, heights=unit * heights), 0.04 * unit
+    time = np.linspace(0.0, 2e-3, 3)
+    ramp = DepthHistory(time=time, depth=depth * np.array([0.0, 1.0, 0.8]))
+    answer = solve(ramp, model=model, indenter=indenter)
+
+    def elastic(loading):
+        """On the half-space at unit shear modulus."""
+        return Mdr().solve(Scene(layer=incompressible(np.inf, 1.0), indenter=indenter, loading=loading))
+
+    speed, top = depth / time[1], elastic(IndentationDepths([depth]))
+    if model is STANDARD:
+        met = elastic(ContactRadii(indenter.radii[1:])).indentation_depth
+        ends = np.concatenate([[0.0], met[met < depth], [depth]])
+        x, weights = (1.0 + LEGENDRE[0]) / 2.0, LEGENDRE[1] / 2.0  # crowded towards the start of each piece
+        depths = (ends[:-1, None] + np.diff(ends)[:, None] * x**4).ravel()
+        shares = (np.diff(ends)[:, None] * 4.0 * x**3 * weights).ravel()
+        expected = shares @ (
+            relaxation(time[1] - depths / speed) * elastic(IndentationDepths(depths)).contact_stiffness
+        )
+    else:
+        delayed = RELAXATION_TIME * speed * top.contact_stiffness[0] if model else 0.0
+        expected = TOTAL * (top.normal_force[0] + delayed)
+    error = float(answer.error_estimate["normal_force"][1])
+    assert error < 1e-4
+    assert answer.normal_force[1] == pytest.approx(expected, rel=error, abs=0.0)
+
+
+def test_a_front_just_inside_a_breakpoint():
+    """F = F_el + tau v k_N on a ramp of depth. Three springs tell the front, and fewer are left: 0.17 off at first."""
+    radii = np.array([0.0, 0.2, 0.45, 0.6, 0.9, 1.3, 1.5])
+    indenter = Tabulated(radii=radii, heights=0.05 * np.array([0.0, 0.03, 0.2, 0.4, 0.85, 1.8, 2.4]))
+
+    def elastic(loading):
+        return Mdr().solve(Scene(layer=incompressible(np.inf, TOTAL), indenter=indenter, loading=loading))
+
+    inside = radii[1:6, None] - (radii[1:6] - radii[:5])[:, None] * 10.0 ** -np.arange(1.0, 6.0)
+    met = elastic(ContactRadii(np.sort(inside.ravel())))
+    depths = np.concatenate([[0.0], met.indentation_depth])
+    answer = solve(DepthHistory(time=1e-3 * depths, depth=depths), model=KELVIN_VOIGT, indenter=indenter)
+    expected = met.normal_force + RELAXATION_TIME * 1e3 * met.contact_stiffness
+    stated = float(answer.error_estimate["normal_force"][0])
+    assert stated < 1e-4
+    assert np.max(np.abs(answer.normal_force[1:] - expected)) <= stated * expected[-1]
 
 
 def test_flat_punch_on_a_kelvin_voigt_layer():
