@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from itertools import islice
+
 import pytest
 
 from cases.evidence import Evidence, Measurement, audit, choice
 from cases.evidence.audit import Request, accuracy_is_met, audit_case, time_is_short
+from cases.evidence.calibrate import FAMILIES
+from cases.evidence.kinds import kind_of
 from cases.status import Status
 from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 from mdr import Mdr
@@ -72,6 +77,12 @@ def test_failed_attempts_count_in_the_time(monkeypatch):
     monkeypatch.setattr(audit, "_requests", lambda _: requests)
     _, short = audit_case(count=1, evidence=promising({6: 1e-12, 24: 1e-13})).claims
     assert short.observed == 2.0  # over one for 24 nodes alone
+
+
+def test_scenes_are_of_every_kind():
+    kinds = Counter(kind_of(scene) for scene, _ in islice(audit._requests(2), 60))
+    assert set(kinds) == set(FAMILIES)
+    assert kinds["creep"] == 2  # slow ones are few
 
 
 def test_an_audit_without_an_answer_ends():
