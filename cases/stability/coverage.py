@@ -13,7 +13,7 @@ from cases.methods import build
 from cases.results import CaseResult, Claim, CoverageRecord, Kind, Origin, Verdict
 from cases.stability.campaign import Check, Jury, Trial, coverage, trial
 from cases.stability.random_scenes import Family, random_scene
-from cases.stability.second_opinion import LARGEST_RATIO
+from cases.stability.second_opinion import CHEAP_RATIO
 from cases.status import Status
 from contact import ContactRadii, FlatPunch, Method, Scene
 
@@ -52,7 +52,7 @@ class CoveragePlan:
     count: int
     only_radii: bool = False
     smallest: float = _SMALLEST_RATIO
-    largest: float = LARGEST_RATIO
+    largest: float = CHEAP_RATIO
 
 
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}

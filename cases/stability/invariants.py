@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from cases.stability.second_opinion import LARGEST_RATIO, second_opinion
+from cases.stability.second_opinion import CHEAP_RATIO, second_opinion
 from cases.stability.units import Units, in_units
 from contact import ContactPath, FlatPunch, ImpactHistory, Layer, Method, Scene, Solution
 
@@ -97,7 +97,7 @@ def _pressure_is_known(answer: ContactPath) -> bool:
 
 
 def _within_reach(answer: ContactPath, scene: Scene) -> bool:
-    return bool(answer.contact_radius.max() <= LARGEST_RATIO * scene.layer.thickness)
+    return bool(answer.contact_radius.max() <= CHEAP_RATIO * scene.layer.thickness)
 
 
 def _distance(found: np.ndarray[tuple[int, ...], np.dtype[np.float64]], expected: object) -> float:

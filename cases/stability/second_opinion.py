@@ -24,7 +24,8 @@ from cases.stability.half_space_forms import equivalent_profile
 from contact import Adhesion, ContactPath, ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene
 from contact.validation import FloatArray
 
-LARGEST_RATIO: Final = 25.0  # a/h; beyond, one radius takes seconds
+LARGEST_RATIO: Final = 100.0  # a/h; beyond, one radius takes ten seconds and hundreds of megabytes
+CHEAP_RATIO: Final = 25.0  # a/h up to which one takes a tenth of a second
 QUANTITIES: Final = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 
 _CUT: Final = 24.0  # of k h: 1 - chi is below 1e-17 beyond
