@@ -1,6 +1,6 @@
 """Random scenes by the thousand: every answer within its stated error of an independent one, or a named refusal.
 
-The referee of elastic scenes is `second_opinion` as far as it reaches (a/h = 100); beyond, where it is costly, the method
+The referee of elastic scenes is `second_opinion` as far as it reaches; beyond a/h = 100, where it is costly, the method
 with half the discretisation length checks every eighth scene. For other loadings it checks every scene, or another
 method does. Every solved scene is also solved in other units, where it must give the same answer.
 """

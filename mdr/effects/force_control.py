@@ -15,7 +15,7 @@ from mdr.effects.spring_bed import BedState, SpringLaw, advance, released_at_onc
 
 _ITERATIONS = 60
 _TOLERANCE = 1e-12  # of the target
-_ACCEPTABLE = 1e-6  # of the target: what the springs' finite number may leave
+_ACCEPTABLE = 1e-6  # of an interval's larger force: what the springs' finite number may leave
 _REACH = 4.0  # how much longer than the last step the next may be
 _LEAST = 1e-9  # of an interval's larger force: below, an indenter that is let go is taken to be free at the end
 
@@ -58,7 +58,8 @@ def to_force(law: SpringLaw, bed: Bed, state: BedState, ramp: Ramp, substeps: in
         if target <= 0.0:
             state, speed = released_at_once(law, bed.profile, state, time), 0.0
             continue
-        depth = _depth(law, bed, state, max(target, _LEAST * max(ramp.begin, ramp.end)), share * time)
+        largest = max(ramp.begin, ramp.end)
+        depth = _depth(law, bed, state, (max(target, _LEAST * largest), largest), share * time)
         speed = (depth - state.depth) / (share * time)
         state = advance(law, bed.profile, state, state.depth + speed * time, time)
     return state, speed
@@ -76,15 +77,15 @@ def pressed_at_once(law: SpringLaw, bed: Bed, force: float) -> BedState:
         return carried(law, bed, undeformed(law, bed.profile, depth), 0.0)[0] - force
 
     guess = float(bed.profile[np.isfinite(bed.profile)].max()) or force / bed.core  # a punch is as stiff from the start
-    return undeformed(law, bed.profile, _root(excess, 0.0, guess, force))
+    return undeformed(law, bed.profile, _root(excess, 0.0, guess, (force, force)))
 
 
-def _depth(law: SpringLaw, bed: Bed, state: BedState, target: float, time: float) -> float:
-    """Depth after a time, under which the bed then carries the target."""
+def _depth(law: SpringLaw, bed: Bed, state: BedState, target: tuple[float, float], time: float) -> float:
+    """Depth after a time, under which the bed then carries the first of two forces; see `_root`."""
 
     def excess(depth: float) -> float:
         after = advance(law, bed.profile, state, depth, time)
-        return carried(law, bed, after, (depth - state.depth) / time)[0] - target
+        return carried(law, bed, after, (depth - state.depth) / time)[0] - target[0]
 
     return _root(excess, state.depth, state.depth + _first_move(law, bed, state, excess(state.depth), time), target)
 
@@ -99,14 +100,21 @@ def _first_move(law: SpringLaw, bed: Bed, state: BedState, excess: float, time: 
     return -excess / (modulus * springs) if springs > 0.0 else -np.sign(excess) * 1e-3 * scale
 
 
-def _root(excess: Callable[[float], float], first: float, second: float, target: float) -> float:
-    """Root of an increasing function by secants, bisecting once it is enclosed and a secant leaves the enclosure."""
+def _root(excess: Callable[[float], float], first: float, second: float, target: tuple[float, float]) -> float:
+    """Root of an increasing function by secants, bisecting once it is enclosed and a secant leaves the enclosure.
+
+    Args:
+        excess: A force less the target.
+        first: A depth [m].
+        second: Another one.
+        target: The force [N], met to rounding where it can be, and one of which a millionth may be left.
+    """
     low, high = -np.inf, np.inf
     older, newer, before, now = first, second, excess(first), excess(second)
     for _ in range(_ITERATIONS):
         low = max([low, *(d for d, e in ((older, before), (newer, now)) if e < 0.0)])
         high = min([high, *(d for d, e in ((older, before), (newer, now)) if e > 0.0)])
-        if abs(now) <= _TOLERANCE * target:
+        if abs(now) <= _TOLERANCE * target[0]:
             return newer
         move = -now * (newer - older) / (now - before) if now != before else newer - older
         following = newer + min(max(move, -_REACH * abs(newer - older)), _REACH * abs(newer - older))
@@ -116,6 +124,6 @@ def _root(excess: Callable[[float], float], first: float, second: float, target:
         now = excess(newer)
         if newer in (low, high, older):
             break
-    if abs(now) > _ACCEPTABLE * target:
-        raise NotConvergedError("no depth carries the prescribed force", {"force": abs(now) / target})
+    if abs(now) > _ACCEPTABLE * target[1]:
+        raise NotConvergedError("no depth carries the prescribed force", {"force": abs(now) / target[1]})
     return newer

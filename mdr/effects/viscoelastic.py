@@ -93,7 +93,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         )
         for pairs in (found.by_springs, found.by_steps)
     )
-    moved = max(_CAUTION * by_springs + by_steps, _ROUNDING)
+    moved = max(_CAUTION * (by_springs + by_steps), _ROUNDING)
     error = np.full(loading.time.size, max(found.error, _ROUNDING))
     if error[0] > _LARGEST_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": float(error[0])})
