@@ -237,7 +237,8 @@ def _refereed(method: Method, answer: Solution, number: int, other: Method | Non
         finer = (other or method.refined()).solve(scene)
     except NotConvergedError:
         return "none", on_branch
-    return "another method" if other else "refinement", on_branch + tuple(
+    elsewhere = other is not None and other.name != method.name
+    return "another method" if elsewhere else "refinement", on_branch + tuple(
         _check(answer, q, _values(finer, q), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
         for q in _comparable(answer, finer)
         if q in answer.error_estimate
