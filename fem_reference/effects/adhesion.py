@@ -126,7 +126,7 @@ def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target
     i = int(below[0])
     if values[i] == target:
         return float(radii[i])
-    return float(brentq(lambda a: load(np.array([a]))[0] - target, radii[i], radii[i - 1], rtol=1e-13))
+    return float(brentq(lambda a: load(np.array([a]))[0] - target, radii[i], radii[i - 1], xtol=1e-13 * radii[i]))
 
 
 def branch_samples(branch: AdhesiveBranch) -> Array:

@@ -69,7 +69,7 @@ class CohesivePunch:
 
         if not excess(2 * first) > 0:
             raise InvalidInput(f"strength = {strength:g} E*: the cohesive zone covers the contact; take a larger one")
-        depth = float(brentq(excess, 2 * first, 1e-3 * first, rtol=1e-10))
+        depth = float(brentq(excess, 2 * first, 1e-3 * first, xtol=-1e-10 * first))
         state, _ = self.state(depth, strength)
         open_from = self.strip.radii[np.flatnonzero(state.active)[-1]]
         if len(self.strip.radii) - state.active.sum() < 5:

@@ -44,7 +44,7 @@ _FEWEST_GAPS = 16  # of a section between breakpoints
 _SHARES = (1.0, 0.7, 0.5)  # of the springs: where the front lies between two of them, fewer may err as much by chance,
 _CAUTION: Final = 2.0  # so two numbers of them tell the error, times this
 _SEARCHED = 64  # points of each section, among which the largest front is looked for
-_MARGIN = 1.01  # of the largest front coordinate: a few springs stay outside
+_MARGIN = 1.01  # of the way to the largest front: a few springs stay outside
 _ROUNDING = 1e-12  # of sums over hundreds of springs
 _LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
@@ -213,13 +213,19 @@ def _beds(
         table = own_table(scene.layer, scene.indenter, radius, flat_punch)
         y = np.concatenate([np.linspace(*ends, _SEARCHED) for ends in pairwise(table.section_ends)])
         reached = _reached(table, y, loading, law)
-        if np.interp(y[-1] / _MARGIN, y, reached) >= largest:
+        if np.interp(_farther(table, float(y[-1]), 1.0 / _MARGIN), y, reached) >= largest:
             break
     if reached[-1] < largest:
         raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
-    end = min(_MARGIN * float(np.interp(largest, reached, y)), float(y[-1]))
+    end = _farther(table, float(np.interp(largest, reached, y)), _MARGIN)
     pointed = scene.indenter.flat_radius == 0.0
     return table, [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in _SHARES]
+
+
+def _farther(table: SpringTable, y: float, times: float) -> float:
+    """A front so many times as far along the sections, each as long as the root of the radii it spans; in the table."""
+    lengths = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(table.section_radii)))])  # y begins as a radius
+    return float(np.interp(times * np.interp(y, table.section_ends, lengths), lengths, table.section_ends))
 
 
 def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed: bool) -> Bed:
