@@ -503,6 +503,8 @@ class ScalingFit:
         seconds: processor time of a first solution, shape (n,).
         exponent: fitted.
         half_width: of its 95 % interval.
+        fixed: seconds that do not grow, fitted.
+        growing: seconds beyond them at the largest size, fitted.
         theory: exponent of the most expensive stage.
         because: which stage that is.
         counters: of unknowns, iterations and the like, which no noise disturbs: the exponent of those that grow.
@@ -516,6 +518,8 @@ class ScalingFit:
     half_width: NotNegative
     theory: Finite
     because: str
+    fixed: NotNegative = 0.0
+    growing: NotNegative = 0.0
     counters: dict[str, Finite] = field(default_factory=dict)
 
 

@@ -213,6 +213,7 @@ def fitted(plan: ScalingPlan) -> ScalingFit:
     rounds = [[_first_solution(*task) for task in tasks] for _ in range(plan.repeats)]
     samples = np.array([[seconds for seconds, _ in found] for found in rounds])
     exponent, half_width = exponent_of(sizes, samples)
+    growth = _growth(sizes, samples.min(axis=0))
     return ScalingFit(
         method=plan.method,
         size=plan.size,
@@ -222,6 +223,8 @@ def fitted(plan: ScalingPlan) -> ScalingFit:
         half_width=half_width,
         theory=plan.theory,
         because=plan.because,
+        fixed=growth.fixed,
+        growing=growth.growing,
         counters=counter_exponents(sizes, [cost for _, cost in rounds[0]]),
     )
 
@@ -251,9 +254,9 @@ def exponent_of(sizes: FloatArray, samples: FloatArray) -> tuple[float, float]:
     if len(sizes) < FEWEST:
         raise InvalidInput(f"{len(sizes)} sizes: an exponent with an interval needs at least {FEWEST}")
     seconds, draw = samples.min(axis=0), np.random.default_rng(len(sizes))
-    found = _exponent(sizes, seconds)
-    spread = [abs(_exponent(sizes, _drawn_anew(samples, draw)) - found) for _ in range(BOOTSTRAPS)]
-    without_smallest = abs(_exponent(sizes[1:], seconds[1:]) - found)
+    found = _growth(sizes, seconds).exponent
+    spread = [abs(_growth(sizes, _drawn_anew(samples, draw)).exponent - found) for _ in range(BOOTSTRAPS)]
+    without_smallest = abs(_growth(sizes[1:], seconds[1:]).exponent - found)
     return found, max(float(np.quantile(spread, CONFIDENCE)), without_smallest)
 
 
@@ -263,18 +266,29 @@ def _drawn_anew(samples: FloatArray, draw: np.random.Generator) -> FloatArray:
     return np.asarray(np.take_along_axis(samples, rounds, axis=0).min(axis=0))
 
 
-def _exponent(sizes: FloatArray, seconds: FloatArray) -> float:
-    """p of the least squares of ln(c + k n^p); without c where hardly anything grows."""
+@dataclass(frozen=True)
+class _Growth:
+    """Seconds c + k n^p: c, k n^p at the largest n, and p."""
+
+    fixed: float
+    growing: float
+    exponent: float
+
+
+def _growth(sizes: FloatArray, seconds: FloatArray) -> _Growth:
+    """Least squares of ln(c + k n^p); without c where hardly anything grows."""
     n, t = np.log(sizes / sizes[-1]), np.log(seconds)
     slope = float(np.clip((t[-1] - t[-2]) / (n[-1] - n[-2]), 0.1, STEEPEST))
     if t[-1] - t.min() < np.log(LEAST_GROWTH):
-        return float(np.polyfit(n, t, 1)[0])
+        exponent, last = np.polyfit(n, t, 1)
+        return _Growth(0.0, float(np.exp(last)), float(exponent))
 
     def residual(x: FloatArray) -> FloatArray:
         return np.asarray(np.logaddexp(x[0], x[1] + x[2] * n) - t)
 
     bounds = [-40.0, -40.0, 0.0], [40.0, 40.0, STEEPEST]
-    return float(least_squares(residual, [t.min() - 0.1, t[-1], slope], bounds=bounds).x[2])
+    x = least_squares(residual, [t.min() - 0.1, t[-1], slope], bounds=bounds).x
+    return _Growth(float(np.exp(x[0])), float(np.exp(x[1])), float(x[2]))
 
 
 def counter_exponents(sizes: FloatArray, costs: Sequence[Cost]) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
@@ -12,10 +13,11 @@ from reports.panels import panel_grid
 from reports.plates import Plate
 from reports.style import GREY, look_of, mark_decades
 
+CURVE = 60  # points of a fitted curve
 COLUMNS = ("method", "size", "value", "cpu_seconds")
 CAPTION = (
-    "Processor time of a first solution. Dashed: the slope of the most expensive stage in theory, through the largest "
-    "size. In the titles the exponent p fitted beyond fixed costs, c + k n^p, with its 95 % interval."
+    "Processor time of a first solution, and c + k n^p fitted to it; in the titles p with its 95 % interval. Dashed: "
+    "the slope of the most expensive stage in theory, through the largest size."
 )
 
 
@@ -58,6 +60,8 @@ def _draw_fit(axes: Axes, fit: ScalingFit) -> None:
     axes.set(xscale="log", yscale="log", xlabel=fit.size, ylabel="processor time [s]")
     axes.set_title(f"{display_name(fit.method)}: {fit.exponent:.2f} ± {fit.half_width:.2f}")
     axes.plot(fit.sizes[half:], slope, color=GREY, linestyle="--", linewidth=1.0, label=f"slope {fit.theory:g}")
+    sizes = np.geomspace(fit.sizes[0], largest, CURVE)
+    axes.plot(sizes, fit.fixed + fit.growing * (sizes / largest) ** fit.exponent, color=look.colour, linewidth=0.8)
     axes.plot(fit.sizes, fit.seconds, color=look.colour, marker=look.marker, linestyle="none")
     axes.set_ylim(_at_least_a_decade(*axes.get_ylim()))
     mark_decades(axes.xaxis)
