@@ -147,7 +147,7 @@ def accuracy_is_met(requests: list[Request], refused: Mapping[str, int]) -> Clai
 def _listed(refused: Mapping[str, int]) -> str:
     """How many requests have no answer that counts, and why."""
     reasons = ", ".join(f"{count} {reason}" for reason, count in sorted(refused.items()))
-    return f"{sum(refused.values())} refused" + (f" ({reasons})" if reasons else "")
+    return f"{sum(refused.values())} refused or not judged" + (f" ({reasons})" if reasons else "")
 
 
 def time_is_short(requests: list[Request]) -> Claim:

@@ -39,7 +39,7 @@ def test_two_requests_in_a_hundred_may_be_missed(missed, status):
 
 def test_refusals_are_told_by_their_reasons():
     claim = accuracy_is_met([GOOD], {"whose answers state more": 2, "beyond the evidence": 3})
-    assert "5 refused (3 beyond the evidence, 2 whose answers state more)" in claim.message
+    assert "5 refused or not judged (3 beyond the evidence, 2 whose answers state more)" in claim.message
 
 
 @pytest.mark.parametrize(("fastest", "status"), [(0.51, Status.PASS), (0.49, Status.FAIL)])
