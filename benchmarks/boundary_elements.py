@@ -6,7 +6,6 @@ all of them, about two minutes. Errors are relative, against the integral equati
 
 from __future__ import annotations
 
-import resource
 import subprocess
 import sys
 import time
@@ -24,6 +23,7 @@ from bem.kernels import Support, compliance_kernel
 from bem.operators import FreeSpaceOperator
 from bem.pixel_disc import PixelDisc, disc
 from contact import Adhesion, ContactRadii, Detachment, Layer, Paraboloid, Profile, Scene, TruncatedCone
+from contact.stages import peak_memory_bytes
 from mdr import Mdr
 
 KERNELS: tuple[tuple[Support, float], ...] = (("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.3))
@@ -177,7 +177,7 @@ def whole_grid() -> None:
     x = s * (np.arange(n) - (n - 1) / 2)
     operator = FreeSpaceOperator(Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5), cell_size=s, cells=n)
     solve_contact(operator, (x[:, None] ** 2 + x**2) / 2, depth=0.56, tolerance=1e-5)
-    write(f"{1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e9:.2f} GB")
+    write(f"{peak_memory_bytes() / 1e9:.2f} GB")
 
 
 SHOWS: dict[str, Callable[[], None]] = {

@@ -5,7 +5,6 @@ Run ``OMP_NUM_THREADS=1 python -m benchmarks.fem_speed``; with CalculiX installe
 
 from __future__ import annotations
 
-import resource
 import shutil
 import sys
 import time
@@ -16,6 +15,7 @@ import numpy as np
 
 from benchmarks import calculix_flat_punch
 from contact import FlatPunch, IndentationDepths, Layer, Paraboloid, Scene, StageLog
+from contact.stages import peak_memory_bytes
 from fem_reference import Fem
 from fem_reference.discretisation import Discretisation
 from fem_reference.unknown_contact import ContactSearch
@@ -71,7 +71,7 @@ def seconds(task: Task) -> float:
 
 def megabytes() -> float:
     """Peak resident memory of this process, its libraries included."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+    return peak_memory_bytes() / 2**20
 
 
 def main() -> None:

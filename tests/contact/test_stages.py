@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -43,3 +46,14 @@ def test_counters_add_up():
     assert cost.counters == {"iterations": 4}
     assert cost.unknowns == 7
     assert cost.peak_memory_bytes > 1_000_000
+
+
+@pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="elsewhere the system tells no program's own peak")
+def test_peak_memory_is_not_that_of_the_program_that_started_this_one():
+    child = "from contact.stages import peak_memory_bytes; print(peak_memory_bytes())"
+    parent = (
+        "import subprocess, sys; ballast = bytearray(600_000_000)\n"
+        f"print(subprocess.run([sys.executable, '-c', {child!r}], capture_output=True, text=True).stdout)"
+    )
+    done = subprocess.run([sys.executable, "-c", parent], capture_output=True, text=True, check=True)
+    assert int(done.stdout) < 500_000_000
