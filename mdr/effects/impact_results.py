@@ -16,6 +16,7 @@ from mdr.effects.impact_solver import Impacts, Leg
 from mdr.effects.impact_units import ScaledImpacts
 from mdr.effects.spring_table import MOMENT, PROFILE, STIFFNESS
 
+_PROFILE_ROUNDING = 4.0 * float(np.finfo(float).eps)  # of g, of the panel's largest
 ROUNDING = 1e-14  # of results in units of the impact, added to what the tolerance changes
 _SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
 _CHANCE = 0.3  # of the accuracy: a closer agreement of two runs
@@ -67,7 +68,7 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
         peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
     radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
     both = np.stack([-impacts.end[3], impacts.end[1] + impacts.drift, peak, depth, radius])
-    values, change = fine_and_change(both, accuracy, impacts.within)
+    values, change = fine_and_change(both, accuracy, impacts.within, ROUNDING + _depth_rounding(scaled.lanes, depth))
     change += _SPRINGS_TO_MOTION * lanes.table.error
     change[_TIME] += _SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
     return ImpactResults(
@@ -80,7 +81,15 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
     )
 
 
-def fine_and_change(both: FloatArray, accuracy: float, within: FloatArray) -> tuple[FloatArray, FloatArray]:
+def _depth_rounding(lanes: ImpactLanes, depth: FloatArray) -> FloatArray:
+    """Rounding of g on the first panel of the table over the peak depth: a stiff dashpot stops a body far below it."""
+    first = lanes.table.evaluate(lanes.table.functions.edges[1:2], 1)[PROFILE]
+    return np.asarray(_PROFILE_ROUNDING * first / (lanes.units[0] * depth[: lanes.count]))
+
+
+def fine_and_change(
+    both: FloatArray, accuracy: float, within: FloatArray, rounding: FloatArray | float = ROUNDING
+) -> tuple[FloatArray, FloatArray]:
     """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
 
     One number may agree by chance, so the largest change of all but the contact time counts for each; two runs may, so
@@ -91,9 +100,10 @@ def fine_and_change(both: FloatArray, accuracy: float, within: FloatArray) -> tu
         both: Restitution, contact time, peaks of force, depth and radius, shape (5, 2 n).
         accuracy: That was asked for.
         within: Sum of the local errors within steps, shape (2 n,).
+        rounding: Relative, shape (n,).
     """
     fine, coarse = np.split(both, 2, axis=1)
-    change = np.abs(fine - coarse) / np.abs(fine) + _CHANCE * accuracy + ROUNDING
+    change = np.abs(fine - coarse) / np.abs(fine) + _CHANCE * accuracy + rounding
     worst = np.delete(change, _TIME, axis=0).max(axis=0)
     change += worst
     change[_TIME] += 2.0 * worst * leaving(fine)  # of the way left and of the speed
@@ -116,10 +126,13 @@ def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
     """
     resting = np.flatnonzero((final_velocity >= 0.0) | ((long_term == 0.0) & (final_velocity > -_REST)))
     if resting.size:
-        raise NotConvergedError(
-            f"impact {resting[0]} does not rebound: the indenter comes to rest in a layer that relaxes completely; "
-            "give it a long-term shear modulus above zero"
+        first = resting[0]
+        why = (
+            "it comes to rest in a layer that relaxes completely; give that a long-term shear modulus above zero"
+            if long_term[first] == 0.0
+            else "what viscosity leaves of its speed is lost in rounding; lower the viscosity or take a heavier body"
         )
+        raise NotConvergedError(f"impact {first} does not rebound: {why}")
 
 
 def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:

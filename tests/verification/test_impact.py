@@ -10,6 +10,7 @@ from contact import (
     FlatPunch,
     Impact,
     InvalidInput,
+    KelvinVoigt,
     Layer,
     NotConvergedError,
     Paraboloid,
@@ -288,6 +289,23 @@ def test_flat_punch_on_a_layer_follows_its_closed_form():
     assert history(scene).coefficient_of_restitution == pytest.approx(
         float(kelvin_voigt_restitution(0.3)), rel=1e-9, abs=0.0
     )
+
+
+@pytest.mark.parametrize("viscosity", [1e2, 1e3, 5e5])
+def test_a_dashpot_that_stops_a_blunt_cone_far_below_what_its_table_spans(viscosity):
+    """The peak of m x'' + (G + eta d/dt) k x/G = 0, a damped oscillator: 2.4e-6 off at worst, 6e-10 stated at first."""
+    layer, flat = Layer.incompressible(thickness=1.0, shear_modulus=1.0), 3.0
+    cone, model = TruncatedCone(flat_radius=flat, slope=0.1), KelvinVoigt(shear_modulus=1.0, viscosity=viscosity)
+    speed, mass = float(cone.height(np.array([flat * (1 + 1e-6)]))[0]), 1.2
+    found = history(Scene(layer=layer, indenter=cone, loading=Impact(mass=mass, velocity=speed), effects=(model,)))
+    stiffness = float(equivalent_system(layer, FlatPunch(radius=flat), flat, PUNCH).contact_stiffness(flat))
+    fast = -0.5 * (viscosity + np.sqrt(viscosity**2 - 4.0 * mass / stiffness)) * stiffness / mass
+    slow = stiffness / mass / fast
+    turn = np.log(fast / slow) / (slow - fast)
+    peak = speed / (slow - fast) * (np.exp(slow * turn) - np.exp(fast * turn))
+    stated = float(found.error_estimate["peak_depth"][0])
+    assert stated < 1e-5
+    assert found.peak_depth == pytest.approx(peak, rel=stated, abs=0.0)
 
 
 def test_an_indenter_that_stays_is_refused():
