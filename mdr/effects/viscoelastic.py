@@ -86,7 +86,23 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         found = _followed(law, beds, loading, _substeps(loading, fineness))
     log.count("springs", beds[0].y.size)
     log.count("instants", loading.time.size)
-    radius = _radius(scene, table, found.track.y)
+    return HistoryPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate=_errors(scene, table, found),
+        cost=log.cost(unknowns=beds[0].y.size),
+        stages=log.records,
+        notes=(_BENT,) if found.track.bent else (),
+        time=loading.time,
+        indentation_depth=found.track.depth,
+        normal_force=found.track.force,
+        contact_radius=_radius(scene, table, found.track.y),
+    )
+
+
+def _errors(scene: Scene, table: SpringTable | None, found: _Found) -> dict[str, FloatArray]:
+    """Relative to the largest values, the same at all instants."""
     by_springs, by_steps = (
         max(
             (_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs), default=0.0
@@ -94,26 +110,10 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         for pairs in (found.by_springs, found.by_steps)
     )
     moved = max(_CAUTION * (by_springs + by_steps), _ROUNDING)
-    error = np.full(loading.time.size, max(found.error, _ROUNDING))
+    error = np.full(found.track.y.size, max(found.error, _ROUNDING))
     if error[0] > _LARGEST_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": float(error[0])})
-    return HistoryPath(
-        scene=scene,
-        method="mdr",
-        settings=settings,
-        error_estimate={
-            "indentation_depth": error,
-            "normal_force": error,
-            "contact_radius": np.full(error.size, moved),
-        },
-        cost=log.cost(unknowns=beds[0].y.size),
-        stages=log.records,
-        notes=(_BENT,) if found.track.bent else (),
-        time=loading.time,
-        indentation_depth=found.track.depth,
-        normal_force=found.track.force,
-        contact_radius=radius,
-    )
+    return {"indentation_depth": error, "normal_force": error, "contact_radius": np.full(error.size, moved)}
 
 
 _BENT = (
