@@ -89,7 +89,7 @@ def test_a_refusal_and_a_failure_are_told_apart_and_said_once():
 
 @pytest.mark.slow
 def test_the_cost_command_says_what_accuracy_costs(tmp_path, capsys):
-    assert run(["cost", "coated_pair", "--suite", "ci", "--out", str(tmp_path), "--quiet"]) == 0
+    assert run(["cost", "truncated_cone", "--suite", "ci", "--out", str(tmp_path), "--quiet"]) == 0
     assert "How much faster MDR is" in capsys.readouterr().out
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert 'id="costs"' in page
