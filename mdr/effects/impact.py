@@ -13,13 +13,13 @@ from typing import TypeAlias
 import numpy as np
 
 from bem.flat_punch import FlatPunchSource
-from contact import ImpactHistory, InvalidInput, Scene, StageLog
+from contact import ImpactHistory, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.solution import Setting
 from mdr.effects.impact_flat_punch import flat_punch_history, flat_punch_results
 from mdr.effects.impact_history import history
 from mdr.effects.impact_results import ImpactResults, joined, results
-from mdr.effects.impact_solver import impacts
-from mdr.effects.impact_units import is_flat, relaxation_of, scaled, table_of
+from mdr.effects.impact_solver import Impacts, TableTooShort, impacts
+from mdr.effects.impact_units import SOFTEST, ScaledImpacts, is_flat, relaxation_of, scaled, table_of
 
 ACCURACY = 1e-9
 _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
@@ -59,15 +59,30 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     tolerance = step_tolerance(accuracy)
     if is_flat(scene):
         return flat_punch_history(scene, flat_punch, log, accuracy, tolerance=tolerance, settings=known)
-    with log.stage("equivalent_system"):
-        shared, table = table_of(scene, flat_punch)
-    with log.stage("impact"):
-        problem = scaled([scene], [shared], table)
-        motion = impacts(problem.lanes, tolerance=tolerance)
+    problem, motion = _pressed(scene, flat_punch, log, tolerance)
     legs = motion.way_in + motion.way_out
     log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in legs))
     log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
     return history(scene, problem, motion, log, accuracy, settings=known)
+
+
+def _pressed(
+    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, tolerance: float
+) -> tuple[ScaledImpacts, Impacts]:
+    """One impact on springs that reach far enough, also in a layer that gets softer than expected on the way in."""
+    for softest in SOFTEST:
+        with log.stage("equivalent_system"):
+            shared, table = table_of(scene, flat_punch, softest)
+        with log.stage("impact"):
+            problem = scaled([scene], [shared], table)
+            try:
+                return problem, impacts(problem.lanes, tolerance=tolerance)
+            except TableTooShort:
+                continue
+    raise NotConvergedError(
+        f"the layer relaxes to below {SOFTEST[-1]:g} of its instantaneous modulus while it is pressed, and its springs "
+        "are tabulated no farther; give it a larger long-term modulus or longer relaxation times"
+    )
 
 
 def impact_batch(

@@ -21,7 +21,7 @@ from mdr.effects.reference_springs import (
 )
 from mdr.effects.spring_table import PROFILE, STIFFNESS, SpringTable
 
-_LEAST_MODULUS = 0.02  # of the instantaneous one: how soft a layer is expected to become during the way in
+SOFTEST = (0.02, 1e-3, 1e-5)  # of the instantaneous modulus: how soft a layer may become during the way in
 
 
 @dataclass(frozen=True)
@@ -71,13 +71,13 @@ def impact_of(scene: Scene) -> Impact:
     return scene.loading
 
 
-def table_of(scene: Scene, flat_punch: FlatPunchSource) -> tuple[Reference, SpringTable]:
-    """The shared problem of one scene and a table large enough for its impact."""
+def table_of(scene: Scene, flat_punch: FlatPunchSource, softest: float = SOFTEST[0]) -> tuple[Reference, SpringTable]:
+    """The shared problem of one scene and a table for its impact on a layer that gets no softer than that meanwhile."""
     impact, layer = impact_of(scene), scene.layer
     energy = 0.5 * impact.mass * impact.velocity**2
     scale = contact_scale(layer, scene.indenter, energy)
     shared = reference(layer, scene.indenter, scale)
-    soft = max(relaxation_of(scene).long_term_modulus / layer.shear_modulus, _LEAST_MODULUS)
+    soft = max(relaxation_of(scene).long_term_modulus / layer.shear_modulus, softest)
     needed = energy / (soft * shared.stiffness * shared.depth**2)
     return shared, table_for_energy(shared.layer, shared.indenter, scale / shared.length, needed, flat_punch)
 

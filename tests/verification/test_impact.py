@@ -17,6 +17,7 @@ from contact import (
     PronySeries,
     Scene,
     Sphere,
+    StandardSolid,
     TruncatedCone,
 )
 from mdr import equivalent_system
@@ -164,6 +165,30 @@ def test_the_papers_explicit_springs_agree(thickness):
         errors = [getattr(e, name) / getattr(fine, name) - 1.0 for e in (coarse, middle)]
         assert abs(errors[1]) < 2e-3
         assert abs(2.0 * errors[1] - errors[0]) < 2e-4
+
+
+def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
+    """The springs must reach farther than the approach lets expect; against the paper's explicit springs."""
+    solid = StandardSolid(long_term_shear_modulus=1e-3, maxwell_shear_modulus=0.999, viscosity=0.999e-3)
+    scene = Scene(
+        layer=Layer.incompressible(thickness=1.0, shear_modulus=1.0),
+        indenter=Paraboloid(radius_of_curvature=5.0),
+        loading=Impact(mass=0.1, velocity=0.05),
+        effects=(solid,),
+    )
+    fine = history(scene)
+    radius = 1.05 * fine.peak_contact_radius
+    springs = equivalent_system(scene.layer, scene.indenter, radius, PUNCH)
+    coarse, middle = (
+        explicit_impact(
+            springs, relaxation_of(scene), mass=0.1, velocity=0.05, radius=radius, count=count, time_step=0.1 / count
+        )
+        for count in (100, 200)
+    )
+    for name in ("coefficient_of_restitution", "peak_force"):
+        errors = [getattr(e, name) / getattr(fine, name) - 1.0 for e in (coarse, middle)]
+        assert abs(errors[1]) < 2e-2
+        assert abs(2.0 * errors[1] - errors[0]) < 2e-3
 
 
 def test_weak_damping_and_extreme_moduli_tend_to_the_right_limits():
