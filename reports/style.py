@@ -89,6 +89,7 @@ def look_of(method: str) -> Look:
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 FEW_DECADES, MANY_DECADES = 2, 4
+LONG_NUMBER = 1e4  # from which labels need room
 
 
 def power_of_ten(value: float, _position: int | None = None) -> str:
@@ -103,13 +104,18 @@ def mark_decades(axis: Axis) -> None:
     decades = math.log10(high / low)
     axis.set_minor_formatter(NullFormatter())
     if decades < FEW_DECADES:
-        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-        axis.set_major_formatter(FuncFormatter(lambda value, _position: f"{value:g}"))
+        axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0) if high < LONG_NUMBER else (1.0, 3.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _position: _grouped(value)))
         return
     axis.set_major_locator(LogLocator(base=10.0 ** max(1, math.ceil(decades / 10)), numticks=12))
     axis.set_major_formatter(FuncFormatter(power_of_ten))
     if decades > MANY_DECADES:
         axis.set_minor_locator(LogLocator(base=10.0, subs=(1.0,), numticks=99))
+
+
+def _grouped(value: float) -> str:
+    """A label, in groups of three digits where it is long."""
+    return f"{value:g}" if value < LONG_NUMBER else f"{value:,.0f}".replace(",", "\N{NARROW NO-BREAK SPACE}")
 
 
 def mark_signed_decades(axis: Axis, *, smallest: float, largest: float) -> None:

@@ -58,7 +58,7 @@ def _draw_fit(axes: Axes, fit: ScalingFit) -> None:
     half = len(fit.sizes) // 2
     slope = [last * (size / largest) ** fit.theory for size in fit.sizes[half:]]
     axes.set(xscale="log", yscale="log", xlabel=fit.size, ylabel="processor time [s]")
-    axes.set_title(f"{display_name(fit.method)}: {fit.exponent:.2f} ± {fit.half_width:.2f}")
+    axes.set_title(f"{display_name(fit.method)}: {round(fit.exponent, 2) + 0.0:.2f} ± {fit.half_width:.2f}")  # no -0.00
     axes.plot(fit.sizes[half:], slope, color=GREY, linestyle="--", linewidth=1.0, label=f"slope {fit.theory:g}")
     sizes = np.geomspace(fit.sizes[0], largest, CURVE)
     axes.plot(sizes, fit.fixed + fit.growing * (sizes / largest) ** fit.exponent, color=look.colour, linewidth=0.8)
