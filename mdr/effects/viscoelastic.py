@@ -46,7 +46,7 @@ _CAUTION: Final = 2.0  # so two numbers of them tell the error, times this
 _SEARCHED = 64  # points of each section, among which the largest front is looked for
 _MARGIN = 1.01  # of the way to the largest front: a few springs stay outside
 _ROUNDING = 1e-12  # of sums over hundreds of springs
-_LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: even and odd springs miss the same kinks of a profile
+_LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: all numbers of springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
 
 
