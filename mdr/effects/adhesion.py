@@ -160,7 +160,11 @@ def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[E
     system = equivalent_system(scene.layer, scene.indenter, radius, flat_punch)
     breakpoints = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
     return system, adhesive_branch(
-        system, breakpoints=breakpoints, radius=radius, work_of_adhesion=work_of_adhesion(scene)
+        system,
+        breakpoints=breakpoints,
+        radius=radius,
+        work_of_adhesion=work_of_adhesion(scene),
+        error=system.relative_error["contact_stiffness"],
     )
 
 

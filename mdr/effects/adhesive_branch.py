@@ -151,7 +151,12 @@ class AdhesiveBranch:
 
 
 def adhesive_branch(
-    springs: AdheringSprings, *, breakpoints: tuple[float, ...], radius: float, work_of_adhesion: float
+    springs: AdheringSprings,
+    *,
+    breakpoints: tuple[float, ...],
+    radius: float,
+    work_of_adhesion: float,
+    error: float = 0.0,
 ) -> AdhesiveBranch:
     """All equilibria with contact radii in (0, radius].
 
@@ -160,15 +165,16 @@ def adhesive_branch(
         breakpoints: Radii [m] where the profile is not analytic, its flat end included.
         radius: Largest contact radius [m].
         work_of_adhesion: dgamma [J/m^2].
+        error: Relative error of the springs.
 
     Raises:
-        NotConvergedError: If the springs are too rough.
+        NotConvergedError: If the springs are rougher than that.
     """
     radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
     ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
     panels: list[Panel] = []
     for start, low, high in zip(radii, ends, ends[1:], strict=False):
-        panels += resolved_panels(_sampler(springs, start, low, work_of_adhesion), low, high)
+        panels += resolved_panels(_sampler(springs, start, low, work_of_adhesion), low, high, error)
     values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])  # (panels, 2, nodes)
     derivative = chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
     slopes = values @ derivative

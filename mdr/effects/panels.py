@@ -48,13 +48,16 @@ class Panel:
         return np.asarray(0.5 * (self.low + self.high) + self.half * chebyshev.nodes(NODES))
 
 
-def resolved_panels(sample: Callable[[FloatArray], FloatArray], low: float, high: float) -> list[Panel]:
-    """Halve panels until the last Chebyshev coefficients of every function are small.
+def resolved_panels(
+    sample: Callable[[FloatArray], FloatArray], low: float, high: float, error: float = 0.0
+) -> list[Panel]:
+    """Halve panels until the last Chebyshev coefficients of every function are small, or until halving helps no more.
 
     Args:
         sample: From points, shape (n,), to values of all functions, shape (functions, n).
         low: Left end of the interval.
         high: Right end.
+        error: Relative, of the functions themselves; they need not be resolved any finer.
 
     Raises:
         NotConvergedError: If a function is too rough.
@@ -70,7 +73,7 @@ def resolved_panels(sample: Callable[[FloatArray], FloatArray], low: float, high
         panels = [Panel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails, strict=True)]
         room = len(done) + 2 * len(waiting) < _MOST_PANELS
         halvable = min(right - left for left, right in waiting) > _SMALLEST * (high - low)
-        fine = unresolved <= (_RESOLVED if room and halvable else _USABLE)
+        fine = unresolved <= (_RESOLVED if room and halvable else max(_USABLE, error))
         done += [panel for panel, enough in zip(panels, fine, strict=True) if enough]
         waiting = [half for panel, enough in zip(panels, fine, strict=True) if not enough for half in _halves(panel)]
     if waiting:

@@ -121,7 +121,7 @@ def spring_table(
     radii = np.array([flat_radius, *inner, radius])
     lengths = np.where(radii[:-1] > 0.0, np.sqrt(np.diff(radii)), np.diff(radii))
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    sections = [_section(springs, radii[i], ends[i], ends[i + 1]) for i in range(radii.size - 1)]
+    sections = [_section(springs, radii[i], (ends[i], ends[i + 1]), error) for i in range(radii.size - 1)]
     panels = [panel for section in sections for panel in section]
     start = float(springs.contact_stiffness(np.array([flat_radius]))[0]) if flat_radius > 0.0 else 0.0
     return SpringTable(
@@ -138,9 +138,9 @@ def _radius(start: FloatArray, way: FloatArray) -> FloatArray:
     return np.asarray(np.where(start > 0.0, start + way**2, way))
 
 
-def _section(springs: Springs, start: float, low: float, high: float) -> list[Panel]:
+def _section(springs: Springs, start: float, ends: tuple[float, float], error: float) -> list[Panel]:
     """c_N, g and da/dy between two breakpoints, the first of them the radius `start`."""
-    beginning = springs.mdr_profile(np.array([start]))
+    (low, high), beginning = ends, springs.mdr_profile(np.array([start]))
 
     def sample(y: FloatArray) -> FloatArray:
         way = y - low
@@ -152,7 +152,7 @@ def _section(springs: Springs, start: float, low: float, high: float) -> list[Pa
         share = np.divide(way, rounded, out=np.ones_like(way), where=rounded > 0.0)
         return np.stack([springs.spring_stiffness(x), beginning + rise * share, 2.0 * way])
 
-    return resolved_panels(sample, low, high)
+    return resolved_panels(sample, low, high, error)
 
 
 def _coefficients(panels: list[Panel], start: float) -> list[FloatArray]:

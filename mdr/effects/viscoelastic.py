@@ -45,6 +45,7 @@ _SHARES = (1.0, 0.7, 0.5)  # of the springs: where the front lies between two of
 _CAUTION: Final = 2.0  # so two numbers of them tell the error, times this
 _SEARCHED = 64  # points of each section, among which the largest front is looked for
 _MARGIN = 1.01  # of the way to the largest front: a few springs stay outside
+_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
 _ROUNDING = 1e-12  # of sums over hundreds of springs
 _LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: all numbers of springs miss the same kinks of a profile
 _BEND = 1e-6  # of the largest spring force: an outward rise that counts
@@ -81,7 +82,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     law, doublings = SpringLaw.of(relaxation_of(scene)), _doublings(settings)
     gaps, fineness = int(_GAPS * 2.0**doublings), int(_FINENESS * 2.0**doublings)
     with log.stage("equivalent_system"):
-        table, beds = _beds(scene, loading, law, flat_punch, gaps)
+        table, beds, springs = _beds(scene, loading, law, flat_punch, gaps)
     with log.stage("history"):
         found = _followed(law, beds, loading, _substeps(loading, fineness))
     log.count("springs", beds[0].y.size)
@@ -90,7 +91,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         scene=scene,
         method="mdr",
         settings=settings,
-        error_estimate=_errors(scene, table, found),
+        error_estimate=_errors(scene, table, found, springs),
         cost=log.cost(unknowns=beds[0].y.size),
         stages=log.records,
         notes=(_BENT,) if found.track.bent else (),
@@ -101,18 +102,26 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def _errors(scene: Scene, table: SpringTable | None, found: _Found) -> dict[str, FloatArray]:
-    """Relative to the largest values, the same at all instants."""
+def _errors(scene: Scene, table: SpringTable | None, found: _Found, springs: float) -> dict[str, FloatArray]:
+    """Relative to the largest values, the same at all instants.
+
+    Args:
+        scene: The scene.
+        table: Its springs; None under a flat punch.
+        found: The history.
+        springs: Relative error of the springs.
+    """
     by_springs, by_steps = (
         max(
             (_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs), default=0.0
         )
         for pairs in (found.by_springs, found.by_steps)
     )
-    moved = max(_CAUTION * (by_springs + by_steps), _ROUNDING)
-    error = np.full(found.track.y.size, max(found.error, _ROUNDING))
-    if error[0] > _LARGEST_ERROR:
-        raise NotConvergedError("the springs do not resolve this history", {"change with fewer": float(error[0])})
+    known = _SPRINGS_TO_MOTION * springs + _ROUNDING
+    moved = _CAUTION * (by_springs + by_steps) + known
+    if found.error > _LARGEST_ERROR:
+        raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
+    error = np.full(found.track.y.size, found.error + known)
     return {"indentation_depth": error, "normal_force": error, "contact_radius": np.full(error.size, moved)}
 
 
@@ -198,8 +207,8 @@ def _radius(scene: Scene, table: SpringTable | None, y: FloatArray) -> FloatArra
 
 def _beds(
     scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
-) -> tuple[SpringTable | None, list[Bed]]:
-    """Springs out to the largest radius that the history can reach, in each of the `_SHARES`."""
+) -> tuple[SpringTable | None, list[Bed], float]:
+    """Springs out to the largest radius that the history can reach, in each of the `_SHARES`, and their own error."""
     prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     _refuse_idle(loading, prescribed)
     if is_flat(scene):
@@ -207,7 +216,7 @@ def _beds(
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
         bed = Bed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
-        return None, [bed, bed]
+        return None, [bed, bed], system.relative_error["contact_stiffness"]
     largest = float(prescribed.max())
     for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
         table = own_table(scene.layer, scene.indenter, radius, flat_punch)
@@ -219,7 +228,8 @@ def _beds(
         raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
     end = _farther(table, float(np.interp(largest, reached, y)), _MARGIN)
     pointed = scene.indenter.flat_radius == 0.0
-    return table, [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in _SHARES]
+    beds = [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in _SHARES]
+    return table, beds, table.error
 
 
 def _farther(table: SpringTable, y: float, times: float) -> float:

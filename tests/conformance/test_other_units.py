@@ -66,15 +66,13 @@ SCENES = {
 
 KINDS = {
     "mdr": list(SCENES),
-    "mdr_table": ["radii", "depths", "forces", "impact"],  # too coarse for springs of its own
+    "mdr_table": list(SCENES),
     "integral_equation": ["radii", "depths", "forces"],
     "bem": ["radii", "depths", "forces", "adhering, depth", "adhering, force", "detachment"],
     "fem": list(SCENES),
 }
-QUICK = {
-    "fem": ("radii", "impact", "measured, depth history"),
-    "mdr": [kind for kind in SCENES if kind != "force history"],
-}
+NOT_LONG = [kind for kind in SCENES if kind != "force history"]
+QUICK = {"fem": ("radii", "impact", "measured, depth history"), "mdr": NOT_LONG, "mdr_table": NOT_LONG}
 COMBINATIONS = [
     pytest.param(method, kind, marks=() if kind in QUICK.get(method, kinds) else pytest.mark.slow)
     for method, kinds in KINDS.items()
