@@ -113,10 +113,7 @@ class _Run:
             going = going[trajectory.ended_by != TURN]
             if not going.size:
                 return tuple(legs), state, turned_in
-        raise TableTooShort(
-            "an impact presses beyond the radius up to which springs were tabulated, since its layer softens more than "
-            "expected; solve this scene by itself, for which the table grows"
-        )
+        raise TableTooShort("an impact presses beyond the radius up to which springs were tabulated")
 
     def recede(self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: Lanes) -> tuple[tuple[Leg, ...], FloatArray]:
         """The way out, back through the same sections, and the state at its end."""

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +41,7 @@ _LEVELS = (4, 2, 1)  # times the fewest substeps
 _FEWEST, _MOST = -2, 2  # how often they may be doubled
 _FEWEST_GAPS = 16  # of a section between breakpoints
 _SHARES = (1.0, 0.7, 0.5)  # of the springs: where the front lies between two of them, fewer may err as much by chance,
-_CAUTION: Final = 2.0  # so two numbers of them tell the error, times this
+_CAUTION = 2.0  # so two numbers of them tell the error, times this
 _SEARCHED = 64  # points of each section, among which the largest front is looked for
 _MARGIN = 1.01  # of the way to the largest front: a few springs stay outside
 _SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up

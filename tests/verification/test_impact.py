@@ -189,6 +189,10 @@ def test_a_layer_that_softens_a_thousandfold_on_the_way_in():
         errors = [getattr(e, name) / getattr(fine, name) - 1.0 for e in (coarse, middle)]
         assert abs(errors[1]) < 2e-2
         assert abs(2.0 * errors[1] - errors[0]) < 2e-3
+    stiffer = scene.replace(effects=(solid.replace(viscosity=0.1),))
+    batch = impact_batch([stiffer, scene], PUNCH)
+    assert batch.coefficient_of_restitution[1] == fine.coefficient_of_restitution
+    assert batch.coefficient_of_restitution[0] == history(stiffer).coefficient_of_restitution
 
 
 def test_weak_damping_and_extreme_moduli_tend_to_the_right_limits():
