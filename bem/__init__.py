@@ -7,21 +7,21 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from bem.direct import Bem
-    from bem.fft_table import FftTable
-    from bem.flat_punch import FlatPunchSolution, FlatPunchSource
-    from bem.integral_equation import IntegralEquation
-    from bem.integral_equation_method import IntegralEquationMethod
-    from bem.table_file import TableFile
+    from bem.layer_equation.flat_punch_source import IntegralEquation
+    from bem.layer_equation.method import IntegralEquationMethod
+    from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+    from bem.method import Bem
+    from bem.tables.file import TableFile
+    from bem.tables.from_grid import FftTable
 
 _HOME = {
-    "Bem": "bem.direct",
-    "FftTable": "bem.fft_table",
-    "FlatPunchSolution": "bem.flat_punch",
-    "FlatPunchSource": "bem.flat_punch",
-    "IntegralEquation": "bem.integral_equation",
-    "IntegralEquationMethod": "bem.integral_equation_method",
-    "TableFile": "bem.table_file",
+    "Bem": "bem.method",
+    "FftTable": "bem.tables.from_grid",
+    "FlatPunchSolution": "bem.layer_equation.protocol",
+    "FlatPunchSource": "bem.layer_equation.protocol",
+    "IntegralEquation": "bem.layer_equation.flat_punch_source",
+    "IntegralEquationMethod": "bem.layer_equation.method",
+    "TableFile": "bem.tables.file",
 }
 
 __all__ = [

@@ -17,9 +17,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bem.conjugate_gradients import solve_contact, solve_on_contact
-from bem.grid import prolonged
-from bem.operators import PeriodicOperator
+from bem.grid.conjugate_gradients import solve_contact, solve_on_contact
+from bem.grid.operators import PeriodicOperator
+from bem.grid.quadrant import prolonged
 from contact import Layer
 
 GRIDS, BOX, TOLERANCE, REPEATS = (256, 512), 8.0, 1e-5, 5

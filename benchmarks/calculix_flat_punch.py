@@ -20,9 +20,9 @@ import numpy as np
 
 from contact import FlatPunch, IndentationDepths, Layer, Scene
 from fem_reference import Fem
-from fem_reference.elements import PAIRS
-from fem_reference.geometry import Grading, layer_mesh
-from fem_reference.layer_problem import LayerProblem
+from fem_reference.discrete_layer.elements import PAIRS
+from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.problem import LayerProblem
 
 POISSONS_RATIO = 0.3
 STIFFNESS = 2 * 2.48352462914  # k_N / (E* a): integral equation

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
     FlatPunch,
@@ -28,10 +28,10 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.certified import CertifiedContact, solve_certified_contact
-from fem_reference.discretisation import Discretisation
-from fem_reference.indenter import ScaledIndenter
-from mdr.effects.impact import solve_impact
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.error_estimate import CertifiedContact, solve_certified_contact
+from mdr.impact.solver import solve_impact
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 Array = NDArray[np.float64]

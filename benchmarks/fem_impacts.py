@@ -10,10 +10,10 @@ import sys
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import ImpactHistory, Layer, Scene
 from fem_reference import Fem
-from mdr.effects.impact import solve_impact
+from mdr.impact.solver import solve_impact
 from tests.mdr.viscoelastic_scenes import figure_12
 
 THICKNESSES = (np.inf, 3e-3, 2e-3, 1e-3)  # m

@@ -15,10 +15,10 @@ import numpy as np
 
 from benchmarks import calculix_flat_punch
 from contact import FlatPunch, IndentationDepths, Layer, Paraboloid, Scene, StageLog
-from contact.stages import peak_memory_bytes
+from contact.answer.stages import peak_memory_bytes
 from fem_reference import Fem
-from fem_reference.discretisation import Discretisation
-from fem_reference.unknown_contact import ContactSearch
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.contact_search import ContactSearch
 from tests.mdr.viscoelastic_scenes import figure_12
 
 REPEATS = 5

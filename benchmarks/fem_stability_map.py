@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import sys
 
+from benchmarks.stability_map import Reversal, reversals
 from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from fem_reference import Fem
-from fem_reference.effects.stability_map import Reversal, reversals
 
 POISSONS_RATIOS = (0.3, 0.36, 0.365, 0.37, 0.4, 0.42, 0.45, 0.48, 0.49, 0.499, 0.5)
 # (a/h, elongation) of the maxima, and the minimum at nu = 0.365, from a separate solution of the integral equation

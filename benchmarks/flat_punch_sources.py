@@ -11,9 +11,9 @@ import time
 
 import numpy as np
 
-from bem.fft_table import FftTable
-from bem.flat_punch import FlatPunchSource
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSource
+from bem.tables.from_grid import FftTable
 from contact import Layer
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3, support="bonded")

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Adhesion,
     ContactRadii,

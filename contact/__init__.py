@@ -3,11 +3,24 @@
 Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
 """
 
-from contact.coated_pair import CoatedPair
-from contact.effects import Adhesion, Effect, KelvinVoigt, PronySeries, Relaxation, StandardSolid, Viscoelasticity
-from contact.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
-from contact.layer import Layer
-from contact.loading import (
+from contact.answer.method import Method, Supported, Unsupported
+from contact.answer.solution import (
+    UNITS,
+    ContactPath,
+    CriticalPoint,
+    DetachmentPath,
+    Fields,
+    HistoryPath,
+    ImpactHistory,
+    Solution,
+)
+from contact.answer.stages import Cost, StageLog, StageRecord
+from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
+from contact.records.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
+from contact.scene.coated_pair import CoatedPair
+from contact.scene.effects import Adhesion, Effect, KelvinVoigt, PronySeries, Relaxation, StandardSolid, Viscoelasticity
+from contact.scene.layer import Layer
+from contact.scene.loading import (
     ContactRadii,
     DepthHistory,
     Detachment,
@@ -17,8 +30,7 @@ from contact.loading import (
     Loading,
     NormalForces,
 )
-from contact.method import Method, Supported, Unsupported
-from contact.profiles import (
+from contact.scene.profiles import (
     Cone,
     FlatPunch,
     Paraboloid,
@@ -29,19 +41,7 @@ from contact.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from contact.scene import Scene
-from contact.scene_file import load_scene, scene_from_mapping, scene_to_mapping
-from contact.solution import (
-    UNITS,
-    ContactPath,
-    CriticalPoint,
-    DetachmentPath,
-    Fields,
-    HistoryPath,
-    ImpactHistory,
-    Solution,
-)
-from contact.stages import Cost, StageLog, StageRecord
+from contact.scene.scene import Scene
 
 __all__ = [
     "UNITS",

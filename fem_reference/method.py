@@ -28,12 +28,18 @@ from contact import (
     UnsupportedSceneError,
     Viscoelasticity,
 )
-from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
-from fem_reference.certified import CertifiedContact, solve_certified_contact
-from fem_reference.discretisation import Discretisation
-from fem_reference.elastic import ContactSolver, Equilibrium, contact_path, equilibria_at_radii, flat_punch_equilibria
-from fem_reference.indenter import ScaledIndenter
-from fem_reference.linear_solver import BACKENDS
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.linear_solver import BACKENDS
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
+from fem_reference.elastic.error_estimate import CertifiedContact, solve_certified_contact
+from fem_reference.elastic.path import (
+    ContactSolver,
+    Equilibrium,
+    contact_path,
+    equilibria_at_radii,
+    flat_punch_equilibria,
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +113,7 @@ class Fem:
             raise UnsupportedSceneError(support.reason)
         log = StageLog()
         if isinstance(scene.loading, Detachment):
-            from fem_reference.effects.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
+            from fem_reference.adhesion.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
 
             return detachment_path(scene, self._solver(scene, log), self.accuracy, asdict(self), log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
@@ -117,8 +123,8 @@ class Fem:
     def _solve_in_time(
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
     ) -> ImpactHistory | HistoryPath:
-        from fem_reference.effects import viscoelastic  # noqa: PLC0415 - only scenes in time load it
-        from fem_reference.effects.theatre import Theatre  # noqa: PLC0415
+        from fem_reference.in_time import solver as viscoelastic  # noqa: PLC0415 - only scenes in time load it
+        from fem_reference.in_time.setup import Theatre  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
             theatre = Theatre(scene, settings, self.solver, log)
@@ -133,7 +139,7 @@ class Fem:
     def _equilibria(self, scene: Scene, log: StageLog) -> list[Equilibrium]:
         loading, solve = scene.loading, self._solver(scene, log)
         if scene.effects:
-            from fem_reference.effects.adhesion import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
+            from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
 
             return adhesive_equilibria(scene, solve, self.accuracy)
         if isinstance(loading, ContactRadii):
@@ -149,8 +155,8 @@ class Fem:
 
     def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> Equilibrium:
         """Unknown contact set, then polish; target is a depth [m] or a force / E* [m^2]."""
-        from fem_reference.polish import polished_equilibrium  # noqa: PLC0415 - only scenes that search pay for it
-        from fem_reference.unknown_contact import find_contact  # noqa: PLC0415
+        from fem_reference.elastic.at_load import polished_equilibrium  # noqa: PLC0415 - only scenes that search pay for it
+        from fem_reference.elastic.contact_search import find_contact  # noqa: PLC0415
 
         found = find_contact(scene, target, self.discretisation, self.solver, log)
         return polished_equilibrium(scene, target, found.contact_radius * found.radius, self._solver(scene, log), log)

@@ -1,7 +1,7 @@
 """The method of dimensionality reduction: layers and half-spaces as beds of independent springs."""
 
-from mdr.assembly import SeveralContacts, equivalent_system
-from mdr.equivalent_system import EquivalentSystem
 from mdr.method import Mdr
+from mdr.springs.assembly import SeveralContacts, equivalent_system
+from mdr.springs.equivalent_system import EquivalentSystem
 
 __all__ = ["EquivalentSystem", "Mdr", "SeveralContacts", "equivalent_system"]

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, TypeAlias
 
 import numpy as np
 
-from bem.flat_punch import FlatPunchSource
+from bem.layer_equation.protocol import FlatPunchSource
 from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, NormalForces, Scene
-from contact.validation import FloatArray
-from mdr.effects.reference_springs import power_law, reference
+from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
+from mdr.springs.shared_tables import power_law, reference
 
 if TYPE_CHECKING:
-    from mdr.effects.impact_results import ImpactResults
+    from mdr.impact.results import ImpactResults
 
 Progress: TypeAlias = Callable[[int, int], None]
 
@@ -67,7 +67,7 @@ def impacts(
     progress: Progress | None = None,
 ) -> ImpactResults:
     """Restitution, contact time and peaks of many impacts."""
-    from mdr.effects.impact import impact_batch  # noqa: PLC0415  # loaded only when asked for
+    from mdr.impact.solver import impact_batch  # noqa: PLC0415  # loaded only when asked for
 
     return impact_batch(scenes, flat_punch, accuracy=accuracy, progress=progress)
 
@@ -83,7 +83,7 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
     Raises:
         InvalidInput: If a scene is no detachment.
     """
-    from mdr.effects.pull_off_batch import pull_off_groups  # noqa: PLC0415  # loaded only when asked for
+    from mdr.adhesion.batch import pull_off_groups  # noqa: PLC0415  # loaded only when asked for
 
     for number, scene in enumerate(scenes):
         if not isinstance(scene.loading, Detachment):

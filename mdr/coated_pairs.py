@@ -15,16 +15,16 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.flat_punch import FlatPunchSource
-from bem.fredholm_kernel import FredholmKernel
-from bem.integral_equation import LARGEST_FACTORISED_RATIO, RUNGS, IntegralEquation
-from bem.integral_equation_solution import IntegralEquationSolution
-from bem.volterra_factor import VolterraFactor
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
+from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO, RUNGS, IntegralEquation
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.protocol import FlatPunchSource
 from contact import CoatedPair, InvalidInput, Layer
-from contact.record import Record, record
-from contact.validation import FloatArray, in_range
-from mdr.assembly import equivalent_system
-from mdr.equivalent_system import EquivalentSystem
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray, in_range
+from mdr.springs.assembly import equivalent_system
+from mdr.springs.equivalent_system import EquivalentSystem
 
 _THINNEST = 0.05  # of the mean: a thinner coating needs finer panels than its partner
 

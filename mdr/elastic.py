@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bem.flat_punch import FlatPunchSolution, FlatPunchSource
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
-from contact.solution import Setting
-from contact.validation import FloatArray
-from mdr.assembly import contact_fields, density_error
-from mdr.covering import covering_system
-from mdr.equivalent_system import EquivalentSystem
-from mdr.surface_fields import ContactFields
+from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
+from mdr.springs.assembly import contact_fields, density_error
+from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.reach import covering_system
+from mdr.springs.surface_fields import ContactFields
 
 PRESSURE_SHARE = 4.0  # of the depth's error; measured against refined data at most 1/2, with tables 1.6
 

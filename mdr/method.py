@@ -7,13 +7,13 @@ from typing import Annotated, ClassVar, Self
 
 from pydantic import Field
 
-from bem.flat_punch import FlatPunchSource
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSource
 from contact import Scene, Solution, Supported, Unsupported, UnsupportedSceneError
-from contact.record import Record, record
-from contact.solution import Setting
-from contact.validation import in_range
-from mdr.solvers import solver_of
+from contact.answer.solution import Setting
+from contact.records.record import Record, record
+from contact.records.validation import in_range
+from mdr.dispatch import solver_of
 
 
 @record

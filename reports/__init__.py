@@ -1,17 +1,12 @@
 """What people and CI see: pages, figures, tables, the command line. Nothing is computed here.
 
-========================  ==========================================================
-`reports.command_line`    `contact-verify`, the console command
-`reports.pages`           report.html, one self-contained file
-`reports.comparison`      report of two runs side by side
-`reports.summary`         summary.md, failing rows first
-`reports.junit`           junit.xml, one testcase per case, method and claim
-`reports.annotations`     at most nine `::error` lines
-`reports.drawing`         one renderer for every figure: SVG, PNG and CSV
-`reports.style`           colours, lines and fonts, deterministic SVG
-`reports.numbers`         a number with its unit and no more digits than its uncertainty allows
-`reports.terminal`        progress and tables while a run goes on
-========================  ==========================================================
+- ``command_line``, ``commands``: `contact-verify`, the console command
+- ``pages``: report.html, comparison.html, summary.md, junit.xml, annotations
+- ``charts``: what is drawn of a case
+- ``figures``: one renderer and one style for every figure: SVG, PNG and CSV
+- ``tables``: tables before anyone prints them
+- ``words``: a number with its unit and no more digits than its uncertainty allows; names; outcomes
+- ``terminal``: progress and tables while a run goes on
 """
 
 import os

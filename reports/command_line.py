@@ -130,7 +130,7 @@ def run_suite(
 
     Ctrl-C leaves a valid partial report; --resume goes on from there.
     """
-    from cases.runner import RunOptions  # noqa: PLC0415
+    from cases.run.runner import RunOptions  # noqa: PLC0415
     from reports.commands.run import run  # noqa: PLC0415
 
     options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
@@ -153,7 +153,7 @@ def cost(
 
     Error against seconds with the Pareto front, shortest time to 1 %, 1e-4, 1e-6, 1e-8, price of a digit.
     """
-    from cases.runner import RunOptions  # noqa: PLC0415
+    from cases.run.runner import RunOptions  # noqa: PLC0415
     from reports.commands.cost import cost as run_command  # noqa: PLC0415
 
     options = RunOptions(out=out, suite=suite, jobs=1, resume=resume, time_limit=time_limit)
@@ -377,8 +377,8 @@ def schema(
     """
     import json  # noqa: PLC0415
 
-    from cases.results_files import json_schema  # noqa: PLC0415
-    from contact.scene_schema import scene_schema  # noqa: PLC0415
+    from cases.results.files import json_schema  # noqa: PLC0415
+    from contact.files.scene_schema import scene_schema  # noqa: PLC0415
 
     chosen = scene_schema() if what == "scene" else json_schema()
     typer.echo(json.dumps(chosen, indent=1, sort_keys=True))

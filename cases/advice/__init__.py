@@ -7,6 +7,6 @@
 
 from cases.advice.ablation import Ablation, ablations
 from cases.advice.advise import Advice, advise
-from cases.advice.numbers import Number, numbers
+from cases.advice.dimensionless_numbers import Number, numbers
 
 __all__ = ["Ablation", "Advice", "Number", "ablations", "advise", "numbers"]

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.work.forgetting import forget
+from cases.cost.empty_caches import forget
 from contact import ContactError, Detachment, ImpactHistory, Layer, Method, Scene, Solution
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 
 NUMBERS = (
     "coefficient_of_restitution",

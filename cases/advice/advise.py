@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cases.advice.ablation import Ablation, ablations_of, change_without, first_solution
-from cases.advice.numbers import Number, numbers
+from cases.advice.dimensionless_numbers import Number, numbers
 from contact import InvalidInput, Method, Scene, Solution
 
 

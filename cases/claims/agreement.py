@@ -4,13 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cases.case import Case, CaseScene
 from cases.claims.declared import DeclaredClaim, first_missing
-from cases.results import Claim, Kind, Quantity, SceneRun
+from cases.declare.case import Case, CaseScene
+from cases.results.records import Claim, Kind, Quantity, SceneRun
+from cases.results.status import Status
 from cases.rules.agreement import judge_agreement
 from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.status import Status
-from cases.task import Answers
+from cases.run.task import Answers
 
 
 @dataclass(frozen=True, kw_only=True)

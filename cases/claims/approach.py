@@ -5,13 +5,13 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cases.case import Case, CaseScene
 from cases.claims.declared import PerMethod, first_missing
-from cases.results import Claim, ConvergenceClass, Kind, SceneRun
+from cases.declare.case import Case, CaseScene
+from cases.results.records import Claim, ConvergenceClass, Kind, SceneRun
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.rules.order import judge_order
-from cases.status import Status
-from cases.task import Answers
+from cases.run.task import Answers
 from contact import Scene
 
 

@@ -1,16 +1,16 @@
 """What every claim states before anything is computed, and how its judgement becomes a record."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
-from typing import ClassVar
+from collections.abc import Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Self
 
-from cases.case import Case, CaseScene
-from cases.results import Claim, Kind, Origin, SceneRun
+from cases.declare.case import Case, CaseScene
+from cases.results.records import Claim, Kind, Origin, SceneRun
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
-from cases.task import Answers, Task
-from cases.tolerance import positive_tolerance
+from cases.rules.tolerance import positive_tolerance
+from cases.run.task import Answers, Task
 from contact import InvalidInput
 
 
@@ -88,6 +88,16 @@ class DeclaredClaim(ABC):
         """Return what must be solved beside the case's own scenes."""
         return ()
 
+    def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
+        """Return the claim on the scenes whose methods are all left in ``solvers``; nothing where no scene is."""
+        return self._on(
+            scene.name for scene in self.scenes_of(case) if solvers[scene.name].issuperset(self.labels(case, scene))
+        )
+
+    def _on(self, scenes: Iterable[str]) -> tuple[Self, ...]:
+        names = tuple(scenes)
+        return (replace(self, scenes=names),) if names else ()
+
     @abstractmethod
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge the finished answers, one record a scene and method."""
@@ -150,6 +160,14 @@ class PerMethod(DeclaredClaim, ABC):
     def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
         """Return the labels named, or those of every method that solves ``scene``."""
         return self.methods or tuple(use.label for use in case.methods_of(scene))
+
+    def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
+        """Return the claim on the scenes where a method is left, with the named methods that are left on all of them."""
+        scenes = [s.name for s in self.scenes_of(case) if not solvers[s.name].isdisjoint(self.labels(case, s))]
+        if not self.methods:
+            return self._on(scenes)
+        methods = tuple(label for label in self.methods if all(label in solvers[name] for name in scenes))
+        return tuple(replace(claim, methods=methods) for claim in self._on(scenes) if methods)
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of one method."""

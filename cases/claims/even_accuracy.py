@@ -4,13 +4,13 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cases.case import Case, CaseScene
 from cases.claims.declared import DeclaredClaim, first_missing
-from cases.results import Claim, Kind, SceneRun
+from cases.declare.case import Case, CaseScene
+from cases.results.records import Claim, Kind, SceneRun
+from cases.results.status import Status
 from cases.rules.invariant import judge_invariant
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
-from cases.task import Answers
+from cases.run.task import Answers
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,13 +4,13 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
-from cases.case import Case, CaseScene
 from cases.claims.declared import PerMethod, missing
-from cases.results import Claim, Kind, Quantity
+from cases.declare.case import Case, CaseScene
+from cases.results.records import Claim, Kind, Quantity
+from cases.results.status import Status
 from cases.rules.exact import judge_exact
 from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.status import Status
-from cases.task import Answers
+from cases.run.task import Answers
 from contact import InvalidInput, Scene
 
 Expected = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]

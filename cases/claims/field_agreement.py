@@ -7,15 +7,15 @@ from typing import ClassVar, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.case import Case, CaseScene
 from cases.claims.agreement import shared
 from cases.claims.declared import DeclaredClaim, first_missing
-from cases.norms import RingQuadrature, relative_difference, ring_load_difference
-from cases.results import Claim, Curve, Kind, SceneRun
+from cases.declare.case import Case, CaseScene
+from cases.results.records import Claim, Curve, Kind, SceneRun
+from cases.results.status import Status
 from cases.rules.agreement import judge_agreement
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
-from cases.task import Answers, Task
+from cases.rules.norms import RingQuadrature, relative_difference, ring_load_difference
+from cases.run.task import Answers, Task
 
 Array = NDArray[np.float64]
 Norm = Literal["weighted L2", "ring loads"]

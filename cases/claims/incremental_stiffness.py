@@ -12,12 +12,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from cases.case import Case
 from cases.claims.declared import PerMethod, missing
-from cases.results import Claim, Kind, SceneRun
+from cases.declare.case import Case
+from cases.results.records import Claim, Kind, SceneRun
 from cases.rules.invariant import judge_invariant
 from cases.rules.judgement import Judgement, worst_judgement
-from cases.task import Answers
+from cases.run.task import Answers
 
 
 def chebyshev_radii(lowest: float, highest: float, count: int) -> NDArray[np.float64]:

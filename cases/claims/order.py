@@ -4,15 +4,15 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from cases.case import Case, CaseScene
 from cases.claims.declared import DeclaredClaim, first_missing
 from cases.convergence.study import Refinements, study_of
-from cases.methods import MethodUse
-from cases.results import Claim, ConvergenceStudy, Kind, SceneRun
+from cases.declare.case import Case, CaseScene
+from cases.declare.methods import MethodUse
+from cases.results.records import Claim, ConvergenceStudy, Kind, SceneRun
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.rules.order import judge_digits, judge_order
-from cases.status import Status
-from cases.task import Answers, Task
+from cases.run.task import Answers, Task
 from contact import Scene
 
 

@@ -8,7 +8,7 @@ from cases.convergence.extrapolation import extrapolated, grid_convergence_index
 from cases.convergence.least_squares import fit
 from cases.convergence.observed_order import observed_order
 from cases.convergence.spectral import digits_per_refinement
-from cases.results import ConvergenceClass, ConvergenceStudy, Grid, Quantity
+from cases.results.records import ConvergenceClass, ConvergenceStudy, Grid, Quantity
 from contact import InvalidInput
 
 _HAS_ORDER = {ConvergenceClass.MONOTONE, ConvergenceClass.OSCILLATORY, ConvergenceClass.DIVERGENT}

@@ -13,15 +13,15 @@ from typing import Final, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
+from cases.campaigns.campaign import IMPACT_NUMBERS
+from cases.campaigns.random_scenes import Family, random_scene
+from cases.campaigns.referee import second_opinion
+from cases.cost.empty_caches import forget
+from cases.declare.methods import build
 from cases.evidence.kinds import BANDS, band_above, kind_of, rough_radius
 from cases.evidence.records import Evidence, Measurement
-from cases.methods import build
-from cases.stability.campaign import IMPACT_NUMBERS
-from cases.stability.random_scenes import Family, random_scene
-from cases.stability.second_opinion import second_opinion
-from cases.work.forgetting import forget
 from contact import ContactError, ContactPath, ImpactHistory, Scene, Solution
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 
 A = TypeVar("A")
 

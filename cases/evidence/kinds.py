@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from cases.stability.half_space_forms import equivalent_profile
+from cases.campaigns.referee_profiles import equivalent_profile
 from contact import (
     Adhesion,
     ContactRadii,
@@ -19,7 +19,7 @@ from contact import (
     NormalForces,
     Scene,
 )
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 
 BANDS: Final = (1.0, 10.0, 25.0)  # upper ends of a/h; evidence reaches as far as an independent reference
 _TRIALS: Final = np.geomspace(1e-9, 1e9, 400)  # radii in units of a length of the scene

@@ -12,9 +12,9 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
-from cases.results_files import write_whole
+from cases.results.files import write_whole
 from contact import InvalidInput
-from contact.record import shown
+from contact.records.record import shown
 
 _RECORD = ConfigDict(extra="forbid")
 _Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]

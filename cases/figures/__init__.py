@@ -11,7 +11,7 @@ import importlib
 from collections.abc import Iterable
 from dataclasses import replace
 
-from cases.results import Figure, Series
+from cases.results.records import Figure, Series
 
 
 def paper_figure(number: int, *overlays: Iterable[Series]) -> Figure:

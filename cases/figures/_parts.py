@@ -8,11 +8,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.flat_punch import FlatPunchSolution
-from bem.integral_equation import IntegralEquation
-from cases.results import Figure, Series
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSolution
+from cases.results.records import Figure, Series
 from contact import Layer
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 
 SOURCE = IntegralEquation(nodes=16)  # errors of 1e-8, far below a line, in a third of the time
 MDR = "mdr"

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from cases.figures._parts import LARGEST_RATIO, UNBONDED, closed_form, layer, mdr_line, name_of, percent, punch
-from cases.results import Figure, Panel, Series
+from cases.results.records import Figure, Panel, Series
 from contact import Layer
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 161)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from cases.figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch
-from cases.results import Figure, Panel
+from cases.results.records import Figure, Panel
 from contact import Layer, Paraboloid
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 from mdr import equivalent_system
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))

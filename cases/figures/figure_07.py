@@ -6,9 +6,9 @@ import numpy as np
 
 from cases.figures._parts import SOURCE, UNBONDED, layer, mdr_line, name_of
 from cases.library._truncated_cone_limits import pressure_limits, profile_limits
-from cases.results import Figure, Panel
+from cases.results.records import Figure, Panel
 from contact import ContactRadii, Layer, Scene, TruncatedCone
-from contact.validation import FloatArray
+from contact.records.validation import FloatArray
 from mdr import equivalent_system
 from mdr.elastic import solve_elastic
 

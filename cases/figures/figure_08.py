@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from bem.flat_punch import FlatPunchSource
+from bem.layer_equation.protocol import FlatPunchSource
 from cases.figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch
 from cases.figures.figure_03 import thin_layer_stiffness
-from cases.results import Figure, Panel, Series
+from cases.results.records import Figure, Panel, Series
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
-from contact.validation import FloatArray
-from mdr.effects.adhesion import solve_detachment
+from contact.records.validation import FloatArray
+from mdr.adhesion.solver import solve_detachment
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.365), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 241)

@@ -7,9 +7,9 @@ import numpy as np
 from cases.figures._parts import SOURCE, layer, mdr_line
 from cases.figures.figure_04 import second_maximum
 from cases.figures.figure_08 import reversals
-from cases.results import Figure, Panel, Series
+from cases.results.records import Figure, Panel, Series
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
-from mdr.effects.adhesion import solve_detachment
+from mdr.adhesion.solver import solve_detachment
 
 RATIOS = (0.1, 0.3, 0.46, 1.0, 2.0, 4.0)  # a*/h
 _RADIUS = 1.0  # a*, the same punch on thinner and thinner layers

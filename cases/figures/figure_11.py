@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from cases.figures._parts import UNBONDED, closed_form, layer, mdr_line, name_of, punch
-from cases.results import Figure, Panel, Series
-from contact.validation import FloatArray
-from mdr.effects.flat_punch_restitution import kelvin_voigt_restitution
+from cases.results.records import Figure, Panel, Series
+from contact.records.validation import FloatArray
+from mdr.closed_forms.flat_punch_restitution import kelvin_voigt_restitution
 
 LAYERS = (layer(0.5), UNBONDED)
 DAMPINGS = (0.05, 0.1, 0.3)  # D on the half-space

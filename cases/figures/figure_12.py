@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 
 from cases.figures._parts import HALF_SPACE, SOURCE, mdr_line
-from cases.results import Figure, Panel
+from cases.results.records import Figure, Panel
 from contact import Impact, ImpactHistory, Layer, Paraboloid, Scene, StandardSolid
-from mdr.effects.impact import solve_impact
+from mdr.impact.solver import solve_impact
 
 THICKNESSES = (math.inf, 3e-3, 2e-3, 1e-3)  # m
 MAXWELL_MODULUS = 7.5e6  # G_1 [Pa]

@@ -6,10 +6,10 @@ from dataclasses import replace
 from pathlib import Path
 
 from cases.gate.baseline import write_baseline
-from cases.gate.circumstances import Circumstances
 from cases.gate.history import append_history
 from cases.gate.proposal import Change, Proposal
-from cases.results import Acceptance, CaseResult, Kind, RunResult
+from cases.gate.write_permission import Circumstances
+from cases.results.records import Acceptance, CaseResult, Kind, RunResult
 from contact import InvalidInput
 
 

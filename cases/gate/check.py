@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from cases.results import Claim, Kind, Origin, SceneRun
+from cases.results.records import Claim, Kind, Origin, SceneRun
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
 
 
 @dataclass(frozen=True, kw_only=True)

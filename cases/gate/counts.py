@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters
 from cases.gate.check import Check, extra, missing
-from cases.results import SceneRun
+from cases.results.records import SceneRun
 from cases.rules.regression import judge_counter, permitted_count_change
 
 UNKNOWNS = "unknowns"

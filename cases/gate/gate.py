@@ -7,7 +7,7 @@ from cases.gate.baseline import Baseline
 from cases.gate.counts import count_checks
 from cases.gate.ladders import ladder_claims
 from cases.gate.values import value_checks
-from cases.results import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult, SceneRun
+from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult, SceneRun
 
 Watched = Callable[[str, SceneRun], bool]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
-from cases.results import Acceptance
+from cases.results.records import Acceptance
 from contact import InvalidInput
 
 _ACCEPTANCE: TypeAdapter[Acceptance] = TypeAdapter(Acceptance)

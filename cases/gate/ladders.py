@@ -11,12 +11,12 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from cases.gate.baseline import REMEDY, digest_of
-from cases.gate.circumstances import Circumstances
 from cases.gate.history import append_history
-from cases.results import Acceptance, CaseResult, Claim, Kind, Ladder, Origin, Verdict
-from cases.results_files import write_whole
-from cases.stability.ladders import worsened
-from cases.status import Status
+from cases.gate.write_permission import Circumstances
+from cases.ladders.ladders import worsened
+from cases.results.files import write_whole
+from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, Origin, Verdict
+from cases.results.status import Status
 from contact import InvalidInput
 
 _LADDERS: TypeAdapter[tuple[Ladder, ...]] = TypeAdapter(tuple[Ladder, ...])

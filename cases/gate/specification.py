@@ -4,7 +4,7 @@ import hashlib
 import json
 from typing import Any
 
-from cases.results import CaseResult, Mapping, SceneRun
+from cases.results.records import CaseResult, Mapping, SceneRun
 
 
 def specification(case: CaseResult, run: SceneRun) -> str:

@@ -3,11 +3,11 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from cases.case import CaseScene
 from cases.claims.agreement import Agreement
 from cases.claims.declared import Reason
-from cases.methods import MethodUse
-from cases.results import Origin
+from cases.declare.case import CaseScene
+from cases.declare.methods import MethodUse
+from cases.results.records import Origin
 
 MDR = MethodUse(label="mdr")
 FEM = MethodUse(label="fem", settings={"order": 4, "growth": 0.4, "edge_cell": 1e-7, "truncation": 1e-10})

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.library._layers import layer
-from cases.results import Series
+from cases.results.records import Series
 from contact import TruncatedCone
-from mdr.asymptotic_truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
+from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
 
 Array = NDArray[np.float64]
 

@@ -5,15 +5,15 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.case import Case, CaseScene
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
+from cases.cost.settings import elastic_costs
+from cases.declare.case import Case, CaseScene
 from cases.figures import paper_figure
 from cases.library._compared import BEM, BOUNDARY_PUNCHES, EVERY, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
-from cases.results import Figure, Origin, Series
-from cases.task import Answers, Sampling
-from cases.work.settings import elastic_costs
+from cases.results.records import Figure, Origin, Series
+from cases.run.task import Answers, Sampling
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 
 Array = NDArray[np.float64]

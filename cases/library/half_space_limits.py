@@ -4,15 +4,15 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.advice.study import AblationStudy
-from cases.case import Case, CaseScene
+from cases.advice.effects import AblationStudy
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
+from cases.cost.settings import elastic_costs
+from cases.declare.case import Case, CaseScene
 from cases.library._compared import EVERY
 from cases.library._layers import LAYERS, THICKNESS, half_space, layer, prescribed_radii, scene_name
-from cases.results import Origin
-from cases.work.settings import elastic_costs
+from cases.results.records import Origin
 from contact import (
     Cone,
     ContactRadii,

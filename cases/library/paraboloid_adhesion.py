@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from cases.advice.study import AblationStudy
-from cases.case import Case, CaseScene
+from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
+from cases.cost.settings import detachment_costs
+from cases.declare.case import Case, CaseScene
 from cases.library._compared import (
     BEM,
     BOUNDARY_ELEMENTS,
@@ -19,8 +20,7 @@ from cases.library._compared import (
     with_reason,
 )
 from cases.library._layers import half_space, layer
-from cases.results import Origin
-from cases.work.settings import detachment_costs
+from cases.results.records import Origin
 from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
 
 RADIUS_OF_CURVATURE = 1e-2  # m

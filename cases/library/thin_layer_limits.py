@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.case import Case, CaseScene
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
+from cases.cost.settings import elastic_costs
+from cases.declare.case import Case, CaseScene
 from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, layer, prescribed_radii, scene_name
-from cases.results import Origin
-from cases.work.settings import elastic_costs
+from cases.results.records import Origin
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
 LABELS = ("unbonded", "bonded nu=0.3", "bonded nu=0.45", "bonded nu=0.5")

@@ -6,15 +6,16 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.advice.study import AblationStudy
-from cases.case import Case, CaseScene
+from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
 from cases.claims.incremental_stiffness import IncrementalStiffness, chebyshev_radii
 from cases.claims.order import Order
 from cases.claims.residual import Residual
-from cases.claims.twin import Twin
+from cases.claims.scaling_law import Twin
+from cases.cost.settings import elastic_costs
+from cases.declare.case import Case, CaseScene
 from cases.figures import paper_figure
 from cases.library._compared import (
     BEM_TOLERANCE,
@@ -41,9 +42,8 @@ from cases.library._layers import (
     scene_name,
     written_out_modulus,
 )
-from cases.results import Figure, Origin, SceneRun, Series
-from cases.task import Answers, Sampling
-from cases.work.settings import elastic_costs
+from cases.results.records import Figure, Origin, SceneRun, Series
+from cases.run.task import Answers, Sampling
 from contact import ContactRadii, Scene, TruncatedCone
 
 SLOPE = 0.1

@@ -2,10 +2,10 @@
 
 import math
 
-from cases.results import Verdict
+from cases.results.records import Verdict
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
-from cases.tolerance import positive_tolerance
+from cases.rules.tolerance import positive_tolerance
 
 _STATUS = {
     Verdict.AGREE: Status.PASS,

@@ -2,9 +2,9 @@
 
 import math
 
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared, passed_or_failed
-from cases.status import Status
-from cases.tolerance import positive_tolerance
+from cases.rules.tolerance import positive_tolerance
 
 
 def judge_exact(value: float, expected: float, *, scale: float, tolerance: float) -> Judgement:

@@ -1,7 +1,7 @@
 """A law of the mechanics: its residual must vanish to within what round-off and discretisation allow."""
 
 from cases.rules.judgement import Judgement, passed_or_failed
-from cases.tolerance import positive_tolerance
+from cases.rules.tolerance import positive_tolerance
 
 
 def judge_invariant(residual: float, *, tolerance: float) -> Judgement:

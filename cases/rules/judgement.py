@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cases.results import Verdict
-from cases.status import Status, worst
+from cases.results.records import Verdict
+from cases.results.status import Status, worst
 from contact import InvalidInput
 
 

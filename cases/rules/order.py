@@ -1,9 +1,9 @@
 """The observed order of convergence against the formal one of case, quantity and mesh family."""
 
 from cases.convergence.observed_order import order_is_accepted
-from cases.results import ConvergenceClass, Verdict
+from cases.results.records import ConvergenceClass, Verdict
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
 
 _NO_ORDER = {ConvergenceClass.FLOOR, ConvergenceClass.TOO_FEW}
 

@@ -2,10 +2,10 @@
 
 import math
 
-from cases.results import Verdict
+from cases.results.records import Verdict
+from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.status import Status
-from cases.tolerance import permitted_difference
+from cases.rules.tolerance import permitted_difference
 
 
 def judge_regression(value: float, baseline: float, *, scale: float, rtol: float, atol: float = 0.0) -> Judgement:

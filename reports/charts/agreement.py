@@ -7,12 +7,12 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results import CaseResult, Claim, Kind
-from reports.method_names import display_name
-from reports.outcomes import tone_of
-from reports.panels import cut
-from reports.plates import Cell, Plate
-from reports.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
+from cases.results.records import CaseResult, Claim, Kind
+from reports.figures.axes_grid import cut
+from reports.figures.figure import Cell, Plate
+from reports.figures.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
+from reports.words.method_names import display_name
+from reports.words.outcomes import tone_of
 
 ROWS_A_PLATE = 40
 MOST_PLATES = 2  # on the page; the data of the last one hold the rest as well

@@ -6,11 +6,11 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results import CaseResult, ConvergenceStudy
-from reports.method_names import display_name
-from reports.panels import cut, panel_grid
-from reports.plates import Cell, Plate
-from reports.style import GREY, look_of, mark_decades
+from cases.results.records import CaseResult, ConvergenceStudy
+from reports.figures.axes_grid import cut, panel_grid
+from reports.figures.figure import Cell, Plate
+from reports.figures.style import GREY, look_of, mark_decades
+from reports.words.method_names import display_name
 
 PANELS_A_PLATE = 6
 BAR_WIDTH = 0.16  # decades of length

@@ -6,11 +6,11 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results import CaseResult, CoverageRecord
-from reports.method_names import display_name
-from reports.panels import panel_grid
-from reports.plates import Plate
-from reports.style import BLACK, look_of, mark_decades
+from cases.results.records import CaseResult, CoverageRecord
+from reports.figures.axes_grid import panel_grid
+from reports.figures.figure import Plate
+from reports.figures.style import BLACK, look_of, mark_decades
+from reports.words.method_names import display_name
 
 COLUMNS = ("family", "method", "settings", "quantity", "share", "stated_over_true")
 CAPTION = (

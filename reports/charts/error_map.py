@@ -10,11 +10,11 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Rectangle
 
-from cases.results import CaseResult, ErrorMap
-from reports.names import file_name
-from reports.panels import cut, panel_grid
-from reports.plates import Plate
-from reports.style import BLACK, mark_decades, power_of_ten
+from cases.results.records import CaseResult, ErrorMap
+from reports.figures.axes_grid import cut, panel_grid
+from reports.figures.figure import Plate
+from reports.figures.style import BLACK, mark_decades, power_of_ten
+from reports.words.file_names import file_name
 
 GOOD = 1e-2
 LARGEST, SMALLEST = 1.0, 1e-6

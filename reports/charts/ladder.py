@@ -8,13 +8,13 @@ from itertools import groupby
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results import CaseResult, Ladder, Rung
-from cases.status import Status
-from reports.method_names import display_name
-from reports.outcomes import worded
-from reports.panels import cut, panel_grid
-from reports.plates import Cell, Plate
-from reports.style import look_of, mark_decades
+from cases.results.records import CaseResult, Ladder, Rung
+from cases.results.status import Status
+from reports.figures.axes_grid import cut, panel_grid
+from reports.figures.figure import Cell, Plate
+from reports.figures.style import look_of, mark_decades
+from reports.words.method_names import display_name
+from reports.words.outcomes import worded
 
 DOUBLE_DIGITS = -math.log10(2.0**-53)
 PANELS_A_PLATE = 6

@@ -7,11 +7,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results import CaseResult, ScalingFit
-from reports.method_names import display_name
-from reports.panels import panel_grid
-from reports.plates import Plate
-from reports.style import GREY, look_of, mark_decades
+from cases.results.records import CaseResult, ScalingFit
+from reports.figures.axes_grid import panel_grid
+from reports.figures.figure import Plate
+from reports.figures.style import GREY, look_of, mark_decades
+from reports.words.method_names import display_name
 
 CURVE = 60  # points of a fitted curve
 COLUMNS = ("method", "size", "value", "cpu_seconds")

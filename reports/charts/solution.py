@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cases.results import Figure, Panel, Series
+from cases.results.records import Figure, Panel, Series
 from contact import UNITS, HistoryPath, ImpactHistory, Solution
-from reports.numbers import prefix_for
-from reports.solution_table import SYMBOLS
+from reports.tables.solution_table import SYMBOLS
+from reports.words.numbers import prefix_for
 
 COLUMNS_DRAWN = {
     "force over depth": ("indentation_depth", "normal_force"),

@@ -6,12 +6,12 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results import CaseResult, WorkPoint, WorkPrecision
-from reports.method_names import display_name
-from reports.names import file_name
-from reports.numbers import small
-from reports.plates import Cell, Plate
-from reports.style import BLACK, FAINT, GREY, look_of, mark_decades
+from cases.results.records import CaseResult, WorkPoint, WorkPrecision
+from reports.figures.figure import Cell, Plate
+from reports.figures.style import BLACK, FAINT, GREY, look_of, mark_decades
+from reports.words.file_names import file_name
+from reports.words.method_names import display_name
+from reports.words.numbers import small
 
 COLUMNS = (
     "scene", "quantity", "method", "setting", "status", "error", "bound", "seconds", "lower_quartile", "upper_quartile",

@@ -3,22 +3,22 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cases.case import Case
+from cases.declare.case import Case
+from cases.declare.registry import load_cases, select
+from cases.declare.selection import nightly_only
 from cases.gate.accept import accept, refusals, refusals_beforehand
-from cases.gate.against import SOURCE
 from cases.gate.baseline import read_baselines
-from cases.gate.circumstances import circumstances
 from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
 from cases.gate.proposal import Change, Proposal, propose
 from cases.gate.spread import measured_spreads
-from cases.narrow import nightly_only
-from cases.registry import load_cases, select
-from cases.results import CaseResult, RunResult
-from cases.results_files import read_run
+from cases.gate.write_permission import circumstances
+from cases.race.against import SOURCE
+from cases.results.files import read_run
+from cases.results.records import CaseResult, RunResult
 from contact import InvalidInput
-from reports.numbers import small
-from reports.tables import Table
-from reports.terminal import STYLES, console, show_table
+from reports.tables.table import Table
+from reports.terminal.terminal import STYLES, console, show_table
+from reports.words.numbers import small
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,13 +2,13 @@
 
 from dataclasses import replace
 
-from cases.registry import load_cases, select
-from cases.runner import RunOptions, run_cases
-from cases.status import Status
+from cases.declare.registry import load_cases, select
+from cases.results.status import Status
+from cases.run.runner import RunOptions, run_cases
 from reports.commands.report import write_pages
-from reports.cost_tables import shortest_times, speed_ups
-from reports.progress import RunDisplay
-from reports.terminal import console, show_table
+from reports.tables.cost_tables import shortest_times, speed_ups
+from reports.terminal.progress import RunDisplay
+from reports.terminal.terminal import console, show_table
 
 FAILED = 1
 

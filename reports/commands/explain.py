@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from cases.keys import content_key, key_parts
-from cases.registry import load_cases
-from cases.results_files import read_run
-from cases.store import TaskStore
-from cases.task import Task
+from cases.declare.registry import load_cases
+from cases.results.files import read_run
+from cases.run.keys import content_key, key_parts
+from cases.run.store import TaskStore
+from cases.run.task import Task
 from contact import InvalidInput
-from reports.terminal import console
+from reports.terminal.terminal import console
 
 
 def explain(key: str, out: Path) -> None:

@@ -4,18 +4,18 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from cases.case import Case
-from cases.gate.against import with_times_against
+from cases.declare.case import Case
+from cases.declare.registry import load_cases, select
+from cases.declare.selection import nightly_only
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.ladders import read_ladders
-from cases.gate.race import PAIRS
-from cases.narrow import nightly_only
-from cases.registry import load_cases, select
-from cases.results import RunResult, SceneRun
-from cases.results_files import read_run, write_run
-from cases.status import ExitCode, exit_code
+from cases.race.against import with_times_against
+from cases.race.race import PAIRS
+from cases.results.files import read_run, write_run
+from cases.results.records import RunResult, SceneRun
+from cases.results.status import ExitCode, exit_code
 from contact import InvalidInput
 from reports.commands.report import write_pages
 from reports.commands.run import show_verdict

@@ -3,13 +3,12 @@
 from rich.padding import Padding
 from rich.text import Text
 
-from cases.case import Case, CaseScene
-from cases.claims.declared import DeclaredClaim
-from cases.registry import load_cases, select
-from reports.method_names import display_name
-from reports.numbers import small
-from reports.tables import Table
-from reports.terminal import console, show_table
+from cases.declare.case import Case, CaseScene, ClaimOfCase
+from cases.declare.registry import load_cases, select
+from reports.tables.table import Table
+from reports.terminal.terminal import console, show_table
+from reports.words.method_names import display_name
+from reports.words.numbers import small
 
 
 def list_cases(suite: str) -> None:
@@ -74,7 +73,7 @@ def claim_table(case: Case) -> Table:
     return Table(title="Claims", note="", heads=heads, rows=tuple(_claim_row(c) for c in case.claims), words=7)
 
 
-def _claim_row(claim: DeclaredClaim) -> tuple[str, ...]:
+def _claim_row(claim: ClaimOfCase) -> tuple[str, ...]:
     reason = claim.reason
     origin = f"{reason.origin}: {reason.source}"
     names = (str(claim.kind), claim.name, claim.quantity, small(claim.tolerance))

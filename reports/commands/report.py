@@ -2,15 +2,15 @@
 
 from pathlib import Path
 
-from cases.comparison import compare
-from cases.results import RunResult
-from cases.results_files import read_run, write_whole
-from reports import outcomes
-from reports.comparison import claim_table, headline, number_table, write_comparison
-from reports.junit import junit_text
-from reports.pages import write_report
-from reports.summary import summary_text
-from reports.terminal import STYLES, console, show_table
+from cases.results.compare_runs import compare
+from cases.results.files import read_run, write_whole
+from cases.results.records import RunResult
+from reports.pages.comparison import claim_table, headline, number_table, write_comparison
+from reports.pages.junit import junit_text
+from reports.pages.report import write_report
+from reports.pages.summary import summary_text
+from reports.terminal.terminal import STYLES, console, show_table
+from reports.words import outcomes
 
 
 def rebuild(directory: Path) -> None:

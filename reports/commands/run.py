@@ -6,20 +6,20 @@ from pathlib import Path
 
 from rich.text import Text
 
-from cases.executors import by_name
-from cases.narrow import only_methods
-from cases.registry import load_cases, select
-from cases.results import RunResult
-from cases.runner import RunOptions, run_cases
-from cases.status import ExitCode, exit_code
-from cases.studies import with_studies
-from reports.annotations import annotation_lines
+from cases.declare.registry import load_cases, select
+from cases.declare.selection import only_methods
+from cases.declare.suites import with_studies
+from cases.results.records import RunResult
+from cases.results.status import ExitCode, exit_code
+from cases.run.executors import by_name
+from cases.run.runner import RunOptions, run_cases
 from reports.commands.report import write_pages
-from reports.matrix import run_matrix
-from reports.outcomes import headline, outcomes
-from reports.progress import RunDisplay
-from reports.tables import Table
-from reports.terminal import STYLES, console, show_table
+from reports.pages.annotations import annotation_lines
+from reports.pages.matrix import run_matrix
+from reports.tables.table import Table
+from reports.terminal.progress import RunDisplay
+from reports.terminal.terminal import STYLES, console, show_table
+from reports.words.outcomes import headline, outcomes
 
 WORST_SHOWN = 12
 

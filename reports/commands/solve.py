@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.methods import build, load
+from cases.declare.methods import build, load
 from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
-from reports.numbers import duration
-from reports.solution_table import solution_csv, solution_facts, solution_table
-from reports.terminal import console, show_facts, show_table
+from reports.tables.solution_table import solution_csv, solution_facts, solution_table
+from reports.terminal.terminal import console, show_facts, show_table
+from reports.words.numbers import duration
 
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG"}
 
@@ -102,11 +102,11 @@ def _write(solution: Solution, path: Path) -> None:
     if path.suffix == ".csv":
         path.write_text(solution_csv(solution), encoding="utf-8")
     elif path.suffix == ".h5":
-        from contact.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
+        from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
 
         save_solution(path, solution)
     else:
         from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
-        from reports.drawing import figure_svg  # noqa: PLC0415 - as above
+        from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
         path.write_text(figure_svg(solution_figure(solution)), encoding="utf-8")

@@ -12,9 +12,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("contact", "bem", "mdr", "fem_reference", "cases", "reports")
 BORDERS = {
-    "gmsh": "fem_reference/geometry.py",
-    "h5py": "contact/storage.py",
-    "pyfftw": "bem/transforms.py",
+    "gmsh": "fem_reference/discrete_layer/mesh.py",
+    "h5py": "contact/files/storage.py",
+    "pyfftw": "bem/grid/transforms.py",
     "skfem": "fem_reference/",
     "meshio": "fem_reference/",
     "matplotlib": "reports/",

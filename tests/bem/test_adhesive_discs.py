@@ -3,8 +3,8 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from bem.adhering_disc import AdheringDisc
-from bem.direct import Bem
+from bem.adhesion.disc import AdheringDisc
+from bem.method import Bem
 from contact import (
     Adhesion,
     Cone,

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from bem.conjugate_gradients import complementarity_residual, solve_contact, solve_on_contact
-from bem.grid import prolonged
-from bem.operators import FreeSpaceOperator, PeriodicOperator
-from bem.pixel_disc import disc
+from bem.grid.calibrated_disc import disc
+from bem.grid.conjugate_gradients import complementarity_residual, solve_contact, solve_on_contact
+from bem.grid.operators import FreeSpaceOperator, PeriodicOperator
+from bem.grid.quadrant import prolonged
 from contact import InvalidInput, Layer, NotConvergedError
 
 HALF_SPACE = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.0)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from bem.detachment import CELL_ENERGY, AdheringIndenter, dilated, rim, strength
-from bem.direct import Bem
-from bem.grid import Grid
-from bem.influence import rectangle_influence
-from bem.operators import FreeSpaceOperator
-from bem.pixel_disc import disc
+from bem.adhesion.cell_by_cell.indenter import CELL_ENERGY, AdheringIndenter, dilated, rim, strength
+from bem.grid.calibrated_disc import disc
+from bem.grid.influence import rectangle_influence
+from bem.grid.operators import FreeSpaceOperator
+from bem.grid.quadrant import Grid
+from bem.method import Bem
 from contact import (
     Adhesion,
     Detachment,
@@ -146,7 +146,7 @@ def test_loading_follows_the_unloading_branch():
 
 
 def test_a_wrong_constant_is_seen(monkeypatch):
-    monkeypatch.setattr("bem.detachment.CELL_ENERGY", 2.0 * CELL_ENERGY)
+    monkeypatch.setattr("bem.adhesion.cell_by_cell.indenter.CELL_ENERGY", 2.0 * CELL_ENERGY)
     path = Bem(points=96, adhesion="cells").solve(scene(HALF_SPACE, FlatPunch(radius=1e-3)))
     assert path.pull_off_force != pytest.approx(-np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9), rel=0.2, abs=0.0)
 

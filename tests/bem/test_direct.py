@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from bem.contact_edge import slope
-from bem.direct import Bem
+from bem.grid.contact_edge import slope
+from bem.method import Bem
 from contact import (
     Adhesion,
     Cone,
@@ -182,7 +182,7 @@ def test_a_thin_layer_costs_no_accuracy(ratio):
 
 
 def test_a_wrong_slope_is_seen(monkeypatch):
-    monkeypatch.setattr("bem.pressed_state.slope", lambda *values: 1.02 * slope(*values))
+    monkeypatch.setattr("bem.grid.equilibrium.slope", lambda *values: 1.02 * slope(*values))
     path = solve(PARABOLOID, IndentationDepths([1e-5]), HALF_SPACE)
     assert path.contact_radius[0] != pytest.approx(1e-3, rel=5e-3, abs=0.0)  # a^2 = R delta
 

@@ -3,10 +3,10 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bem.fft_table import FftTable
-from bem.flat_punch import FlatPunchSolution, FlatPunchSource
-from bem.flat_punch_table import FlatPunchTable, chebyshev_radii
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+from bem.tables.from_grid import FftTable
+from bem.tables.table import FlatPunchTable, chebyshev_radii
 from contact import InvalidInput, Layer
 
 KERNELS = [("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.0)]

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bem.fourier_energy import energy_matrix
-from bem.fredholm_kernel import FredholmKernel
-from bem.panels import gauss_nodes
+from bem.layer_equation.fourier_energy import energy_matrix
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.polynomials.gauss_panels import gauss_nodes
 
 PANELS, WIDTH, COUNT = 10, 4.0, 32
 

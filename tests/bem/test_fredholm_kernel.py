@@ -4,9 +4,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.fredholm_kernel import FredholmKernel
-from bem.kernels import compliance_kernel, zero_mode
-from bem.panels import gauss_nodes
+from bem.kernels.layer import compliance_kernel, zero_mode
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.polynomials.gauss_panels import gauss_nodes
 
 LAYERS = [("unbonded", 0.3), ("bonded", 0.0), ("bonded", 0.3), ("bonded", 0.5)]
 ROUNDING = 2e-15  # 380 terms of size below 1 are added

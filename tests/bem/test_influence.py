@@ -2,14 +2,14 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.influence import (
+from bem.grid.influence import (
     REACH,
     band_limited_influence,
     correction_function,
     layer_influence,
     rectangle_influence,
 )
-from bem.kernels import one_minus_kernel
+from bem.kernels.layer import one_minus_kernel
 
 KERNELS = [("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.0)]
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bem.flat_punch import FlatPunchSolution, FlatPunchSource
-from bem.integral_equation import LARGEST_RATIO, IntegralEquation
+from bem.layer_equation.flat_punch_source import LARGEST_RATIO, IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import InvalidInput, Layer
 
 LAYERS = [

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bem.direct_density import _resolved
-from bem.integral_equation_method import IntegralEquationMethod
+from bem.layer_equation.method import IntegralEquationMethod
+from bem.layer_equation.one_radius import _resolved
 from contact import (
     Adhesion,
     Cone,

@@ -4,7 +4,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.kernels import compliance_kernel, compliance_over_wavenumber, one_minus_kernel, zero_mode
+from bem.kernels.layer import compliance_kernel, compliance_over_wavenumber, one_minus_kernel, zero_mode
 
 # Rounding analysis: a dozen operations on positive numbers plus exp of an exact argument, half an ulp each.
 FEW_ULPS = 8 * np.finfo(float).eps

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-import bem.large_ratio
-from bem.fredholm_kernel import FredholmKernel
-from bem.integral_equation import IntegralEquation
-from bem.large_ratio import DENSITY_TRUNCATION, PANEL_WIDTH, LargeRatioSolution, _trial_densities
-from bem.panels import gauss_nodes
+import bem.layer_equation.thin_layers
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.layer_equation.thin_layers import DENSITY_TRUNCATION, PANEL_WIDTH, LargeRatioSolution, _trial_densities
+from bem.polynomials.gauss_panels import gauss_nodes
 from contact import InvalidInput, Layer
 
 LAYERS = {
@@ -24,7 +24,7 @@ def test_other_panels_give_the_same_within_the_stated_error(name, monkeypatch):
     """The density that enters differs in the fourth digit at a/h = 1000; the Ritz value does not in the twelfth."""
     layer = LAYERS[name]
     solution = IntegralEquation().solution(layer, 1000.0)
-    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 40)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "PANEL_NODES", 40)
     other = LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: solution.near)
     assert other.log_stiffness is not solution.log_stiffness
     assert solution.error < 1e-8
@@ -40,8 +40,8 @@ def test_the_stated_error_covers_the_turn_from_film_to_bed(monkeypatch):
     solution, ratios = IntegralEquation().solution(LAYERS["bonded 0.4999"], 1000.0), np.geomspace(161.0, 1000.0, 300)
     stiffness, springs = solution.normalized_contact_stiffness(ratios), solution.normalized_spring_stiffness(ratios)
     error = solution.relative_error(ratios)
-    monkeypatch.setattr(bem.large_ratio, "RADII", 60)
-    monkeypatch.setattr(bem.large_ratio, "DEGREE", 36)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "RADII", 60)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "DEGREE", 36)
     other = LargeRatioSolution("bonded", 0.4999, lambda: solution.near)
     assert np.all(np.abs(stiffness / other.normalized_contact_stiffness(ratios) - 1) < error)
     assert np.all(np.abs(springs / other.normalized_spring_stiffness(ratios) - 1) < error)
@@ -49,9 +49,9 @@ def test_the_stated_error_covers_the_turn_from_film_to_bed(monkeypatch):
 
 def test_one_solution_serves_the_densities_of_all_radii(monkeypatch):
     """A phi_i = P_i(t^2/a^2) on [0, a] for each radius by itself."""
-    monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "LARGEST_RATIO", 40.0)
     ratios = np.array([16.0, 24.0, 40.0])
-    nodes, weights = gauss_nodes(bem.large_ratio.PANEL_NODES)
+    nodes, weights = gauss_nodes(bem.layer_equation.thin_layers.PANEL_NODES)
     factor = LargeRatioSolution("unbonded", 0.0, lambda: None).wide.factor
     for ratio, trial in zip(ratios, _trial_densities(factor, ratios), strict=True):
         panels = int(ratio / PANEL_WIDTH)
@@ -91,7 +91,7 @@ def test_a_ratio_beyond_the_range_is_refused_at_once():
 @pytest.mark.parametrize("name", LAYERS)
 def test_pressures_on_wide_panels_equal_those_on_narrow_ones(name, monkeypatch):
     """Wide panels end at a/h = 40 here, narrow ones at 10, so that the test is fast; q is close to 1."""
-    monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "LARGEST_RATIO", 40.0)
     layer, rho = LAYERS[name], np.array([1e-3, 0.5, 0.9, 0.99, 1.0])
     near, narrow = (IntegralEquation().solution(layer, ratio) for ratio in (10.0, 40.0))
     solution = LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: near)
@@ -103,7 +103,7 @@ def test_pressures_on_wide_panels_equal_those_on_narrow_ones(name, monkeypatch):
 @pytest.mark.parametrize("ratio", [28.0, 40.0])
 def test_the_middle_of_a_wide_punch_feels_no_edge(ratio, monkeypatch):
     """p = E* delta/h on an unbonded layer but for exp(-pi (a - r)/h), p_bar = pi a p/(2 k_bar E* delta)."""
-    monkeypatch.setattr(bem.large_ratio, "LARGEST_RATIO", 40.0)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "LARGEST_RATIO", 40.0)
     near = IntegralEquation().solution(LAYERS["unbonded"], 10.0)
     solution, rho = LargeRatioSolution("unbonded", 0.0, lambda: near), np.array([1e-3, 0.3, 0.6])
     pressure = solution.smooth_pressure(rho, ratio) / np.sqrt(1 - rho**2)

@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 from scipy.special import ellipe, ellipk
 
-from bem.influence import layer_influence
-from bem.operators import FreeSpaceOperator, PeriodicOperator
+from bem.grid.influence import layer_influence
+from bem.grid.operators import FreeSpaceOperator, PeriodicOperator
 from contact import InvalidInput, Layer
 
 RANDOM = np.random.default_rng(7)

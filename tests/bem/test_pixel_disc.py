@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from bem.integral_equation import IntegralEquation
-from bem.pixel_disc import PixelDisc
+from bem.grid.calibrated_disc import PixelDisc
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import Layer
 
 KERNELS = [("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.0)]

@@ -3,12 +3,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bem.fft_table import FftTable
-from bem.flat_punch import FlatPunchSource
-from bem.integral_equation import IntegralEquation
-from bem.table_file import TableFile, read_foreign_table, read_table, write_table
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSource
+from bem.tables.file import TableFile, read_foreign_table, read_table, write_table
+from bem.tables.from_grid import FftTable
 from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
-from contact.storage import read_tree, write_tree
+from contact.files.storage import read_tree, write_tree
 from mdr import Mdr
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from bem.transforms import FullTransform, QuarterTransform, convolution_symbol, fast_period
+from bem.grid.transforms import FullTransform, QuarterTransform, convolution_symbol, fast_period
 from contact import InvalidInput
 
 RANDOM = np.random.default_rng(20231113)

@@ -1,7 +1,7 @@
 import pytest
 
-from cases import methods
-from cases.methods import TableEntry
+from cases.declare import methods
+from cases.declare.methods import TableEntry
 
 
 @pytest.fixture(autouse=True)

@@ -3,7 +3,7 @@
 The numbers are made up (a stiffness 2.48 with errors of a first-order and a spectral method); nothing was solved.
 """
 
-from cases.results import (
+from cases.results.records import (
     Acceptance,
     CaseResult,
     CheapestRun,
@@ -32,7 +32,7 @@ from cases.results import (
     WorkPoint,
     WorkPrecision,
 )
-from cases.status import Status
+from cases.results.status import Status
 
 SCENE = "bonded nu=0.3 a/h=1"
 OTHER_SCENE = "unbonded a/h=1"

@@ -4,17 +4,17 @@ import dataclasses
 
 import numpy as np
 
-from cases.case import Case, CaseScene
 from cases.claims.agreement import Agreement
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
 from cases.claims.order import Order
-from cases.claims.twin import Twin
-from cases.methods import MethodUse
-from cases.results import Figure, Origin, Panel, Series
-from cases.task import Sampling
-from cases.work.study import WorkStudy
+from cases.claims.scaling_law import Twin
+from cases.cost.work_precision import WorkStudy
+from cases.declare.case import Case, CaseScene
+from cases.declare.methods import MethodUse
+from cases.results.records import Figure, Origin, Panel, Series
+from cases.run.task import Sampling
 from contact import ContactRadii, Layer, Paraboloid, Scene
 
 RADII = (0.5e-3, 1e-3)

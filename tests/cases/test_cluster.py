@@ -5,9 +5,9 @@ import signal
 
 import pytest
 
-from cases.executors import by_name, serial
-from cases.runner import RunOptions, run_cases
-from cases.status import Status
+from cases.results.status import Status
+from cases.run.executors import by_name, serial
+from cases.run.runner import RunOptions, run_cases
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 from tests.cases.test_runner import strip_times
 

@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
-from cases.comparison import Change, compare
-from cases.status import Status
+from cases.results.compare_runs import Change, compare
+from cases.results.status import Status
 from tests.cases.example_run import OTHER_SCENE, example_run, fast_run, passing_case, slow_run
 
 

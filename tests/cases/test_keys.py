@@ -1,8 +1,8 @@
 import pytest
 
-from cases.keys import content_key, differences, import_closure, key_parts
-from cases.results_files import write_whole
-from cases.store import TaskStore
+from cases.results.files import write_whole
+from cases.run.keys import content_key, differences, import_closure, key_parts
+from cases.run.store import TaskStore
 from contact import InvalidInput
 from tests.cases.fake_case import FAST, fake_case, spoiled
 
@@ -30,8 +30,8 @@ def test_the_last_bit_of_a_scene_changes_the_key():
 
 def test_the_closure_holds_what_a_method_can_import_and_nothing_else():
     sources = dict(import_closure("tests.cases.fake_method").sources)
-    assert "contact.solution" in sources
-    assert "cases.norms" in sources  # what measures the answer is a part of it
+    assert "contact.answer.solution" in sources
+    assert "cases.rules.norms" in sources  # what measures the answer is a part of it
     assert not any(name.startswith(("fem_reference", "reports")) for name in sources)
     assert {"numpy", "python"} <= set(dict(import_closure("tests.cases.fake_method").versions))
 

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PARENT = """
 import time
-from cases.executors import process_pool
+from cases.run.executors import process_pool
 if __name__ == "__main__":
     import os
     pool = process_pool(1)

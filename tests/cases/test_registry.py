@@ -2,11 +2,11 @@ import dataclasses
 
 import pytest
 
-from cases.case import Case
 from cases.claims.exact import Exact
-from cases.methods import MethodUse, build, method_names
-from cases.registry import by_name, load_cases, select
-from cases.results import Origin
+from cases.declare.case import Case
+from cases.declare.methods import MethodUse, build, method_names
+from cases.declare.registry import by_name, load_cases, select
+from cases.results.records import Origin
 from contact import InvalidInput
 from tests.cases.fake_case import FAST, REASON, STATED, case_scene, fake_case, hertz_force
 

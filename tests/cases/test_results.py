@@ -4,8 +4,8 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from cases.results import Curve, Quantity
-from cases.status import Status
+from cases.results.records import Curve, Quantity
+from cases.results.status import Status
 from tests.cases.example_run import SCENE, agreement_claim, example_run, fast_run, quantities
 
 

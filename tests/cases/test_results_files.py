@@ -6,10 +6,10 @@ import jsonschema
 import numpy as np
 import pytest
 
-from cases.results import RunResult
-from cases.results_files import from_json, json_schema, read_run, to_json, write_run
+from cases.results.files import from_json, json_schema, read_run, to_json, write_run
+from cases.results.records import RunResult
 from contact import InvalidInput
-from contact.storage import read_tree
+from contact.files.storage import read_tree
 from tests.cases.example_run import SCENE, example_run
 
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from cases.executors import by_name, process_pool, serial
-from cases.results import ConvergenceClass, Verdict
-from cases.results_files import read_run
-from cases.runner import RunOptions, run_cases
-from cases.status import ExitCode, Status, exit_code
+from cases.results.files import read_run
+from cases.results.records import ConvergenceClass, Verdict
+from cases.results.status import ExitCode, Status, exit_code
+from cases.run.executors import by_name, process_pool, serial
+from cases.run.runner import RunOptions, run_cases
 from contact import InvalidInput
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled, use
 
@@ -225,9 +225,11 @@ def test_executors_by_name():
 KILLED = """
 import os, signal, sys, time
 from pathlib import Path
-from cases import methods, results_files, store
-from cases.executors import serial
-from cases.runner import RunOptions, run_cases
+from cases.declare import methods
+from cases.results import files as results_files
+from cases.run import store
+from cases.run.executors import serial
+from cases.run.runner import RunOptions, run_cases
 from tests.cases.fake_case import fake_case
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
 left = 5

@@ -4,12 +4,12 @@ import dataclasses
 
 import pytest
 
-from cases import studies
-from cases.executors import serial
-from cases.results import Ladder
-from cases.results_files import read_run
-from cases.stability import ladder_study
-from cases.stability.ladder_table import LADDERS
+from cases.declare import suites as studies
+from cases.ladders import ladder_study
+from cases.ladders.ladder_table import LADDERS
+from cases.results.files import read_run
+from cases.results.records import Ladder
+from cases.run.executors import serial
 from tests.cases.example_run import example_run
 
 SLOW = {studies.quick_ladders: pytest.mark.slow}

@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from cases.time_limit import TimeLimitReached, time_limited
+from cases.run.time_limit import TimeLimitReached, time_limited
 
 
 def spin(seconds):

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.methods import build
-from cases.stability.units import Units, in_units
+from cases.campaigns.units import Units, in_units
+from cases.declare.methods import build
 from contact import (
     Adhesion,
     ContactRadii,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact.profiles import (
+from contact.scene.profiles import (
     PROFILES,
     Cone,
     FlatPunch,

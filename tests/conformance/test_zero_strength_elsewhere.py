@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.direct import Bem
-from bem.integral_equation_method import IntegralEquationMethod
-from cases.methods import build
+from bem.layer_equation.method import IntegralEquationMethod
+from bem.method import Bem
+from cases.declare.methods import build
 from contact import (
     Adhesion,
     Cone,

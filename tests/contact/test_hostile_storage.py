@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from contact import InvalidInput
-from contact.storage import MAX_BYTES, SEAL, read_tree, write_tree
+from contact.files.storage import MAX_BYTES, SEAL, read_tree, write_tree
 
 
 def seal(file):

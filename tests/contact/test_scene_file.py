@@ -31,7 +31,7 @@ from contact import (
     scene_from_mapping,
     scene_to_mapping,
 )
-from contact.scene_file import MAX_BYTES
+from contact.files.scene_file import MAX_BYTES
 
 GOOD = """
 [layer]

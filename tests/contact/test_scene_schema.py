@@ -8,11 +8,11 @@ import jsonschema
 import pytest
 
 from contact import InvalidInput, Scene, scene_from_mapping, scene_to_mapping
-from contact.effects import EFFECTS
-from contact.loading import LOADINGS
-from contact.profiles import PROFILES
-from contact.scene_file import kind_of
-from contact.scene_schema import scene_schema
+from contact.files.scene_file import kind_of
+from contact.files.scene_schema import scene_schema
+from contact.scene.effects import EFFECTS
+from contact.scene.loading import LOADINGS
+from contact.scene.profiles import PROFILES
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 SCHEMA = scene_schema()
@@ -62,7 +62,7 @@ def test_the_examples_follow_it_and_name_it(path):
 
 
 def test_every_scene_of_the_library_follows_it():
-    from cases.registry import load_cases
+    from cases.declare.registry import load_cases
 
     scenes: list[Scene] = [scene.scene for case in load_cases().values() for scene in case.scenes]
     assert all(accepted(scene_to_mapping(scene)) for scene in scenes)

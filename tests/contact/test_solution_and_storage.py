@@ -23,7 +23,7 @@ from contact import (
     Scene,
     StageLog,
 )
-from contact.storage import load_solution, read_tree, save_solution, write_tree
+from contact.files.storage import load_solution, read_tree, save_solution, write_tree
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5)
 SCENE = Scene(layer=LAYER, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3, 2e-3, 3e-3]))

@@ -50,7 +50,7 @@ def test_counters_add_up():
 
 @pytest.mark.skipif(not Path("/proc/self/status").exists(), reason="elsewhere the system tells no program's own peak")
 def test_peak_memory_is_not_that_of_the_program_that_started_this_one():
-    child = "from contact.stages import peak_memory_bytes; print(peak_memory_bytes())"
+    child = "from contact.answer.stages import peak_memory_bytes; print(peak_memory_bytes())"
     parent = (
         "import subprocess, sys; ballast = bytearray(600_000_000)\n"
         f"print(subprocess.run([sys.executable, '-c', {child!r}], capture_output=True, text=True).stdout)"

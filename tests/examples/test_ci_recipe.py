@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from cases.results_files import read_run
+from cases.results.files import read_run
 from reports.command_line import run
 from tests.cases.example_run import example_run
 from tests.cases.gate.example_baselines import accepted, scaled
@@ -21,7 +21,7 @@ WORKFLOW = ROOT / "examples" / "ci" / "github-actions.yml"
 COMMAND = """#!{python}
 import sys
 sys.path.insert(0, {root!r})
-from cases import methods
+from cases.declare import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
 from reports.commands import gate, run
 from tests.cases.fake_case import SLOW, fake_case, spoiled

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from cases import methods
-from cases.results import Kind
-from cases.results_files import read_run
-from cases.status import Status
+from cases.declare import methods
+from cases.results.files import read_run
+from cases.results.records import Kind
+from cases.results.status import Status
 from reports.command_line import run
 
 FOLDER = Path(__file__).parents[2] / "examples" / "hertz_half_space"

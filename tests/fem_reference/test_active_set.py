@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference import active_set
-from fem_reference.active_set import solve_complementarity
+from fem_reference.elastic import active_set
+from fem_reference.elastic.active_set import solve_complementarity
 
 
 def random_problem(seed, size=40):

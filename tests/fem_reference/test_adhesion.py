@@ -18,9 +18,9 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.discretisation import Discretisation
-from fem_reference.effects import adhesion
-from fem_reference.effects.cohesive_zone import CohesivePunch
+from fem_reference.adhesion import equilibria as adhesion
+from fem_reference.discrete_layer.settings import Discretisation
+from tests.fem_reference.cohesive_zone import CohesivePunch
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference.geometry import Grading, layer_mesh, named_layer_mesh
+from fem_reference.discrete_layer.mesh import Grading, layer_mesh, named_layer_mesh
 
 GRADING = Grading(points=((0.5, 1e-3), (1.0, 1e-5)), growth=0.5, max_cell=0.5)
 
@@ -80,7 +80,7 @@ def test_lines_of_1e14_cells_take_no_minutes():
 def test_gmsh_does_not_let_a_broken_pipe_end_the_process():
     code = (
         "import os\n"
-        "from fem_reference.geometry import _gmsh\n"
+        "from fem_reference.discrete_layer.mesh import _gmsh\n"
         "_gmsh()\n"
         "reader, writer = os.pipe()\n"
         "os.close(reader)\n"

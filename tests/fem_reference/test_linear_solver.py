@@ -5,14 +5,14 @@ import pytest
 from scipy import sparse
 
 from contact import InvalidInput, NotConvergedError
-from fem_reference import linear_solver
-from fem_reference.assembly import Space, stiffness_matrix
-from fem_reference.elements import PAIRS, taylor_hood
-from fem_reference.geometry import Grading, layer_mesh
-from fem_reference.layer_problem import LayerProblem
-from fem_reference.linear_solver import CheckedSolver
-from fem_reference.material import moduli
-from fem_reference.ordering import bisect, bit_length, nested_dissection
+from fem_reference.discrete_layer import linear_solver
+from fem_reference.discrete_layer.assembly import Space, stiffness_matrix
+from fem_reference.discrete_layer.elements import PAIRS, taylor_hood
+from fem_reference.discrete_layer.linear_solver import CheckedSolver
+from fem_reference.discrete_layer.material import moduli
+from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.ordering import bisect, bit_length, nested_dissection
+from fem_reference.discrete_layer.problem import LayerProblem
 
 LAYER_MESH = layer_mesh(1.0, 6.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))
 

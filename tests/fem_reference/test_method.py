@@ -17,7 +17,8 @@ from contact import (
     Scene,
     TruncatedCone,
 )
-from fem_reference import Fem, prescribed_radius
+from fem_reference import Fem
+from fem_reference.elastic import prescribed_radius
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 THICKNESS, MODULUS, SLOPE = 1e-3, 1e6, 0.1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from benchmarks.fem_stability_map import reversals_at
-from fem_reference.effects.stability_map import Reversal, stable_ranges
+from benchmarks.stability_map import Reversal, stable_ranges
 
 
 def reversal(kind, ratio):

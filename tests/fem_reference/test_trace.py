@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem_reference.trace import TraceSpace
+from fem_reference.discrete_layer.trace import TraceSpace
 
 RADII = np.concatenate([np.linspace(0, 0.4, 5), np.linspace(0.4, 1, 5)[1:]])  # two cells of degree four
 

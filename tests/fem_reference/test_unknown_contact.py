@@ -18,9 +18,9 @@ from contact import (
     TruncatedCone,
 )
 from fem_reference import Fem
-from fem_reference.discretisation import Discretisation
-from fem_reference.polish import radius_of_load
-from fem_reference.unknown_contact import ContactSearch, edge_radius, find_contact
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.at_load import radius_of_load
+from fem_reference.elastic.contact_search import ContactSearch, edge_radius, find_contact
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5)

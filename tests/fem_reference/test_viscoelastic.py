@@ -21,12 +21,12 @@ from contact import (
     StandardSolid,
 )
 from fem_reference import Fem
-from fem_reference.adaptive import solve_history_to_accuracy
-from fem_reference.effects.impact import MAX_STEPS, Body, simulate_impact
-from fem_reference.effects.relaxation_step import relaxation_step
-from fem_reference.effects.stage import Stage
-from fem_reference.effects.surface_memory import ProportionalSurface
-from fem_reference.effects.viscoelastic import peak
+from fem_reference.elastic.adaptive import solve_history_to_accuracy
+from fem_reference.in_time.condensed_layer import Stage
+from fem_reference.in_time.impact import MAX_STEPS, Body, simulate_impact
+from fem_reference.in_time.relaxation_step import relaxation_step
+from fem_reference.in_time.solver import peak
+from fem_reference.in_time.surface_memory import ProportionalSurface
 
 QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)
 G1 = 7.5e6
@@ -192,7 +192,7 @@ def test_elastic_impact_loses_nothing():
 
 
 def test_a_body_that_never_comes_off_is_refused(monkeypatch):
-    from fem_reference.effects import impact
+    from fem_reference.in_time import impact
 
     monkeypatch.setattr(impact, "MAX_STEPS", 100)
     fluid = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1.0], relaxation_times=[1e-3])

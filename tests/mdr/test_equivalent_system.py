@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
     FlatPunch,
@@ -17,7 +17,7 @@ from contact import (
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
-from mdr.assembly import equivalent_system
+from mdr.springs.assembly import equivalent_system
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.5)
 UNBONDED = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.4, support="unbonded")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from bem.flat_punch_table import FlatPunchTable
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.tables.table import FlatPunchTable
 from contact import (
     Cone,
     ContactRadii,

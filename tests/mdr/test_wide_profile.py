@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-import bem.large_ratio
-import mdr.wide_profile
-from bem.fredholm_kernel import FredholmKernel
-from bem.integral_equation import IntegralEquation
-from bem.integral_equation_solution import IntegralEquationSolution
-from bem.large_ratio import LargeRatioSolution
-from bem.panels import gauss_nodes
-from bem.volterra_factor import VolterraFactor
+import bem.layer_equation.thin_layers
+import mdr.springs.thin_layer_profile
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.thin_layers import LargeRatioSolution
+from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (
     Cone,
     ContactRadii,
@@ -24,7 +24,7 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr, equivalent_system
-from mdr.asymptotic import thin_profile
+from mdr.closed_forms.asymptotic import thin_profile
 
 LAYERS = {
     "bonded 0.5": Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5),
@@ -51,7 +51,7 @@ def test_thin_layer_profile_is_approached_with_first_order(name, indenter):
 def test_other_panels_give_the_same_within_the_stated_error(indenter, monkeypatch):
     layer, x = LAYERS["bonded 0.5"], np.array([170.0, 333.0, 700.0, 890.0])
     system = equivalent_system(layer, indenter, 900.0, SOURCE)
-    monkeypatch.setattr(bem.large_ratio, "PANEL_NODES", 40)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "PANEL_NODES", 40)
     other = equivalent_system(layer, indenter, 900.0, AnewBeyondNear())
     bound = system.relative_error
     assert bound["indentation_depth"] < 1e-8
@@ -68,9 +68,9 @@ def test_the_stated_error_covers_what_more_terms_change(nu, flat_radius, end, mo
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu)
     indenter = TruncatedCone(flat_radius=flat_radius, slope=1.0) if flat_radius else INDENTERS[0]
     system, x = equivalent_system(layer, indenter, end, SOURCE), np.linspace(161.0, end, 200)
-    monkeypatch.setattr(bem.large_ratio, "RADII", 60)
-    monkeypatch.setattr(bem.large_ratio, "DEGREE", 36)
-    monkeypatch.setattr(mdr.wide_profile, "DEGREE", 32)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "RADII", 60)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "DEGREE", 36)
+    monkeypatch.setattr(mdr.springs.thin_layer_profile, "DEGREE", 32)
     other, bound = equivalent_system(layer, indenter, end, AnewBeyondNear()), system.relative_error
     np.testing.assert_allclose(other.mdr_profile(x), system.mdr_profile(x), rtol=bound["indentation_depth"])
     np.testing.assert_allclose(other.elastic_force(x), system.elastic_force(x), rtol=bound["normal_force"])

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from cases.results.status import Status
 from cases.rules.judgement import Judgement
-from cases.status import Status
 from tests.planted.guards import TEMPORARY, Claims, Test
 from tests.planted.planting import override, set_to, swap
 
@@ -66,7 +66,7 @@ def without_mirror_image(matrix):
     """L(x, t) = N(x - t)/2: the even continuation N(x + t) is forgotten."""
 
     def wrong(self, panels, width, count):
-        from bem.panels import gauss_nodes
+        from bem.polynomials.gauss_panels import gauss_nodes
 
         x = (width * (np.arange(panels)[:, None] + gauss_nodes(count)[0])).ravel()
         return self(abs(x[:, None] - x)) / 2
@@ -78,25 +78,25 @@ KERNELS = [
     Fault(
         "Kolosov's constant of plane stress",
         "kernels",
-        swap("bem.kernels:one_minus_kernel", plane_stress_kolosov),
+        swap("bem.kernels.layer:one_minus_kernel", plane_stress_kolosov),
         cone(LAYER, "bonded nu=0.45 a/h=1", "mdr"),
     ),
     Fault(
         "2q forgotten in the unbonded kernel",
         "kernels",
-        swap("bem.kernels:one_minus_kernel", unbonded_without_linear_term),
+        swap("bem.kernels.layer:one_minus_kernel", unbonded_without_linear_term),
         cone(LAYER, "unbonded a/h=1", "mdr"),
     ),
     Fault(
         "sinh 2q - 2q subtracted at small q",
         "kernels",
-        set_to("bem.kernels:SERIES_LIMIT", 1e-9),
+        set_to("bem.kernels.layer:SERIES_LIMIT", 1e-9),
         Test("bem.test_kernels:test_kernel_keeps_full_relative_accuracy", ("bonded", 0.5)),
     ),
     Fault(
         "mean mode of a layer taken as zero",
         "kernels",
-        swap("bem.kernels:zero_mode", lambda _: lambda support, nu: 0.0),
+        swap("bem.kernels.layer:zero_mode", lambda _: lambda support, nu: 0.0),
         Test(
             "bem.test_operators:test_uniform_pressure_compresses_a_layer_by_its_finite_mean_mode",
             ("unbonded", 0.3, 1.0),
@@ -105,19 +105,19 @@ KERNELS = [
     Fault(
         "contour turned beyond a pole of chi",
         "kernels",
-        set_to("bem.fredholm_kernel:RAY_ANGLE", math.radians(60)),
+        set_to("bem.layer_equation.fredholm_kernel:RAY_ANGLE", math.radians(60)),
         cone(LAYER, "bonded nu=0.5 a/h=1", "mdr"),
     ),
     Fault(
         "five quadrature nodes where twenty are needed",
         "kernels",
-        set_to("bem.fredholm_kernel:PANEL_NODES", 5),
+        set_to("bem.layer_equation.fredholm_kernel:PANEL_NODES", 5),
         cone(LAYER, "bonded nu=0.5 a/h=5", "mdr"),
     ),
     Fault(
         "mirror image forgotten in the Fredholm kernel",
         "kernels",
-        override("bem.fredholm_kernel:FredholmKernel", "panel_matrix", without_mirror_image),
+        override("bem.layer_equation.fredholm_kernel:FredholmKernel", "panel_matrix", without_mirror_image),
         cone(LAYER, "bonded nu=0.5 a/h=1", "mdr"),
     ),
 ]
@@ -161,37 +161,41 @@ MDR = [
     Fault(
         "E in place of E*",
         "mdr",
-        swap("mdr.assembly:equivalent_system", youngs_modulus),
+        swap("mdr.springs.assembly:equivalent_system", youngs_modulus),
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
     ),
     Fault(
         "profile's share of the force counted once, not twice",
         "mdr",
-        override("mdr.equivalent_system:EquivalentSystem", "profile_moment", lambda f: lambda self, a: f(self, a) / 2),
+        override(
+            "mdr.springs.equivalent_system:EquivalentSystem", "profile_moment", lambda f: lambda self, a: f(self, a) / 2
+        ),
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
     ),
     Fault(
         "flat end forgotten in the half-space transform",
         "mdr",
-        swap("mdr.half_space_profile:half_space_profile", cone_without_flat_end),
+        swap("mdr.springs.half_space_profile:half_space_profile", cone_without_flat_end),
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
     ),
     Fault(
         "force wrong in the ninth digit",
         "mdr",
-        override("mdr.equivalent_system:EquivalentSystem", "force", lambda f: lambda *a: f(*a) * (1 + 1e-9)),
+        override("mdr.springs.equivalent_system:EquivalentSystem", "force", lambda f: lambda *a: f(*a) * (1 + 1e-9)),
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
     ),
     Fault(
         "pressure of Eq. (9) twice too large",
         "mdr",
-        override("mdr.surface_fields:ContactFields", "_pressure_inside", lambda f: lambda self, r: 2 * f(self, r)),
+        override(
+            "mdr.springs.surface_fields:ContactFields", "_pressure_inside", lambda f: lambda self, r: 2 * f(self, r)
+        ),
         Test("mdr.test_method:test_the_pressure_carries_the_force", ("bonded", lambda: _mdr_indenter(0))),
     ),
     Fault(
         "a force that is not a number",
         "mdr",
-        override("mdr.equivalent_system:EquivalentSystem", "force", nan_at_the_end),
+        override("mdr.springs.equivalent_system:EquivalentSystem", "force", nan_at_the_end),
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
         Status.INVALID,
     ),
@@ -228,38 +232,40 @@ TRANSFORMS = [
         "inverse transform without its factor in one direction",
         "transforms",
         override(
-            "bem.transforms:FullTransform", "filter", lambda f: lambda self, field, s: f(self, field, s) * self.period
+            "bem.grid.transforms:FullTransform",
+            "filter",
+            lambda f: lambda self, field, s: f(self, field, s) * self.period,
         ),
         Test("bem.test_operators:test_sinusoidal_load_has_its_closed_form", ("bonded", 0.3)),
     ),
     Fault(
         "no zero padding: the convolution is circular",
         "transforms",
-        swap("bem.transforms:fast_period", lambda f: lambda least: f(least // 2)),
+        swap("bem.grid.transforms:fast_period", lambda f: lambda least: f(least // 2)),
         Test("bem.test_operators:test_free_space_operator_is_the_direct_sum", (half_space,)),
     ),
     Fault(
         "modes of the cosine transform counted from one",
         "transforms",
-        override("bem.transforms:QuarterTransform", "modes", one_mode_off),
+        override("bem.grid.transforms:QuarterTransform", "modes", one_mode_off),
         Test("bem.test_operators:test_quarter_grid_gives_the_quadrant"),
     ),
     Fault(
         "Love's solution without 1/pi",
         "transforms",
-        swap("bem.influence:rectangle_influence", lambda f: lambda offsets: np.pi * f(offsets)),
+        swap("bem.grid.influence:rectangle_influence", lambda f: lambda offsets: np.pi * f(offsets)),
         Test("bem.test_influence:test_cell_under_its_own_pressure_sinks_by_the_closed_form"),
     ),
     Fault(
         "layer correction with the wrong sign",
         "transforms",
-        swap("bem.influence:_cell_average", lambda f: lambda *a: -f(*a)),
+        swap("bem.grid.influence:_cell_average", lambda f: lambda *a: -f(*a)),
         Test("bem.test_influence:test_layer_far_field_decays_exponentially", (2.0,)),
     ),
     Fault(
         "complementarity never violated, whatever the pressure",
         "transforms",
-        swap("bem.conjugate_gradients:complementarity_residual", lambda _: lambda *a, **k: 0.0),
+        swap("bem.grid.conjugate_gradients:complementarity_residual", lambda _: lambda *a, **k: 0.0),
         Test("bem.test_conjugate_gradients:test_the_residual_sees_each_violation"),
     ),
 ]
@@ -332,32 +338,41 @@ THICK, THIN = (0.1, 0.45, "bonded"), (20, 0.45, "bonded")  # a/h, nu, support
 WEAK_FORMS = [
     weak(
         "hoop strain forgotten",
-        override("fem_reference.assembly:Space", "strains", without_hoop),
+        override("fem_reference.discrete_layer.assembly:Space", "strains", without_hoop),
         THICK,
         REFUSED,
     ),
     weak(
         "r forgotten in 2 pi r dr dz",
-        override("fem_reference.assembly:Space", "measure", without_radius),
+        override("fem_reference.discrete_layer.assembly:Space", "measure", without_radius),
         THICK,
         REFUSED,
     ),
     weak(
         "deviator of two dimensions",
-        set_to("fem_reference.assembly:DEVIATOR", deviator_in_the_plane()),
+        set_to("fem_reference.discrete_layer.assembly:DEVIATOR", deviator_in_the_plane()),
         THICK,
         REFUSED,
     ),
     weak(
         "bonded base that slides",
-        override("fem_reference.layer_problem:LayerProblem", "supported_unknowns", sliding_base),
+        override("fem_reference.discrete_layer.problem:LayerProblem", "supported_unknowns", sliding_base),
         THIN,
     ),
-    weak("bulk modulus of plane strain", swap("fem_reference.material:moduli", plane_strain_bulk), THICK, REFUSED),
-    weak("shear modulus at E = 1", swap("fem_reference.material:moduli", modulus_of_e), (0.1, 0.5, "bonded")),
+    weak(
+        "bulk modulus of plane strain",
+        swap("fem_reference.discrete_layer.material:moduli", plane_strain_bulk),
+        THICK,
+        REFUSED,
+    ),
+    weak(
+        "shear modulus at E = 1",
+        swap("fem_reference.discrete_layer.material:moduli", modulus_of_e),
+        (0.1, 0.5, "bonded"),
+    ),
     weak(
         "free outer edge of an unbonded layer",
-        swap("fem_reference.layer_problem:outer_edge_matrix", free_outer_edge),
+        swap("fem_reference.discrete_layer.problem:outer_edge_matrix", free_outer_edge),
         (20, 0.3, "unbonded"),
     ),
 ]
@@ -399,7 +414,7 @@ TIME_STEPPING = [
     Fault(
         "quadrature of first order at a step's end",
         "time stepping",
-        set_to("mdr.effects.collocation_step:TO_END", np.full(10, 0.1)),
+        set_to("mdr.impact.collocation_step:TO_END", np.full(10, 0.1)),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
@@ -408,13 +423,13 @@ TIME_STEPPING = [
     Fault(
         "memory of first contact that fades too slowly",
         "time stepping",
-        swap("mdr.effects.impact_lanes:remembered", forgets_slowly),
+        swap("mdr.impact.equations:remembered", forgets_slowly),
         Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
     ),
     Fault(
         "release at zero depth in place of zero force",
         "time stepping",
-        lambda patch: patch.setattr("mdr.effects.impact_flat_punch.Event", released_at_zero_depth(_event())),
+        lambda patch: patch.setattr("mdr.impact.flat_punch.Event", released_at_zero_depth(_event())),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
@@ -423,7 +438,7 @@ TIME_STEPPING = [
     Fault(
         "overdamped branch continued with arctan",
         "time stepping",
-        swap("mdr.effects.flat_punch_restitution:kelvin_voigt_restitution", arctan_beyond_one),
+        swap("mdr.closed_forms.flat_punch_restitution:kelvin_voigt_restitution", arctan_beyond_one),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (2.0, 0.047769),
@@ -432,14 +447,14 @@ TIME_STEPPING = [
     Fault(
         "half of the dissipation",
         "time stepping",
-        swap("mdr.effects.impact_energies:dissipation", half_the_loss),
+        swap("mdr.impact.energies:dissipation", half_the_loss),
         Test("verification.test_impact:test_figure_12_restitution_peak_audit_and_self_convergence", (2e-3,)),
     ),
 ]
 
 
 def _event():
-    from mdr.effects.collocation import Event
+    from mdr.impact.collocation import Event
 
     return Event
 
@@ -504,7 +519,7 @@ COMPARATORS = [
     Fault(
         "negative tolerances taken as positive",
         "comparators",
-        swap("cases.tolerance:positive_tolerance", lambda _: abs),
+        swap("cases.rules.tolerance:positive_tolerance", lambda _: abs),
         Test("cases.rules.test_rules:test_a_tolerance_of_the_wrong_sign_is_refused", (-1e-10,)),
     ),
     Fault(
@@ -548,13 +563,13 @@ COMPARATORS = [
     Fault(
         "norm without 2 pi r",
         "comparators",
-        override("cases.norms:RingQuadrature", "norm", without_circumference),
+        override("cases.rules.norms:RingQuadrature", "norm", without_circumference),
         Test("cases.test_norms:test_weighted_norm_of_one_is_the_root_of_the_area"),
     ),
     Fault(
         "a run of nothing passes",
         "comparators",
-        swap("cases.status:exit_code", lambda f: lambda statuses, strict=False: 0),
+        swap("cases.results.status:exit_code", lambda f: lambda statuses, strict=False: 0),
         Test("cases.test_status:test_nothing_ran_is_not_a_pass"),
     ),
 ]
@@ -564,7 +579,7 @@ COMPARATORS = [
 
 def passes(_):
     """Whatever it is asked, it passes."""
-    from cases.results import Verdict
+    from cases.results.records import Verdict
 
     passed = Judgement(status=Status.PASS, verdict=Verdict.PASS, observed=None, fraction=None, message="")
     return lambda *a: passed
@@ -613,7 +628,7 @@ BASELINES = [
     Fault(
         "tolerances a thousand times too wide",
         "baselines",
-        swap("cases.tolerance:permitted_difference", lambda f: lambda b, **k: 1e3 * f(b, **k)),
+        swap("cases.rules.tolerance:permitted_difference", lambda f: lambda b, **k: 1e3 * f(b, **k)),
         Test(
             "cases.gate.test_gate:test_a_change_of_1e_7_with_tolerance_1e_9_always_fails",
             (accepted_folder, "mdr", 1 + 1e-7),
@@ -674,7 +689,7 @@ BASELINES = [
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(
-            "cases.work.timing:is_slower",
+            "cases.cost.timing:is_slower",
             lambda f: lambda measured, d: f(dataclasses.replace(measured, lower=measured.lower / 1.5), d),
         ),
         Test(

@@ -6,11 +6,11 @@ from dataclasses import dataclass, field
 
 import pytest
 
-from cases.registry import load_cases
-from cases.solve import solve
-from cases.status import Status, worst
-from cases.task import Answers
-from cases.verdicts import case_result
+from cases.declare.registry import load_cases
+from cases.results.status import Status, worst
+from cases.run.judge import case_result
+from cases.run.solve_task import solve
+from cases.run.task import Answers
 from contact import NotConvergedError
 
 TEMPORARY = object()  # stands for a fresh folder among a test's arguments

@@ -7,8 +7,11 @@ import pytest
 
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
-from mdr.effects import adhesive_branch, flat_punch_restitution, impact_energies, impact_lanes
-from mdr.effects.impact import impact_batch
+from mdr.adhesion import branch as adhesive_branch
+from mdr.closed_forms import flat_punch_restitution
+from mdr.impact import energies as impact_energies
+from mdr.impact import equations as impact_lanes
+from mdr.impact.solver import impact_batch
 from tests.mdr.viscoelastic_scenes import figure_12, kelvin_voigt_sphere
 from tests.verification import test_adhesion as adhesion
 from tests.verification import test_impact as impact
@@ -81,7 +84,7 @@ def test_the_overdamped_branch_forgotten(monkeypatch):
 
 
 def test_a_batch_that_mixes_up_its_lanes(monkeypatch):
-    from mdr.effects import impact as module
+    from mdr.impact import solver as module
 
     right = module.joined
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-import bem.fredholm_kernel
-import bem.integral_equation
-from bem.integral_equation_solution import IntegralEquationSolution
-from bem.kernels import one_minus_kernel
+import bem.layer_equation.flat_punch_source
+import bem.layer_equation.fredholm_kernel
+from bem.kernels.layer import one_minus_kernel
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from contact import Layer, NotConvergedError
-from mdr.equivalent_system import EquivalentSystem
-from mdr.surface_fields import ContactFields
+from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.surface_fields import ContactFields
 from tests.bem import test_integral_equation, test_integral_equation_method
 from tests.mdr import test_method
 from tests.verification import test_flat_punch_literature, test_mdr_against_published_values
@@ -18,15 +18,15 @@ from tests.verification import test_flat_punch_literature, test_mdr_against_publ
 @pytest.fixture(autouse=True)
 def fresh_flat_punches():
     """No solution from before the fault was planted, none from it afterwards."""
-    bem.integral_equation._solution.cache_clear()
+    bem.layer_equation.flat_punch_source._solution.cache_clear()
     yield
-    bem.integral_equation._solution.cache_clear()
+    bem.layer_equation.flat_punch_source._solution.cache_clear()
 
 
 def plant_mistyped_kolosov_constant(monkeypatch):
     """kappa = 3 - 2 nu in place of 3 - 4 nu is the kernel of a layer with half the Poisson's ratio."""
     wrong = lambda q, support, nu: one_minus_kernel(q, support, nu / 2)  # noqa: E731
-    monkeypatch.setattr(bem.fredholm_kernel, "one_minus_kernel", wrong)
+    monkeypatch.setattr(bem.layer_equation.fredholm_kernel, "one_minus_kernel", wrong)
 
 
 def test_mistyped_kolosov_constant_is_seen_by_the_literature(monkeypatch):
@@ -45,7 +45,7 @@ def test_mistyped_kolosov_constant_is_seen_by_the_direct_route(monkeypatch):
 
 def test_a_digit_wrong_in_the_eighth_place_is_seen(monkeypatch):
     slightly = lambda q, support, nu: (1 + 1e-8) * one_minus_kernel(q, support, nu)  # noqa: E731
-    monkeypatch.setattr(bem.fredholm_kernel, "one_minus_kernel", slightly)
+    monkeypatch.setattr(bem.layer_equation.fredholm_kernel, "one_minus_kernel", slightly)
     with pytest.raises(AssertionError):
         test_flat_punch_literature.test_contact_stiffness_to_ten_digits(0.5)
 

@@ -6,7 +6,7 @@ import importlib
 import matplotlib.image
 import pytest
 
-from reports.pages import write_report
+from reports.pages.report import write_report
 from tests.cases.example_run import example_run, failing_case, passing_case
 from tests.reports.browser import HEIGHT, PRINTED_WIDTH, WIDTH, browser, measure, picture
 

@@ -4,10 +4,10 @@ import dataclasses
 
 import pytest
 
-from cases.results import Kind
-from cases.status import Status
-from reports.claim_blocks import claim_blocks, is_wide
-from reports.pages import write_report
+from cases.results.records import Kind
+from cases.results.status import Status
+from reports.pages.claim_blocks import claim_blocks, is_wide
+from reports.pages.report import write_report
 from tests.cases.example_run import example_run, failing_case, passing_case
 
 

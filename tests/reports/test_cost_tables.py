@@ -2,10 +2,10 @@
 
 import dataclasses
 
-from reports.case_tables import cheapest, digit_prices
 from reports.charts.work_precision import draw
-from reports.cost_tables import settings, shortest_times, speed_ups
-from reports.numbers import duration
+from reports.tables.case_tables import cheapest, digit_prices
+from reports.tables.cost_tables import settings, shortest_times, speed_ups
+from reports.words.numbers import duration
 from tests.cases.example_run import example_run, work_precision
 
 WORK = work_precision()

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from cases import executors, runner
 from cases.gate import spread
-from cases.gate.circumstances import Circumstances
 from cases.gate.history import read_history
-from cases.runner import RunOptions
-from cases.stamp import revision
+from cases.gate.write_permission import Circumstances
+from cases.run import executors, runner
+from cases.run.runner import RunOptions
+from cases.run.stamp import revision
 from reports.command_line import run
 from reports.commands import accept as accept_command
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled

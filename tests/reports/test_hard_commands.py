@@ -6,12 +6,12 @@ import dataclasses
 
 import pytest
 
-from cases.results import Ladder, Rung
-from cases.stability.coverage import QUICK_PLANS
-from cases.status import Status
-from reports import hard_tables
+from cases.campaigns.coverage import QUICK_PLANS
+from cases.results.records import Ladder, Rung
+from cases.results.status import Status
 from reports.charts.ladder import refusals
 from reports.command_line import EXAMPLE_SCENE, run
+from reports.tables import hard_tables
 from tests.cases.example_run import passing_case
 
 
@@ -49,7 +49,7 @@ def test_an_unknown_family_names_those_there_are(capsys):
 
 def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
     plan = dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8)
-    monkeypatch.setattr("cases.stability.coverage.PLANS", (plan,))
+    monkeypatch.setattr("cases.campaigns.coverage.PLANS", (plan,))
     assert run(["coverage", "--method", "mdr", "--out", str(tmp_path)]) == 0
     assert "100.0 % of 8 covered" in capsys.readouterr().out
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from reports.numbers import NOT_FINITE, duration, measured, memory, prefix_for, small, with_prefix
+from reports.words.numbers import NOT_FINITE, duration, measured, memory, prefix_for, small, with_prefix
 
 
 @pytest.mark.parametrize(

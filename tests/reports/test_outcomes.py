@@ -5,12 +5,12 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from cases.results import RunResult
-from cases.status import Status
-from reports.annotations import MOST, annotation_lines
-from reports.junit import junit_text
-from reports.outcomes import WORST_FIRST, counts, headline, outcomes
-from reports.summary import summary_text
+from cases.results.records import RunResult
+from cases.results.status import Status
+from reports.pages.annotations import MOST, annotation_lines
+from reports.pages.junit import junit_text
+from reports.pages.summary import summary_text
+from reports.words.outcomes import WORST_FIRST, counts, headline, outcomes
 from tests.cases.example_run import example_run, failing_case, passing_case
 
 

@@ -7,12 +7,12 @@ import re
 
 import pytest
 
-from reports import gallery as gallery_module
 from reports.charts import agreement, convergence, ladder, work_precision
-from reports.drawing import plate_of
-from reports.gallery import FOLDER, ROOM, Gallery
-from reports.pages import write_report
-from reports.plates import write_plate
+from reports.figures import figure_files as gallery_module
+from reports.figures.figure import write_plate
+from reports.figures.figure_files import FOLDER, ROOM, Gallery
+from reports.figures.renderer import plate_of
+from reports.pages.report import write_report
 from tests.cases.example_run import example_run, failing_case, passing_case
 
 LARGEST_PAGE = 5_000_000  # bytes

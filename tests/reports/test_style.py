@@ -2,7 +2,7 @@
 
 from matplotlib.figure import Figure
 
-from reports.style import figure_style, svg_text
+from reports.figures.style import figure_style, svg_text
 
 
 def test_a_label_keeps_its_digits():

@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from cases.stability.random_scenes import random_scenes
+from cases.campaigns.random_scenes import random_scenes
 from contact import (
     Adhesion,
     ContactRadii,
@@ -18,7 +18,7 @@ from contact import (
     TruncatedCone,
 )
 from mdr import Mdr
-from mdr.effects import adhesion
+from mdr.adhesion import solver as adhesion
 
 QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
 ROUNDING = 2.3e-16  # of the reference itself, once it is a double

@@ -6,14 +6,14 @@ import sys
 import numpy as np
 import pytest
 
-from bem.conjugate_gradients import solve_contact, solve_on_contact
-from bem.contact_density import ContactDensity
-from bem.direct import Bem
-from bem.fft_table import FftTable
-from bem.grid import prolonged
-from bem.integral_equation import IntegralEquation
-from bem.operators import FreeSpaceOperator
-from bem.pixel_disc import PixelDisc, disc
+from bem.grid.calibrated_disc import PixelDisc, disc
+from bem.grid.conjugate_gradients import solve_contact, solve_on_contact
+from bem.grid.operators import FreeSpaceOperator
+from bem.grid.quadrant import prolonged
+from bem.layer_equation.contact_density import ContactDensity
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.method import Bem
+from bem.tables.from_grid import FftTable
 from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 
@@ -188,10 +188,10 @@ def test_iterations_and_order_from_128_to_1024(indenter):
 def test_a_2048_grid_needs_less_than_a_gigabyte_and_a_half():
     program = (
         "import numpy as np\n"
-        "from bem.conjugate_gradients import solve_contact\n"
-        "from bem.operators import FreeSpaceOperator\n"
+        "from bem.grid.conjugate_gradients import solve_contact\n"
+        "from bem.grid.operators import FreeSpaceOperator\n"
         "from contact import Layer\n"
-        "from contact.stages import peak_memory_bytes\n"
+        "from contact.answer.stages import peak_memory_bytes\n"
         "n, s = 2048, 2.3 / 2048\n"
         "x = s * (np.arange(n) - (n - 1) / 2)\n"
         "layer = Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5)\n"

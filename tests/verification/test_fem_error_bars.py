@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.fem_error_bars import contacts, impacts
-from cases.stability.coverage import CoveragePlan, records_of
-from cases.stability.second_opinion import second_opinion
+from cases.campaigns.coverage import CoveragePlan, records_of
+from cases.campaigns.referee import second_opinion
 from contact import (
     Adhesion,
     ContactRadii,

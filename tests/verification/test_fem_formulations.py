@@ -8,13 +8,13 @@ from skfem import ElementVector, FacetBasis, LinearForm, MeshTri
 
 from contact import FlatPunch, IndentationDepths, InvalidInput, Layer, NotConvergedError, Paraboloid, Scene, StageLog
 from fem_reference import Fem
-from fem_reference.elements import PAIRS
-from fem_reference.fields import point_fields
-from fem_reference.geometry import Grading, layer_mesh, named_layer_mesh
-from fem_reference.indenter import ScaledIndenter
-from fem_reference.inf_sup import measure_inf_sup
-from fem_reference.layer_problem import LayerProblem, facet_nodes
-from fem_reference.prescribed_radius import solve_prescribed_contact
+from fem_reference.code_verification.inf_sup import measure_inf_sup
+from fem_reference.discrete_layer.elements import PAIRS
+from fem_reference.discrete_layer.fields import point_fields
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.mesh import Grading, layer_mesh, named_layer_mesh
+from fem_reference.discrete_layer.problem import LayerProblem, facet_nodes
+from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
 from tests.fem_reference.integral_equation import solve_contact
 
 MIXED = [pair for pair in PAIRS.values() if pair.is_mixed and pair.inf_sup_stable]

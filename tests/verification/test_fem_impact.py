@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from benchmarks.fem_impacts import largest_difference, with_poissons_ratio
 from fem_reference import Fem
-from mdr.effects.impact import solve_impact
+from mdr.impact.solver import solve_impact
 from tests.mdr.viscoelastic_scenes import figure_12
 
 # Restitution from a separate Fredholm solution and explicit integration over springs, five digits.

@@ -6,10 +6,10 @@ import dataclasses
 
 import pytest
 
-from cases.methods import build
-from cases.stability.ladder_study import CLIMBERS
-from cases.stability.ladder_table import LADDERS
-from cases.stability.ladders import breakdown, climb, fewest_digits
+from cases.declare.methods import build
+from cases.ladders.ladder_study import CLIMBERS
+from cases.ladders.ladder_table import LADDERS
+from cases.ladders.ladders import breakdown, climb, fewest_digits
 
 RUNGS = {
     "nearly incompressible": (1e-1, 1e-12, 1e-17),

@@ -7,7 +7,7 @@ the literature are used within their own accuracy.
 import numpy as np
 import pytest
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import Layer
 
 SOURCE = IntegralEquation()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
     FlatPunch,
@@ -21,11 +21,11 @@ from contact import (
     TruncatedCone,
 )
 from mdr import equivalent_system
-from mdr.effects.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
-from mdr.effects.impact import impact_batch, solve_impact
-from mdr.effects.impact_explicit import explicit_impact
-from mdr.effects.impact_groups import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
-from mdr.effects.impact_units import relaxation_of
+from mdr.closed_forms.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
+from mdr.closed_forms.impact_numbers import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
+from mdr.impact.solver import impact_batch, solve_impact
+from mdr.impact.units import relaxation_of
+from tests.mdr.impact_explicit import explicit_impact
 from tests.mdr.viscoelastic_scenes import (
     GLASSY_BRANCH,
     LONG_TERM,

@@ -4,9 +4,9 @@ import mpmath
 import numpy as np
 import pytest
 
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import Layer, Paraboloid, TruncatedCone
-from mdr.assembly import equivalent_system
+from mdr.springs.assembly import equivalent_system
 
 LAYER_OF = {
     nu: Layer(thickness=1.0, youngs_modulus=1 - nu**2, poissons_ratio=nu) for nu in (0.3, 0.4, 0.45, 0.5)

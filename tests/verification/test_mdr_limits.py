@@ -3,18 +3,18 @@
 import numpy as np
 import pytest
 
-from bem.fredholm_kernel import FredholmKernel
-from bem.integral_equation import IntegralEquation
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.fredholm_kernel import FredholmKernel
 from contact import Cone, InvalidInput, Layer, Paraboloid, TruncatedCone
 from mdr import equivalent_system
-from mdr.asymptotic import (
+from mdr.closed_forms.asymptotic import (
     thin_contact_stiffness,
     thin_flat_punch_pressure,
     thin_profile,
     thin_spring_stiffness,
 )
-from mdr.asymptotic_truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
-from mdr.stiffness_law import stiffness_exponent, stiffness_prefactor
+from mdr.closed_forms.power_law import stiffness_exponent, stiffness_prefactor
+from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
 
 SOURCE = IntegralEquation(nodes=16)  # 2e-9 by its own estimate, far below what a limit at finite a/h can show
 LAYERS = {

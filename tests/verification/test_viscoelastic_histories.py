@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from cases.methods import build
+from cases.declare.methods import build
 from contact import (
     Cone,
     ContactRadii,

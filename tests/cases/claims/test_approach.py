@@ -4,12 +4,12 @@ import dataclasses
 
 import pytest
 
-from cases.case import CaseScene
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
-from cases.results import Origin, Quantity, SceneRun
-from cases.status import Status
-from cases.task import Answers
+from cases.declare.case import CaseScene
+from cases.results.records import Origin, Quantity, SceneRun
+from cases.results.status import Status
+from cases.run.task import Answers
 from tests.cases.fake_case import case_scene, fake_case, use
 from tests.cases.fake_method import FakeHertz
 

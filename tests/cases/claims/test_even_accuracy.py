@@ -4,8 +4,8 @@ import pytest
 
 from cases.claims.declared import Reason
 from cases.claims.even_accuracy import EvenAccuracy
-from cases.results import Origin, Quantity, SceneRun
-from cases.status import Status
+from cases.results.records import Origin, Quantity, SceneRun
+from cases.results.status import Status
 
 CLAIM = EvenAccuracy(
     name="even",

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from cases.claims.incremental_stiffness import _judged, chebyshev_radii
-from cases.results import Quantity, SceneRun
-from cases.status import Status
+from cases.results.records import Quantity, SceneRun
+from cases.results.status import Status
 
 
 def cone(stiffness_error):

@@ -4,7 +4,7 @@ import pytest
 
 from cases.convergence.behaviour import behaviour
 from cases.convergence.spectral import digits_per_refinement
-from cases.results import ConvergenceClass
+from cases.results.records import ConvergenceClass
 from contact import InvalidInput
 
 

@@ -11,7 +11,7 @@ from cases.evidence import Evidence, Measurement, audit, choice
 from cases.evidence.audit import Request, accuracy_is_met, audit_case, time_is_short
 from cases.evidence.calibrate import FAMILIES
 from cases.evidence.kinds import kind_of
-from cases.status import Status
+from cases.results.status import Status
 from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 from mdr import Mdr
 

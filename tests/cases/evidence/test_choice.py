@@ -7,14 +7,14 @@ import json
 import numpy as np
 import pytest
 
-from bem.integral_equation_method import IntegralEquationMethod
+from bem.layer_equation.method import IntegralEquationMethod
+from cases.campaigns.referee import second_opinion
 from cases.evidence import Evidence, Measurement, choose, shipped, solve
 from cases.evidence import calibrate as calibration
 from cases.evidence.calibrate import Candidate, CoarseReference, calibrate, error_bound, sample_of
 from cases.evidence.choice import choices
 from cases.evidence.kinds import BANDS, band_of, kind_of, rough_radius
 from cases.evidence.records import read, write
-from cases.stability.second_opinion import second_opinion
 from contact import (
     Adhesion,
     ContactRadii,

@@ -4,11 +4,11 @@ import dataclasses
 
 from cases.gate.accept import accept
 from cases.gate.baseline import read_baselines
-from cases.gate.circumstances import Circumstances
 from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.proposal import propose
-from cases.results import Kind
+from cases.gate.write_permission import Circumstances
+from cases.results.records import Kind
 from tests.cases.example_run import example_run, passing_case
 
 CASE = "example_cone"

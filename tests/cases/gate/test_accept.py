@@ -8,12 +8,12 @@ import pytest
 
 from cases.gate.accept import accept, refusals
 from cases.gate.baseline import read_baselines
-from cases.gate.circumstances import circumstances
 from cases.gate.history import read_history
-from cases.results import Kind
-from cases.status import Status
+from cases.gate.write_permission import circumstances
+from cases.results.records import Kind
+from cases.results.status import Status
 from contact import InvalidInput
-from reports.pages import write_report
+from reports.pages.report import write_report
 from tests.cases.example_run import SCENE, example_run, failed_claim, fast_run, order_claim, passing_case
 from tests.cases.gate.example_baselines import (
     CASE,
@@ -219,7 +219,7 @@ def test_outside_a_repository_nothing_can_be_accepted(tmp_path):
 
 
 def repository(folder):
-    from cases.gate.circumstances import git
+    from cases.gate.write_permission import git
 
     (folder / "tracked.py").write_text("x = 1\n", encoding="utf-8")
     git(folder, "init", "--quiet")

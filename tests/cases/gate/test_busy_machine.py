@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from cases.gate.circumstances import git
+from cases.gate.write_permission import git
 
 SOURCE = Path(__file__).parents[3]
 TIMES = 20

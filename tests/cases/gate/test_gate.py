@@ -4,9 +4,9 @@ import dataclasses
 
 import pytest
 
-from cases.results import Kind
-from cases.status import ExitCode, Status, exit_code
-from reports.annotations import MOST, annotation_lines
+from cases.results.records import Kind
+from cases.results.status import ExitCode, Status, exit_code
+from reports.pages.annotations import MOST, annotation_lines
 from tests.cases.example_run import SCENE, fast_run, passing_case
 from tests.cases.gate.example_baselines import accepted, clean_run, gated, regressions, scaled, with_force, with_rows
 

@@ -7,8 +7,8 @@ import pytest
 from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.ladders import accept_ladders, read_ladders
-from cases.results import Kind, Ladder, Rung
-from cases.status import Status
+from cases.results.records import Kind, Ladder, Rung
+from cases.results.status import Status
 from contact import InvalidInput
 from tests.cases.example_run import example_run, passing_case
 from tests.cases.gate.example_baselines import NOW

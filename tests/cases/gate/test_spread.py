@@ -5,10 +5,10 @@ import os
 import numpy as np
 import pytest
 
-from cases import methods
+from cases.declare import methods
 from cases.gate import spread
 from cases.gate.spread import measured_spreads, nudged_scene
-from cases.solve import solve
+from cases.run.solve_task import solve
 from contact import ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene, Tabulated
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 
@@ -20,7 +20,7 @@ def in_this_process(monkeypatch):
 
 
 def methods_executor(jobs):
-    from cases.executors import serial
+    from cases.run.executors import serial
 
     assert "fake" in methods.BUILT_IN
     return serial(jobs)

@@ -2,8 +2,8 @@
 
 import pytest
 
-from cases.registry import load_cases
-from cases.results import Kind, Origin
+from cases.declare.registry import load_cases
+from cases.results.records import Kind, Origin
 
 CASES = load_cases()
 FAMILIES = {

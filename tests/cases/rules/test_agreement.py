@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cases.results import Verdict
+from cases.results.records import Verdict
+from cases.results.status import Status
 from cases.rules.agreement import judge_agreement
-from cases.status import Status
 from contact import InvalidInput
 
 TOLERANCE = 1e-5

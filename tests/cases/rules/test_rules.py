@@ -2,13 +2,13 @@ import math
 
 import pytest
 
-from cases.results import ConvergenceClass, Verdict
+from cases.results.records import ConvergenceClass, Verdict
+from cases.results.status import Status
 from cases.rules.exact import judge_exact
 from cases.rules.invariant import judge_invariant
 from cases.rules.judgement import nothing_compared, passed_or_failed, worst_judgement
 from cases.rules.order import judge_digits, judge_order
 from cases.rules.regression import judge_counter, judge_regression
-from cases.status import Status
 from contact import InvalidInput
 
 

@@ -4,9 +4,9 @@ import dataclasses
 
 import pytest
 
-from cases.stability import coverage
-from cases.stability.coverage import CoveragePlan, coverage_case, errors_are_covered
-from cases.status import Status
+from cases.campaigns import coverage
+from cases.campaigns.coverage import CoveragePlan, coverage_case, errors_are_covered
+from cases.results.status import Status
 from contact import ContactRadii, FlatPunch
 from mdr import Mdr
 

@@ -7,14 +7,14 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.results import Ladder, Rung
-from cases.stability import ladders
-from cases.stability.invariants import LAWS, invariant_residuals
-from cases.stability.ladder_study import climbs, ladder_case, no_silent_failure
-from cases.stability.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
-from cases.stability.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
-from cases.stability.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
-from cases.status import Status
+from cases.campaigns.invariants import LAWS, invariant_residuals
+from cases.ladders import ladders
+from cases.ladders.ladder_study import climbs, ladder_case, no_silent_failure
+from cases.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
+from cases.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
+from cases.ladders.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
+from cases.results.records import Ladder, Rung
+from cases.results.status import Status
 from contact import InvalidInput, NotConvergedError, Supported
 from mdr import Mdr
 

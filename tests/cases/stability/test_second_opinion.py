@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from cases.stability.half_space_forms import equivalent_profile
-from cases.stability.second_opinion import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
+from cases.campaigns.referee import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
+from cases.campaigns.referee_profiles import equivalent_profile
 from contact import (
     Adhesion,
     Cone,

@@ -7,13 +7,13 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.stability.random_scenes import FAMILIES, log_uniform, random_scenes
-from cases.stability.units import DIMENSIONS, Units, in_units
+from cases.campaigns.random_scenes import FAMILIES, log_uniform, random_scenes
+from cases.campaigns.units import DIMENSIONS, Units, in_units
 from contact import UNITS, scene_from_mapping, scene_to_mapping
-from contact.effects import EFFECTS
-from contact.layer import Layer
-from contact.loading import LOADINGS
-from contact.profiles import PROFILES
+from contact.scene.effects import EFFECTS
+from contact.scene.layer import Layer
+from contact.scene.loading import LOADINGS
+from contact.scene.profiles import PROFILES
 
 
 @pytest.mark.parametrize("family", FAMILIES)

@@ -1,8 +1,8 @@
 """A first solution is a first solution, whatever the process has solved before."""
 
-from bem import integral_equation
-from bem.integral_equation import IntegralEquation
-from cases.work.forgetting import forget
+from bem.layer_equation import flat_punch_source as integral_equation
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from cases.cost.empty_caches import forget
 from contact import Layer
 
 

@@ -5,8 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.status import Status
-from cases.work.scaling import PLANS, counter_exponents, exponent_of, fitted, grows_no_faster
+from cases.cost.scaling import PLANS, counter_exponents, exponent_of, fitted, grows_no_faster
+from cases.results.status import Status
 from contact import Cost, InvalidInput
 
 

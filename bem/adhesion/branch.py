@@ -1,0 +1,233 @@
+"""Equilibria of an adhering indenter over the contact radius: stable and unstable ones, and their turning points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from math import pi
+from typing import Final, Literal
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq, minimize_scalar
+
+from bem.adhesion.disc import AdheringDisc
+from bem.grid.quadrant import first_radius
+from bem.layer_equation.one_radius import half_space_load
+from contact import Adhesion, FlatPunch, Profile, Scene
+from contact.records.validation import FloatArray
+
+NODES: Final = 16  # contact radii solved on each piece of the branch,
+BROKEN_NODES: Final = 32  # and on one with breakpoints, whose kinks a layer leaves in higher derivatives
+SCOUT_CELLS: Final = 64
+KNOTS: Final = 2000  # of a measured profile's values on the half-space
+SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
+GROWTH: Final = 1.6  # of the largest radius while the branch is too short
+FIRST_RATIO: Final = 4.0  # a/h beyond which the half-space says nothing about the radius on a layer
+
+Quantity = Literal["indentation_depth", "normal_force"]
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
+
+    In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
+    breakpoints in between is followed by no polynomial; there only what the layer adds to the half-space is one. That
+    is an integral over the half-space's share and smoother by one order than it; their quotient would keep its kinks.
+
+    Attributes:
+        inner: Least radius [m].
+        outer: Largest radius [m].
+        series: Chebyshev coefficients of edge values, stiffness and moment, less those of the half-space if it counts.
+        half_space: What is added to them at radii, shape (4, n): the half-space's share, or zeros.
+        scales: Largest values of the four, shape (4,).
+    """
+
+    inner: float
+    outer: float
+    series: FloatArray
+    half_space: Callable[[FloatArray], FloatArray]
+    scales: FloatArray
+
+    @classmethod
+    def through(cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]) -> Piece:
+        """Through solutions at Chebyshev points."""
+        broken = any(inner < r < outer for r in indenter.breakpoints)
+        half_space = half_space_values(indenter, outer) if broken else _zeros
+        nodes = BROKEN_NODES if broken else NODES
+        t = 0.5 + 0.5 * chebyshev.chebpts1(nodes)
+        radius = inner + (outer - inner) * t**2
+        values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in map(solve, radius.tolist())])
+        series = chebyshev.chebfit(2.0 * t - 1.0, values - half_space(radius).T, nodes - 1)
+        scales = np.abs(values).max(axis=0)
+        return cls(inner, outer, np.asarray(series, dtype=np.float64), half_space, scales)
+
+    def at(self, radius: FloatArray) -> FloatArray:
+        """The four at radii of this piece, shape (4, n)."""
+        t = np.sqrt(np.clip((radius - self.inner) / (self.outer - self.inner), 0.0, 1.0))
+        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series) + self.half_space(radius))
+
+    @property
+    def truncation(self) -> float:
+        """What the last two orders contribute, relative to the largest value."""
+        last = np.abs(self.series[-2:]).sum(axis=0)
+        return float(np.max(last / np.maximum(self.scales, np.finfo(float).tiny)))
+
+
+def _zeros(radius: FloatArray) -> FloatArray:
+    return np.zeros((4, *radius.shape))
+
+
+def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray], FloatArray]:
+    """What a pointed profile does on the half-space up to a radius [m], at radii: shape (4, n).
+
+    phi under a unit depth is 1, of the profile g_hs [m]; k_N/E* is 2 a [m], and the moment 2 int_0^a g_hs da [m^2].
+    """
+    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4  # relative to themselves as dense at the axis
+    g_hs = CubicSpline(knots, half_space_load(indenter, knots))
+    moment = g_hs.antiderivative()
+    return lambda a: np.array([np.ones_like(a), g_hs(a), 2.0 * a, 2.0 * moment(a)])
+
+
+@dataclass(frozen=True, eq=False)
+class AdhesiveBranch:
+    """delta and F_N of the equilibria, Eq. (40), on 0 < a <= `largest_radius`.
+
+    Attributes:
+        scene: Layer, indenter and work of adhesion.
+        cells: Grid cells across the contact's box.
+        pieces: Between axis, rim of the flat end, and the largest radius.
+    """
+
+    scene: Scene
+    cells: int
+    pieces: tuple[Piece, ...]
+
+    @classmethod
+    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> AdhesiveBranch:
+        """The branch from the axis to a radius [m]."""
+
+        def solve(a: float) -> AdheringDisc:
+            return AdheringDisc.solved(scene.layer, scene.indenter, a, cells, threads)
+
+        flat = scene.indenter.flat_radius
+        ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
+        return cls(scene, cells, tuple(Piece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)))
+
+    @property
+    def largest_radius(self) -> float:
+        """Where the branch ends [m]."""
+        return self.pieces[-1].outer
+
+    def cut(self) -> AdhesiveBranch:
+        """The branch without the last quarter of its orders: how far turning points move shows what is left out.
+
+        Beside breakpoints the orders decay like a power, so that the last ones say less than the sum of those beyond.
+        """
+        pieces = (replace(piece, series=piece.series[: 3 * len(piece.series) // 4]) for piece in self.pieces)
+        return replace(self, pieces=tuple(pieces))
+
+    @property
+    def truncation(self) -> float:
+        """Relative error of the polynomials."""
+        return max(piece.truncation for piece in self.pieces)
+
+    def stiffness(self, radius: FloatArray) -> FloatArray:
+        """k_N [N/m]."""
+        return np.asarray(self.scene.layer.contact_modulus * self._at(radius)[2])
+
+    def depth(self, radius: FloatArray) -> FloatArray:
+        """delta [m] where phi = -sqrt(2 pi dgamma a/E*): Eq. (40)."""
+        flat, risen, _, _ = self._at(radius)
+        return np.asarray((risen - np.sqrt(2.0 * pi * adhesive_length(self.scene) * radius)) / flat)
+
+    def force(self, radius: FloatArray, depth: FloatArray | None = None) -> FloatArray:
+        """F_N [N], in equilibrium or at another depth."""
+        _, _, stiffness, moment = self._at(radius)
+        delta = self.depth(radius) if depth is None else depth
+        return np.asarray(self.scene.layer.contact_modulus * (stiffness * delta - moment))
+
+    def value(self, quantity: Quantity, radius: FloatArray) -> FloatArray:
+        """Depth or force."""
+        return self.depth(radius) if quantity == "indentation_depth" else self.force(radius)
+
+    def samples(self) -> FloatArray:
+        """Radii along the branch, increasing, the ends of its pieces among them."""
+        t = np.arange(1, SAMPLES + 1) / SAMPLES
+        return np.concatenate([p.inner + (p.outer - p.inner) * t**2 for p in self.pieces])
+
+    def turning_points(self, quantity: Quantity) -> list[tuple[float, bool]]:
+        """Radii where the quantity is stationary, and whether it is least there."""
+        radii = self.samples()
+        rising = np.diff(self.value(quantity, radii)) > 0.0
+        places = np.flatnonzero(np.diff(rising.astype(int))) + 1
+        return [(self._refined(quantity, radii, int(i), bool(rising[i])), bool(rising[i])) for i in places]
+
+    def _refined(self, quantity: Quantity, radii: FloatArray, i: int, least: bool) -> float:
+        """The extremum near sample i; at the rim of a flat end it is a kink, which bounded minimisation finds too."""
+        sign = 1.0 if least else -1.0
+        found = minimize_scalar(
+            lambda a: sign * float(self.value(quantity, np.array([a]))[0]),
+            bounds=(radii[i - 1], radii[i + 1]),
+            method="bounded",
+            options={"xatol": 1e-9 * radii[i]},
+        )
+        return float(found.x)
+
+    def crossing(self, quantity: Quantity, value: float, within: tuple[float, float], *, inmost: bool) -> float | None:
+        """The first or last radius in an interval at which the quantity grows with the radius through a value."""
+        radii = self.samples()
+        radii = np.concatenate([[within[0]], radii[(radii > within[0]) & (radii < within[1])], [within[1]]])
+        excess = self.value(quantity, radii) - value
+        places = np.flatnonzero((excess[:-1] < 0.0) & (excess[1:] >= 0.0))
+        if not places.size:
+            return None
+        i = places[0 if inmost else -1]
+        return float(
+            brentq(
+                lambda a: float(self.value(quantity, np.array([a]))[0]) - value,
+                radii[i],
+                radii[i + 1],
+                xtol=1e-14 * radii[i + 1],
+            )
+        )
+
+    def _at(self, radius: FloatArray) -> FloatArray:
+        answer = self.pieces[0].at(radius)
+        for piece in self.pieces[1:]:
+            answer = np.where(radius > piece.inner, piece.at(radius), answer)
+        return answer
+
+
+def adhesive_length(scene: Scene) -> float:
+    """dgamma/E* [m]."""
+    adhesion = scene.effect(Adhesion)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion / scene.layer.contact_modulus
+
+
+def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], bool]) -> float:
+    """A largest radius [m] with which a branch is long enough, or the indenter's end; looked for on a coarse grid.
+
+    It grows from where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*), or from some
+    thicknesses of a layer, which is stiffer.
+    """
+    indenter = scene.indenter
+    if isinstance(indenter, FlatPunch):
+        return indenter.radius
+    radius = GROWTH * max(min(_balance_radius(scene), FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
+    while radius < indenter.max_radius:
+        if enough(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads)):
+            return radius
+        radius *= GROWTH
+    return indenter.max_radius
+
+
+def _balance_radius(scene: Scene) -> float:
+    def outgrown(radius: float) -> bool:
+        height = float(scene.indenter.height(np.array([radius]))[0])
+        return height**2 >= 2.0 * pi * adhesive_length(scene) * radius
+
+    return first_radius(outgrown, scene.indenter.max_radius)

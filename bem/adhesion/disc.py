@@ -1,0 +1,132 @@
+"""A circular adhering contact on square cells, its edge measured by the half-space.
+
+Near the edge of an adhering contact the pressure is singular, p = (E*/pi) phi / sqrt(a^2 - r^2), and the energy that a
+retreating edge sets free for each unit of area is G = E* phi^2 / (2 pi a). A grid resolves no singularity, but every
+layer has the same one: so the *same cells* are pressed flat into the half-space, where phi is the depth. The quotient
+of the two computed pressures is a smooth function of r^2, and its value at the edge is phi (compare `pixel_disc`).
+
+By Griffith the edge rests where G equals the work of adhesion: phi = -sqrt(2 pi dgamma a/E*). Kendall's flat punch on
+the half-space is the measure here and hence exact; other contacts are of about order 1.5 in the cell size.
+
+The displacement f of a profile leaves in the quotient what the grid makes of its tip, its kinks and the root-like part
+of the pressure. The half-space suffers the same, and its phi = g_hs(a) is an integral of the profile's slope; so on a
+layer the quotient takes the difference of the two. The half-space itself is left to the grid, except for a profile with
+breakpoints, which no polynomial follows: there its phi is exact by construction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from bem.grid.calibrated_disc import PixelDisc, measured_disc
+from bem.grid.conjugate_gradients import solve_on_contact
+from bem.grid.operators import FreeSpaceOperator
+from bem.grid.quadrant import Grid
+from bem.layer_equation.one_radius import half_space_load
+from contact import Layer, Profile
+from contact.records.validation import FloatArray
+
+NEAREST: Final = 2.5  # cells inside the edge from which the quotient is regular again
+FARTHEST: Final = 20.0  # cells inside the edge up to which it is fitted,
+LARGEST_SHARE: Final = 0.3  # but no more than this part of the radius
+CUBIC_FROM: Final = 16.0  # cells that carry a third degree
+TOLERANCE: Final = 1e-6  # of the displacement under the contact
+
+
+@dataclass(frozen=True, eq=False)
+class AdheringDisc:
+    """Two linear solutions on one disc: pressed flat by a unit depth, and raised to the profile.
+
+    Attributes:
+        layer: The layer.
+        disc: The cells.
+        grid: Their place.
+        flat: p/E* [1/m] of the unit depth, on the quadrant.
+        risen: p/E* [-] of the displacement f.
+        measured: The same on the half-space, or zero where it is not used.
+        known: phi [m] that goes with it.
+    """
+
+    layer: Layer
+    disc: PixelDisc
+    grid: Grid
+    flat: FloatArray
+    risen: FloatArray
+    measured: FloatArray
+    known: float
+
+    @classmethod
+    def solved(cls, layer: Layer, indenter: Profile, radius: float, cells: int, threads: int) -> AdheringDisc:
+        """Solve both on the disc of this radius [m]."""
+        disc = measured_disc(cells, False)
+        grid = Grid(cells, radius / disc.radius)
+        operator = FreeSpaceOperator(layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
+        height = np.where(disc.contact, indenter.height(np.minimum(grid.radius, indenter.max_radius)), 0.0)
+        flat, risen = (
+            solve_on_contact(operator, disc.contact, target, tolerance=TOLERANCE).pressure / layer.contact_modulus
+            for target in (1.0, height)
+        )
+        if not np.any(height) or not is_measured(layer, indenter):
+            return cls(layer, disc, grid, flat, risen, np.zeros(flat.shape), 0.0)
+        half_space = half_space_operator(cells)
+        measured = solve_on_contact(half_space, disc.contact, height / grid.cell_size, tolerance=TOLERANCE).pressure
+        return cls(layer, disc, grid, flat, risen, measured, float(half_space_load(indenter, np.array([radius]))[0]))
+
+    @property
+    def contact_radius(self) -> float:
+        """a [m]."""
+        return self.disc.radius * self.grid.cell_size
+
+    @property
+    def stiffness(self) -> float:
+        """k_N/E* [m]."""
+        return self._total(self.flat)
+
+    @property
+    def moment(self) -> float:
+        """-F_N/E* at no depth [m^2], so that F_N = E* (stiffness depth - moment)."""
+        return self._total(self.risen)
+
+    @property
+    def edge_flat(self) -> float:
+        """phi under a unit depth [-]."""
+        return self._edge_value(self.flat)
+
+    @property
+    def edge_risen(self) -> float:
+        """phi of the displacement f [m]."""
+        return self.known + self._edge_value(self.risen - self.measured)
+
+    def quotient(self, pressure: FloatArray) -> FloatArray:
+        """Pressure over that of the half-space under a unit depth, on the cells of the disc."""
+        contact = self.disc.contact
+        return np.asarray(pressure[contact] / self.disc.half_space.pressure[contact] * self.grid.cell_size)
+
+    def _total(self, pressure: FloatArray) -> float:
+        return 4.0 * self.grid.cell_size**2 * float(pressure.sum())
+
+    def _edge_value(self, pressure: FloatArray) -> float:
+        """The quotient as a polynomial of (a^2 - r^2)/a^2 near the edge, at the edge."""
+        rho = self.grid.radius[self.disc.contact] / self.contact_radius
+        inside = (1.0 - rho) * self.disc.radius
+        reach = min(FARTHEST, max(LARGEST_SHARE * self.disc.radius, 3.0 * NEAREST))
+        ring = (inside > NEAREST) & (inside < reach)
+        degree = 3 if reach >= CUBIC_FROM else 2
+        fit = np.polynomial.polynomial.polyfit(1.0 - rho[ring] ** 2, self.quotient(pressure)[ring], degree)
+        return float(fit[0])
+
+
+def is_measured(layer: Layer, indenter: Profile) -> bool:
+    """Whether the profile's own edge value is measured by the half-space."""
+    return not layer.is_half_space or bool(indenter.breakpoints)
+
+
+@lru_cache(maxsize=4)
+def half_space_operator(cells: int) -> FreeSpaceOperator:
+    """Of cells of size 1 on a half-space with E* = 1."""
+    half_space = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.0)
+    return FreeSpaceOperator(half_space, cell_size=1.0, cells=cells, quarter=True)

@@ -1,0 +1,219 @@
+"""Adhesive scenes on discs of cells: equilibria at prescribed values, and detachment, each on two grids."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from bem.adhesion.branch import AdhesiveBranch, Quantity, long_enough
+from bem.adhesion.disc import FARTHEST, is_measured
+from bem.adhesion.sequence import Held, at_radii, followed
+from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
+from bem.grid.calibrated_disc import measured_disc
+from bem.grid.quadrant import refuse_thin_layer
+from bem.grid.surface_fields import AdheringFields, FieldSequence
+from contact import (
+    ContactPath,
+    ContactRadii,
+    Detachment,
+    DetachmentPath,
+    FlatPunch,
+    IndentationDepths,
+    NormalForces,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
+from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
+
+LEAST_LAYER: Final = 12.0  # cells, so that the ring of the coarse grid begins within half the layer's thickness
+EDGE_ERROR: Final = 0.3  # over the cells across the box: what an edge value may be off besides the grids' difference,
+MEASURED_ERROR: Final = 0.1  # and where the half-space measures it
+FLOOR: Final = 1e-6  # of the linear solutions
+STATES: Final = 100  # of a detachment
+PRESCRIBED: Final = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
+
+
+@dataclass(frozen=True)
+class AdheringDiscs:
+    """What is solved on which grids.
+
+    Attributes:
+        scene: An adhesive scene.
+        points: Cells of the fine grid; the coarse one has half as many.
+        threads: Of FFTW.
+        settings: Of the method, for the answer.
+        log: Stage log.
+    """
+
+    scene: Scene
+    points: int
+    threads: int
+    settings: dict[str, Setting]
+    log: StageLog
+
+    def equilibria(self) -> ContactPath:
+        """At prescribed radii, or at depths or forces in their order.
+
+        Raises:
+            InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
+            UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
+        """
+        fine, coarse = self._branches()
+        states, others = self._states(fine), self._states(coarse)
+        values, other = (
+            {name: np.array([getattr(state, name) for state in steps]) for name in ContactPath.ARRAYS}
+            for steps in (states, others)
+        )
+        self._refuse_thin_layer(float(values["contact_radius"].max()))
+        times, floor = self._times(values["contact_radius"]), self._floor(fine)
+        errors = {name: times * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
+        errors["normal_force"] += self._cancelled(
+            fine, values["contact_stiffness"] * values["indentation_depth"], values["normal_force"]
+        )
+        errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
+        return ContactPath(
+            scene=self.scene,
+            method="bem",
+            settings=self.settings,
+            cost=self.log.cost(unknowns=self.points**2 // 4),
+            stages=self.log.records,
+            notes=("values are followed in their order, from out of contact",),
+            error_estimate=errors,
+            fields=FieldSequence(tuple(self._fields(state) for state in states)),
+            contact_radius=values["contact_radius"],
+            indentation_depth=values["indentation_depth"],
+            normal_force=values["normal_force"],
+            contact_stiffness=values["contact_stiffness"],
+        )
+
+    def detachment(self, control: Control) -> DetachmentPath:
+        """The whole equilibrium branch of a withdrawal, in order of decreasing radius.
+
+        Raises:
+            UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
+        """
+        fine, coarse = self._branches()
+        start = self._start(fine)
+        self._refuse_thin_layer(start)
+        withdrawal = Withdrawal(fine, start)
+        pull_off, other = withdrawal.pull_off(control), Withdrawal(coarse, start).pull_off(control)
+        cut = Withdrawal(fine.cut(), start).pull_off(control)
+        radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
+        depth, force, floor = fine.depth(radius), fine.force(radius), self._floor(fine)
+        share = dict.fromkeys(pull_off, floor) | {"pull_off_depth": floor * _swing(depth, pull_off["pull_off_depth"])}
+        times = self._times(np.array([pull_off["pull_off_contact_radius"]]))
+        errors = {
+            name: times * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]
+            for name, value in pull_off.items()
+        }
+        errors["indentation_depth"] = self._times(radius) * _difference(depth, coarse.depth(radius)) + floor
+        errors["normal_force"] = self._times(radius) * _difference(force, coarse.force(radius)) + floor
+        errors["normal_force"] += self._cancelled(fine, fine.stiffness(radius) * depth, force)
+        return DetachmentPath(
+            scene=self.scene,
+            method="bem",
+            settings=self.settings,
+            cost=self.log.cost(unknowns=self.points**2 // 4),
+            stages=self.log.records,
+            error_estimate=errors,
+            contact_radius=radius,
+            indentation_depth=depth,
+            normal_force=force,
+            stable_displacement_control=stable(fine, "indentation_depth", radius),
+            stable_force_control=stable(fine, "normal_force", radius),
+            critical_points=withdrawal.critical_points(),
+            pull_off_force=pull_off["pull_off_force"],
+            pull_off_depth=pull_off["pull_off_depth"],
+            pull_off_contact_radius=pull_off["pull_off_contact_radius"],
+        )
+
+    def _branches(self) -> tuple[AdhesiveBranch, AdhesiveBranch]:
+        """On the fine and on the coarse grid."""
+        with self.log.stage("first_guess"):
+            radius = self._largest_radius()
+        with self.log.stage("adhesion"):
+            fine = AdhesiveBranch.up_to(radius, self.scene, self.points, self.threads)
+            coarse = AdhesiveBranch.up_to(radius, self.scene, self.points // 2, self.threads)
+        return fine, coarse
+
+    def _largest_radius(self) -> float:
+        loading = self.scene.loading
+        if isinstance(loading, ContactRadii):
+            return float(loading.values[-1])
+        if isinstance(loading, Detachment) and loading.initial_contact_radius is not None:
+            return loading.initial_contact_radius
+        return long_enough(self.scene, self.threads, self._reaches)
+
+    def _reaches(self, branch: AdhesiveBranch) -> bool:
+        """Whether the branch holds all prescribed values, or all of a withdrawal."""
+        loading, end = self.scene.loading, np.array([branch.largest_radius])
+        if isinstance(loading, IndentationDepths | NormalForces):
+            largest = max(float(loading.values.max()), 0.0)
+            return bool(branch.value(_quantity(loading), end)[0] > 1.1 * largest)
+        return bool(branch.force(end)[0] > strength(branch))
+
+    def _start(self, branch: AdhesiveBranch) -> float:
+        """Where a withdrawal starts [m]: as given, at the punch's edge, or pressed as hard as the contact can pull."""
+        end, loading = branch.largest_radius, self.scene.loading
+        given = isinstance(loading, Detachment) and loading.initial_contact_radius is not None
+        if given or isinstance(self.scene.indenter, FlatPunch):
+            return end
+        return branch.crossing("normal_force", strength(branch), (0.0, end), inmost=False) or end
+
+    def _states(self, branch: AdhesiveBranch) -> list[Held]:
+        loading = self.scene.loading
+        with self.log.stage("history"):
+            if isinstance(loading, ContactRadii):
+                return at_radii(branch, loading.values)
+            if isinstance(loading, IndentationDepths | NormalForces):
+                return followed(branch, _quantity(loading), loading.values)
+        raise UnsupportedSceneError(f"{type(loading).__name__} prescribes no sequence of contacts")
+
+    def _floor(self, branch: AdhesiveBranch) -> float:
+        """Relative error that the difference of two grids may not show."""
+        measured = is_measured(self.scene.layer, self.scene.indenter)
+        return (MEASURED_ERROR if measured else EDGE_ERROR) / self.points + branch.truncation + FLOOR
+
+    def _cancelled(self, branch: AdhesiveBranch, pushed: FloatArray, force: FloatArray) -> float:
+        """What the force loses besides the floor: it is the difference of k_N delta, `pushed`, and the moment.
+
+        Where the half-space measures the edge, its values are far better than the floor and lose nothing visible.
+        """
+        if is_measured(self.scene.layer, self.scene.indenter):
+            return 0.0
+        return self._floor(branch) * float(np.max(np.abs(pushed))) / (float(np.max(np.abs(force))) or np.inf)
+
+    def _refuse_thin_layer(self, radius: float) -> None:
+        """The ring that tells the edge value has to lie where the edge value is made: within about one thickness."""
+        refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
+
+    def _times(self, radius: FloatArray) -> FloatArray:
+        """How often the difference of two grids counts.
+
+        Twice where the ring of cells that tells the edge value is wider than the layer is thick: the edge value changes
+        over that thickness, so convergence is of first order only.
+        """
+        ring = FARTHEST * radius / measured_disc(self.points, False).radius
+        return np.where(ring > self.scene.layer.thickness, 2.0, 1.0)
+
+    def _fields(self, held: Held) -> AdheringFields:
+        return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, self.points, self.threads)
+
+
+def _quantity(loading: IndentationDepths | NormalForces) -> Quantity:
+    return "normal_force" if isinstance(loading, NormalForces) else "indentation_depth"
+
+
+def _swing(depth: FloatArray, lost_at: float) -> float:
+    """The largest depth over that of the pull-off, which may be near zero under force control."""
+    return float(np.max(np.abs(depth)) / abs(lost_at))
+
+
+def _difference(fine: FloatArray, coarse: FloatArray) -> FloatArray:
+    """Relative to the largest magnitude, since depths and forces cross zero; zero if all is zero."""
+    largest = float(np.max(np.abs(fine)))
+    return np.asarray(np.abs(fine - coarse) / largest if largest > 0.0 else np.abs(fine - coarse))

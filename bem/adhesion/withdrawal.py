@@ -1,0 +1,85 @@
+"""An adhering indenter withdrawn along its equilibrium branch: where it jumps and where it is lost."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Literal
+
+import numpy as np
+import numpy.typing as npt
+
+from bem.adhesion.branch import AdhesiveBranch, Quantity
+from contact import CriticalPoint, FlatPunch
+from contact.records.validation import FloatArray
+
+Control = Literal["displacement", "force"]
+QUANTITIES: Final[dict[Control, Quantity]] = {"displacement": "indentation_depth", "force": "normal_force"}
+STEP: Final = 1e-5  # of the radius: over which a slope's sign is read
+
+
+@dataclass(frozen=True)
+class Withdrawal:
+    """The way inwards from a contact radius.
+
+    Attributes:
+        branch: Its equilibria.
+        start: Contact radius [m] to begin with.
+    """
+
+    branch: AdhesiveBranch
+    start: float
+
+    def loss(self, control: Control) -> float:
+        """The radius [m] at which contact is lost: where the controlled quantity is least on the whole branch.
+
+        A contact that jumps at a least value comes to rest where the branch passes that value again, if it goes lower.
+        """
+        quantity = QUANTITIES[control]
+        ends = [a for a, least in self.branch.turning_points(quantity) if least and a < self.start]
+        return min([self.start, *ends], key=lambda a: float(self.branch.value(quantity, np.array([a]))[0]))
+
+    def strongest_tension(self, control: Control) -> float:
+        """The least force [N] among the states that the withdrawal visits: each the lowest so far."""
+        radii = self.branch.samples()
+        radii = np.concatenate([[self.start], radii[(radii < self.start) & (radii > self.loss(control))][::-1]])
+        radii = np.append(radii, self.loss(control))
+        controlled = self.branch.value(QUANTITIES[control], radii)
+        visited = controlled <= np.minimum.accumulate(controlled)
+        return float(np.min(self.branch.force(radii[visited])))
+
+    def pull_off(self, control: Control) -> dict[str, float]:
+        """The scalars of a detachment path."""
+        a = self.loss(control)
+        return {
+            "pull_off_force": self.strongest_tension(control),
+            "pull_off_depth": float(self.branch.depth(np.array([a]))[0]),
+            "pull_off_contact_radius": a,
+        }
+
+    def critical_points(self) -> tuple[CriticalPoint, ...]:
+        """Every change of stability inside the start, under either control; and a punch's own edge."""
+        points = []
+        for control, quantity in QUANTITIES.items():
+            if isinstance(self.branch.scene.indenter, FlatPunch):
+                points.append(self._point(control, "start", self.start))
+            for a, least in self.branch.turning_points(quantity):
+                if a < self.start:
+                    points.append(self._point(control, "pull-off" if least else "snap-in", a))
+        return tuple(points)
+
+    def _point(self, control: Control, kind: str, radius: float) -> CriticalPoint:
+        a = np.array([radius])
+        depth, force = float(self.branch.depth(a)[0]), float(self.branch.force(a)[0])
+        return CriticalPoint(
+            control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force
+        )
+
+
+def stable(branch: AdhesiveBranch, quantity: Quantity, radius: FloatArray) -> npt.NDArray[np.bool_]:
+    """Whether the quantity grows with the radius."""
+    return np.asarray(branch.value(quantity, radius) > branch.value(quantity, radius * (1.0 - STEP)))
+
+
+def strength(branch: AdhesiveBranch) -> float:
+    """The largest tension of the branch [N]."""
+    return -float(np.min(branch.force(branch.samples())))

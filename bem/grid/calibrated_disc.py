@@ -1,0 +1,164 @@
+"""Flat punches on square cells without the staircase error: every grid disc is measured by the half-space.
+
+A disc of cells is not a circle, and its edge singularity is not resolved. Both act within a cell or two of the edge,
+where any layer answers like the half-space. So the *same cells* are pressed into the half-space first: its exact
+stiffness `k = 2 E* a` gives the disc's effective radius a, and its exact pressure `p = E* delta / (pi sqrt(a^2 - r^2))`
+gives, cell by cell, what the discretisation makes of the edge singularity. A layer's stiffness is then read at a/h
+with the effective radius, and its pressure from the ratio of the two computed pressures, which is a smooth function
+of (r/a)^2. What is left is of second order in cell size over thickness, in place of first order.
+
+Thick layers use the free-space operator; layers thinner than a/`THIN` the periodic one with a gap of `GAP`
+thicknesses between images, whose trigonometric pressures stay accurate when cells outgrow an incompressible layer.
+Either is measured by the half-space of its own discretisation.
+
+Lengths are in cell sizes, pressures in units of E*.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from math import ceil, sqrt
+from typing import Final, Self, TypeVar
+
+import numpy as np
+import numpy.typing as npt
+
+from bem.grid.conjugate_gradients import Equilibrium, solve_on_contact
+from bem.grid.operators import BandLimitedHalfSpace, FreeSpaceOperator, PeriodicOperator
+from bem.grid.transforms import fast_period
+from bem.kernels.layer import Support
+from contact import Layer
+
+FloatArray = npt.NDArray[np.float64]
+BoolArray = npt.NDArray[np.bool_]
+Scalar = TypeVar("Scalar", bound=np.generic)
+
+THIN: Final = 8.0  # a/h above which images at a distance are cheaper than zero padding
+GAP: Final = 28.0  # h between images: exp(-0.739 GAP) = 1e-9, the slowest decay (bonded, nu = 1/2)
+FILL: Final = 0.97  # disc radius over half the grid
+TOLERANCE: Final = 1e-7  # of the displacement; the stiffness is in error by its square
+MODULUS: Final = 1.0  # E*
+LARGEST_DEGREE: Final = 20  # of q in 2 rho^2 - 1
+
+
+@dataclass(frozen=True)
+class PunchSolution:
+    """One flat punch in the normalisation of Eq. (10).
+
+    Attributes:
+        stiffness: k_bar.
+        shape: Coefficients c_j of q(rho) = p_bar sqrt(1 - rho^2) = sum c_j T_j(2 rho^2 - 1).
+        pressure: On the quadrant's cells, a start for the next solution.
+        iterations: Conjugate gradient steps.
+    """
+
+    stiffness: float
+    shape: FloatArray
+    pressure: FloatArray
+    iterations: int
+
+
+@dataclass(frozen=True)
+class PixelDisc:
+    """The cells of a quadrant that a circular punch covers, measured by one discretisation of the half-space."""
+
+    cells: int
+    periodic: bool
+    half_space: Equilibrium
+
+    @classmethod
+    def measured(cls, cells: int, *, periodic: bool) -> Self:
+        """Press the disc of a grid of `cells` x `cells` into the half-space."""
+        contact = disc(cells, FILL * cells / 2)
+        half_space = Layer.half_space(youngs_modulus=MODULUS, poissons_ratio=0.0)
+        kind = BandLimitedHalfSpace if periodic else FreeSpaceOperator
+        operator = kind(half_space, cell_size=1.0, cells=cells, quarter=True)
+        return cls(cells, periodic, solve_on_contact(operator, contact, 1.0, tolerance=TOLERANCE))
+
+    @cached_property
+    def radius(self) -> float:
+        """Effective radius a: the half-space's k = 2 E* a, Eq. (10) with k_bar = 1."""
+        return _stiffness(self.half_space) / (2.0 * MODULUS)
+
+    @cached_property
+    def contact(self) -> BoolArray:
+        """Covered cells of the quadrant."""
+        return disc(self.cells, FILL * self.cells / 2)
+
+    def solve(self, ratio: float, support: Support, poissons_ratio: float, start: FloatArray | None) -> PunchSolution:
+        """Flat punch on a layer with a/h = `ratio`."""
+        youngs_modulus = MODULUS * (1.0 - poissons_ratio**2)
+        thickness = self.radius / ratio
+        layer = Layer(
+            thickness=thickness, youngs_modulus=youngs_modulus, poissons_ratio=poissons_ratio, support=support
+        )
+        cells = fast_period(ceil(2 * self.radius + GAP * thickness)) if self.periodic else self.cells
+        kind = PeriodicOperator if self.periodic else FreeSpaceOperator
+        operator = kind(layer, cell_size=1.0, cells=cells, quarter=True)
+        contact = _resized(self.contact, cells // 2)
+        first = None if start is None else _resized(start, cells // 2)
+        answer = solve_on_contact(operator, contact, 1.0, start=first, tolerance=TOLERANCE)
+        return PunchSolution(
+            stiffness=_stiffness(answer) / (2.0 * MODULUS * self.radius),
+            shape=self._shape(answer.pressure[contact], ratio),
+            pressure=answer.pressure,
+            iterations=answer.iterations,
+        )
+
+    def _shape(self, pressure: FloatArray, ratio: float) -> FloatArray:
+        """Fit of q = (1/2) p / p_half-space, normalised to int_0^1 q rho/sqrt(1 - rho^2) d(rho) = 1/2."""
+        count = shape_degree(ratio) + 1
+        orthogonal, triangle = self._basis
+        quotient = pressure / self.half_space.pressure[self.contact]
+        shape = np.linalg.solve(triangle[:count, :count], orthogonal[:, :count].T @ quotient)
+        return np.asarray(0.5 * shape / (shape @ _moments(count)))
+
+    @cached_property
+    def _basis(self) -> tuple[FloatArray, FloatArray]:
+        """QR factors of the Chebyshev polynomials on the covered cells; each lower degree is a leading section."""
+        centre = np.arange(self.cells // 2) + 0.5
+        radius = np.hypot(centre[:, None], centre)[self.contact]
+        argument = np.minimum(2.0 * (radius / self.radius) ** 2 - 1.0, 1.0)
+        orthogonal, triangle = np.linalg.qr(np.polynomial.chebyshev.chebvander(argument, LARGEST_DEGREE))
+        return orthogonal, triangle
+
+
+@lru_cache(maxsize=8)
+def measured_disc(cells: int, periodic: bool) -> PixelDisc:
+    """`PixelDisc.measured`, remembered: it depends on nothing else."""
+    return PixelDisc.measured(cells, periodic=periodic)
+
+
+def shape_degree(ratio: float) -> int:
+    """Degree of q in 2 rho^2 - 1.
+
+    High enough for the edge layer of q, whose width in sqrt(1 - rho) is about sqrt(h/a), and low enough not to follow
+    the noise of the outermost cells: measured, the error of q grows either way.
+    """
+    return min(6 + ceil(1.5 * sqrt(ratio)), LARGEST_DEGREE)
+
+
+def disc(cells: int, radius: float) -> BoolArray:
+    """Cells of the quadrant of a `cells` x `cells` grid whose centres lie within `radius` cell sizes of the axis."""
+    centre = np.arange(cells // 2) + 0.5
+    return np.asarray(np.hypot(centre[:, None], centre) < radius)
+
+
+def _stiffness(answer: Equilibrium) -> float:
+    """Force over depth for unit depth: `p (2 - K p)`, stationary at the solution; four quadrants."""
+    return 4.0 * float(np.vdot(answer.pressure, 2.0 - answer.displacement))
+
+
+def _moments(count: int) -> FloatArray:
+    """int_0^1 T_j(2 rho^2 - 1) rho/sqrt(1 - rho^2) d(rho); rho = sin(theta) makes T_j (-1)^j cos(2 j theta)."""
+    j = np.arange(count)
+    return (-1.0) ** j / (1.0 - 4.0 * j**2)
+
+
+def _resized(field: npt.NDArray[Scalar], cells: int) -> npt.NDArray[Scalar]:
+    """The quadrant cut or extended by zeros to `cells` x `cells`."""
+    resized = np.zeros((cells, cells), dtype=field.dtype)
+    kept = min(cells, field.shape[0])
+    resized[:kept, :kept] = field[:kept, :kept]
+    return resized

@@ -1,0 +1,336 @@
+"""A smooth indenter pressed into a layer on one grid, and the prescription of depth, force or radius."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import ceil, exp, log, log2
+from typing import Final, Literal
+
+import numpy as np
+
+from bem.grid.calibrated_disc import FILL as DISC_FILL
+from bem.grid.conjugate_gradients import Equilibrium, solve_contact
+from bem.grid.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius, slope
+from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness
+from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
+from bem.grid.quadrant import Grid, first_radius, grid_sequence, prolonged, refuse_thin_layer
+from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
+from contact.records.validation import FloatArray
+
+Boundary = Literal["free", "periodic"]
+Prescribed = Literal["radius", "depth", "force"]
+
+COARSE_CELLS: Final = 64
+FIRST_BOX: Final = (
+    1.0973  # over the radius where f equals the depth; no round number: no cell centre lies on that radius
+)
+FILL: Final = 0.88  # contact radius over half the box
+IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
+STIFFNESS_CELLS: Final = 256  # of the flat punch behind k_N: its own error is below 1e-5 for a < 5 h
+STIFFNESS_LAYER: Final = 2.0  # cells that the layer under that punch is thick, if the grid has as many
+LEAST_LAYER: Final = 1.0  # cells; layers thinner than one are all the same to a grid
+CLOSE: Final = 1e-3  # of ln(k_N): from here on one step of the secant is enough
+NEAR: Final = 3e-2  # of a first guess
+NOISE: Final = 5e-3  # of ln(k_N): smaller changes say nothing on the exponent
+COARSE_TOLERANCE: Final = 1e-5
+LARGEST_FILL: Final = 0.92  # contact radius over half a coarse box: room for a deeper contact
+LEAST_RADIUS: Final = 3.0  # cells
+RAGGED: Final = 2.0  # cells inside a circle's edge where every cell is pressed
+END_SHARE: Final = 0.02  # of the indenter's end: over which it is continued by its last slope
+
+
+@dataclass(frozen=True, eq=False)
+class Bed:
+    """An indenter above a layer on one grid.
+
+    Attributes:
+        operator: K.
+        grid: The quadrant.
+        height: f at the cell centres [m].
+        tolerance: Of the complementarity problem.
+        log: Stage log; counts the iterations.
+    """
+
+    operator: Operator
+    grid: Grid
+    height: FloatArray
+    tolerance: float
+    log: StageLog
+
+    def at_depth(self, depth: float, start: FloatArray | None) -> Equilibrium:
+        """Under a depth [m]."""
+        return self._counted(
+            solve_contact(self.operator, self.height, depth=depth, start=start, tolerance=self.tolerance)
+        )
+
+    def under_force(self, force: float, start: FloatArray | None) -> Equilibrium:
+        """Under a force [N]."""
+        load = force / (4.0 * self.grid.cell_size**2)
+        return self._counted(
+            solve_contact(self.operator, self.height, load=load, start=start, tolerance=self.tolerance)
+        )
+
+    def force(self, state: Equilibrium) -> float:
+        """F_N [N]; the quadrant stands for four."""
+        return 4.0 * self.grid.cell_size**2 * float(state.pressure.sum())
+
+    def stiffness(self, state: Equilibrium) -> float:
+        """dF/d(delta) [N/m] about this state."""
+        depth = state.indentation_depth
+        less, more = (self.force(self.at_depth(depth * exp(step), state.pressure)) for step in (-STEP, STEP))
+        return slope(depth, self.force(state), less, more)
+
+    def _counted(self, answer: Equilibrium) -> Equilibrium:
+        self.log.count("iterations", answer.iterations)
+        return answer
+
+
+@dataclass(frozen=True, eq=False)
+class PressedState:
+    """One equilibrium on one grid.
+
+    Attributes:
+        grid: Where it was computed.
+        equilibrium: Pressure, displacement, depth.
+        contact_radius: a [m], see `contact_edge`.
+        radius_scatter: How far that may be off for want of cells [m].
+        normal_force: F_N [N].
+        contact_stiffness: dF/d(delta) [N/m].
+    """
+
+    grid: Grid
+    equilibrium: Equilibrium
+    contact_radius: float
+    radius_scatter: float
+    normal_force: float
+    contact_stiffness: float
+
+    @property
+    def indentation_depth(self) -> float:
+        """delta [m]."""
+        return self.equilibrium.indentation_depth
+
+
+@dataclass(frozen=True)
+class Press:
+    """What is pressed into what, how it is discretised, and the log of what was done.
+
+    Attributes:
+        layer: The layer.
+        indenter: A profile that is no flat punch.
+        boundary: "free" or "periodic".
+        tolerance: Of the complementarity problem.
+        threads: Of FFTW.
+        log: Stage log.
+    """
+
+    layer: Layer
+    indenter: Profile
+    boundary: Boundary
+    tolerance: float
+    threads: int
+    log: StageLog
+
+    def reach(self, prescribed: Prescribed, value: float, points: int) -> tuple[PressedState, PressedState]:
+        """The equilibria with the prescribed depth, force or radius on `points` cells and on half as many.
+
+        Raises:
+            UnresolvedLayer: If the layer is thinner than a cell.
+        """
+        reach = self._reach_radius if prescribed == "radius" else self._reach_depth_or_force
+        fine, coarse = reach(prescribed, value, points)
+        cell = max(fine.grid.cell_size, self._punch_cell(points, fine.contact_radius))
+        refuse_thin_layer(self.layer, cell, LEAST_LAYER)
+        return fine, coarse
+
+    def _reach_depth_or_force(
+        self, prescribed: Prescribed, value: float, points: int
+    ) -> tuple[PressedState, PressedState]:
+        """Each grid starts from the answer of the one before; the first box is found on a coarse grid."""
+        with self.log.stage("first_guess"):
+            guess = self._near_force(value) if prescribed == "force" else self._coarse(value)
+        radius = area_radius(guess.answer.pressure, guess.bed.grid.cell_size)
+        start: FloatArray | None = None
+        states: list[PressedState] = []
+        box = radius
+        for cells in grid_sequence(points):
+            bed = self._bed(box, cells)
+            with self.log.stage("contact"):
+                solve = bed.at_depth if prescribed == "depth" else bed.under_force
+                answer = solve(value, start)
+            start = prolonged(answer.pressure)
+            if cells >= points // 2:
+                states.append(self._measured(bed, answer, radius))
+                radius = states[-1].contact_radius
+        return states[1], states[0]
+
+    def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[PressedState, PressedState]:
+        """The depth at which the contact is as stiff as the flat punch of this radius, Eq. (5)."""
+        with self.log.stage("contact_stiffness"):
+            stiffness = contact_stiffness(self.layer, radius, self._punch_cells(points, radius))
+        with self.log.stage("first_guess"):
+            guess, exponent = self._coarse_root(Coarse.stiffness, stiffness, self._depth_scale(radius))
+        depth, start = guess.answer.indentation_depth, None
+        states: list[PressedState] = []
+        for cells in grid_sequence(points):
+            bed = self._bed(radius, cells)
+            with self.log.stage("contact"):
+                answer, exponent = self._as_stiff(bed, stiffness, bed.at_depth(depth, start), exponent)
+            depth, start = answer.indentation_depth, prolonged(answer.pressure)
+            states.append(self._state(bed, answer, radius, stiffness))
+        return states[-1], states[-2]
+
+    def _as_stiff(self, bed: Bed, stiffness: float, answer: Equilibrium, exponent: float) -> tuple[Equilibrium, float]:
+        """Secant method in ln(depth) over ln(k_N), which grows like a power of the depth; and that power's inverse."""
+        miss = log(stiffness / bed.stiffness(answer))
+        for _ in range(12):
+            step = float(np.clip(exponent * miss, -0.5, 0.5))
+            answer = bed.at_depth(answer.indentation_depth * exp(step), answer.pressure)
+            if abs(miss) < CLOSE:
+                return answer, exponent
+            before, miss = miss, log(stiffness / bed.stiffness(answer))
+            exponent = _updated(exponent, step, before - miss)
+        raise NotConvergedError(
+            "the prescribed contact radius was not met; use more points or prescribe depths", {"stiffness": abs(miss)}
+        )
+
+    def _near_force(self, force: float) -> Coarse:
+        """A coarse equilibrium near the force wanted."""
+        return self._coarse_root(Coarse.force, force, self._depth_of_force(force))[0]
+
+    def _coarse_root(self, measure: Callable[[Coarse], float], value: float, depth: float) -> tuple[Coarse, float]:
+        """Secant in logarithms on coarse grids, within 3 %; and the exponent of the depth over what is measured."""
+        exponent, state = 1.0, self._coarse(depth)
+        miss = log(value / measure(state))
+        for _ in range(40):
+            if abs(miss) < NEAR:
+                return state, exponent
+            step = float(np.clip(exponent * miss, -2.0, 2.0))
+            depth *= exp(step)
+            state = self._coarse(depth)
+            before, miss = miss, log(value / measure(state))
+            exponent = _updated(exponent, step, before - miss)
+        raise NotConvergedError("no first guess of the contact was found", {"miss": miss})
+
+    def _coarse(self, depth: float) -> Coarse:
+        """Equilibrium on a coarse grid whose box grows until the contact lies well inside."""
+        radius = FIRST_BOX * self._geometric_radius(depth)
+        for _ in range(40):
+            thin = self.layer.thickness < 4.0 * radius / COARSE_CELLS
+            bed = self._bed(radius, COARSE_CELLS, "periodic" if thin else "free", COARSE_TOLERANCE)
+            try:
+                answer = bed.at_depth(depth, None)
+            except NotConvergedError:  # a box that is all contact may have no equilibrium (bonded, nu = 1/2)
+                radius *= 1.3
+                continue
+            if area_radius(answer.pressure, bed.grid.cell_size) < LARGEST_FILL * bed.grid.cell_size * COARSE_CELLS / 2:
+                return Coarse(bed, answer)
+            radius *= 1.3
+        raise NotConvergedError(f"the contact at a depth of {depth:g} m outgrew every box")
+
+    def _measured(self, bed: Bed, answer: Equilibrium, near: float) -> PressedState:
+        """With the radius of the flat punch that is as stiff."""
+        with self.log.stage("contact_stiffness"):
+            stiffness = bed.stiffness(answer)
+            radius = radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(bed.grid.cells, near))
+        return self._state(bed, answer, radius, stiffness)
+
+    def _state(self, bed: Bed, answer: Equilibrium, radius: float, stiffness: float) -> PressedState:
+        self._check_inside(answer, bed.grid, radius)
+        if radius < LEAST_RADIUS * bed.grid.cell_size:
+            raise InvalidInput(
+                f"a contact of radius {radius:g} m spans too few of the {bed.grid.cells} cells of its box; "
+                'take more points, or boundary="free"'
+            )
+        punch_cell = self._punch_cell(bed.grid.cells, radius)
+        scatter = (
+            SLOPE_SCATTER * bed.grid.cell_size + THIN_SCATTER * punch_cell * (punch_cell / self.layer.thickness) ** 2
+        )
+        return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness)
+
+    def _punch_cells(self, cells: int, radius: float) -> int:
+        """Cells of the flat punch behind k_N."""
+        thin = 2.0 * STIFFNESS_LAYER / DISC_FILL * radius / self.layer.thickness
+        return min(cells, 1 << ceil(log2(max(STIFFNESS_CELLS, thin))))
+
+    def _punch_cell(self, cells: int, radius: float) -> float:
+        """Their size [m]."""
+        return 2.0 * radius / (DISC_FILL * self._punch_cells(cells, radius))
+
+    def _check_inside(self, answer: Equilibrium, grid: Grid, radius: float) -> None:
+        """The contact is one full circle that ends within the indenter and the box."""
+        if radius > self.indenter.max_radius:
+            raise InvalidInput(f"the contact reaches the end of the indenter at {self.indenter.max_radius:g} m")
+        by_area = area_radius(answer.pressure, grid.cell_size)
+        pressed = answer.pressure > 0.0
+        hollow = grid.radius[~pressed & (grid.radius < by_area - RAGGED * grid.cell_size)]
+        if hollow.size:
+            raise UnsupportedSceneError(
+                f"nothing presses at r = {hollow.max():g} m within a contact of radius {radius:g} m: it is no single "
+                "circle; smooth the profile or press less"
+            )
+        outermost = float(np.max(grid.radius[pressed]))
+        if abs(outermost - by_area) > 4.0 * grid.cell_size:
+            raise NotConvergedError(
+                f"the contact is not one circle: cells to {outermost:g} m, area of a radius of {by_area:g} m"
+            )
+
+    def _bed(self, radius: float, cells: int, boundary: Boundary | None = None, tolerance: float | None = None) -> Bed:
+        """A grid that a contact of this radius fills well."""
+        kind = boundary or self.boundary
+        gap = IMAGE_GAP * self.layer.thickness if kind == "periodic" else 0.0
+        grid = Grid(cells, max(2.0 * radius / FILL, 2.0 * radius + gap) / cells)
+        make = PeriodicOperator if kind == "periodic" else FreeSpaceOperator
+        with self.log.stage("operator"):
+            operator = make(self.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=self.threads)
+        return Bed(operator, grid, self._height(grid), tolerance or self.tolerance, self.log)
+
+    def _height(self, grid: Grid) -> FloatArray:
+        """f at the cell centres [m], continued beyond the indenter's end by its last slope.
+
+        So the stiffness of a contact that ends within the indenter is not disturbed.
+        """
+        end = self.indenter.max_radius
+        if end >= np.max(grid.radius):
+            return self.indenter.height(grid.radius)
+        inner, outer = self.indenter.height(end * np.array([1.0 - END_SHARE, 1.0]))
+        last_slope = (outer - inner) / (END_SHARE * end)
+        beyond = np.maximum(grid.radius - end, 0.0)
+        return np.asarray(self.indenter.height(np.minimum(grid.radius, end)) + last_slope * beyond)
+
+    def _geometric_radius(self, depth: float) -> float:
+        """Where f equals the depth [m]."""
+        reached = first_radius(lambda r: self._depth_scale(r) >= depth, self.indenter.max_radius)
+        return max(reached, self.indenter.flat_radius)
+
+    def _depth_scale(self, radius: float) -> float:
+        """f at the contact radius: the depth of a thin layer, and of the right size for any."""
+        return float(self.indenter.height(np.array([radius]))[0])
+
+    def _depth_of_force(self, force: float) -> float:
+        """The depth at which 2 E* r f(r) equals the force, r the radius where f equals the depth."""
+        stiffness = 2.0 * self.layer.contact_modulus
+        radius = first_radius(lambda r: stiffness * r * self._depth_scale(r) >= force, self.indenter.max_radius)
+        return self._depth_scale(radius * (1.0 - 1e-12))
+
+
+@dataclass(frozen=True)
+class Coarse:
+    """A first guess."""
+
+    bed: Bed
+    answer: Equilibrium
+
+    def force(self) -> float:
+        """F_N [N]."""
+        return self.bed.force(self.answer)
+
+    def stiffness(self) -> float:
+        """dF/d(delta) [N/m]."""
+        return self.bed.stiffness(self.answer)
+
+
+def _updated(exponent: float, step: float, moved: float) -> float:
+    """d ln(depth)/d ln(measure) from the last step, unless it is as small as the measure's noise."""
+    return float(np.clip(step / moved, 0.1, 10.0)) if step * moved > 0.0 and abs(moved) > NOISE else exponent

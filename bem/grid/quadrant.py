@@ -1,0 +1,79 @@
+"""Quadrants of square grids, sequences of them, and where a monotone condition on the radius begins."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from math import sqrt
+from typing import Final
+
+import numpy as np
+
+from contact import Layer, UnsupportedSceneError
+from contact.records.validation import FloatArray
+
+LEAST_CELLS: Final = 48  # of the coarsest grid of a sequence
+SHORTEST, LONGEST = 1e-12, 1e12  # m, between which a radius is looked for
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """The quadrant x, y > 0 of a square box.
+
+    Attributes:
+        cells: Cells across the whole box.
+        cell_size: s [m].
+    """
+
+    cells: int
+    cell_size: float
+
+    @cached_property
+    def radius(self) -> FloatArray:
+        """r of the cell centres [m], shape (cells/2, cells/2)."""
+        centre = self.cell_size * (np.arange(self.cells // 2) + 0.5)
+        return np.asarray(np.hypot(centre[:, None], centre))
+
+
+class UnresolvedLayer(UnsupportedSceneError):
+    """The layer is too thin for the cells: two such grids may agree on what neither of them resolves."""
+
+
+def refuse_thin_layer(layer: Layer, cell_size: float, least: float) -> None:
+    """Ask for a layer that is so many cells thick.
+
+    Raises:
+        UnresolvedLayer: If it is thinner.
+    """
+    spanned = layer.thickness / cell_size
+    if spanned < least:
+        raise UnresolvedLayer(
+            f"the layer of thickness {layer.thickness:g} m is {spanned:.2g} cells thick and needs {least:g}; "
+            f"take {least / spanned:.1f} times as many points, or ask mdr or fem"
+        )
+
+
+def prolonged(field: FloatArray) -> FloatArray:
+    """The field on a grid of half the cell size, each value on four cells."""
+    return np.repeat(np.repeat(field, 2, axis=0), 2, axis=1)
+
+
+def grid_sequence(points: int) -> list[int]:
+    """points, points/2, points/4, ... as long as they are even and not below `LEAST_CELLS`; coarsest first."""
+    cells = [points]
+    while cells[-1] % 4 == 0 and cells[-1] // 2 >= LEAST_CELLS:
+        cells.append(cells[-1] // 2)
+    return cells[::-1]
+
+
+def first_radius(reached: Callable[[float], bool], largest: float) -> float:
+    """The smallest radius [m] where a condition holds that holds beyond it too; `largest` if it never does.
+
+    Bisection in the logarithm, so that every unit system takes the same steps to within rounding.
+    """
+    low, high = SHORTEST, min(largest, LONGEST)
+    for _ in range(200):
+        middle = sqrt(low * high)
+        low, high = (low, middle) if reached(middle) else (middle, high)
+    return high

@@ -1,0 +1,241 @@
+"""Pressure and displacement at any radius from the cells of a grid.
+
+Under the indenter the pressure is `sqrt(a^2 - r^2)` times a smooth function (a smooth indenter) or that function over
+the root (a flat punch), and only the smooth function is averaged over rings of cells and interpolated. Beyond the box
+the displacement is the sum of what every cell causes there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Final, Protocol
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from bem.grid.equilibrium import PressedState
+from bem.grid.influence import REACH, correction_function
+from bem.grid.quadrant import Grid
+from contact import Layer, Profile, Scene
+from contact.records.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.adhesion.disc import AdheringDisc
+
+EDGE_CELLS: Final = 2.5  # cells inside the edge that the grid does not resolve
+RINGS_PER_CELL: Final = 1.0
+CHUNK: Final = 64  # radii summed at a time beyond the box: bounds the memory
+
+
+class AxisymmetricFields(Protocol):
+    """Surface fields of one equilibrium."""
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa], shape of `radius`."""
+        ...
+
+    def surface_displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m], shape of `radius`."""
+        ...
+
+
+@dataclass(frozen=True)
+class FieldSequence:
+    """Fields of every step of a path, as `contact.Fields` wants them."""
+
+    steps: tuple[AxisymmetricFields, ...]
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa] of one step."""
+        return self.steps[step].pressure(radius)
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m] of one step."""
+        return self.steps[step].surface_displacement(radius)
+
+
+@dataclass(frozen=True, eq=False)
+class SmoothIndenterFields:
+    """Fields under and around a smooth indenter."""
+
+    layer: Layer
+    indenter: Profile
+    state: PressedState
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa], zero outside the contact."""
+        a = self.state.contact_radius
+        root = np.sqrt(np.maximum(a**2 - radius**2, 0.0))
+        return np.asarray(root * self._pressure_over_root(np.minimum(radius, a)))
+
+    def surface_displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m]: delta - f under the indenter, from the grid beside it, by direct summation beyond the box."""
+        a, state = self.state.contact_radius, self.state
+        under = state.indentation_depth - self.indenter.height(np.minimum(radius, a))
+        w = np.where(radius <= a, under, self._beside(np.clip(radius, a, self._box)))
+        far = radius > self._box
+        w[far] = summed_displacement(self.layer, state.grid, state.equilibrium.pressure, radius[far])
+        return w
+
+    @property
+    def _box(self) -> float:
+        return float(self.state.grid.cell_size * (self.state.grid.cells / 2 - 1))
+
+    @cached_property
+    def _pressure_over_root(self) -> PchipInterpolator:
+        state = self.state
+        a, s = state.contact_radius, state.grid.cell_size
+        inside = state.grid.radius < max(a - EDGE_CELLS * s, 0.6 * a)
+        r = state.grid.radius[inside]
+        ratio = state.equilibrium.pressure[inside] / np.sqrt(a**2 - r**2)
+        return _ring_interpolator(r, ratio, s)
+
+    @cached_property
+    def _beside(self) -> PchipInterpolator:
+        state = self.state
+        a, s = state.contact_radius, state.grid.cell_size
+        ring = (state.grid.radius > a + s) & (state.grid.radius < self._box + s)
+        mean = _ring_interpolator(state.grid.radius[ring], state.equilibrium.displacement[ring], s)
+        edge = state.indentation_depth - float(self.indenter.height(np.array([a]))[0])
+        return PchipInterpolator(np.concatenate([[a], mean.x]), np.concatenate([[edge], mean(mean.x)]))
+
+
+@dataclass(frozen=True, eq=False)
+class FlatPunchFields:
+    """Fields under and around a flat punch: p = c q(r/a) / sqrt(1 - (r/a)^2)."""
+
+    layer: Layer
+    radius: float
+    indentation_depth: float
+    pressure_scale: float
+    shape: FloatArray
+    grid: Grid
+    cell_pressure: FloatArray
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa]; at the edge itself, where it is infinite, the value half a cell inside stands."""
+        rho = np.minimum(radius / self.radius, 1.0 - 0.5 * self.grid.cell_size / self.radius)
+        q = np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, self.shape)
+        return np.where(radius <= self.radius, self.pressure_scale * q / np.sqrt(1.0 - rho**2), 0.0)
+
+    def surface_displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m]: the depth under the punch, direct summation outside."""
+        outside = radius > self.radius
+        w = np.full(radius.shape, self.indentation_depth)
+        rim = Rim(self.layer, self.grid, self.cell_pressure, self.radius, self.indentation_depth)
+        w[outside] = rim.displacement_outside(radius[outside])
+        return w
+
+
+@dataclass(frozen=True, eq=False)
+class AdheringFields:
+    """Fields of an adhering contact of radius a (zero: none) under a depth, solved when they are first asked for."""
+
+    scene: Scene
+    contact_radius: float
+    indentation_depth: float
+    cells: int
+    threads: int
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa]; at the edge itself, where it is infinite, the value half a cell inside stands."""
+        a = self.contact_radius
+        if a == 0.0:
+            return np.zeros(radius.shape)
+        r = np.minimum(radius, a - 0.5 * self._disc.grid.cell_size)
+        unit = self.scene.layer.contact_modulus / np.pi
+        return np.where(radius <= a, unit * self._density(r) / np.sqrt(a**2 - r**2), 0.0)
+
+    def surface_displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m]: delta - f under the indenter, direct summation outside; without contact none."""
+        if self.contact_radius == 0.0:
+            return np.zeros(radius.shape)
+        a, layer, outside = self.contact_radius, self.scene.layer, radius > self.contact_radius
+        w = np.asarray(self.indentation_depth - self.scene.indenter.height(np.minimum(radius, a)))
+        edge = self.indentation_depth - float(self.scene.indenter.height(a))
+        rim = Rim(layer, self._disc.grid, layer.contact_modulus * self._pressure, a, edge)
+        w[outside] = rim.displacement_outside(radius[outside])
+        return w
+
+    @cached_property
+    def _disc(self) -> AdheringDisc:
+        from bem.adhesion.disc import AdheringDisc  # noqa: PLC0415 - adhering scenes alone load it
+
+        return AdheringDisc.solved(self.scene.layer, self.scene.indenter, self.contact_radius, self.cells, self.threads)
+
+    @property
+    def _pressure(self) -> FloatArray:
+        """p/E* on the quadrant."""
+        return np.asarray(self.indentation_depth * self._disc.flat - self._disc.risen)
+
+    @cached_property
+    def _density(self) -> PchipInterpolator:
+        """p over that of the half-space under a unit depth [m]: smooth up to the edge."""
+        disc = self._disc
+        r, quotient = disc.grid.radius[disc.disc.contact], disc.quotient(self._pressure)
+        inside = r < self.contact_radius - EDGE_CELLS * disc.grid.cell_size
+        return _ring_interpolator(r[inside], quotient[inside], disc.grid.cell_size)
+
+
+@dataclass(frozen=True, eq=False)
+class Rim:
+    """The edge of a contact with a singular pressure, and what causes displacements beyond it."""
+
+    layer: Layer
+    grid: Grid
+    pressure: FloatArray
+    radius: float
+    displacement: float
+
+    def displacement_outside(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m] at r > a; over the first cell it leaves the edge's value like the root of the distance."""
+        first = self.radius + self.grid.cell_size
+        w = summed_displacement(self.layer, self.grid, self.pressure, np.maximum(radius, first))
+        near = radius < first
+        share = np.sqrt((radius[near] - self.radius) / self.grid.cell_size)
+        w[near] = (1.0 - share) * self.displacement + share * w[near]
+        return w
+
+
+def summed_displacement(layer: Layer, grid: Grid, pressure: FloatArray, radius: FloatArray) -> FloatArray:
+    """w(r) [m] outside the contact: each cell acts as a point force at its centre, mirrored into four quadrants.
+
+    Args:
+        layer: The layer.
+        grid: The quadrant.
+        pressure: p [Pa] on it.
+        radius: r [m], shape (n,), at least a cell outside the contact.
+
+    Returns:
+        w, shape (n,).
+    """
+    i, j = np.nonzero(pressure)
+    x, y = grid.cell_size * (i + 0.5), grid.cell_size * (j + 0.5)
+    force = grid.cell_size**2 * pressure[i, j] / (np.pi * layer.contact_modulus)
+    w = np.empty(radius.shape)
+    for start in range(0, radius.size, CHUNK):
+        r = radius[start : start + CHUNK, None]
+        w[start : start + CHUNK] = sum(
+            2.0 * _point_response(layer, np.hypot(r + side * x, y)) @ force for side in (-1, 1)
+        )
+    return w
+
+
+def _point_response(layer: Layer, distance: FloatArray) -> FloatArray:
+    """1/r + V(r/h)/h [1/m]."""
+    if layer.is_half_space:
+        return 1.0 / distance
+    rho = distance / layer.thickness
+    smooth = correction_function(layer.support, layer.poissons_ratio)
+    return np.where(rho < REACH, 1.0 / distance + smooth(np.minimum(rho, REACH)) / layer.thickness, 0.0)
+
+
+def _ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PchipInterpolator:
+    """Means over rings of cells, interpolated in r and continued as they end."""
+    ring = np.floor(RINGS_PER_CELL * radius / cell_size).astype(np.intp)
+    count = np.bincount(ring)
+    kept = count > 0
+    mean_radius = np.bincount(ring, radius)[kept] / count[kept]
+    mean_value = np.bincount(ring, values)[kept] / count[kept]
+    return PchipInterpolator(mean_radius, mean_value, extrapolate=True)

@@ -1,0 +1,120 @@
+"""Abel density of the pressure under one contact, from the factor of the layer's equation.
+
+With lengths in units of the thickness, the pressure under a contact of radius a and density phi on [0, a] is
+
+    p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt].
+
+The density is ``phi = W + psi``: the half-space's answer W (known, possibly with kinks) and the layer's share psi,
+which is even and analytic because it is ``int K phi dt``. Only psi is represented here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.triangular import solve_lower
+from bem.polynomials.equal_panels import chebyshev_sum
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from contact.records.validation import FloatArray
+
+
+@dataclass(frozen=True)
+class ContactDensity:
+    """Layer's share psi of the density under one contact of radius a.
+
+    Attributes:
+        kernel: Kernel of the layer.
+        left: Left ends of the panels that cover [0, a], shape (q,).
+        width: Their widths, equal but for the last, shape (q,).
+        load: Averages of W over the panels' Lagrange basis, shape (q, m).
+        psi: Values at the panels' Gauss nodes, shape (q, m).
+    """
+
+    kernel: FredholmKernel
+    left: FloatArray
+    width: FloatArray
+    load: FloatArray
+    psi: FloatArray
+
+    @classmethod
+    def of_load(cls, kernel: FredholmKernel, factor: VolterraFactor, ratio: float, load: FloatArray) -> ContactDensity:
+        """Solve for the density under a contact of radius `ratio`.
+
+        Args:
+            kernel: Kernel that was factorised.
+            factor: Its factor.
+            ratio: a, in units of the thickness.
+            load: Averages of W on the panels that cover [0, a], shape (q, m); the last panel ends at a.
+        """
+        left = factor.panel_width * np.arange(len(load), dtype=np.float64)
+        width = np.append(np.diff(left), ratio - left[-1])
+        return cls(kernel, left, width, load, _solve(factor, width[-1], load) - load)
+
+    @property
+    def ratio(self) -> float:
+        """a, in units of the thickness."""
+        return float(self.left[-1] + self.width[-1])
+
+    @property
+    def edge_value(self) -> float:
+        """psi(a)."""
+        return float(self._coefficients[-1].sum())  # every Chebyshev polynomial is 1 at the right end
+
+    def slope(self, t: FloatArray) -> FloatArray:
+        """psi'(t) at points of [0, a]."""
+        panel = np.clip(np.searchsorted(self.left, t, side="left") - 1, 0, len(self.left) - 1)
+        s = 2 * (t - self.left[panel]) / self.width[panel] - 1
+        return chebyshev_sum(self._slope_coefficients[panel], s)
+
+    def abel_integral(self, radius: FloatArray) -> FloatArray:
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,).
+
+        With t^2 = r^2 + s^2 the integrand psi'(t)/t is an even analytic function of t, hence analytic in s.
+        """
+        nodes, weights = gauss_nodes(self.psi.shape[1])
+        panels = len(self.left) + 1
+        s = ((np.arange(panels)[:, None] + nodes) / panels).ravel()
+        reach = np.sqrt((self.ratio - radius) * (self.ratio + radius))[:, None]
+        t = np.minimum(np.hypot(radius[:, None], reach * s), self.ratio)
+        values: FloatArray = reach[:, 0] / panels * ((self.slope(t) / t) @ np.tile(weights, panels))
+        return values
+
+    def outside(self, distance: FloatArray) -> FloatArray:
+        """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
+        nodes, weights = gauss_nodes(self.psi.shape[1])
+        t = (self.left[:, None] + self.width[:, None] * nodes).ravel()
+        mass = ((self.load + self.psi) * self.width[:, None] * weights).ravel()
+        rates = self.kernel.rates[:, None]
+        moments = (np.exp(-rates * (self.ratio - t)) + np.exp(-rates * (self.ratio + t))) @ mass
+        decay = np.exp(-np.multiply.outer(distance, self.kernel.rates))
+        values: FloatArray = -(decay @ (self.kernel.weights * moments)).real / np.pi
+        return values
+
+    @cached_property
+    def _coefficients(self) -> FloatArray:
+        return self.psi @ chebyshev_from_nodes(self.psi.shape[1]).T
+
+    @cached_property
+    def _slope_coefficients(self) -> FloatArray:
+        slope = np.zeros_like(self.psi)
+        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(self._coefficients, axis=1)
+        return slope / self.width[:, None]
+
+
+def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:
+    """phi on whole panels and the last, shorter one: that from its Schur system, the others by back-substitution."""
+    m, before = factor.count, (len(load) - 1) * factor.count
+    tau, omega = gauss_nodes(m)
+    E = lagrange_matrix(m, last_width / factor.panel_width * tau)
+    z, inherited = factor.eliminate(load)
+    schur = E @ factor.schur[len(load) - 1] @ E.T
+    last = np.linalg.solve(np.eye(m) - schur * (last_width * omega), load[-1] + E @ inherited[-1])
+    root = np.sqrt(factor.weights)
+    returned = factor.lower[before : before + m, :before].T @ (E.T @ (last_width * omega * last) / root)
+    earlier = solve_lower(factor.lower[:before, :before], z[:before] - returned, transposed=True)
+    return np.vstack([earlier.reshape(-1, m) / root, last])

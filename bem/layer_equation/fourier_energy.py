@@ -1,0 +1,110 @@
+"""Energy of a density in wavenumber space: <phi, A phi> = (2/pi) int_0^inf chi(k) phi^(k)^2 dk.
+
+On thin incompressible layers A = I - K is nearly singular: chi(h/a) is 1e-9 at a/h = 1000. As a difference of two
+numbers the energy would lose those nine digits; as an integral over chi > 0 it loses none. It is used to improve
+solutions that have lost them: F = <1, A^-1 1> is the largest value of ``2 <1, phi> - <phi, A phi>``, so that an error
+of phi enters by its square.
+
+Densities are given on equal panels by values at Gauss nodes. ``phi^(k) = int_0^a phi cos(kt) dt`` at thousands of k
+comes from FFTs over the panels, one for each pair of a node in t and an offset in k. Beyond `LARGEST_WAVENUMBER`
+chi = 1, and phi^ is known from the density and its derivatives at the edge, by partial integration.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from bem.kernels.layer import Support, compliance_kernel
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from contact.records.validation import FloatArray
+
+ComplexArray = NDArray[np.complex128]
+
+LARGEST_WAVENUMBER = 40.0
+NODES = 28  # of a unit panel in t: cos(40 t) to 1e-13
+WAVENUMBERS = 16  # of a panel in k, over which the square of a density's transform turns twice at most
+
+
+def energy_matrix(densities: FloatArray, width: float, support: Support, poissons_ratio: float) -> FloatArray:
+    """<phi_i, A phi_j> of densities on equal panels of [0, a].
+
+    Args:
+        densities: Values at the panels' Gauss nodes, shape (densities, panels, nodes).
+        width: Width of the panels, in layer thicknesses; a whole number.
+        support: Support of the layer.
+        poissons_ratio: nu.
+
+    Returns:
+        Symmetric matrix, shape (densities, densities).
+    """
+    unit = _on_unit_panels(densities, int(width))
+    size = 1 << int(np.ceil(np.log2(max(unit.shape[1], 64))))
+    step = 2 * np.pi / size
+    turns = int(np.ceil(LARGEST_WAVENUMBER / (2 * np.pi)))
+    k = step * np.arange(turns * size)
+    offsets, weights = gauss_nodes(WAVENUMBERS)
+    energy = np.zeros((len(densities), len(densities)))
+    for offset, weight in zip(step * offsets, step * weights, strict=True):
+        transform = _transform(unit, offset, turns, size)
+        energy += weight * (transform * compliance_kernel(k + offset, support, poissons_ratio)) @ transform.T
+    return 2 / np.pi * (energy + _tail(densities, width, step * k.size))
+
+
+def _on_unit_panels(densities: FloatArray, parts: int) -> FloatArray:
+    """The same polynomials at the nodes of panels of unit width, shape (densities, panels parts, NODES)."""
+    points = (np.arange(parts)[:, None] + gauss_nodes(NODES)[0]) / parts
+    values = densities @ lagrange_matrix(densities.shape[2], points.ravel()).T
+    return values.reshape(len(densities), -1, NODES)
+
+
+def _transform(unit: FloatArray, offset: float, turns: int, size: int) -> FloatArray:
+    """int phi cos(kt) dt at k = offset + (2 pi/size) (0, 1, 2, ...), shape (densities, turns size).
+
+    On panel p, t = p + node: the sums of phi exp(ikp) over the panels have the period 2 pi in k. So k is a place in the
+    first period and a number of turns, and the phase exp(ik node) a product.
+    """
+    nodes, weights = gauss_nodes(NODES)
+    turned = np.exp(1j * offset * np.arange(unit.shape[1])) * unit.swapaxes(1, 2)
+    sums = size * np.fft.ifft(turned, size)  # shape (densities, NODES, size)
+    sums *= (weights * np.exp(1j * offset * nodes))[:, None] * _phases(size)
+    transform: FloatArray = (_turns(turns) @ sums).real
+    return transform.reshape(len(unit), -1)
+
+
+@cache
+def _phases(size: int) -> ComplexArray:
+    """exp(ik node) over the first period of k, shape (NODES, size)."""
+    return np.exp(2j * np.pi / size * np.multiply.outer(gauss_nodes(NODES)[0], np.arange(size)))
+
+
+@cache
+def _turns(turns: int) -> ComplexArray:
+    """exp(2 pi i turn node), shape (turns, NODES)."""
+    return np.exp(2j * np.pi * np.multiply.outer(np.arange(turns), gauss_nodes(NODES)[0]))
+
+
+def _tail(densities: FloatArray, width: float, k: float) -> FloatArray:
+    """int_k^inf phi_i^ phi_j^ dk from derivatives at the edge, for whole a and k a multiple of 2 pi.
+
+    phi^ = sin(ka) (phi/k - phi''/k^3 + phi''''/k^5) + cos(ka) (phi'/k^2 - phi'''/k^4) + ...
+    So sin(2ka) = 0 and cos(2ka) = 1 at the end; of what swings, orders beyond k^-3 are left out.
+    """
+    a = width * densities.shape[1]
+    coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
+    # every Chebyshev polynomial is 1 at the edge
+    p0, p1, p2, p3, p4 = ((2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(5))
+    steady = _pair(p0, p0) / k + (_pair(p1, p1) - 2 * _pair(p0, p2)) / (3 * k**3)
+    steady += (_pair(p2, p2) + 2 * _pair(p0, p4) - 2 * _pair(p1, p3)) / (5 * k**5)
+    swinging = _pair(p0, p1) / (a * k**3) - _pair(p0, p0) / (2 * a**2 * k**3)
+    tail: FloatArray = (steady + swinging) / 2
+    return tail
+
+
+def _pair(left: FloatArray, right: FloatArray) -> FloatArray:
+    """Symmetrised outer product."""
+    product: FloatArray = np.multiply.outer(left, right)
+    return (product + product.T) / 2

@@ -1,0 +1,88 @@
+"""Difference kernel of the layer's Fredholm equation as a short sum of exponentials.
+
+The kernel is ``N(s) = int_0^inf (1 - chi(k)) cos(ks) dk`` for s >= 0, lengths in units of the layer thickness. On the
+real axis the integrand oscillates. Turned into the ray ``k = t exp(i theta)`` it decays for every s, and no pole of chi
+is crossed as long as theta stays below 53.9 degrees (k = 1.80936 + 2.48689 i, bonded incompressible). So
+
+    N(s) = Re sum_j w_j exp(-z_j s),     z_j = -i t_j exp(i theta)
+
+with one set of Gauss nodes t_j, graded towards zero, is good for all s up to `LARGEST_DISTANCE`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import ArrayLike, NDArray
+
+from bem.kernels.layer import Support, one_minus_kernel
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact.records.validation import FloatArray
+
+RAY_ANGLE: Final = np.radians(25.0)
+FINEST_PANEL: Final = -13  # panels [2^j, 2^(j+1)] in t start here: resolves exp(-z s) up to the largest distance
+COARSEST_PANEL: Final = 4  # and end at t = 32, where 1 - chi has fallen to 1e-22
+PANEL_NODES: Final = 20
+LARGEST_DISTANCE: Final = 2.0**13
+
+ComplexArray = NDArray[np.complex128]
+
+
+@dataclass(frozen=True)
+class FredholmKernel:
+    """N(s) of one layer, Re sum_j weights_j exp(-rates_j s), absolute error about 1e-16.
+
+    Attributes:
+        rates: z_j, shape (terms,), Re z_j > 0.
+        weights: w_j, shape (terms,).
+    """
+
+    rates: ComplexArray
+    weights: ComplexArray
+
+    @classmethod
+    def of_layer(cls, support: Support, poissons_ratio: float) -> FredholmKernel:
+        """The kernel of a bonded or unbonded layer of thickness 1."""
+        nodes, weights = gauss_nodes(PANEL_NODES)
+        ends = np.concatenate([[0.0], 2.0 ** np.arange(FINEST_PANEL, COARSEST_PANEL + 2)])
+        t = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
+        wavenumber = t * np.exp(1j * RAY_ANGLE)
+        dk = np.exp(1j * RAY_ANGLE) * (np.diff(ends)[:, None] * weights).ravel()
+        return cls(rates=-1j * wavenumber, weights=one_minus_kernel(wavenumber, support, poissons_ratio) * dk)
+
+    def __call__(self, distance: ArrayLike) -> FloatArray:
+        """N at distances s >= 0 of any shape, in units of the thickness."""
+        decay = np.exp(-np.multiply.outer(np.asarray(distance, dtype=float), self.rates))
+        values: FloatArray = (decay @ self.weights).real
+        return values
+
+    def panel_matrix(self, panels: int, width: float, count: int) -> FloatArray:
+        """L(x, t) = [N(x - t) + N(x + t)]/2 at all Gauss nodes of equal panels [p width, (p + 1) width].
+
+        Differences x - t depend on the distance of two panels only, sums x + t on the sum of their numbers: of the
+        (panels count)^2 entries only 3 panels count^2 are evaluated, as products of exponentials.
+
+        Returns:
+            Symmetric matrix of shape (panels count, panels count).
+        """
+        nodes, _ = gauss_nodes(count)
+        near, further = self(width * abs(nodes[:, None] - nodes))[None], self._blocks(panels - 1, width, 1 - nodes)
+        differences = np.concatenate([further[::-1].swapaxes(1, 2), near, further])
+        blocks = np.empty((panels, count, panels, count))
+        by_difference = sliding_window_view(differences, panels, axis=0)[..., ::-1]  # block p - q
+        by_sum = sliding_window_view(self._blocks(2 * panels - 1, width, nodes), panels, axis=0)  # block p + q
+        np.add(np.moveaxis(by_difference, 3, 2), np.moveaxis(by_sum, 3, 2), out=blocks)
+        blocks /= 2
+        return blocks.reshape(panels * count, panels * count)
+
+    def _blocks(self, blocks: int, width: float, other: FloatArray) -> FloatArray:
+        """N(width (b + nodes_i + other_j)) for b = 0 .. blocks - 1, shape (blocks, count, count)."""
+        nodes, _ = gauss_nodes(other.size)
+        left = np.exp(-width * np.multiply.outer(nodes, self.rates))
+        right = np.exp(-width * np.multiply.outer(self.rates, other))
+        shift = self.weights * np.exp(-width * np.multiply.outer(np.arange(blocks), self.rates))
+        values: FloatArray = ((left * shift[:, None, :]) @ right).real
+        return values

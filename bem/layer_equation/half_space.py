@@ -1,0 +1,38 @@
+"""Flat punch on the half-space, Eq. (14): all normalised quantities are constants."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from contact.records.validation import FloatArray
+
+
+@dataclass(frozen=True)
+class HalfSpaceFlatPunch:
+    """The limit a/h -> 0 of every layer."""
+
+    max_ratio: float = inf
+
+    def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """k_bar = 1."""
+        return np.ones(np.shape(ratio))
+
+    def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """c_bar = 1."""
+        return np.ones(np.shape(ratio))
+
+    def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
+        """q = 1/2, Eq. (14)."""
+        return np.full(np.broadcast_shapes(np.shape(rho), np.shape(ratio)), 0.5)
+
+    def relative_error(self, ratio: ArrayLike) -> FloatArray:
+        """Exact."""
+        return np.zeros(np.shape(ratio))
+
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Exact."""
+        return np.zeros(np.shape(ratio))

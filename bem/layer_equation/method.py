@@ -1,0 +1,290 @@
+"""The layer's integral equation solved directly for the profile, radius by radius: a method of its own.
+
+It shares the kernel chi with the method of dimensionality reduction and nothing else: no factor for all radii, no
+equivalent springs, its own quadrature in space and wavenumber. So the two check each other.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Annotated, ClassVar, Self
+
+import numpy as np
+from pydantic import Field
+from scipy.optimize import toms748
+
+from bem.layer_equation.one_radius import DirectDensity
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact import (
+    ContactPath,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    Profile,
+    Scene,
+    StageLog,
+    Supported,
+    Unsupported,
+    UnsupportedSceneError,
+)
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray, positive
+
+ARRAYS = ContactPath.ARRAYS
+LARGEST_RATIO = 60.0  # a/h: a dense system of two thousand unknowns
+RADIUS_TOLERANCE = 1e-13
+SEARCHED = 10 * RADIUS_TOLERANCE  # what a prescribed depth or force may be missed by: powers of the radius up to six
+PRESSURES = 12  # looked at on each smooth stretch of the profile
+LEAST_TENSION = 1e-6  # of the largest pressure; rounding leaves 1e-9 in the centre
+ROUNDING = 1e-13  # what cancellation in graded panels leaves, besides the difference of two discretisations
+
+
+@record
+class IntegralEquationMethod(Record):
+    """Direct solution of the layer's integral equation.
+
+    Attributes:
+        nodes: Gauss nodes on each panel.
+        panel_width: Largest panel, in units of the layer thickness (of the contact radius on the half-space).
+    """
+
+    name: ClassVar[str] = "integral_equation"
+
+    nodes: int = Field(default=16, ge=6, le=48)
+    panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 0.75
+
+    def supports(self, scene: Scene) -> Supported | Unsupported:
+        """Elastic contact of any profile with layers and half-spaces."""
+        if scene.effects:
+            names = ", ".join(type(effect).__name__ for effect in scene.effects)
+            return Unsupported(f"the direct integral equation models elastic contact only, not {names}")
+        if not isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
+            return Unsupported(f"the direct integral equation does not model {type(scene.loading).__name__}")
+        if isinstance(scene.loading, ContactRadii):
+            ratio = float(scene.loading.values.max()) / scene.layer.thickness
+            return Supported() if ratio <= LARGEST_RATIO else Unsupported(_too_thin(ratio))
+        return Supported()
+
+    def refined(self) -> Self:
+        """Panels half as wide."""
+        return self.replace(panel_width=self.panel_width / 2)
+
+    def solve(self, scene: Scene) -> ContactPath:
+        """Equilibria under prescribed radii, depths or forces, each radius solved by itself.
+
+        Raises:
+            UnsupportedSceneError: If the scene has effects or a history, a/h is beyond `LARGEST_RATIO`, or the contact
+                is no single circle.
+            InvalidInput: If the indenter ends too early.
+            NotConvergedError: If the matrix is singular to double precision.
+        """
+        support = self.supports(scene)
+        if isinstance(support, Unsupported):
+            raise UnsupportedSceneError(support.reason)
+        log = StageLog()
+        solver = _Solver(scene, self.panel_width, self.nodes, log)
+        with log.stage("integral_equation"):
+            contacts = [solver.contact(float(value)) for value in scene.loading.values]  # type: ignore[attr-defined]
+        with log.stage("one_circle"):
+            for contact in contacts:
+                _refuse_rings(contact, scene.indenter)
+        with log.stage("error_estimate"):
+            coarse = _Solver(scene, self.panel_width, self.nodes * 3 // 4, log)
+            errors = _errors(contacts, [coarse.at_radius(c) for c in contacts], scene)
+        answers = np.array([contact.answer for contact in contacts])
+        return ContactPath(
+            scene=scene,
+            method=self.name,
+            settings={"nodes": self.nodes, "panel_width": self.panel_width},
+            contact_radius=answers[:, 0],
+            indentation_depth=answers[:, 1],
+            normal_force=answers[:, 2],
+            contact_stiffness=answers[:, 3],
+            error_estimate=errors,
+            cost=log.cost(unknowns=max(contact.density.panels.nodes.size for contact in contacts)),
+            stages=log.records,
+            fields=DirectFields(scene, contacts),
+        )
+
+
+def _too_thin(ratio: float) -> str:
+    return f"a/h = {ratio:g}: the direct integral equation covers ratios up to {LARGEST_RATIO:g}"
+
+
+@dataclass(frozen=True, eq=False)
+class DirectContact:
+    """One solved contact.
+
+    Attributes:
+        density: Its densities.
+        depth: delta in the density's length unit.
+        singular_edge: Whether the pressure is singular at the edge: under a flat punch.
+        modulus: E* [Pa].
+    """
+
+    density: DirectDensity
+    depth: float
+    singular_edge: bool
+    modulus: float
+
+    @property
+    def answer(self) -> tuple[float, float, float, float]:
+        """a [m], delta [m], F_N [N], k_N [N/m]."""
+        unit, density = self.density.unit, self.density
+        force, stiffness = density.force(self.depth) * unit**2, density.stiffness * unit
+        return density.contact_radius * unit, self.depth * unit, self.modulus * force, self.modulus * stiffness
+
+
+@dataclass(frozen=True, eq=False)
+class DirectFields:
+    """Surface fields of the solved contacts."""
+
+    scene: Scene
+    contacts: list[DirectContact] = field(default_factory=list)
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside the contact.
+
+        Raises:
+            InvalidInput: At r = 0 of a pointed tip, at a sharp rim, and at the edge of a flat punch.
+        """
+        contact, indenter = self.contacts[step], self.scene.indenter
+        r, a = radius / contact.density.unit, contact.density.contact_radius
+        tip = [0.0] if float(indenter.slope_at(0.0)) > 0 else []
+        edge = [a * contact.density.unit] if contact.singular_edge else []
+        infinite = radius[np.isin(radius, [*tip, *indenter.kinks, *edge]) & (r <= a)]
+        if infinite.size:
+            raise InvalidInput(f"radius = {infinite[0]:g} m: the pressure is infinite at this sharp rim; ask beside it")
+        pressure = np.zeros_like(r)
+        inside = r < a
+        nearest = np.maximum(r[inside], 1e-12 * a)  # the Abel integral needs r > 0; p is flat at the centre
+        pressure[inside] = contact.density.pressure(nearest, contact.depth, singular_edge=contact.singular_edge)
+        return contact.modulus * pressure
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m]: delta - f(r) inside, Eq. (13) outside."""
+        contact = self.contacts[step]
+        unit, a = contact.density.unit, contact.density.contact_radius
+        inside = radius <= a * unit
+        w = np.empty_like(radius)
+        w[inside] = contact.depth * unit - self.scene.indenter.height(radius[inside])
+        w[~inside] = unit * contact.density.displacement_outside(radius[~inside] / unit, contact.depth)
+        return w
+
+
+@dataclass(frozen=True)
+class _Solver:
+    """Finds the contact that belongs to a prescribed value."""
+
+    scene: Scene
+    panel_width: float
+    nodes: int
+    log: StageLog
+
+    def contact(self, value: float) -> DirectContact:
+        """The contact with this radius [m], depth [m] or force [N]."""
+        if isinstance(self.scene.indenter, FlatPunch):
+            return self._punch(value)
+        if isinstance(self.scene.loading, ContactRadii):
+            return self._loose(self._density(value))
+        return self._loose(self._density(self._radius(value)))
+
+    def at_radius(self, contact: DirectContact) -> DirectContact:
+        """The same contact on these panels; a flat punch keeps its depth too."""
+        density = self._density(contact.density.contact_radius * contact.density.unit)
+        if contact.singular_edge:
+            return DirectContact(density, contact.depth, True, contact.modulus)
+        return self._loose(density)
+
+    def _loose(self, density: DirectDensity) -> DirectContact:
+        return DirectContact(density, density.depth, False, self.scene.layer.contact_modulus)
+
+    def _punch(self, value: float) -> DirectContact:
+        density, modulus = self._density(self.scene.indenter.flat_radius), self.scene.layer.contact_modulus
+        depth = value / density.unit
+        if isinstance(self.scene.loading, NormalForces):
+            depth = value / (modulus * density.stiffness * density.unit**2)
+        return DirectContact(density, depth, True, modulus)
+
+    def _density(self, radius: float) -> DirectDensity:
+        ratio = radius / self.scene.layer.thickness
+        if ratio > LARGEST_RATIO:
+            raise UnsupportedSceneError(_too_thin(ratio))
+        self.log.count("factorisations", 0 if self.scene.layer.is_half_space else 1)
+        return DirectDensity.solve(self.scene.layer, self.scene.indenter, radius, self.panel_width, self.nodes)
+
+    def _radius(self, value: float) -> float:
+        """Contact radius [m] with this depth or force: bracketed by doubling, then found by TOMS 748."""
+        flat, end = self.scene.indenter.flat_radius, self.scene.indenter.max_radius
+        item = 2 if isinstance(self.scene.loading, NormalForces) else 1
+
+        def residual(log_excess: float) -> float:
+            radius = min(flat + float(np.exp(log_excess)), end * (1 - 1e-9))
+            return self._loose(self._density(radius)).answer[item] / value - 1
+
+        low = high = np.log(self._first_excess(value))
+        while residual(high) < 0:
+            if flat + np.exp(high) >= end:
+                raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
+            low, high = high, high + np.log(2)
+        while residual(low) > 0:
+            if np.exp(low) < np.finfo(float).eps * flat:
+                message = f"loading.values = {value:g}: the contact is as wide as the flat end to the last digit"
+                raise InvalidInput(f"{message}; press more, or take a flat punch")
+            low, high = low - np.log(2), low
+        return flat + float(np.exp(toms748(residual, low, high, xtol=RADIUS_TOLERANCE)))
+
+    def _first_excess(self, value: float) -> float:
+        layer, indenter = self.scene.layer, self.scene.indenter
+        length = np.sqrt(value / layer.contact_modulus) if isinstance(self.scene.loading, NormalForces) else value
+        return float(min(layer.thickness, 10 * length, indenter.max_radius / 2))
+
+
+def _refuse_rings(contact: DirectContact, indenter: Profile) -> None:
+    """One circle of contact presses everywhere inside and touches nowhere outside."""
+    if contact.singular_edge:
+        return
+    density, unit = contact.density, contact.density.unit
+    breaks = np.array(indenter.breakpoints) / unit
+    ends = np.array([0.0, *breaks[breaks < density.contact_radius], density.contact_radius])
+    inside = (ends[:-1, None] + np.diff(ends)[:, None] * gauss_nodes(PRESSURES)[0]).ravel()
+    outside = breaks[breaks > density.contact_radius]
+    pressure = density.pressure(inside, contact.depth, singular_edge=False)
+    gap = density.displacement_outside(outside, contact.depth) - contact.depth + indenter.height(outside * unit) / unit
+    least = LEAST_TENSION + 10 * _rounding_of_excess(indenter, density.contact_radius * unit)
+    wrong = np.concatenate([inside[pressure < -least * pressure.max()], outside[gap < 0]])
+    if wrong.size:
+        a, where = density.contact_radius * unit, float(wrong[0]) * unit
+        what = "would be pulled" if where < a else "would touch"
+        message = f"a contact of radius {a:g} m {what} at r = {where:g} m: it is no single circle"
+        raise UnsupportedSceneError(f"{message}; smooth the profile or press less")
+
+
+def _rounding_of_excess(indenter: Profile, contact_radius: FloatArray | float) -> FloatArray:
+    """How far rounding of a moves the excess a - b over a flat end, relative to it; depth and force move as much."""
+    flat_radius = 0.0 if isinstance(indenter, FlatPunch) else indenter.flat_radius
+    return np.asarray(np.finfo(float).eps / (1 - flat_radius / np.asarray(contact_radius)))
+
+
+def _errors(fine: list[DirectContact], coarse: list[DirectContact], scene: Scene) -> dict[str, FloatArray]:
+    """Relative differences of two discretisations at the same radii, for what was not prescribed."""
+    exact = np.array([contact.answer for contact in fine])
+    rounding = ROUNDING + _rounding_of_excess(scene.indenter, exact[:, 0])
+    difference = 2 * np.abs(np.array([contact.answer for contact in coarse]) / exact - 1) + rounding[:, None]
+    depth, force, stiffness = difference[:, 1:].T
+    nothing = np.zeros_like(depth)
+    if isinstance(scene.indenter, FlatPunch):
+        by_depth = isinstance(scene.loading, IndentationDepths)
+        depth, force = (nothing, stiffness) if by_depth else (stiffness, nothing)
+        return dict(zip(ARRAYS, (nothing, depth, force, stiffness), strict=True))
+    searched = SEARCHED + rounding
+    match scene.loading:
+        case ContactRadii():
+            radius = nothing
+        case IndentationDepths():
+            radius, depth, force = depth + RADIUS_TOLERANCE, searched, force + 2 * depth + searched
+        case _:
+            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + searched, searched
+    return dict(zip(ARRAYS, (radius, depth, force, stiffness), strict=True))

@@ -1,0 +1,152 @@
+"""One Cholesky factorisation that answers the layer's integral equation for every contact radius.
+
+With lengths in units of the thickness, and W the half-space transform of the surface displacement, the density phi of
+the pressure under a contact of radius a solves
+
+    phi(x) - int_0^a K(x, t) phi(t) dt = W(x),    K = (2/pi) L,  L(x, t) = [N(x - t) + N(x + t)]/2,  0 <= x <= a.
+
+Write A_a for the operator on [0, a]. All smaller radii are leading sections of it, so its triangular factor C
+(A = C C^T) is the same for all. What the method of dimensionality reduction asks for is the *edge value*
+
+    y(x) = phi(x; a = x) = (C^-1 W)(x)
+
+as a function of x. The equation is discretised on equal panels with Gauss nodes. At the panels' ends the discrete
+factor is spectrally accurate as it stands. Inside a panel [X, X + H] the earlier panels are eliminated exactly (block
+elimination). What is left is an equation on [X, x] with the smooth Schur kernel K~, known at the panel's own nodes and
+interpolated from there: an edge x inside the panel costs one system with as many unknowns as a panel has nodes.
+
+A load W need not be smooth. It enters by its averages over the panels' Lagrange basis, ``int l_j W dt / w_j``, which
+are the values W(t_j) themselves where W is a polynomial.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.layer_equation.triangular import equation_factor, solve_lower
+from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix, partial_panel_interpolation
+from contact.records.validation import FloatArray
+
+
+@dataclass(frozen=True)
+class VolterraFactor:
+    """The factor C of one layer on [0, P H], P panels of m nodes, lengths in units of the thickness.
+
+    Attributes:
+        panel_width: H.
+        lower: Cholesky factor of I - sqrt(w) K sqrt(w), shape (P m, P m).
+        schur: K~ at each panel's own nodes, shape (P, m, m).
+        resolvent: G of each panel, shape (P, i, j): the edge value at node tau_i is the load there plus the integral of
+            G times the load inside the panel; j counts the nodes tau_i tau_j of that integral.
+    """
+
+    panel_width: float
+    lower: FloatArray
+    schur: FloatArray
+    resolvent: FloatArray
+
+    @classmethod
+    def of_kernel(cls, kernel: FredholmKernel, panels: int, panel_width: float, count: int) -> VolterraFactor:
+        """Factorise on [0, panels panel_width] with `count` nodes on each panel.
+
+        Raises:
+            NotConvergedError: If the matrix is not positive definite in double precision.
+        """
+        K = kernel.panel_matrix(panels, panel_width, count)
+        own = 2 / np.pi * np.array([K[s : s + count, s : s + count] for s in range(0, len(K), count)])
+        root = np.sqrt(panel_width * np.tile(gauss_nodes(count)[1], panels))
+        lower = equation_factor(K, root, panels * panel_width)
+        schur = _schur_kernels(own, lower, root)
+        return cls(panel_width, lower, schur, _edge_resolvents(schur, panel_width))
+
+    @property
+    def panels(self) -> int:
+        """P."""
+        return int(self.schur.shape[0])
+
+    @property
+    def count(self) -> int:
+        """Nodes of a panel, m."""
+        return int(self.schur.shape[1])
+
+    @property
+    def weights(self) -> FloatArray:
+        """Gauss weights of one panel, shape (m,)."""
+        return self.panel_width * gauss_nodes(self.count)[1]
+
+    def eliminate(self, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Forward elimination of a load, panel after panel.
+
+        Args:
+            load: Averages of W on the first q panels, shape (q, m).
+
+        Returns:
+            z = C^-1 (sqrt(w) load), shape (q m,), and what each panel inherits from the earlier ones, K A^-1 W at its
+            nodes, shape (q, m).
+        """
+        n, root = load.size, np.sqrt(self.weights)
+        z = solve_lower(self.lower[:n, :n], (root * load).ravel())
+        starts = range(0, n, self.count)
+        inherited = np.array([-self.lower[s : s + self.count, :s] @ z[:s] for s in starts]) / root
+        return z, inherited
+
+    def edge_values(self, values: FloatArray) -> FloatArray:
+        """What each panel's own equation makes of a polynomial load: edge values at its nodes, shape (q, m).
+
+        Args:
+            values: Load plus inheritance at the nodes, shape (q, m).
+        """
+        edge: FloatArray = (self._edge_matrix[: len(values)] @ values[..., None])[..., 0]
+        return edge
+
+    def resolvent_at(self, panel: int, edge: FloatArray, points: FloatArray) -> FloatArray:
+        """Resolvent G(edge, point) of one panel by its polynomials in edge and point/edge.
+
+        Args:
+            panel: Number of the panel.
+            edge: Edges in [0, 1], relative to the panel, shape (k,).
+            points: Points in [0, edge], relative to the panel, shape (k, l).
+
+        Returns:
+            Shape (k, l).
+        """
+        rows = lagrange_matrix(self.count, edge) @ self.resolvent[panel]
+        edges = np.broadcast_to(edge[:, None], points.shape)  # at a panel's start they are rounding errors or zero
+        share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
+        values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, share), rows)
+        return values
+
+    @cached_property
+    def _edge_matrix(self) -> FloatArray:
+        tau, omega = gauss_nodes(self.count)
+        weights = self.panel_width * np.multiply.outer(tau, omega)
+        E = partial_panel_interpolation(self.count)
+        matrix: FloatArray = np.eye(self.count) + np.einsum("pij,ijk->pik", self.resolvent * weights, E)
+        return matrix
+
+
+def _schur_kernels(own: FloatArray, lower: FloatArray, root: FloatArray) -> FloatArray:
+    """K~ = K + K A^-1 K over the earlier panels, from the rows of the factor left of each diagonal block of K."""
+    schur, count = own.copy(), own.shape[1]
+    for p, kernel in enumerate(schur):
+        start, stop = p * count, (p + 1) * count
+        row = lower[start:stop, :start] / root[start:stop, None]
+        kernel[:] += row @ row.T
+    return schur
+
+
+def _edge_resolvents(schur: FloatArray, panel_width: float) -> FloatArray:
+    """Resolvent of every panel for an edge at each of its nodes: (I - K~ w) G = K~(., edge) on [X, X + H tau_i]."""
+    count = schur.shape[1]
+    tau, omega = gauss_nodes(count)
+    E = partial_panel_interpolation(count)
+    half = np.einsum("ijk,pkl->pijl", E, schur, optimize=True)  # K~(partial node, panel node)
+    kernel = half @ E.swapaxes(1, 2)
+    weights = panel_width * np.multiply.outer(tau, omega)
+    to_edge = np.einsum("piji->pij", half)
+    resolvent: FloatArray = np.linalg.solve(np.eye(count) - kernel * weights[:, None, :], to_edge[..., None])[..., 0]
+    return resolvent

@@ -1,0 +1,248 @@
+"""Flat punches much wider than the layer is thick, up to a/h = 1000.
+
+One factorisation on wide panels gives, for every radius at a panel's end, a few densities phi_i = A^-1 P_i(t^2/a^2).
+Rounding has cost them up to nine digits where the layer is bonded and incompressible. Within
+their span, however, the force is stationary: the Ritz value ``F = b^T G^-1 b`` with ``b_i = <1, phi_i>`` and the
+energies ``G_ij = <phi_i, A phi_j>``, computed without cancellation (`fourier_energy`), is wrong only by the square of
+what the span lacks. k_bar is then interpolated by a polynomial of ln k_bar in ln(a/h); its derivative gives c_bar.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import Chebyshev
+from numpy.typing import ArrayLike
+
+from bem.kernels.layer import Support
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
+from bem.layer_equation.fourier_energy import energy_matrix
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.triangular import solve_lower
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact import InvalidInput
+from contact.records.validation import FloatArray
+
+LARGEST_RATIO = 1000.0
+ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above it
+FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
+OVERLAP = 120.0  # compared with the narrow panels' from here on, and used where those end
+PANEL_WIDTH = 8.0
+PANEL_NODES = 36
+DENSITY_TRUNCATION = 3e-8  # 1.618^-36: densities are analytic within 2 of panels that are 8 wide
+RITZ_DENSITIES = 4
+RADII = 42
+DEGREE = 26  # of ln k_bar in ln(a/h): nearly incompressible layers turn from film to bed within the range
+LAST_TERMS = 2  # of the fit, by which it is judged
+
+
+@dataclass(frozen=True, eq=False)
+class LargeRatioSolution:
+    """k_bar and c_bar up to a/h = 1000, made when first asked for.
+
+    Attributes:
+        support: "bonded" or "unbonded".
+        poissons_ratio: nu.
+        make_near: Gives the solution for smaller ratios, which must reach beyond `OVERLAP`.
+    """
+
+    support: Support
+    poissons_ratio: float
+    make_near: Callable[[], IntegralEquationSolution]
+
+    @property
+    def max_ratio(self) -> float:
+        """Largest a/h that is covered."""
+        return LARGEST_RATIO
+
+    @property
+    def unknowns(self) -> int:
+        """Size of the larger system that was factorised."""
+        return int(LARGEST_RATIO / PANEL_WIDTH) * PANEL_NODES
+
+    def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """k_bar."""
+        ratio = self._covered(ratio)
+        within = self.near.normalized_contact_stiffness(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, self._stiffness(ratio))
+
+    def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """c_bar = k_bar (1 + d ln k_bar/d ln ratio), Eq. (10)."""
+        ratio = self._covered(ratio)
+        within = self.near.normalized_spring_stiffness(np.minimum(ratio, self.near.max_ratio))
+        return np.where(
+            ratio <= self.near.max_ratio, within, self.wide_spring_stiffness(np.maximum(ratio, FIRST_RATIO))
+        )
+
+    def wide_spring_stiffness(self, ratio: FloatArray) -> FloatArray:
+        """c_bar from the wide panels alone, `FIRST_RATIO` <= ratio."""
+        stiffness: FloatArray = self._stiffness(ratio) * (1 + self.log_stiffness.deriv()(np.log(ratio)))
+        return stiffness
+
+    def reach(self, ratio: float) -> float:
+        """The smallest ratio with a known density that is not below the given one."""
+        return min(known for known in self.densities if known >= ratio * (1 - 1e-12))
+
+    @property
+    def densities(self) -> dict[float, FloatArray]:
+        """Unit flat punch's density at some ratios, by values at the nodes of wide panels, shape (panels, nodes)."""
+        return self._punches[3]
+
+    def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
+        """q from `near` or `wide`."""
+        rho, ratio = np.broadcast_arrays(np.asarray(rho, dtype=float), self._covered(ratio))
+        q, beyond = np.empty(rho.shape), ratio > self.near.max_ratio
+        for solution, there in ((self.near, ~beyond), (self.wide, beyond)):
+            q[there] = solution.smooth_pressure(rho[there], ratio[there])
+        return q
+
+    def one_contact(self, ratio: float) -> IntegralEquationSolution:
+        """The factor that solves for the pressure under one contact."""
+        return self.near if ratio <= self.near.max_ratio else self.wide
+
+    def density_error(self, ratio: ArrayLike) -> FloatArray:
+        """Relative error of pressures beyond that of the stiffness: what `wide` makes of k_bar, and its polynomials."""
+        ratio = self._covered(ratio)
+        return np.where(ratio <= self.near.max_ratio, 0.0, self._lost(ratio))
+
+    def relative_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of k_bar and c_bar."""
+        ratio = self._covered(ratio)
+        within = self.near.relative_error(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, self.error)
+
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """As that of the stiffnesses."""
+        return self.relative_error(ratio)
+
+    @cached_property
+    def near(self) -> IntegralEquationSolution:
+        """Solution for smaller ratios."""
+        return self.make_near()
+
+    @cached_property
+    def wide(self) -> IntegralEquationSolution:
+        """Solution on wide panels, which has lost digits where the layer is nearly incompressible."""
+        kernel, panels = FredholmKernel.of_layer(self.support, self.poissons_ratio), int(LARGEST_RATIO / PANEL_WIDTH)
+        factor = VolterraFactor.of_kernel(kernel, panels, PANEL_WIDTH, PANEL_NODES)
+        return IntegralEquationSolution(self.support, self.poissons_ratio, kernel, factor)
+
+    @cached_property
+    def wide_alone(self) -> WideSolution:
+        """The wide panels for all radii: seven digits, but for profiles with breakpoints anywhere."""
+        wide = self.wide
+        return WideSolution(wide.support, wide.poissons_ratio, wide.kernel, wide.factor, self._lost)
+
+    def _lost(self, ratio: FloatArray) -> FloatArray:
+        """What `wide` makes of k_bar, from `FIRST_RATIO` on, and its polynomials."""
+        ratio = np.maximum(ratio, FIRST_RATIO)
+        return np.abs(self.wide.normalized_contact_stiffness(ratio) / self._stiffness(ratio) - 1) + DENSITY_TRUNCATION
+
+    @cached_property
+    def log_stiffness(self) -> Chebyshev:
+        """ln k_bar over ln(a/h)."""
+        return self._fitted(DEGREE)
+
+    @cached_property
+    def error(self) -> float:
+        """Bound of the relative error of both stiffnesses: twice what overlap, fit and Ritz values show."""
+        overlap = np.linspace(OVERLAP, self.near.max_ratio, 9)
+        k = self._stiffness(overlap)
+        c = self.wide_spring_stiffness(overlap)
+        k_error = np.abs(k / self.near.normalized_contact_stiffness(overlap) - 1)
+        c_error = np.abs(c / self.near.normalized_spring_stiffness(overlap) - 1)
+        return 2 * (float(np.max(np.maximum(k_error, c_error))) + self._fit_error + self._punches[2])
+
+    @property
+    def _fit_error(self) -> float:
+        """What the last terms of the fit make of ln k_bar and of its slope, which is largest at the end."""
+        log_ratio = np.linspace(np.log(OVERLAP), np.log(LARGEST_RATIO), 4 * DEGREE)
+        last = self.log_stiffness - self._fitted(DEGREE - LAST_TERMS)
+        return float(np.max(np.abs(last(log_ratio))) + np.max(np.abs(last.deriv()(log_ratio))))
+
+    def _fitted(self, degree: int) -> Chebyshev:
+        ratios, stiffness, *_ = self._punches
+        return Chebyshev.fit(np.log(ratios), np.log(stiffness), degree)
+
+    @cached_property
+    def _punches(self) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
+        return _wide_punches(self.wide)
+
+    def _stiffness(self, ratio: FloatArray) -> FloatArray:
+        stiffness: FloatArray = np.exp(self.log_stiffness(np.log(np.maximum(ratio, FIRST_RATIO))))
+        return stiffness
+
+    def _covered(self, ratio: ArrayLike) -> FloatArray:
+        ratio = np.asarray(ratio, dtype=float)
+        covered = (ratio >= 0) & (ratio <= LARGEST_RATIO * (1 + ROUNDING))
+        if not np.all(covered):
+            raise InvalidInput(f"a/h = {ratio[~covered].flat[0]:g}: this solution covers [0, {LARGEST_RATIO:g}]")
+        limited: FloatArray = np.minimum(ratio, LARGEST_RATIO)
+        return limited
+
+
+@dataclass(frozen=True)
+class WideSolution(IntegralEquationSolution):
+    """One factor on wide panels, judged by Ritz values.
+
+    Attributes:
+        lost: Relative error of its k_bar at each ratio.
+    """
+
+    lost: Callable[[FloatArray], FloatArray]
+
+    def relative_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of k_bar and c_bar."""
+        return super().relative_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+
+
+def _wide_punches(
+    wide: IntegralEquationSolution,
+) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
+    """Ratios, k_bar there, the largest relative difference that the last Ritz density makes, and the densities."""
+    ratios = _radii_at_panel_ends()
+    punches = [_ritz_punch(trial, wide) for trial in _trial_densities(wide.factor, ratios)]
+    best, fewer = (np.array([punch[item] for punch in punches]) for item in (0, 1))
+    densities = {float(a): punch[2] for a, punch in zip(ratios, punches, strict=True)}
+    return ratios, best / ratios, float(np.max(np.abs(fewer / best - 1))), densities
+
+
+def _radii_at_panel_ends() -> FloatArray:
+    """Panel ends nearest to the Chebyshev points of ln(a/h) from `FIRST_RATIO` to `LARGEST_RATIO`."""
+    middle, half = np.log(FIRST_RATIO * LARGEST_RATIO) / 2, np.log(LARGEST_RATIO / FIRST_RATIO) / 2
+    points = np.exp(middle - half * np.cos(np.pi * np.arange(RADII) / (RADII - 1)))
+    return np.unique(PANEL_WIDTH * np.rint(points / PANEL_WIDTH))
+
+
+def _trial_densities(factor: VolterraFactor, ratios: FloatArray) -> list[FloatArray]:
+    """phi_i = A^-1 P_i(t^2/a^2) for every radius a, each of shape (RITZ_DENSITIES, panels, nodes).
+
+    A load that ends at a leaves nothing beyond in C^-T, so one solution serves the leading sections of all radii.
+    """
+    panels, width = np.arange(factor.panels)[:, None], factor.panel_width
+    t, root = width * (panels + gauss_nodes(factor.count)[0]).ravel(), np.sqrt(np.tile(factor.weights, factor.panels))
+    inside = (t[:, None] < ratios)[..., None]
+    loads = np.polynomial.legendre.legvander(2 * np.minimum(t[:, None] / ratios, 1.0) ** 2 - 1, RITZ_DENSITIES - 1)
+    half = solve_lower(factor.lower, root[:, None] * (loads * inside).reshape(t.size, -1)).reshape(loads.shape) * inside
+    densities = solve_lower(factor.lower, half.reshape(t.size, -1), transposed=True) / root[:, None]
+    by_radius = np.moveaxis(densities.reshape(panels.size, -1, ratios.size, RITZ_DENSITIES), (2, 3), (0, 1))
+    return [density[:, : round(a / width)] for density, a in zip(by_radius, ratios, strict=True)]
+
+
+def _ritz_punch(trial: FloatArray, wide: IntegralEquationSolution) -> tuple[float, float, FloatArray]:
+    """F/(2 E*) of a flat punch pressed in by 1, from all Ritz densities and from one less, and its density."""
+    energy = energy_matrix(trial, wide.factor.panel_width, wide.support, wide.poissons_ratio)
+    load = np.sum(trial @ wide.factor.weights, axis=1)
+    shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
+    return float(load @ shares), float(load[:-1] @ fewer), np.tensordot(shares, trial, axes=1)
+
+
+def _stationary(energy: FloatArray, load: FloatArray) -> FloatArray:
+    """G^-1 b with unit diagonal of G, since the densities differ by orders of magnitude."""
+    scale = 1 / np.sqrt(np.diag(energy))
+    shares: FloatArray = scale * np.linalg.solve(energy * np.multiply.outer(scale, scale), load * scale)
+    return shares

@@ -1,0 +1,278 @@
+"""The direct boundary element method: any profile pressed into a layer on a square grid, without MDR."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from math import log2
+from typing import ClassVar, Final, Literal, Self
+
+import numpy as np
+from pydantic import Field
+
+from bem.grid.equilibrium import Boundary, Prescribed, Press, PressedState
+from bem.grid.flat_punch import grid_punch
+from bem.grid.quadrant import LEAST_CELLS, Grid, UnresolvedLayer
+from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
+from contact import (
+    Adhesion,
+    ContactPath,
+    ContactRadii,
+    Detachment,
+    DetachmentPath,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    NotConvergedError,
+    Scene,
+    StageLog,
+    Supported,
+    Unsupported,
+    UnsupportedSceneError,
+)
+from contact.answer.solution import Setting
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray
+
+PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
+LARGEST_EXPONENTS: Final = {  # of a, for smooth profiles on thick and thin layers
+    "contact_radius": 1.0,
+    "indentation_depth": 2.0,
+    "normal_force": 6.0,
+    "contact_stiffness": 4.0,
+}
+KINK_CELLS, KINK_ERROR = 6.0, 0.1  # nearer than so many cells to the edge, a kink costs this part of a cell
+SECOND_ORDER: Final = 0.1  # times (s/a)^2: differences of two grids may be smaller by chance
+
+
+ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
+FINEST_ACCURACY: Final = 1e-6
+BEST_GAIN: Final = 4.0  # of twice as many points: second order
+
+
+@record
+class Bem(Record):
+    """Direct contact by FFT boundary elements.
+
+    Attributes:
+        points: Cells across the box, a multiple of 4.
+        accuracy: Relative accuracy wanted in all quantities but the pressure; then the points are chosen: those of
+            `ACCURACY_POINTS` are tried in turn until the stated errors hold.
+        boundary: "free" space, or "periodic" with 16 thicknesses between images (thin layers; no half-space).
+        tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
+        threads: Threads of FFTW.
+        adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, whose intensity the half-space
+            measures (`adhering_disc`), or single "cells" beyond a stress that depends on their size (`detachment`).
+
+    Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
+    what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. Depth and force
+    converge with second order in the cell size. A flat punch is a disc of cells measured by the half-space
+    (`pixel_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on discs
+    converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are followed
+    in their order, from out of contact (`adhesive_history`).
+
+    Raises:
+        InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, the tolerance is not
+            in (0, 1e-2], or the accuracy not in [1e-6, 0.1].
+    """
+
+    name: ClassVar[str] = "bem"
+
+    points: int = 512
+    accuracy: float | None = None
+    boundary: Boundary = "free"
+    tolerance: float = 1e-7
+    threads: int = Field(default=1, ge=1)
+    adhesion: Literal["discs", "cells"] = "discs"
+
+    def __post_init__(self) -> None:
+        """Refuse settings that cannot be solved."""
+        if self.points < 2 * LEAST_CELLS or self.points % 4:
+            raise InvalidInput(f"points must be a multiple of 4 and at least {2 * LEAST_CELLS}, got {self.points}")
+        if not 0.0 < self.tolerance <= 1e-2:
+            raise InvalidInput(f"tolerance must lie in (0, 0.01], got {self.tolerance:g}")
+        if self.accuracy is not None and not FINEST_ACCURACY <= self.accuracy <= 0.1:
+            finest = f"got {self.accuracy:g}; mdr and fem reach finer ones"
+            raise InvalidInput(f"accuracy must lie in [{FINEST_ACCURACY:g}, 0.1], {finest}")
+
+    def supports(self, scene: Scene) -> Supported | Unsupported:
+        """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
+        others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
+        if others:
+            return Unsupported(reason=f"bem models adhesion only, not {others[0]}; ask mdr or fem")
+        if not isinstance(scene.loading, Detachment) and type(scene.loading) not in PRESCRIBED:
+            what = f"radii, depths, forces or a detachment, not {type(scene.loading).__name__}"
+            return Unsupported(reason=f"bem follows {what}; ask mdr")
+        if self.boundary == "periodic" and (scene.layer.is_half_space or scene.effects):
+            what = "adhesion" if scene.effects else "a half-space"
+            return Unsupported(reason=f'{what} has no periodic answer; use boundary="free"')
+        if self.adhesion == "cells" and scene.effects and not isinstance(scene.loading, Detachment | IndentationDepths):
+            return Unsupported(reason='single cells let go at given depths or in a detachment; use adhesion="discs"')
+        return Supported()
+
+    def refined(self) -> Self:
+        """A copy with half the cell size, or the accuracy of half the cell size."""
+        if self.accuracy is not None:
+            return dataclasses.replace(self, accuracy=max(self.accuracy / BEST_GAIN, FINEST_ACCURACY))
+        return dataclasses.replace(self, points=2 * self.points)
+
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
+        """The equilibria of the scene.
+
+        Raises:
+            UnsupportedSceneError: If `supports` says no, the contact is no single circle, or the layer is thinner than
+                the cells resolve.
+            InvalidInput: If nothing adheres, a force pulls too much, or the contact outgrows the indenter.
+            NotConvergedError: If a tolerance was missed, or the accuracy with as many points as there may be.
+        """
+        answer = self.supports(scene)
+        if isinstance(answer, Unsupported):
+            raise UnsupportedSceneError(answer.reason)
+        if self.accuracy is not None:
+            return self._solve_to_accuracy(scene, self.accuracy)
+        log = StageLog()
+        adhesion = scene.effect(Adhesion)
+        if adhesion is None:
+            return self._press(scene, log)
+        if adhesion.work_of_adhesion == 0.0:
+            if isinstance(scene.loading, Detachment):
+                raise InvalidInput("effects: without work of adhesion there is nothing to detach; give a positive one")
+            return dataclasses.replace(self._press(scene.replace(effects=()), log), scene=scene)
+        return self._adhering(scene, log)
+
+    def _solve_to_accuracy(self, scene: Scene, accuracy: float) -> ContactPath | DetachmentPath:
+        """More and more points, until the stated errors hold or even the finest grid would not do."""
+        for points in ACCURACY_POINTS:
+            try:
+                path = dataclasses.replace(self, points=points, accuracy=None).solve(scene)
+            except UnresolvedLayer:
+                if points == ACCURACY_POINTS[-1]:
+                    raise
+                continue
+            errors = {name: float(np.max(error)) for name, error in path.error_estimate.items() if name != "pressure"}
+            worst = max(errors, key=lambda name: errors[name])
+            if errors[worst] <= accuracy:
+                return dataclasses.replace(path, settings=dict(path.settings) | {"accuracy": accuracy})
+            reachable = errors[worst] * (points / ACCURACY_POINTS[-1]) ** log2(BEST_GAIN)
+            if reachable > accuracy:
+                break
+        what = f"{points} points state {errors[worst]:.1e} of the {worst.replace('_', ' ')}"
+        more = f", {ACCURACY_POINTS[-1]} would about {reachable:.0e}" if points < ACCURACY_POINTS[-1] else ""
+        message = f"accuracy = {accuracy:g} was not reached: {what}{more}; ask for less, or mdr or fem"
+        raise NotConvergedError(message, {"stated_error": errors[worst]})
+
+    def _settings(self) -> dict[str, Setting]:
+        """As the answer states them; an accuracy only where one was asked for."""
+        return {name: value for name, value in dataclasses.asdict(self).items() if value is not None}
+
+    def _adhering(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath:
+        from bem.adhesion.cell_by_cell.solver import AdheringCells  # noqa: PLC0415 - only listed effects load
+        from bem.adhesion.solver import AdheringDiscs  # noqa: PLC0415
+
+        kind = AdheringCells if self.adhesion == "cells" else AdheringDiscs
+        adhering = kind(scene, self.points, self.threads, self._settings(), log)
+        if isinstance(scene.loading, Detachment):
+            return adhering.detachment(scene.loading.control)
+        return adhering.equilibria()
+
+    def _press(self, scene: Scene, log: StageLog) -> ContactPath:
+        step = self._punch_step if isinstance(scene.indenter, FlatPunch) else self._smooth_step
+        kind, values = _prescription(scene)
+        steps = [step(scene, kind, float(value), log) for value in values]
+        arrays = {name: np.array([s.values[name] for s in steps]) for name in ContactPath.ARRAYS}
+        return ContactPath(
+            scene=scene,
+            method=self.name,
+            settings=self._settings(),
+            cost=log.cost(unknowns=self.points**2 // 4),
+            stages=log.records,
+            fields=FieldSequence(tuple(step.fields for step in steps)),
+            error_estimate={name: np.array([s.errors[name] for s in steps]) for name in steps[0].errors},
+            contact_radius=arrays["contact_radius"],
+            indentation_depth=arrays["indentation_depth"],
+            normal_force=arrays["normal_force"],
+            contact_stiffness=arrays["contact_stiffness"],
+        )
+
+    def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
+        press = Press(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
+        fine, coarse = press.reach(kind, value, self.points)
+        fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
+        other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
+        errors = _errors(kind, fine, coarse, _unresolved(scene, fine))
+        errors["pressure"] = _pressure_difference(fields, other, fine)
+        errors["pressure"] += LARGEST_EXPONENTS["normal_force"] * fine.radius_scatter / fine.contact_radius
+        return Step({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
+
+    def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
+        """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""
+        a = scene.indenter.max_radius
+        with log.stage("contact"):
+            punch, disc = grid_punch(scene.layer, a, self.points)
+            coarse, _ = grid_punch(scene.layer, a, self.points // 2)
+        stiffness = 2.0 * scene.layer.contact_modulus * a * punch.stiffness  # Eq. (10)
+        depth = value if kind == "depth" else value / stiffness
+        scale = depth * stiffness / (np.pi * a**2)  # p = k_N delta / (pi a^2) p_bar, Eq. (10)
+        cell_size = a / disc.radius
+        fields = FlatPunchFields(
+            layer=scene.layer,
+            radius=a,
+            indentation_depth=depth,
+            pressure_scale=scale,
+            shape=punch.shape,
+            grid=Grid(2 * len(punch.pressure), cell_size),
+            cell_pressure=punch.pressure * (scene.layer.contact_modulus * depth / cell_size),
+        )
+        error = abs(coarse.stiffness / punch.stiffness - 1.0)
+        values = {"contact_radius": a, "indentation_depth": depth, "normal_force": stiffness * depth}
+        errors = {"contact_radius": 0.0, "indentation_depth": 0.0 if kind == "depth" else error}
+        errors |= {"normal_force": 0.0 if kind == "force" else error, "contact_stiffness": error}
+        shorter = np.zeros(len(punch.shape))
+        shorter[: len(coarse.shape)] = coarse.shape
+        errors["pressure"] = float(np.sum(np.abs(punch.shape - shorter)) / np.max(np.abs(punch.shape)))
+        return Step(values | {"contact_stiffness": stiffness}, errors, fields)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One equilibrium as a path keeps it."""
+
+    values: dict[str, float]
+    errors: dict[str, float]
+    fields: AxisymmetricFields
+
+
+def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
+    """What is prescribed, and its values."""
+    loading = scene.loading
+    if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
+        raise UnsupportedSceneError(f"{type(loading).__name__} prescribes no sequence of contacts")
+    return PRESCRIBED[type(loading)], loading.values
+
+
+def _unresolved(scene: Scene, state: PressedState) -> float:
+    """Relative error by a kink of the profile that lies within a few cells of the edge."""
+    cells = [(state.contact_radius - kink) / state.grid.cell_size for kink in scene.indenter.kinks]
+    near = any(0.0 < distance < KINK_CELLS for distance in cells)
+    return KINK_ERROR * state.grid.cell_size / state.contact_radius if near else 0.0
+
+
+def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: float) -> dict[str, float]:
+    """Relative errors: the difference to the coarser grid, and what the slope that tells the radius may be off."""
+    scatter, cell = fine.radius_scatter / fine.contact_radius, fine.grid.cell_size / fine.contact_radius
+    errors = {}
+    for name in ContactPath.ARRAYS:
+        value = getattr(fine, name)
+        errors[name] = abs(1.0 - getattr(coarse, name) / value) + SECOND_ORDER * cell**2 + unresolved
+        if kind == "radius" or name in ("contact_radius", "contact_stiffness"):
+            errors[name] += LARGEST_EXPONENTS[name] * scatter
+    prescribed = {"depth": "indentation_depth", "force": "normal_force", "radius": "contact_radius"}[kind]
+    return errors | {prescribed: 0.0}
+
+
+def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: PressedState) -> float:
+    """2 pi r-weighted L2 norm of the difference of two grids' pressures, relative to that of the pressure."""
+    r: FloatArray = state.contact_radius * (np.arange(200) + 0.5) / 200
+    p, q = fine.pressure(r), coarse.pressure(r)
+    return float(np.sqrt(np.sum(r * (p - q) ** 2) / np.sum(r * p**2)))

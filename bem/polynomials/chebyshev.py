@@ -1,0 +1,104 @@
+"""Functions known at Chebyshev points of a panel: coefficients, integrals, conversion to powers of z in [-1, 1]."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
+
+from contact.records.validation import FloatArray
+
+_SAMPLES, _NEWTON_STEPS = 33, 4
+_SAMPLE_POINTS = np.linspace(-1.0, 1.0, _SAMPLES)
+_REACH = 2.0 / (_SAMPLES - 1)  # no maximum is farther from the best sample
+
+
+@cache
+def nodes(count: int) -> FloatArray:
+    """Chebyshev points of the first kind in (-1, 1), increasing; no panel end is among them."""
+    return -np.cos(np.pi * (np.arange(count) + 0.5) / count)
+
+
+@cache
+def analysis(count: int) -> FloatArray:
+    """Matrix from values at `nodes(count)` to Chebyshev coefficients, shape (count, count)."""
+    order = np.arange(count)[:, None]
+    matrix = 2.0 / count * np.cos(order * np.arccos(nodes(count)))
+    matrix[0] *= 0.5
+    return np.asarray(matrix)
+
+
+@cache
+def integration(count: int) -> FloatArray:
+    """Matrix from `count` Chebyshev coefficients to those of the integral from z = -1, shape (count + 1, count)."""
+    return np.stack([chebyshev.chebint(unit, lbnd=-1.0) for unit in _units(count)], axis=1)
+
+
+@cache
+def differentiation(count: int) -> FloatArray:
+    """Matrix from `count` Chebyshev coefficients to those of the derivative, padded to shape (count, count)."""
+    return np.stack([_padded(chebyshev.chebder(unit), count) for unit in _units(count)], axis=1)
+
+
+@cache
+def to_powers(count: int) -> FloatArray:
+    """Matrix from Chebyshev coefficients to powers of z.
+
+    Powers cost half of Clenshaw's recurrence, and lose no digits while the coefficients decay faster than 2.4^-n.
+    """
+    return np.stack([_padded(chebyshev.cheb2poly(unit), count) for unit in _units(count)], axis=1)
+
+
+def powers(z: FloatArray, count: int) -> FloatArray:
+    """1, z, z^2, ..., shape (count, *z.shape)."""
+    ladder = np.empty((count, *z.shape))
+    ladder[0], ladder[1:] = 1.0, z
+    return np.multiply.accumulate(ladder, axis=0, out=ladder)
+
+
+def largest(coefficients: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
+    """Largest value in z in [-1, 1] of many polynomials per lane.
+
+    The best sample of each is polished by Newton's method on its slope.
+
+    Args:
+        coefficients: Powers of z, shape (m, polynomials, lanes).
+        present: Which of them exist, shape (polynomials, lanes).
+
+    Returns:
+        Shape (lanes,).
+    """
+    count = coefficients.shape[0]
+    values = np.tensordot(_sample_powers(count), coefficients, 1)
+    z = _SAMPLE_POINTS[values.argmax(axis=0)]
+    first = _derivative(coefficients)
+    all_three = np.stack([coefficients, first, _derivative(first)])
+    for _ in range(_NEWTON_STEPS):
+        _, slope, curvature = np.einsum("dkpl,kpl->dpl", all_three, powers(z, count))
+        concave = -curvature * _REACH > np.abs(slope)  # otherwise the maximum is an end, or already found
+        z = np.clip(z - np.where(concave, slope / np.where(concave, curvature, 1.0), 0.0), -1.0, 1.0)
+    found = np.maximum(values.max(axis=0), np.einsum("kpl,kpl->pl", coefficients, powers(z, count)))
+    return np.asarray(np.where(present, found, -np.inf).max(axis=0))
+
+
+def _derivative(coefficients: FloatArray) -> FloatArray:
+    """Of polynomials in powers of z, padded to as many powers."""
+    slopes = np.zeros_like(coefficients)
+    slopes[:-1] = coefficients[1:] * np.arange(1.0, coefficients.shape[0])[:, None, None]
+    return slopes
+
+
+@cache
+def _sample_powers(count: int) -> FloatArray:
+    """Powers of z at the samples, shape (33, count)."""
+    return powers(_SAMPLE_POINTS, count).T
+
+
+def _units(count: int) -> FloatArray:
+    return np.eye(count)
+
+
+def _padded(coefficients: FloatArray, count: int) -> FloatArray:
+    return np.pad(coefficients, (0, count - coefficients.size))

@@ -1,0 +1,227 @@
+"""Smooth functions with known algebraic singularities, by Chebyshev polynomials in a mapped variable.
+
+On a piece [l, l + w] the variable is ``u = ((d - l)/w)^(1/power)``: power 2 makes a square-root behaviour at the left
+end smooth. In the first piece a factor ``u^lead`` is split off, so that a function that vanishes at the start keeps its
+relative accuracy there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache, cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.polynomials.equal_panels import piecewise_sum
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
+from contact.records.validation import FloatArray
+
+MAX_SPLITS = 60
+EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+
+
+@dataclass(frozen=True)
+class MappedGrid:
+    """Pieces of the line d >= 0.
+
+    Attributes:
+        left: l, shape (q,), the first is zero.
+        width: w, shape (q,).
+        power: Shape (q,).
+        count: Nodes on each piece, m.
+    """
+
+    left: FloatArray
+    width: FloatArray
+    power: FloatArray
+    count: int
+
+    @cached_property
+    def nodes(self) -> FloatArray:
+        """Node positions d, shape (q, m)."""
+        return self.left[:, None] + self.width[:, None] * gauss_nodes(self.count)[0] ** self.power[:, None]
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights of integrals over d, shape (q, m)."""
+        u, omega = gauss_nodes(self.count)
+        return self.width[:, None] * self.power[:, None] * u ** (self.power[:, None] - 1) * omega
+
+    @property
+    def end(self) -> float:
+        """Right end of the last piece."""
+        return float(self.left[-1] + self.width[-1])
+
+    def locate(self, d: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+        """Number of the piece of each point, and u in it; a point between two pieces belongs to the left one."""
+        piece = np.maximum(self.left.searchsorted(d) - 1, 0)
+        s = np.minimum(np.maximum((d - self.left[piece]) / self.width[piece], 0.0), 1.0)
+        return piece, s ** (1 / self.power[piece])
+
+    def split(self, pieces: NDArray[np.bool_]) -> MappedGrid:
+        """A copy with some pieces cut: in the middle, or, where a singularity is mapped, at an eighth."""
+        cut = self.width * np.where(self.power > 1, 0.125, 0.5)
+        left = np.concatenate([self.left, (self.left + cut)[pieces]])
+        width = np.concatenate([np.where(pieces, cut, self.width), (self.width - cut)[pieces]])
+        power = np.concatenate([self.power, np.ones(np.count_nonzero(pieces))])
+        order = np.argsort(left, kind="stable")
+        return MappedGrid(left[order], width[order], power[order], self.count)
+
+
+@dataclass(frozen=True)
+class MappedFunction:
+    """A function on a `MappedGrid`.
+
+    Attributes:
+        grid: The pieces.
+        node_values: At the grid's nodes, shape (q, m).
+        lead: Exponent of u split off in the first piece.
+    """
+
+    grid: MappedGrid
+    node_values: FloatArray
+    lead: float
+
+    def __call__(self, d: FloatArray) -> FloatArray:
+        """Values at points of any shape."""
+        return self.at(*self.grid.locate(d))
+
+    def derivative(self, d: FloatArray) -> FloatArray:
+        """First derivative with respect to d."""
+        return self.derivative_at(*self.grid.locate(d))
+
+    def at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """Values at mapped positions."""
+        return piecewise_sum(self.coefficients, piece, 2 * u - 1) * self._factor(piece, u)
+
+    def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """Derivative with respect to u at mapped positions."""
+        lead = np.where(piece == 0, self.lead, 0.0)
+        regular = piecewise_sum(self.coefficients, piece, 2 * u - 1)
+        slope = piecewise_sum(self._slope_coefficients, piece, 2 * u - 1)
+        full: FloatArray = self._factor(piece, u) * slope + lead * u ** np.maximum(lead - 1, 0) * regular
+        return full
+
+    def derivative_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """Derivative with respect to d at mapped positions, infinite where it is."""
+        power, width = self.grid.power[piece], self.grid.width[piece]
+        with np.errstate(divide="ignore"):  # 1/0 at a square root's start is the infinite slope that is meant
+            stretch = u ** (1 - power)
+        derivative: FloatArray = self.slope_at(piece, u) * stretch / (power * width)
+        return derivative
+
+    @cached_property
+    def node_slopes(self) -> FloatArray:
+        """Derivative with respect to u at the nodes, shape (q, m)."""
+        u = gauss_nodes(self.grid.count)[0]
+        slopes = self._regular @ _slopes_from_nodes(self.grid.count).T
+        slopes[0] = u**self.lead * slopes[0] + self.lead * u ** max(self.lead - 1.0, 0.0) * self._regular[0]
+        return np.asarray(slopes)
+
+    def integral(self) -> MappedFunction:
+        """int_0^d of the function: whole pieces before each node, and its own piece by Gauss nodes scaled into it."""
+        grid = self.grid
+        u, omega = gauss_nodes(grid.count)
+        full = np.concatenate([[0.0], np.cumsum(np.sum(self.node_values * grid.weights, axis=1))[:-1]])
+        lead = np.where(np.arange(len(grid.left)) == 0, self.lead, 0.0)[:, None, None]
+        inner = np.multiply.outer(u, u)
+        regular = (self.node_values / u ** lead[:, 0])[:, None, :, None]
+        inside = (partial_panel_interpolation(grid.count) @ regular)[..., 0]
+        exponent = lead + grid.power[:, None, None] - 1
+        stretch = (grid.width * grid.power)[:, None]
+        partial = stretch * np.sum(inside * inner**exponent * np.multiply.outer(u, omega), axis=2)
+        return MappedFunction(grid, full[:, None] + partial, self.lead + float(grid.power[0]))
+
+    def truncation(self) -> FloatArray:
+        """Size of the last coefficients of each piece relative to its largest, shape (q,)."""
+        size = np.abs(self.coefficients)
+        tail: FloatArray = size[:, -2:].max(axis=1) / np.maximum(size.max(axis=1), TINY)
+        return tail
+
+    def relative_error(self) -> float:
+        """What the orders left out and rounding may add up to, relative to the smallest value on each piece: the worst.
+
+        Values count without u^lead. The ends of a piece lie beyond its outermost node, where interpolation magnifies
+        what the orders leave out by up to the Lebesgue constant.
+        """
+        size, smallest = np.abs(self.coefficients), np.minimum(np.abs(self._regular).min(axis=1), self._at_start)
+        error = _magnification(self.grid.count) * size[:, -2:].max(axis=1) + 4 * EPS * size.max(axis=1)
+        return float(np.max(error / np.maximum(smallest, TINY)))
+
+    @property
+    def _at_start(self) -> FloatArray:
+        """Size of the value at the left end of each piece, without u^lead."""
+        signs = (-1.0) ** np.arange(self.grid.count)
+        return np.asarray(np.abs(self.coefficients @ signs))
+
+    def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        return np.where(piece == 0, u**self.lead, 1.0)
+
+    @cached_property
+    def coefficients(self) -> FloatArray:
+        """Chebyshev coefficients in u, shape (q, m), in the first piece after division by u^lead."""
+        return np.asarray(self._regular @ chebyshev_from_nodes(self.grid.count).T)
+
+    @cached_property
+    def _regular(self) -> FloatArray:
+        """Values at the nodes, in the first piece after division by u^lead."""
+        regular = self.node_values.copy()
+        regular[0] /= gauss_nodes(self.grid.count)[0] ** self.lead
+        return regular
+
+    @cached_property
+    def _slope_coefficients(self) -> FloatArray:
+        return np.asarray(self.coefficients @ _slope_of_chebyshev(self.grid.count).T)
+
+
+@cache
+def _magnification(count: int) -> float:
+    """1 + the Lebesgue constant of the Gauss nodes, which they take at the ends: 1 + sum |l_j(1)|."""
+    ends = np.polynomial.chebyshev.chebvander(1.0, count - 1)
+    return float(1.0 + np.abs(ends @ chebyshev_from_nodes(count)).sum())
+
+
+@cache
+def _slope_of_chebyshev(count: int) -> FloatArray:
+    """Matrix from Chebyshev coefficients on [0, 1] to those of the derivative."""
+    matrix = np.zeros((count, count))
+    matrix[:-1] = 2 * np.polynomial.chebyshev.chebder(np.eye(count))
+    return matrix
+
+
+@cache
+def _slopes_from_nodes(count: int) -> FloatArray:
+    """Matrix from values at the Gauss nodes of [0, 1] to derivatives there."""
+    at_nodes = np.polynomial.chebyshev.chebvander(2 * gauss_nodes(count)[0] - 1, count - 1)
+    return np.asarray(at_nodes @ _slope_of_chebyshev(count) @ chebyshev_from_nodes(count))
+
+
+def resolve(
+    function: Callable[[FloatArray], FloatArray],
+    grid: MappedGrid,
+    lead: float,
+    *,
+    tolerance: float,
+    scale: float,
+    far: float,
+) -> MappedFunction:
+    """Split pieces until the function's last coefficients fall below the tolerance.
+
+    Towards a mapped singularity pieces may become as small as they need; elsewhere a piece below a thousandth of its
+    distance from the start shows noise, not structure, and the tail that is left goes into the error estimate.
+    Towards a pole at `far` (a sphere's equator) pieces shrink with the distance to it.
+    A mapped piece spends its polynomial degree in steps of its power: it is kept short against the given length scale,
+    on which other functions of the same grid vary.
+    """
+    for _ in range(MAX_SPLITS):
+        resolved = MappedFunction(grid, function(grid.nodes), lead)
+        right = grid.left + grid.width
+        smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, 0.1 * (far - right))
+        coarse = (resolved.truncation() > tolerance) & (grid.width > smallest)
+        coarse |= (grid.power > 1) & (grid.width > scale * 4.0 ** (1 - grid.power))
+        if not coarse.any():
+            break
+        grid = grid.split(coarse)
+    return resolved

@@ -1,0 +1,204 @@
+"""The paper's own source of flat punches: FFT boundary elements on a grid of ratios, section 3.2 of Forsbach (2023)."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import lru_cache
+from math import ceil, log
+from typing import Final, Self
+
+import numpy as np
+from scipy.ndimage import maximum_filter1d
+
+from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
+from bem.kernels.layer import Support
+from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
+from contact import InvalidInput, Layer
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray
+
+SMALLEST_RATIO: Final = 1e-3
+LARGEST_RATIO: Final = 1e3
+ERROR_FLOOR: Final = 5e-7  # conjugate gradients stop at 1e-7 of the displacement; q may be off by a few times that
+LEAST_HALVED: Final = 2 * LEAST_ROWS - 1  # rows and columns that a table needs so that every other one is a table
+GAIN: Final = 4.0  # of reading on half the spacing; measured on 20 to 60 rows at least 3.2 with the grid's own error
+BEYOND: Final = 6  # rows beyond the ratio asked for: splines end less well than they run, felt over so many rows
+SPREAD: Final = 1.5  # factor in a/h either way over which the error's largest value counts: differences cross zero
+
+
+@record
+class FftTable(Record):
+    """Flat-punch tables by the FFT boundary element method; a `FlatPunchSource`.
+
+    Attributes:
+        cells: Grid cells across the punch's box, a multiple of 4.
+        ratios: Number of log-spaced ratios a/h in [1e-3, 1e3]; only those up to the ratio asked for are solved.
+        radii: Number of radii r/a, dense towards the edge.
+
+    Each table is built on `cells` and on half as many; the differences, their largest values over neighbouring ratios,
+    are the stated errors of stiffness and pressure, and what reading between rows and columns adds. The method is of
+    second order in cell size over thickness, so the difference exceeds the error; where the layer is thinner than two
+    cells, it is doubled.
+
+    Raises:
+        InvalidInput: If `cells` is too small or no multiple of 4.
+    """
+
+    cells: int = 256
+    ratios: int = 400
+    radii: int = 500
+
+    def __post_init__(self) -> None:
+        """Refuse grids that cannot be halved."""
+        if self.cells < 64 or self.cells % 4:
+            raise InvalidInput(f"cells must be a multiple of 4 and at least 64, got {self.cells}")
+        if min(self.ratios, self.radii) < LEAST_HALVED:
+            raise InvalidInput(f"ratios and radii must be at least {LEAST_HALVED}, got {self.ratios} and {self.radii}")
+
+    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchTable:
+        """The table of this layer's kernel up to at least a/h = `max_ratio`; built once, then remembered.
+
+        Raises:
+            InvalidInput: If the layer is a half-space or the ratio is beyond 1000.
+        """
+        if layer.is_half_space:
+            raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
+        grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
+        if not 0.0 < max_ratio <= LARGEST_RATIO * (1.0 + 1e-12):  # a quotient meant as 1000 may come out above it
+            raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
+        rows = max(LEAST_HALVED, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1 + BEYOND)
+        poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0  # unbonded: nu plays no part
+        return _build(self, layer.support, poissons_ratio, min(rows, self.ratios))
+
+    def refined(self) -> Self:
+        """A copy with half the cell size."""
+        return dataclasses.replace(self, cells=2 * self.cells)
+
+
+@lru_cache(maxsize=32)
+def _build(settings: FftTable, support: Support, poissons_ratio: float, rows: int) -> FlatPunchTable:
+    ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
+    fine = _on_grid(settings.cells, ratios, settings.radii, support, poissons_ratio)
+    coarse = _on_grid(settings.cells // 2, ratios, settings.radii, support, poissons_ratio)
+    return dataclasses.replace(
+        _with_errors(fine, coarse, settings.cells), provenance=_provenance(settings, support, poissons_ratio)
+    )
+
+
+def _on_grid(cells: int, ratios: FloatArray, radii: int, support: Support, poissons_ratio: float) -> FlatPunchTable:
+    """The table of one grid, its errors still unknown."""
+    punches = _punches(cells, ratios, support, poissons_ratio)
+    rho = chebyshev_radii(radii)
+    q = np.array([np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, punch.shape) for punch in punches])
+    return FlatPunchTable(
+        support=support,
+        poissons_ratio=poissons_ratio,
+        ratios=ratios,
+        radii=rho,
+        stiffness=np.array([punch.stiffness for punch in punches]),
+        pressure=np.maximum(q, 0.0) / np.sqrt(1.0 - rho**2),
+        error=np.zeros(len(ratios)),
+        pressure_error=np.zeros(len(ratios)),
+        mean_error=np.zeros((len(ratios), radii)),
+    )
+
+
+def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: float) -> list[PunchSolution]:
+    """One solution a ratio, each starting from the one before."""
+    discs = {periodic: measured_disc(cells, periodic) for periodic in {False, ratios[-1] > THIN}}
+    punches: list[PunchSolution] = []
+    for ratio in ratios:
+        start = punches[-1].pressure if punches else None
+        punches.append(discs[bool(ratio > THIN)].solve(float(ratio), support, poissons_ratio, start))
+    return punches
+
+
+def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int) -> FlatPunchTable:
+    """The fine table with bounds of its errors: of k_bar or c_bar, of q, and of integrals of q.
+
+    Each is the difference to the coarse table and what reading between rows and columns adds. Where the edge layer, as
+    wide as the layer is thick, spans fewer than two cells, convergence is of first order only; there the differences
+    count twice, except in the mean, which converges faster.
+    """
+    xi, root = fine.ratios, np.sqrt(1.0 - fine.radii**2)
+    k = np.abs(coarse.stiffness / fine.stiffness - 1.0)
+    c = np.abs(coarse.normalized_spring_stiffness(xi) / fine.normalized_spring_stiffness(xi) - 1.0)
+    q, difference = root * fine.pressure, root * np.abs(coarse.pressure - fine.pressure)
+    times = np.where(xi > cells / 4, 2.0, 1.0)
+    read_stiffness, read_pressure = _reading_errors(fine)
+    return dataclasses.replace(
+        fine,
+        error=ERROR_FLOOR + times * _largest_nearby(np.maximum(k, c), xi) + _largest_nearby(read_stiffness, xi),
+        pressure_error=ERROR_FLOOR
+        + times * _largest_nearby(_worst(difference, q), xi)
+        + _largest_nearby(_worst(read_pressure, q), xi),
+        mean_error=ERROR_FLOOR
+        + _largest_nearby(_outwards(difference, q), xi)
+        + _largest_nearby(_outwards(read_pressure, q), xi),
+    )
+
+
+def _worst(difference: FloatArray, q: FloatArray) -> FloatArray:
+    """The largest error at any radius, relative to the largest q."""
+    return np.asarray(np.max(difference, axis=1) / np.max(q, axis=1))
+
+
+def _outwards(difference: FloatArray, q: FloatArray) -> FloatArray:
+    """Relative errors of integrals from each radius to the edge; the radii are equally spaced in arcsin(rho)."""
+    error, integral = (np.cumsum(values[:, ::-1], axis=1)[:, ::-1] for values in (difference, q))
+    return np.asarray(error / integral)
+
+
+def _reading_errors(table: FlatPunchTable) -> tuple[FloatArray, FloatArray]:
+    """What reading between rows adds to the errors of k_bar and c_bar, and between rows and columns to that of q.
+
+    Measured where every other row and column was left out; `GAIN` is what the full table is better by.
+    """
+    thin, left_out = _every_other(table), table.ratios[1:-1:2]
+    k = thin.normalized_contact_stiffness(left_out) / table.stiffness[1:-1:2] - 1.0
+    c = thin.normalized_spring_stiffness(left_out) / table.normalized_spring_stiffness(left_out) - 1.0
+    q = thin.smooth_pressure(table.radii, left_out[:, None]) - table.pressure[1:-1:2] * np.sqrt(1.0 - table.radii**2)
+    stiffness, rows = np.maximum(np.abs(k), np.abs(c)), len(table.ratios)
+    return _for_all_rows(stiffness, rows), _for_all_rows(np.abs(q), rows)
+
+
+def _for_all_rows(error: FloatArray, rows: int) -> FloatArray:
+    """From errors of rows 1, 3, 5, ... left out those of the full table: the nearest, and at the end no gain.
+
+    Splines end less well than they run, and of an even number of rows the last was never left out: there twice.
+    """
+    full = error[np.minimum(np.arange(rows) // 2, len(error) - 1)] / GAIN
+    full[-2:] *= 2.0 * GAIN
+    return np.asarray(full)
+
+
+def _every_other(table: FlatPunchTable) -> FlatPunchTable:
+    """The table without every second row and column."""
+    return dataclasses.replace(
+        table,
+        ratios=table.ratios[::2],
+        radii=table.radii[::2],
+        stiffness=table.stiffness[::2],
+        pressure=table.pressure[::2, ::2],
+        error=table.error[::2],
+        pressure_error=table.pressure_error[::2],
+        mean_error=table.mean_error[::2, ::2],
+    )
+
+
+def _largest_nearby(difference: FloatArray, ratios: FloatArray) -> FloatArray:
+    """The largest value over each row's neighbourhood, along axis 0."""
+    reach = ceil(log(SPREAD) / log(ratios[1] / ratios[0]))  # rows
+    return np.asarray(maximum_filter1d(difference, 2 * reach + 1, axis=0, mode="nearest"))
+
+
+def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> dict[str, str | int | float]:
+    equation = "(29)" if support == "unbonded" else "(31)"
+    return {
+        "method": "FFT boundary elements, grid discs measured by the half-space",
+        "kernel": f"{support}, Forsbach (2023) Eq. {equation}",
+        "poissons_ratio": poissons_ratio,
+        "cells": settings.cells,
+        "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images",
+        "error": f"difference to {settings.cells // 2} cells, its largest value within a factor of {SPREAD:g} in a/h",
+    }

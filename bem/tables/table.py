@@ -1,0 +1,164 @@
+"""A table of flat punches, k_bar(a/h) and p_bar(r/a; a/h), as functions: section 3.2 of Forsbach (2023).
+
+Between the rows and columns the table is read by splines of smooth functions only: `ln k_bar` over `ln(a/h)`, and
+`q = p_bar sqrt(1 - rho^2)` over `ln(a/h)` and `theta = arcsin(rho)`, in which q is even about the axis and about the
+edge. The half-space, a/h = 0, is the table's exact first row: between it and the smallest tabulated ratio, 1/k_bar and
+q are linear in a/h (so are the solutions for a/h -> 0, up to third order: the layer then answers with one constant).
+Nothing is read beyond the largest ratio.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import BSpline, RectBivariateSpline, make_interp_spline
+
+from bem.kernels.layer import Support
+from contact import InvalidInput
+from contact.records.validation import FloatArray
+
+LEAST_ROWS: Final = 6  # a quintic spline needs six
+
+
+@dataclass(frozen=True, eq=False)
+class FlatPunchTable:
+    """Flat punches on one layer at tabulated ratios and radii; a `FlatPunchSolution`.
+
+    Attributes:
+        support: "bonded" or "unbonded".
+        poissons_ratio: nu.
+        ratios: a/h, increasing, shape (n,).
+        radii: rho = r/a in [0, 1), increasing, shape (m,).
+        stiffness: k_bar, shape (n,), Eq. (10).
+        pressure: p_bar, shape (n, m), Eq. (10).
+        error: Bound of the relative error of k_bar and c_bar, shape (n,).
+        pressure_error: Bound of the error of q at any radius, relative to its largest value, shape (n,).
+        mean_error: Bound of the relative error of integrals of q over arcsin(rho) from each radius to the edge, (n, m).
+        provenance: Where the numbers come from, in names and plain values.
+
+    Raises:
+        InvalidInput: If shapes, order or values cannot be a table of flat punches.
+    """
+
+    support: Support
+    poissons_ratio: float
+    ratios: FloatArray
+    radii: FloatArray
+    stiffness: FloatArray
+    pressure: FloatArray
+    error: FloatArray
+    pressure_error: FloatArray
+    mean_error: FloatArray
+    provenance: dict[str, str | int | float] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Refuse what is not a table."""
+        _check_axis("ratios", self.ratios, 0.0, np.inf)
+        _check_axis("radii", self.radii, -1e-300, 1.0)
+        rows, columns = len(self.ratios), len(self.radii)
+        _check_values("stiffness k_bar", self.stiffness, (rows,))
+        _check_values("pressure p_bar", self.pressure, (rows, columns))
+        _check_values("mean_error", self.mean_error, (rows, columns))
+        for name in ("error", "pressure_error"):
+            _check_values(name, getattr(self, name), (rows,))
+
+    @property
+    def max_ratio(self) -> float:
+        """Largest a/h that is covered."""
+        return float(self.ratios[-1])
+
+    def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """k_bar(a/h), shape of `ratio`."""
+        xi = self._checked(ratio)
+        first = self.ratios[0]
+        read = np.exp(self._log_stiffness(np.log(np.maximum(xi, first))))
+        deviation = np.minimum(xi / first, 1.0) * (1.0 - 1.0 / read)
+        return np.asarray(1.0 / (1.0 - deviation))
+
+    def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
+        """c_bar = k_bar + xi k_bar' = k_bar (1 + d ln k_bar / d ln xi), Eq. (10), shape of `ratio`."""
+        xi = self._checked(ratio)
+        stiffness = self.normalized_contact_stiffness(xi)
+        slope = self._log_stiffness.derivative()(np.log(np.maximum(xi, self.ratios[0])))
+        return np.asarray(stiffness * np.where(xi < self.ratios[0], stiffness, 1.0 + slope))
+
+    def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
+        """q(rho; a/h) = p_bar sqrt(1 - rho^2), `rho` and `ratio` broadcast."""
+        xi, r = np.broadcast_arrays(self._checked(ratio), np.asarray(rho, dtype=np.float64))
+        if np.any((r < 0.0) | (r > 1.0)):
+            raise InvalidInput(f"rho = r/a must lie in [0, 1], got {r.min():g} .. {r.max():g}")
+        first = self.ratios[0]
+        read = self._smooth_pressure.ev(np.log(np.maximum(xi, first)), np.arcsin(r))
+        return np.asarray(0.5 + np.minimum(xi / first, 1.0) * (read - 0.5))
+
+    def relative_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of k_bar and c_bar."""
+        return self._larger_neighbour(self.error, ratio)
+
+    def smooth_pressure_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the error of q at any radius, relative to its largest value."""
+        return self._larger_neighbour(self.pressure_error, ratio)
+
+    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Bound of the relative error of integrals of q over arcsin(rho) from rho = `start` to the edge."""
+        xi, rho = np.broadcast_arrays(self._checked(ratio), np.asarray(start, dtype=np.float64))
+        pairs = [(i, j) for i in _neighbours(self.ratios, xi) for j in _neighbours(self.radii, rho)]
+        return np.asarray(np.max([self.mean_error[i, j] for i, j in pairs], axis=0))
+
+    def _larger_neighbour(self, error: FloatArray, ratio: ArrayLike) -> FloatArray:
+        """The larger of the errors of the two rows around each ratio."""
+        below, above = _neighbours(self.ratios, self._checked(ratio))
+        return np.asarray(np.maximum(error[below], error[above]))
+
+    def _checked(self, ratio: ArrayLike) -> FloatArray:
+        xi = np.asarray(ratio, dtype=np.float64)
+        if not np.all((xi >= 0.0) & (xi <= self.max_ratio * (1.0 + 1e-12))):  # written so that NaN fails
+            raise InvalidInput(
+                f"a/h must lie in [0, {self.max_ratio:g}], got {xi.min():g} .. {xi.max():g}; "
+                "a table is never extrapolated: build it up to a larger ratio"
+            )
+        return xi
+
+    @cached_property
+    def _log_stiffness(self) -> BSpline:
+        return make_interp_spline(np.log(self.ratios), np.log(self.stiffness), k=5)
+
+    @cached_property
+    def _smooth_pressure(self) -> RectBivariateSpline:
+        """q over (ln xi, theta), continued evenly by one column beyond the axis and one beyond the edge."""
+        theta = np.arcsin(self.radii)
+        q = self.pressure * np.cos(theta)
+        left = 1 if theta[0] == 0.0 else 0  # the column that has a mirror image
+        theta = np.concatenate([[-theta[left]], theta, [np.pi - theta[-1]]])
+        q = np.column_stack([q[:, left], q, q[:, -1]])
+        return RectBivariateSpline(np.log(self.ratios), theta, q, kx=3, ky=3)
+
+
+def chebyshev_radii(count: int) -> FloatArray:
+    """rho = sin(theta) at the midpoints of `count` equal intervals of theta in [0, pi/2]; none lies on the edge."""
+    return np.asarray(np.sin((np.arange(count) + 0.5) * (np.pi / (2 * count))))
+
+
+def _neighbours(axis: FloatArray, values: FloatArray) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+    """Numbers of the entries of an axis below and above values; at its ends twice the last."""
+    place = np.searchsorted(axis, values)
+    return np.maximum(place - 1, 0), np.minimum(place, len(axis) - 1)
+
+
+def _check_axis(name: str, values: FloatArray, above: float, below: float) -> None:
+    if values.ndim != 1 or len(values) < LEAST_ROWS:
+        raise InvalidInput(f"{name}: at least {LEAST_ROWS} entries in one dimension are needed, got {values.shape}")
+    if not (np.all(np.diff(values) > 0.0) and above < values[0] and values[-1] < below):
+        raise InvalidInput(f"{name}: must increase strictly within ({above:g}, {below:g}), got {values[0]:g} first")
+
+
+def _check_values(name: str, values: FloatArray, shape: tuple[int, ...]) -> None:
+    if values.shape != shape:
+        raise InvalidInput(f"{name}: shape {values.shape} does not match ratios and radii, {shape} is needed")
+    if not np.all(np.isfinite(values) & (values >= 0.0)):
+        place = np.argwhere(~(np.isfinite(values) & (values >= 0.0)))[0]
+        raise InvalidInput(f"{name}: must be finite and not negative, got {values[tuple(place)]} at {tuple(place)}")

@@ -1,0 +1,144 @@
+"""Dimensionless numbers that say beforehand which effects a scene calls for; estimates, each with its limit.
+
+Each is told against the accuracy wanted by what it moves while it is small. Measured with punches, cones, paraboloids,
+truncated ones and r^6: a half-space in place of a layer moves depth or force by 0.4 to 1.2 times a/h, adhesion by at
+most 2 times dl/delta, a dashpot by at most 6.5 times tau/T, and a branch that relaxes slowly by less than T/tau.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact import Adhesion, DepthHistory, ForceHistory, Impact, ImpactHistory, Scene, Solution, Viscoelasticity
+from contact.records.validation import FloatArray
+
+TYPICAL_DENSITY = 1000.0  # kg/m^3 of soft layers; a scene knows none
+ATOMIC_RANGE = 0.3e-9  # m
+_HALF_SPACE_MOVES = (0.4, 1.2)  # times a/h
+_ADHESION_MOVES = 2.0  # times dl/delta
+_DASHPOT_MOVES = 6.5  # times tau/T
+_JKR_HOLDS = 20.0  # dl/z0 at a Tabor parameter of 5, with the contact radius at no load
+_SMALL_INERTIA = 0.1
+
+
+@dataclass(frozen=True, kw_only=True)
+class Number:
+    """One dimensionless number.
+
+    Attributes:
+        name: What it compares.
+        value: Its value.
+        meaning: What it says at the accuracy wanted, and where the estimate ends.
+    """
+
+    name: str
+    value: float
+    meaning: str
+
+
+def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
+    """The numbers that apply to a solved scene."""
+    found = [_thickness(scene, answer, accuracy), _strain(scene, answer)]
+    if scene.effect(Adhesion) is not None:
+        found += _adhesion(scene, answer, accuracy)
+    if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
+        found += _relaxation(scene, _duration(answer), accuracy)
+    if isinstance(answer, ImpactHistory):
+        found.append(_inertia(scene, answer))
+    return [number for number in found if number is not None]
+
+
+def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None:
+    ratio = _largest(answer, "contact_radius") / scene.layer.thickness
+    if not ratio:
+        return None
+    low, high = (share * ratio for share in _HALF_SPACE_MOVES)
+    verdict = "may do" if high <= accuracy else "will not do" if low > accuracy else "is near its limit"
+    meaning = f"a half-space {verdict} at {accuracy:g}: it moves a quantity by 0.4 to 1.2 times this while it is small"
+    return Number(name="a/h", value=ratio, meaning=meaning)
+
+
+def _strain(scene: Scene, answer: Solution) -> Number:
+    depth, radius = _largest(answer, "indentation_depth"), _largest(answer, "contact_radius")
+    strain = depth / min(radius, scene.layer.thickness)
+    meaning = "typical strain; linear elasticity is an approximation beyond about 0.1, whatever the digits"
+    return Number(name="delta/min(a, h)", value=strain, meaning=meaning)
+
+
+def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
+    """dl/delta compares the critical elongation with the depth; the half-space's spring stiffness is E*."""
+    adhesion = scene.effect(Adhesion)
+    work = 0.0 if adhesion is None else adhesion.work_of_adhesion
+    radius, depth = _largest(answer, "contact_radius"), _largest(answer, "indentation_depth")
+    elongation = math.sqrt(2 * math.pi * work * radius / scene.layer.contact_modulus)  # Eq. (40) with c_N = E*
+    share, range_ = elongation / depth if depth else math.inf, elongation / ATOMIC_RANGE
+    verdict = "may be left out" if _ADHESION_MOVES * share <= accuracy else "may count"
+    holds = "JKR holds" if range_ >= _JKR_HOLDS else "JKR is in doubt, adhesion acts at a distance"
+    return [
+        Number(
+            name="JKR number dl/delta",
+            value=share,
+            meaning=f"adhesion {verdict} at {accuracy:g}: it moves a quantity by at most twice this while it is small",
+        ),
+        Number(
+            name="Tabor-like number dl/z0",
+            value=range_,
+            meaning=f"{holds}: elongation over 0.3 nm, the range of atomic forces; JKR needs about {_JKR_HOLDS:g}, "
+            "a Tabor parameter of 5 (Johnson, Greenwood 1997)",
+        ),
+    ]
+
+
+def _duration(answer: Solution) -> float:
+    """T [s]: of the contact, or of a whole history."""
+    if isinstance(answer, ImpactHistory):
+        return answer.contact_time
+    time: FloatArray = np.asarray(getattr(answer, "time", (0.0, math.inf)))
+    return float(time[-1] - time[0])
+
+
+def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
+    model = scene.effect(Viscoelasticity)
+    if model is None:
+        return []
+    law = model.relaxation
+    found = [
+        Number(name="tau/T", value=float(time) / duration, meaning=_of_branch(float(time) / duration, accuracy))
+        for time in law.times
+    ]
+    if law.viscosity > 0.0:
+        share = law.viscosity / law.instantaneous_modulus / duration
+        verdict = "may be left out" if _DASHPOT_MOVES * share <= accuracy else "may count"
+        meaning = (
+            f"the dashpot {verdict} at {accuracy:g}: it moves a quantity by at most 6.5 times this while it is small"
+        )
+        found.append(Number(name="tau/T", value=share, meaning=meaning))
+    return found
+
+
+def _of_branch(share: float, accuracy: float) -> str:
+    if 1.0 / share <= accuracy:
+        return f"too slow to count at {accuracy:g}: it keeps its modulus and may be left out"
+    if share <= accuracy:
+        return f"too fast to count at {accuracy:g}: it carries nothing, and the layer is softer by its modulus"
+    return f"relaxes meanwhile, which may count at {accuracy:g}"
+
+
+def _inertia(scene: Scene, answer: ImpactHistory) -> Number:
+    """Over the contact radius or the thickness, whichever is less: that is as deep as the layer moves."""
+    wave = math.sqrt(scene.layer.shear_modulus / TYPICAL_DENSITY)
+    depth = min(scene.layer.thickness, answer.peak_contact_radius)
+    value = depth / (wave * answer.contact_time)
+    verdict = "small enough" if value <= _SMALL_INERTIA else "not small: the answer leaves out waves that count"
+    meaning = (
+        f"{verdict}; time of a shear wave through what moves over the contact time, at {TYPICAL_DENSITY:g} kg/m^3: the "
+        "layer's inertia is left out everywhere here; an estimate, for no scene knows a density"
+    )
+    return Number(name="inertia of the layer", value=value, meaning=meaning)
+
+
+def _largest(answer: Solution, quantity: str) -> float:
+    return float(np.max(np.abs(getattr(answer, quantity))))

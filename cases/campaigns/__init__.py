@@ -1,0 +1,8 @@
+"""Where the methods break: hard parameters walked in steps, random scenes by the thousand, hostile input.
+
+- ``units``: the same scene in another system of units
+- ``random_scenes``: seeded scenes over the whole range of every parameter
+- ``referee``, ``referee_profiles``: an answer to elastic scenes that shares no code with any method
+- ``campaign``: random scenes against their referee, coverage and sharpness of stated errors
+- ``hostile``: seeded input that nobody should trust
+"""

@@ -1,0 +1,112 @@
+"""Equivalent plane profile g(x) = x int_0^x f'(r) / sqrt(x^2 - r^2) dr of every indenter, in closed form.
+
+Popov, Hess and Willert, Handbook of Contact Mechanics (2019), chapter 2, gives these forms; a tabulated profile is a
+cubic between its radii, for which the integral is elementary as well. They are written here a second time on purpose.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import singledispatch
+from itertools import pairwise
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import PchipInterpolator
+
+from contact import (
+    Cone,
+    FlatPunch,
+    InvalidInput,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+from contact.records.validation import FloatArray
+
+Extended: TypeAlias = NDArray[np.longdouble]
+
+
+@singledispatch
+def equivalent_profile(indenter: Profile, x: FloatArray) -> FloatArray:
+    """g(x) [m] at x [m].
+
+    Raises:
+        InvalidInput: For a profile of which no closed form is known here.
+    """
+    raise InvalidInput(f"{type(indenter).__name__}: no closed form of its half-space profile stands here; add it")
+
+
+@equivalent_profile.register
+def _(indenter: FlatPunch, x: FloatArray) -> FloatArray:
+    return np.zeros_like(x)
+
+
+@equivalent_profile.register
+def _(indenter: Paraboloid, x: FloatArray) -> FloatArray:
+    return x**2 / indenter.radius_of_curvature
+
+
+@equivalent_profile.register
+def _(indenter: Sphere, x: FloatArray) -> FloatArray:
+    R = indenter.radius
+    return x * 0.5 * np.log1p(2 * x / (R - x))
+
+
+@equivalent_profile.register
+def _(indenter: Cone, x: FloatArray) -> FloatArray:
+    return 0.5 * math.pi * indenter.slope * x
+
+
+@equivalent_profile.register
+def _(indenter: TruncatedCone, x: FloatArray) -> FloatArray:
+    b = indenter.flat_radius
+    angle: FloatArray = np.arctan2(_leg(x, b), b)  # arccos(b/x) without cancellation at x = b
+    return indenter.slope * x * angle
+
+
+@equivalent_profile.register
+def _(indenter: TruncatedParaboloid, x: FloatArray) -> FloatArray:
+    leg: FloatArray = _leg(x, indenter.flat_radius)
+    return x * leg / indenter.radius_of_curvature
+
+
+@equivalent_profile.register
+def _(indenter: PowerLaw, x: FloatArray) -> FloatArray:
+    n = indenter.exponent
+    kappa = math.sqrt(math.pi) * math.exp(math.lgamma(n / 2 + 1) - math.lgamma((n + 1) / 2))
+    return kappa * indenter.reference_height * (x / indenter.reference_radius) ** n
+
+
+@equivalent_profile.register
+def _(indenter: Tabulated, x: FloatArray) -> FloatArray:
+    curve = PchipInterpolator(indenter.radii, indenter.heights)
+    extended = np.asarray(x, dtype=np.longdouble)  # the three integrals of a piece cancel where it is narrow
+    integral = np.zeros_like(extended)
+    for (start, end), cubic in zip(pairwise(indenter.radii.astype(np.longdouble)), curve.c.T, strict=True):
+        integral += _piece(extended, start, end, cubic)
+    return np.asarray(extended * integral, dtype=np.float64)
+
+
+def _piece(x: Extended, start: np.longdouble, end: np.longdouble, cubic: FloatArray) -> Extended:
+    """int f'(r)/sqrt(x^2 - r^2) dr over [start, end] below x, f = c0 s^3 + c1 s^2 + c2 s + c3 with s = r - start."""
+    first, last = np.minimum(start, x), np.minimum(end, x)
+    roots = _leg(x, first), _leg(x, last)
+    angle = np.arctan2(last, roots[1]) - np.arctan2(first, roots[0])  # int 1/sqrt
+    linear = roots[0] - roots[1]  # int r/sqrt
+    square = 0.5 * (x**2 * angle - last * roots[1] + first * roots[0])  # int r^2/sqrt
+    c0, c1, c2, _ = cubic
+    integral: Extended = (
+        3 * c0 * (square - 2 * start * linear + start**2 * angle) + 2 * c1 * (linear - start * angle) + c2 * angle
+    )
+    return integral
+
+
+def _leg(x: Any, b: Any) -> Any:
+    """sqrt(x^2 - b^2), zero for x < b, with all its digits near b."""
+    return np.sqrt(np.maximum((x - b) * (x + b), 0.0))

@@ -1,0 +1,106 @@
+"""The same scene and the same answer in another system of units: three free units, of length, stress and time."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from contact import Scene
+from contact.records.record import Record
+
+R = TypeVar("R", bound=Record)
+
+# exponents of length, stress and time; force is stress length^2, mass is stress length time^2
+_LENGTH, _STRESS, _TIME, _FORCE, _NUMBER = (1, 0, 0), (0, 1, 0), (0, 0, 1), (2, 1, 0), (0, 0, 0)
+
+DIMENSIONS: dict[str, tuple[int, int, int]] = {
+    "thickness": _LENGTH,
+    "radius": _LENGTH,
+    "flat_radius": _LENGTH,
+    "radius_of_curvature": _LENGTH,
+    "reference_radius": _LENGTH,
+    "reference_height": _LENGTH,
+    "radii": _LENGTH,
+    "heights": _LENGTH,
+    "initial_contact_radius": _LENGTH,
+    "depth": _LENGTH,
+    "ContactRadii.values": _LENGTH,
+    "IndentationDepths.values": _LENGTH,
+    "NormalForces.values": _FORCE,
+    "force": _FORCE,
+    "youngs_modulus": _STRESS,
+    "shear_modulus": _STRESS,
+    "shear_moduli": _STRESS,
+    "long_term_shear_modulus": _STRESS,
+    "maxwell_shear_modulus": _STRESS,
+    "viscosity": (0, 1, 1),
+    "relaxation_times": _TIME,
+    "time": _TIME,
+    "velocity": (1, 0, -1),
+    "mass": (1, 1, 2),
+    "work_of_adhesion": (1, 1, 0),
+    "slope": _NUMBER,
+    "exponent": _NUMBER,
+    "poissons_ratio": _NUMBER,
+    "contact_radius": _LENGTH,
+    "indentation_depth": _LENGTH,
+    "normal_force": _FORCE,
+    "contact_stiffness": (1, 1, 0),
+    "kinetic_energy": (3, 1, 0),
+    "stored_energy": (3, 1, 0),
+    "dissipated_energy": (3, 1, 0),
+    "peak_force": _FORCE,
+    "peak_depth": _LENGTH,
+    "peak_contact_radius": _LENGTH,
+    "contact_time": _TIME,
+    "coefficient_of_restitution": _NUMBER,
+    "pull_off_force": _FORCE,
+    "pull_off_depth": _LENGTH,
+    "pull_off_contact_radius": _LENGTH,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Units:
+    """How many new units one old unit of length, stress and time is.
+
+    Powers of two change no mantissa: a method that works dimensionless answers the same bits.
+    """
+
+    length: float = 1.0
+    stress: float = 1.0
+    time: float = 1.0
+
+    def factor(self, quantity: str) -> float:
+        """What a value of this quantity is multiplied by."""
+        length, stress, time = DIMENSIONS[quantity]
+        return float(self.length**length * self.stress**stress * self.time**time)
+
+
+def in_units(scene: Scene, units: Units) -> Scene:
+    """The same scene with every number in other units."""
+    return Scene(
+        layer=_converted(scene.layer, units),
+        indenter=_converted(scene.indenter, units),
+        loading=_converted(scene.loading, units),
+        effects=tuple(_converted(effect, units) for effect in scene.effects),
+    )
+
+
+def _converted(item: R, units: Units) -> R:
+    changes = {
+        field.name: _scaled(item, field.name, getattr(item, field.name), units)
+        for field in dataclasses.fields(item)  # type: ignore[arg-type]  # all records are dataclasses
+    }
+    return item.replace(**changes)
+
+
+def _scaled(item: Record, name: str, value: Any, units: Units) -> Any:
+    if value is None or isinstance(value, str):
+        return value
+    key = f"{type(item).__name__}.{name}" if name == "values" else name
+    scaled = value * units.factor(key)
+    return scaled if isinstance(value, np.ndarray) else float(scaled)

@@ -1,0 +1,116 @@
+"""Settings of each method from coarse to fine, as work studies try them, and the studies of the usual scenes.
+
+Elastic scenes are measured against the direct integral equation, which uses no equivalent springs and no factor for all
+radii; detachments and motions against the fast method at its finest, whose own error bar counts against every method.
+"""
+
+from collections.abc import Sequence
+from typing import Final
+
+from cases.cost.work_precision import WorkStudy
+from cases.declare.methods import MethodUse
+
+MDR: Final = tuple(MethodUse(label=f"{n} nodes", method="mdr", settings={"nodes": n}) for n in (8, 12, 16, 24))
+MDR_IN_TIME: Final = tuple(
+    MethodUse(label=f"accuracy {accuracy:g}", method="mdr", settings={"accuracy": accuracy})
+    for accuracy in (1e-4, 1e-6, 1e-8, 1e-10)
+)
+EQUATION: Final = tuple(
+    MethodUse(label=f"{n} nodes", method="integral_equation", settings={"nodes": n}) for n in (6, 8, 10, 16)
+)
+FEM: Final = (
+    *(
+        MethodUse(
+            label=f"P{order}P{order - 1}, growth {growth:g}, edge {edge:g}",
+            method="fem",
+            settings={"order": order, "growth": growth, "edge_cell": edge, "truncation": 1e-10},
+        )
+        for order, growth, edge in ((2, 0.5, 1e-4), (3, 0.5, 1e-5), (3, 0.25, 1e-6), (4, 0.5, 1e-7), (4, 0.25, 1e-8))
+    ),
+    *(
+        MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
+        for accuracy in (1e-2, 1e-4, 1e-6)
+    ),
+)
+FEM_DETACHING: Final = tuple(
+    MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
+    for accuracy in (1e-2, 1e-3, 1e-4)
+)
+FEM_IN_TIME: Final = tuple(
+    MethodUse(label=f"growth {growth:g}", method="fem", settings={"growth": growth}) for growth in (1.0, 0.5, 0.25)
+)
+BEM: Final = (
+    *(MethodUse(label=f"{n} cells", method="bem", settings={"points": n}) for n in (128, 256, 512, 1024)),
+    *(
+        MethodUse(
+            label=f"256 cells, tolerance {tolerance:g}", method="bem", settings={"points": 256, "tolerance": tolerance}
+        )
+        for tolerance in (1e-3, 1e-5)
+    ),
+)
+PERIODIC: Final = MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"})
+TABLE: Final = tuple(
+    MethodUse(label=f"{n} cells", method="mdr_table", settings={"cells": n, "ratios": 60, "radii": 200})
+    for n in (64, 128)
+)
+
+FINEST_EQUATION: Final = MethodUse(label="24 nodes", method="integral_equation", settings={"nodes": 24})
+FINEST_MDR: Final = MethodUse(label="32 nodes", method="mdr", settings={"nodes": 32})
+FINEST_MDR_IN_TIME: Final = MethodUse(
+    label="32 nodes, accuracy 1e-12", method="mdr", settings={"nodes": 32, "accuracy": 1e-12}
+)
+
+
+def elastic_costs(
+    scene: str,
+    quantities: Sequence[str] = ("indentation_depth", "normal_force"),
+    *,
+    in_ci: bool = False,
+    periodic: bool = False,
+) -> tuple[WorkStudy, ...]:
+    """What depth and force cost on an elastic scene, with every method that solves it.
+
+    Args:
+        scene: its name within the case.
+        quantities: whose error is measured; all share the same timed solutions.
+        in_ci: whether the ci suite times finite elements too, and all settings of the fast method, not two alone.
+        periodic: whether boundary elements are tried without padding too: the contact is as wide as the layer is thick.
+    """
+    cheap = (*MDR[1:], *FEM[5:7]) if in_ci else MDR[1:3]
+    grids = (*BEM, PERIODIC) if periodic else BEM
+    return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *grids, *TABLE), FINEST_EQUATION, cheap)
+
+
+def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
+    """What the pull-off costs."""
+    cheap = MDR[1:3]  # a branch by finite elements takes a second, ten times over
+    quantities = ("pull_off_force", "pull_off_depth")
+    return _studies(scene, quantities, (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE), FINEST_MDR, cheap)
+
+
+def impact_costs(scene: str) -> tuple[WorkStudy, ...]:
+    """What restitution and peak force of an impact cost."""
+    cheap = (*MDR_IN_TIME[1:3], FEM_IN_TIME[0])
+    quantities = ("coefficient_of_restitution", "peak_force")
+    return _studies(scene, quantities, (*MDR_IN_TIME, *FEM_IN_TIME, *TABLE), FINEST_MDR_IN_TIME, cheap)
+
+
+def _studies(
+    scene: str,
+    quantities: Sequence[str],
+    ladder: tuple[MethodUse, ...],
+    reference: MethodUse,
+    cheap: tuple[MethodUse, ...],
+) -> tuple[WorkStudy, ...]:
+    return tuple(
+        WorkStudy(
+            scene=scene,
+            quantity=quantity,
+            ladder=ladder,
+            reference=reference,
+            fast_method="mdr",
+            baseline_method="fem",
+            cheap=cheap,
+        )
+        for quantity in quantities
+    )

@@ -1,0 +1,199 @@
+"""What accuracy costs on one scene: settings of several methods, timed alone on the machine."""
+
+from collections.abc import Iterator, Mapping, Set
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+from cases.cost.cost_of_accuracy import (
+    TOLERANCES,
+    TimedRun,
+    cheapest,
+    crossover,
+    error_bound,
+    pareto_front,
+    price_of_a_digit,
+)
+from cases.cost.timing import summed_up
+from cases.declare.case import Case
+from cases.declare.methods import MethodUse
+from cases.results.records import CheapestRun, DigitPrice, SceneRun, WorkPoint, WorkPrecision
+from cases.run.task import Answers, Task
+
+
+@dataclass(frozen=True, kw_only=True)
+class WorkStudy:
+    """Error against seconds of one quantity's last step.
+
+    Attributes:
+        scene: name of the scene.
+        quantity: what the error is of.
+        ladder: settings to try; the label of each names the setting, ``method`` the method.
+        reference: the settings errors are measured against; its own stated uncertainty is u_ref.
+        fast_method: the crossover asks how far down it wins.
+        baseline_method: speed-ups are relative to it.
+        cheap: the settings that the ci suite times; empty for all.
+    """
+
+    scene: str
+    quantity: str
+    ladder: tuple[MethodUse, ...]
+    reference: MethodUse
+    fast_method: str
+    baseline_method: str
+    cheap: tuple[MethodUse, ...] = ()
+
+    def in_suite(self, suite: str) -> "WorkStudy":
+        """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
+        return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
+
+    def left(self, solvers: Mapping[str, Set[str]]) -> "WorkStudy":
+        """Return the study as it is: it solves its own settings, whatever methods a run keeps."""
+        return self
+
+    def tasks(self, case: Case) -> Iterator[Task]:
+        """Return the reference and every timed setting."""
+        yield self._task(case, self.reference, timed=False)
+        for use in self.ladder:
+            yield self._task(case, use, timed=True)
+
+    def records(self, case: Case, answers: Answers) -> Iterator[WorkPrecision]:
+        """Return the finished study; nothing when the reference itself has no numbers."""
+        reference = answers.of(self._task(case, self.reference, timed=False))
+        if not reference.solved or not reference.quantity(self.quantity).uncertainty:
+            return
+        expected, u_ref = _value_and_uncertainty(reference, self.quantity)
+        points = [
+            self._point(use, answers.of(self._task(case, use, timed=True)), expected, u_ref) for use in self.ladder
+        ]
+        spread = max((_spread(point) for point in points if point.bound is not None), default=0.0)
+        timed = {_name(point): _timed(point) for point in points if point.bound is not None}
+        front = dict(zip(timed, pareto_front(list(timed.values()), spread), strict=True))
+        by_method = _grouped(points)
+        yield WorkPrecision(
+            scene=self.scene,
+            quantity=self.quantity,
+            reference_source=f"{self.reference.method} ({self.reference.label})",
+            reference_uncertainty=u_ref,
+            baseline_method=self.baseline_method,
+            fast_method=self.fast_method,
+            null_spread=spread,
+            points=tuple(replace(point, on_front=front.get(_name(point), False)) for point in points),
+            cheapest=tuple(self._cheapest(points)),
+            prices=tuple(_prices(by_method, spread)),
+            crossover=crossover(
+                by_method.get(self.fast_method, []), by_method.get(self.baseline_method, []), TOLERANCES
+            ),
+        )
+
+    def _task(self, case: Case, use: MethodUse, *, timed: bool) -> Task:
+        scene = case.scene(self.scene)
+        task = case.task(scene, use)
+        role = "cost" if timed else "reference"
+        return replace(task, method=use.method, variant=f"{role}: {use.label}", timed=timed)
+
+    def _point(self, use: MethodUse, run: SceneRun, expected: float, u_ref: float) -> WorkPoint:
+        base = WorkPoint(
+            method=use.method,
+            settings=run.settings,
+            label=use.label,
+            status=run.status,
+            reason=run.reason,
+            error=None,
+            bound=None,
+            samples=(),
+            seconds=0.0,
+            lower_quartile=0.0,
+            upper_quartile=0.0,
+            unknowns=0,
+            peak_memory_bytes=0,
+            on_front=False,
+        )
+        if not run.solved or run.cost is None or not run.samples:
+            return base
+        error = abs(run.quantity(self.quantity).values[-1] - expected) / abs(expected)
+        timing = summed_up(run.samples)
+        return replace(
+            base,
+            error=error,
+            bound=error_bound(error, u_ref),
+            samples=timing.samples,
+            seconds=timing.median,
+            cold_seconds=run.cold_seconds or 0.0,
+            lower_quartile=timing.lower_quartile,
+            upper_quartile=timing.upper_quartile,
+            unknowns=run.cost.unknowns,
+            peak_memory_bytes=run.cost.peak_memory_bytes,
+            counters=run.cost.counters,
+            stages=run.stages,
+        )
+
+    def _cheapest(self, points: list[WorkPoint]) -> Iterator[CheapestRun]:
+        methods = sorted({point.method for point in points})
+        for tolerance in TOLERANCES:
+            baseline = _cheapest_point(points, self.baseline_method, tolerance)
+            for method in methods:
+                yield _cheapest_row(points, method, tolerance, baseline)
+
+
+def _value_and_uncertainty(run: SceneRun, name: str) -> tuple[float, float]:
+    quantity = run.quantity(name)
+    value = quantity.values[-1]
+    return value, quantity.uncertainty[-1] / abs(value)
+
+
+def _name(point: WorkPoint) -> str:
+    return f"{point.method}: {point.label}"
+
+
+def _timed(point: WorkPoint) -> TimedRun:
+    return TimedRun(label=_name(point), bound=point.bound or 0.0, seconds=point.seconds)
+
+
+def _spread(point: WorkPoint) -> float:
+    return summed_up(point.samples).spread
+
+
+def _grouped(points: list[WorkPoint]) -> Mapping[str, list[TimedRun]]:
+    groups: dict[str, list[TimedRun]] = {}
+    for point in points:
+        if point.bound is not None:
+            groups.setdefault(point.method, []).append(_timed(point))
+    return groups
+
+
+def _prices(groups: Mapping[str, list[TimedRun]], spread: float) -> Iterator[DigitPrice]:
+    """Between neighbours on each method's own front."""
+    for method, runs in groups.items():
+        kept = [run for run, on_front in zip(runs, pareto_front(runs, spread), strict=True) if on_front]
+        ordered = sorted(kept, key=lambda run: -run.bound)
+        for cheap, accurate in pairwise(ordered):
+            if accurate.bound < cheap.bound:
+                yield DigitPrice(
+                    method=method,
+                    from_label=cheap.label,
+                    to_label=accurate.label,
+                    decades_per_digit=price_of_a_digit(cheap, accurate),
+                )
+
+
+def _cheapest_point(points: list[WorkPoint], method: str, tolerance: float) -> WorkPoint | None:
+    own = {_name(p): p for p in points if p.method == method and p.bound is not None}
+    best = cheapest([_timed(point) for point in own.values()], tolerance)
+    return None if best is None else own[best.label]
+
+
+def _cheapest_row(points: list[WorkPoint], method: str, tolerance: float, baseline: WorkPoint | None) -> CheapestRun:
+    best = _cheapest_point(points, method, tolerance)
+    solved = [point for point in points if point.method == method and point.bound is not None]
+    shown = best or min(solved, key=lambda point: point.bound or 0.0, default=None)
+    return CheapestRun(
+        tolerance=tolerance,
+        method=method,
+        reached=best is not None,
+        label=shown.label if shown else "",
+        seconds=shown.seconds if shown else None,
+        cold_seconds=shown.cold_seconds if shown else None,
+        bound=shown.bound if shown else None,
+        peak_memory_bytes=shown.peak_memory_bytes if shown else None,
+        speed_up=baseline.seconds / best.seconds if best and baseline else None,
+    )

@@ -1,0 +1,123 @@
+"""The method table: built-in methods by name, and those that installed packages register.
+
+A package registers its method under the entry-point group ``contact_verification.methods``; the entry point is the
+class (a frozen record of settings that follows ``contact.Method``).  Nothing is imported before it is used.
+"""
+
+import importlib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any
+
+from contact import InvalidInput, Method
+
+ENTRY_POINT_GROUP = "contact_verification.methods"
+
+
+@dataclass(frozen=True, kw_only=True)
+class MethodUse:
+    """A method of the table with settings, under the label that claims and reports use."""
+
+    label: str
+    method: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+    def build(self) -> Method:
+        """Return the method, ready to solve."""
+        return build(self.method or self.label, self.settings)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableEntry:
+    """Where a built-in method lives (a class, or a function that returns one), and what its answers share."""
+
+    module: str
+    attribute: str
+    shared_inputs: tuple[str, ...] = ()
+
+
+LAYER_KERNEL = "layer kernel"
+
+BUILT_IN: Mapping[str, TableEntry] = {
+    "mdr": TableEntry(
+        module="cases.declare.mdr_variants", attribute="mdr_by_integral_equation", shared_inputs=(LAYER_KERNEL,)
+    ),
+    "mdr_table": TableEntry(
+        module="cases.declare.mdr_variants", attribute="mdr_by_fft_table", shared_inputs=(LAYER_KERNEL,)
+    ),
+    "fem": TableEntry(module="fem_reference", attribute="Fem"),
+    "bem": TableEntry(module="bem.method", attribute="Bem", shared_inputs=(LAYER_KERNEL,)),
+    "integral_equation": TableEntry(
+        module="bem.layer_equation.method", attribute="IntegralEquationMethod", shared_inputs=(LAYER_KERNEL,)
+    ),
+}
+
+
+def registered() -> dict[str, EntryPoint]:
+    """Return the methods of installed packages by name.
+
+    Raises:
+        InvalidInput: if two packages, or a package and this project, use one name.
+    """
+    found: dict[str, EntryPoint] = {}
+    for entry in entry_points(group=ENTRY_POINT_GROUP):
+        if entry.name in BUILT_IN or entry.name in found:
+            raise InvalidInput(f"two methods are called {entry.name!r}; rename the entry point of {entry.value}")
+        found[entry.name] = entry
+    return found
+
+
+def method_names() -> tuple[str, ...]:
+    """Return every name of the table, built-in first."""
+    return (*BUILT_IN, *registered())
+
+
+def build(name: str, settings: Mapping[str, Any]) -> Method:
+    """Return the method called ``name`` with ``settings``.
+
+    Raises:
+        InvalidInput: if there is none, or if what is registered is no method.
+    """
+    method = load(name)(**settings)
+    if not isinstance(method, Method):
+        raise InvalidInput(f"{name!r} has no name, supports, solve and refined; follow contact.Method")
+    return method
+
+
+def shared_inputs(method: Method) -> tuple[str, ...]:
+    """Return what answers of this method share with others; a method may say so itself as ``shared_inputs``."""
+    own = getattr(method, "shared_inputs", None)
+    if own is not None:
+        return tuple(own)
+    entry = BUILT_IN.get(method.name)
+    table = getattr(method, "flat_punch", None)
+    data = () if table is None else (f"flat-punch data by {type(table).__name__}",)
+    return (*(entry.shared_inputs if entry else ()), *data)
+
+
+def location(name: str) -> tuple[str, str]:
+    """Return module and class of the method called ``name``.
+
+    Raises:
+        InvalidInput: if there is none.
+    """
+    if name in BUILT_IN:
+        return BUILT_IN[name].module, BUILT_IN[name].attribute
+    others = registered()
+    if name not in others:
+        raise InvalidInput(f"no method {name!r}; there are {', '.join([*BUILT_IN, *others])}")
+    return others[name].module, others[name].attr
+
+
+def load(name: str) -> Any:  # a class from another package: its type is not known here
+    """Return the class of the method called ``name``.
+
+    Raises:
+        InvalidInput: if there is none, or if it cannot be imported.
+    """
+    module, attribute = location(name)
+    try:
+        return getattr(importlib.import_module(module), attribute)
+    except (ImportError, AttributeError) as error:
+        raise InvalidInput(f"method {name!r} cannot be imported from {module}: {error}; install it again") from error

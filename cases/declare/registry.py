@@ -1,0 +1,57 @@
+"""All cases of the library: one module each, found by listing the folder."""
+
+import importlib
+import pkgutil
+from collections.abc import Iterable
+
+from cases import library
+from cases.declare.case import SUITES, Case
+from cases.declare.foreign_methods import with_registered
+from cases.declare.selection import in_suite
+from contact import InvalidInput
+
+
+def load_cases() -> dict[str, Case]:
+    """Return every case of the library by name, in alphabetic order, open to the methods of installed packages.
+
+    Raises:
+        InvalidInput: if a module has no ``CASE``, two cases have one name, or a registered method cannot be imported.
+    """
+    modules = sorted(info.name for info in pkgutil.iter_modules(library.__path__) if not info.name.startswith("_"))
+    return by_name(with_registered(_case_of(name)) for name in modules)
+
+
+def by_name(cases: Iterable[Case]) -> dict[str, Case]:
+    """Return cases by name.
+
+    Raises:
+        InvalidInput: if two have one name.
+    """
+    found: dict[str, Case] = {}
+    for case in cases:
+        if case.name in found:
+            raise InvalidInput(f"two cases are called {case.name!r}; rename one")
+        found[case.name] = case
+    return found
+
+
+def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = "") -> tuple[Case, ...]:
+    """Return the cases asked for by name, or those of a suite (as it runs them), or all.
+
+    Raises:
+        InvalidInput: for an unknown name or suite.
+    """
+    if suite and suite not in SUITES:
+        raise InvalidInput(f"no suite {suite!r}; there are {', '.join(SUITES)}")
+    wanted = tuple(names) or tuple(cases)
+    for name in wanted:
+        if name not in cases:
+            raise InvalidInput(f"no case {name!r}; there are {', '.join(cases)}")
+    return tuple(in_suite(cases[name], suite) for name in wanted if not suite or suite in cases[name].suites)
+
+
+def _case_of(module: str) -> Case:
+    case = getattr(importlib.import_module(f"{library.__name__}.{module}"), "CASE", None)
+    if not isinstance(case, Case):
+        raise InvalidInput(f"cases/library/{module}.py defines no CASE; a module of the library is one case")
+    return case

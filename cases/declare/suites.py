@@ -1,0 +1,72 @@
+"""Studies over many scenes and methods that are no cases of the library, as results that a report shows."""
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+
+from cases.results.files import write_run
+from cases.results.records import CaseResult, RunResult
+from cases.run.executors import ExecutorFactory
+from cases.run.stamp import stamp
+
+QUICK_LADDERS = ("vanishing flat end", "stability reverses", "damping ratio")
+
+
+def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
+    """Carry out studies (an iterator works while it is listed) and write them as a run into ``out``."""
+    started, clock = datetime.now(UTC), time.perf_counter()
+    cases = tuple(studies)
+    run = RunResult(suite="", complete=True, stamp=stamp(started, time.perf_counter() - clock), cases=cases)
+    write_run(run, out)
+    return run
+
+
+def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int) -> RunResult:
+    """Add the studies of its suite to a finished run and write it again; an interrupt leaves it incomplete."""
+    clock = time.perf_counter()
+    try:
+        with executor(jobs) as pool:
+            futures = [pool.submit(study) for study in (NIGHTLY if run.suite == "nightly" else QUICK)]
+            studies = tuple(future.result() for future in futures)
+    except KeyboardInterrupt:
+        run, studies = replace(run, complete=False), ()
+    seconds = run.stamp.wall_seconds + time.perf_counter() - clock
+    whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))
+    write_run(whole, out)
+    return whole
+
+
+def quick_ladders() -> CaseResult:
+    """Some ladders of the fast method."""
+    from cases.ladders.ladder_study import chosen, ladder_case  # noqa: PLC0415 - imported where it is carried out
+    from cases.ladders.ladder_table import LADDERS  # noqa: PLC0415
+
+    return ladder_case(chosen(LADDERS, QUICK_LADDERS), {"mdr": {}})
+
+
+def all_ladders() -> CaseResult:
+    """All ladders by every method that climbs them."""
+    from cases.ladders.ladder_study import ladder_case  # noqa: PLC0415 - imported where it is carried out
+    from cases.ladders.ladder_table import LADDERS  # noqa: PLC0415
+
+    return ladder_case(LADDERS)
+
+
+def quick_coverage() -> CaseResult:
+    """Stated errors of the fast method on a few scenes."""
+    from cases.campaigns.coverage import QUICK_PLANS, coverage_case  # noqa: PLC0415
+
+    return coverage_case(QUICK_PLANS)
+
+
+def quick_maps() -> CaseResult:
+    """Where closed forms are good."""
+    from cases.advice.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, map_case  # noqa: PLC0415
+
+    return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in FORMULAS)
+
+
+QUICK: tuple[Callable[[], CaseResult], ...] = (quick_coverage, quick_ladders, quick_maps)
+NIGHTLY: tuple[Callable[[], CaseResult], ...] = (quick_coverage, all_ladders, quick_maps)

@@ -1,0 +1,60 @@
+"""Where and when a baseline would be written: commit, uncommitted changes, continuous integration, date."""
+
+import os
+import subprocess
+from collections.abc import Mapping
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from cases.run import stamp
+from contact import InvalidInput
+
+
+@dataclass(frozen=True, kw_only=True)
+class Circumstances:
+    """What decides whether a baseline may be written at all.
+
+    Attributes:
+        revision: commit of the source; "unknown" outside a repository.
+        changed: files that differ from it, baselines apart: those are what is being written.
+        in_ci: whether a continuous integration job asks.
+        date: UTC, ISO 8601.
+    """
+
+    revision: str
+    changed: tuple[str, ...]
+    in_ci: bool
+    date: str
+
+
+def circumstances(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> Circumstances:
+    """Return the circumstances of this process and the source in ``repository``."""
+    return Circumstances(
+        revision=stamp.revision(repository),
+        changed=_changed_files(repository, baselines),
+        in_ci=environment.get("CI", "").lower() not in ("", "0", "false"),
+        date=datetime.now(UTC).strftime("%Y-%m-%d"),
+    )
+
+
+def _changed_files(repository: Path, baselines: Path) -> tuple[str, ...]:
+    """Tracked files that changed and new ones that nobody ignores."""
+    outside = f":(exclude){baselines.resolve()}" if baselines.resolve().is_relative_to(repository.resolve()) else "."
+    listed = git(repository, "status", "--porcelain", "--", ".", outside)
+    return tuple(line[3:] for line in listed.splitlines())
+
+
+def git(repository: Path, *arguments: str) -> str:
+    """Return what git prints.
+
+    Raises:
+        InvalidInput: with git's own words if it refuses.
+    """
+    command = ["git", "-C", str(repository), *arguments]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True).stdout
+    except FileNotFoundError:
+        raise InvalidInput("git is not installed; a baseline belongs to a commit") from None
+    except subprocess.CalledProcessError as error:
+        raise InvalidInput(f"git {arguments[0]}: {error.stderr.strip()}") from None

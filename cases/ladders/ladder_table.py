@@ -1,0 +1,238 @@
+"""The ladders: every hard parameter that contact with layers is known to break on."""
+
+from __future__ import annotations
+
+import dataclasses
+from functools import partial
+from typing import Final
+
+import numpy as np
+
+from cases.campaigns.units import Units, in_units
+from cases.ladders.ladders import LadderPlan
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    Impact,
+    IndentationDepths,
+    KelvinVoigt,
+    Layer,
+    Method,
+    Paraboloid,
+    Scene,
+    StandardSolid,
+    Tabulated,
+    TruncatedCone,
+)
+from contact.scene.layer import Support
+
+DECADES: Final = tuple(10.0**k for k in range(-3, 4))
+
+
+def _layer(nu: float, support: Support = "bonded", thickness: float = 1.0) -> Layer:
+    return Layer(thickness=thickness, youngs_modulus=1.0, poissons_ratio=nu, support=support)
+
+
+def nearly_incompressible(gap: float) -> Scene:
+    """A cone at a/h = 2 on a bonded layer with nu = 1/2 - gap."""
+    return Scene(layer=_layer(0.5 - gap), indenter=Cone(slope=0.1), loading=ContactRadii(values=np.array([2.0])))
+
+
+def contact_ratio(ratio: float, *, nu: float, support: Support) -> Scene:
+    """A paraboloid at a given a/h."""
+    indenter = Paraboloid(radius_of_curvature=1e3)
+    return Scene(layer=_layer(nu, support), indenter=indenter, loading=ContactRadii(values=np.array([ratio])))
+
+
+def truncated(flat: float) -> Scene:
+    """A truncated cone at a/h = 1 with b/a = flat."""
+    indenter = TruncatedCone(flat_radius=flat, slope=0.1)
+    return Scene(layer=_layer(0.45), indenter=indenter, loading=ContactRadii(values=np.array([1.0])))
+
+
+def nearly_flat(gap: float) -> Scene:
+    """The same with b/a = 1 - gap."""
+    return truncated(1.0 - gap)
+
+
+def detaching_punch(ratio: float, *, control: str) -> Scene:
+    """An adhering flat punch on an incompressible bonded layer; at a/h = 0.4619 detachment begins to be stable."""
+    return Scene(
+        layer=_layer(0.5),
+        indenter=FlatPunch(radius=ratio),
+        loading=Detachment(control=control),  # type: ignore[arg-type]  # a literal, passed on
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+
+
+def reversing_punch(nu: float) -> Scene:
+    """The same from a/h = 8, where stability reverses twice for nu between about 0.361 and 0.369."""
+    return Scene(
+        layer=_layer(nu),
+        indenter=FlatPunch(radius=8.0),
+        loading=Detachment(control="displacement"),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+
+
+def punch_on_layer(thickness: float) -> Scene:
+    """A flat punch of unit radius on an incompressible bonded layer."""
+    loading = IndentationDepths(values=np.array([0.01]))
+    return Scene(layer=_layer(0.5, thickness=thickness), indenter=FlatPunch(radius=1.0), loading=loading)
+
+
+def damped_punch(damping: float) -> Scene:
+    """A flat punch hits a Kelvin-Voigt half-space with damping ratio D = eta sqrt(k/M)/(2 G), Eq. (50)."""
+    layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8
+    effect = KelvinVoigt(shear_modulus=layer.shear_modulus, viscosity=2.0 * damping)
+    return Scene(
+        layer=layer, indenter=FlatPunch(radius=1.0), loading=Impact(mass=8.0, velocity=1e-3), effects=(effect,)
+    )
+
+
+def _standard_solid(thickness: float, long_term_share: float, time: float, velocity: float) -> Scene:
+    """A paraboloid, R = h, hits a standard solid; a half-space contact would take about one second."""
+    layer = _layer(0.5, thickness=thickness)
+    maxwell = (1.0 - long_term_share) * layer.shear_modulus
+    effect = StandardSolid(
+        long_term_shear_modulus=layer.shear_modulus - maxwell, maxwell_shear_modulus=maxwell, viscosity=maxwell * time
+    )
+    loading = Impact(mass=0.05, velocity=velocity)
+    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=loading, effects=(effect,))
+
+
+def relaxation_time(time: float) -> Scene:
+    """tau over about the contact time."""
+    return _standard_solid(1.0, 0.1, time, 0.1)
+
+
+def long_term_share(ratio: float) -> Scene:
+    """G_inf / G_1."""
+    return _standard_solid(1.0, ratio / (1.0 + ratio), 1.0, 0.1)
+
+
+def impact_speed(speed: float) -> Scene:
+    """Approach velocity in units of h per relaxation time; a faster body is lighter, so that a/h stays below 30."""
+    scene = _standard_solid(1.0, 0.1, 1.0, speed)
+    return scene.replace(loading=Impact(mass=0.05 * min(1.0, speed**-2), velocity=speed))
+
+
+def in_other_units(scale: float) -> Scene:
+    """A truncated cone with lengths scaled by s and stresses by 1/s."""
+    return in_units(truncated(0.5), Units(length=scale, stress=1.0 / scale))
+
+
+def noisy_table(noise: float) -> Scene:
+    """A paraboloid measured at 40 radii with relative noise in its increments."""
+    radii = np.linspace(0.0, 2.0, 41)
+    rises = np.diff(radii**2 / 20.0) * (1.0 + noise * np.random.default_rng(7).uniform(-1.0, 1.0, 40))
+    indenter = Tabulated(radii=radii, heights=np.concatenate([[0.0], np.cumsum(rises)]))
+    return Scene(layer=_layer(0.45), indenter=indenter, loading=IndentationDepths(values=np.array([0.1])))
+
+
+def finer_edge(method: Method, cell: float) -> Method:
+    """The finite element method with another cell at the contact's edge."""
+    finer: Method = dataclasses.replace(method, edge_cell=cell)  # type: ignore[type-var]  # only Fem climbs this ladder
+    return finer
+
+
+def _fold(control: str) -> LadderPlan:
+    return LadderPlan(
+        name=f"detachment across the fold, {control} control",
+        parameter="a/h",
+        values=(0.3, 0.4, 0.44, 0.46, 0.4618, 0.462, 0.463, 0.48, 0.6, 1.0, 2.0),
+        scene=partial(detaching_punch, control=control),
+        quantity="pull_off_force",
+    )
+
+
+def _ratios(support: Support, nu: float) -> LadderPlan:
+    name = f"contact radius, {support}, nu = {nu:g}" if support == "bonded" else "contact radius, unbonded"
+    values = (*DECADES[:5], 30.0, 100.0, 150.0, 300.0, 1000.0)
+    return LadderPlan(name=name, parameter="a/h", values=values, scene=partial(contact_ratio, nu=nu, support=support))
+
+
+LADDERS: Final[tuple[LadderPlan, ...]] = (
+    LadderPlan(
+        name="nearly incompressible",
+        parameter="1/2 - nu",
+        values=(*(10.0**-k for k in range(1, 13)), 1e-17),  # the last is nu = 1/2 exactly
+        scene=nearly_incompressible,
+    ),
+    _ratios("bonded", 0.3),
+    _ratios("bonded", 0.5),
+    _ratios("unbonded", 0.3),
+    LadderPlan(
+        name="vanishing flat end", parameter="b/a", values=tuple(10.0**-k for k in range(1, 9)), scene=truncated
+    ),
+    LadderPlan(
+        name="nearly a flat punch", parameter="1 - b/a", values=tuple(10.0**-k for k in range(1, 9)), scene=nearly_flat
+    ),
+    LadderPlan(
+        name="edge cell",
+        parameter="cell over radius",
+        values=tuple(10.0**-k for k in range(2, 9)),
+        scene=lambda _: contact_ratio(1.0, nu=0.5, support="bonded"),
+        method=finer_edge,
+        only=("fem",),
+    ),
+    _fold("displacement"),
+    _fold("force"),
+    LadderPlan(
+        name="stability reverses",
+        parameter="nu",
+        values=(0.38, 0.37, 0.369, 0.368, 0.367, 0.366, 0.365, 0.364, 0.363, 0.362, 0.361, 0.36, 0.35),
+        scene=reversing_punch,
+        quantity="pull_off_depth",
+    ),
+    LadderPlan(
+        name="punch on a thinner and thinner layer",
+        parameter="h/a",
+        values=tuple(reversed(DECADES)),
+        scene=punch_on_layer,
+        quantity="contact_stiffness",
+    ),
+    LadderPlan(
+        name="damping ratio",
+        parameter="D",
+        values=(1e-3, 0.1, 0.9, 0.999, 0.999999, 1.0, 1.000001, 1.001, 1.1, 10.0, 100.0, 1000.0),
+        scene=damped_punch,
+        quantity="coefficient_of_restitution",
+    ),
+    LadderPlan(
+        name="relaxation time",
+        parameter="tau/T",
+        values=tuple(10.0**k for k in range(-6, 7)),
+        scene=relaxation_time,
+        quantity="coefficient_of_restitution",
+    ),
+    LadderPlan(
+        name="long-term modulus",
+        parameter="G_inf/G_1",
+        values=tuple(10.0**k for k in range(6, -7, -1)),
+        scene=long_term_share,
+        quantity="coefficient_of_restitution",
+    ),
+    LadderPlan(
+        name="impact speed",
+        parameter="v0 tau/h",
+        values=tuple(10.0**k for k in range(-6, 4)),
+        scene=impact_speed,
+        quantity="peak_force",
+    ),
+    LadderPlan(
+        name="units",
+        parameter="scale of lengths, inverse of stresses",
+        values=tuple(10.0**k for k in range(-9, 10, 3)),
+        scene=in_other_units,
+    ),
+    LadderPlan(
+        name="noise in a measured profile",
+        parameter="relative noise",
+        values=tuple(10.0**k for k in range(-12, 1)),
+        scene=noisy_table,
+    ),
+)

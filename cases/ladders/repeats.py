@@ -1,0 +1,89 @@
+"""Repeats of one solve that ought to change nothing, and the digits that all of them share."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Iterator, Sequence
+from typing import Any, Final, TypeVar
+
+import numpy as np
+from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
+
+from cases.campaigns.units import Units, in_units
+from contact import ContactRadii, IndentationDepths, Method, NormalForces, Scene, Solution
+from contact.records.record import Record
+
+R = TypeVar("R", bound=Record)
+
+DOUBLE_DIGITS: Final = -float(np.log10(2.0**-53))
+NUDGES: Final = 3
+_UNITS: Final = Units(length=1e-3, stress=1e-6, time=1e-3)  # millimetres, megapascals: other mantissas
+_THREADS: Final = 2
+
+
+def repeated(method: Method, scene: Scene, quantity: str) -> Iterator[float]:
+    """The last value of a quantity, again and again.
+
+    As asked; with every input moved by one unit in the last place at random; in other units; amid other steps; on two
+    threads.
+    """
+    yield _last(method.solve(scene), quantity)
+    for seed in range(NUDGES):
+        yield _last(method.solve(nudged(scene, np.random.default_rng(seed))), quantity)
+    yield _last(method.solve(in_units(scene, _UNITS)), quantity) / _UNITS.factor(quantity)
+    among = amid_other_steps(scene)
+    if among is not None:
+        yield _last(method.solve(among), quantity)
+    with threadpool_limits(_THREADS):
+        yield _last(method.solve(scene), quantity)
+
+
+def shared_digits(values: Sequence[float]) -> float:
+    """Significant digits on which repeats agree, at most what doubles carry."""
+    middle = float(np.median(values))
+    spread = float(np.max(np.abs(np.asarray(values) - middle)))
+    if spread == 0.0:
+        return DOUBLE_DIGITS
+    return float(np.clip(-np.log10(spread / abs(middle)), 0.0, DOUBLE_DIGITS)) if middle else 0.0
+
+
+def nudged(scene: Scene, draw: np.random.Generator) -> Scene:
+    """Every number of the scene one unit in the last place up or down, or left alone, at random."""
+    return Scene(
+        layer=_moved(scene.layer, draw),
+        indenter=_moved(scene.indenter, draw),
+        loading=_moved(scene.loading, draw),
+        effects=tuple(_moved(effect, draw) for effect in scene.effects),
+    )
+
+
+def _moved(item: R, draw: np.random.Generator) -> R:
+    names = [field.name for field in dataclasses.fields(item)]  # type: ignore[arg-type]  # all records are dataclasses
+    return item.replace(**{name: _one_ulp(name, getattr(item, name), draw) for name in names})
+
+
+def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
+    if value is None or isinstance(value, str):
+        return value
+    steps = draw.integers(-1, 2, np.shape(value))
+    moved = np.where(steps == 0, value, np.nextafter(value, np.where(steps > 0, np.inf, -np.inf)))
+    moved = np.where(np.asarray(value) == 0.0, value, moved)  # zero has no last place
+    if name == "poissons_ratio":
+        return float(min(float(moved), 0.5)) if value != 0.5 else 0.5  # exactly incompressible is another problem
+    return moved if isinstance(value, np.ndarray) else float(moved)
+
+
+def amid_other_steps(scene: Scene) -> Scene | None:
+    """The same last step after others in another order; None where steps are not independent."""
+    loading = scene.loading
+    if isinstance(loading, ContactRadii):
+        flat, last = scene.indenter.flat_radius, float(loading.values[-1])
+        return scene.replace(loading=ContactRadii(values=flat + (last - flat) * np.array([0.3, 0.8, 1.0])))
+    if isinstance(loading, IndentationDepths | NormalForces):
+        values = np.array([0.4, 1.0, 0.7, 1.0]) * loading.values[-1]
+        return scene.replace(loading=type(loading)(values=values))
+    return None
+
+
+def _last(answer: Solution, quantity: str) -> float:
+    return float(np.atleast_1d(getattr(answer, quantity))[-1])

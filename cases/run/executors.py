@@ -1,0 +1,120 @@
+"""Where tasks run, behind ``concurrent.futures.Executor``: in this process, in a pool of processes, on a cluster."""
+
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from typing import Any, ParamSpec, TypeVar
+
+from contact import InvalidInput
+
+P = ParamSpec("P")
+T = TypeVar("T")
+
+ExecutorFactory = Callable[[int], Executor]
+
+
+class SerialExecutor(Executor):
+    """Runs each call at once, in this process."""
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Run ``fn`` and return its finished future."""
+        future: Future[T] = Future()
+        try:
+            future.set_result(fn(*args, **kwargs))
+        except Exception as error:  # a future carries its error
+            future.set_exception(error)
+        return future
+
+
+def serial(jobs: int = 1) -> Executor:
+    """Return an executor that runs in this process, whatever ``jobs``."""
+    return SerialExecutor()
+
+
+def process_pool(jobs: int) -> Executor:
+    """Return ``jobs`` fresh processes (spawned: no state of this one leaks in).
+
+    Raises:
+        InvalidInput: unless there is at least one job.
+    """
+    if jobs < 1:
+        raise InvalidInput(f"jobs must be at least 1, got {jobs}")
+    return ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn"), initializer=_follow_parent)
+
+
+def fresh_processes(jobs: int) -> Executor:
+    """Return ``jobs`` processes that solve one task each: peak memory is the task's own.
+
+    They are forked from a server that has imported what every task needs and has solved nothing.
+    """
+    context = multiprocessing.get_context("forkserver")
+    context.set_forkserver_preload(["cases.run.solve_task"])
+    return ProcessPoolExecutor(jobs, mp_context=context, initializer=_follow_parent, max_tasks_per_child=1)
+
+
+class DaskExecutor(Executor):
+    """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one."""
+
+    def __init__(self, address: str) -> None:
+        from distributed import Client  # noqa: PLC0415 - an optional extra
+
+        self._client = Client(address, set_as_default=False)
+
+    def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
+        """Send ``fn`` to the cluster and return its future."""
+        future: Future[T] = Future()
+
+        def deliver(remote: Any) -> None:  # a future of the cluster; ``result`` waits if its worker died meanwhile
+            try:
+                future.set_result(remote.result())
+            except Exception as error:  # a future carries its error
+                future.set_exception(error)
+
+        remote = self._client.submit(fn, *args, pure=False, retries=2, **kwargs)
+        remote.add_done_callback(deliver)
+        return future
+
+    def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
+        """Leave the cluster; it stays up for others."""
+        self._client.close()
+
+
+def dask_cluster(address: str) -> ExecutorFactory:
+    """Return a factory of executors on the Dask scheduler at ``address`` (optional extra ``cluster``)."""
+
+    def factory(jobs: int) -> Executor:
+        return DaskExecutor(address)
+
+    return factory
+
+
+def by_name(name: str) -> ExecutorFactory:
+    """Return the executor factory called ``processes``, ``serial`` or ``tcp://host:port`` (a Dask scheduler).
+
+    Raises:
+        InvalidInput: for any other name.
+    """
+    if name == "processes":
+        return process_pool
+    if name == "serial":
+        return serial
+    if "://" in name:
+        return dask_cluster(name)
+    raise InvalidInput(f"executor {name!r} is neither processes, serial nor the address of a Dask scheduler")
+
+
+def _follow_parent() -> None:
+    """Leave Ctrl-C to the parent, which decides what becomes of the run; end with it, however it ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    """Wait for the parent's death: a killed run must not leave processes that go on computing."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+        os._exit(1)

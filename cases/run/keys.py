@@ -1,0 +1,144 @@
+"""Content keys: equal keys mean equal scene, settings, code and versions, so a stored answer may be used again."""
+
+import ast
+import dataclasses
+import hashlib
+import importlib.util
+import json
+import platform
+from collections.abc import Mapping
+from functools import cache
+from importlib.metadata import packages_distributions, version
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cases.run.task import Task
+from contact import scene_to_mapping
+
+OWN_PACKAGES = ("contact", "bem", "mdr", "fem_reference", "cases")
+
+
+def key_parts(task: Task) -> dict[str, Any]:
+    """Return everything the answer of ``task`` depends on."""
+    solver = type(task.solver)
+    closure = import_closure(solver.__module__)
+    return {
+        "scene": scene_to_mapping(task.problem),
+        "method": f"{solver.__module__}.{solver.__qualname__}",
+        "settings": plain(task.solver),
+        "sampling": plain(task.sampling),
+        "timed": task.timed,
+        "forgetful": task.forgetful,
+        "source": dict(closure.sources),
+        "versions": dict(closure.versions),
+    }
+
+
+def content_key(parts: Mapping[str, Any]) -> str:
+    """Return the key of ``parts``: 32 hexadecimal digits."""
+    text = json.dumps(parts, sort_keys=True, allow_nan=False)
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def differences(old: Any, new: Any, place: str = "") -> list[str]:  # trees of plain values
+    """Return what changed between two key parts, one line each."""
+    if isinstance(old, Mapping) and isinstance(new, Mapping):
+        names = sorted({*old, *new})
+        return [line for n in names for line in differences(old.get(n), new.get(n), f"{place}.{n}".lstrip("."))]
+    return [] if old == new else [f"{place}: {_shown(old)} -> {_shown(new)}"]
+
+
+def plain(value: Any) -> Any:  # any setting of any method
+    """Return a record of settings as plain values that JSON can hold."""
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        fields = {
+            f.name: plain(getattr(value, f.name)) for f in dataclasses.fields(value) if not f.name.startswith("_")
+        }
+        return {"record": type(value).__qualname__, **fields}
+    if isinstance(value, Mapping):
+        return {str(name): plain(entry) for name, entry in value.items()}
+    if isinstance(value, tuple | list | np.ndarray):
+        return [plain(entry) for entry in value]
+    if isinstance(value, np.generic):
+        return plain(value.item())
+    return value if isinstance(value, bool | int | str | None) else _number(value)
+
+
+def _number(value: Any) -> float | str:
+    if isinstance(value, float):
+        return value if np.isfinite(value) else str(value)
+    return repr(value)
+
+
+def _shown(value: object) -> str:
+    text = json.dumps(value, sort_keys=True) if value is not None else "nothing"
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+@dataclasses.dataclass(frozen=True)
+class Closure:
+    """The modules a method can reach by imports: hash of each own source file, version of each foreign package."""
+
+    sources: tuple[tuple[str, str], ...]
+    versions: tuple[tuple[str, str], ...]
+
+
+@cache
+def import_closure(module: str) -> Closure:
+    """Return the import closure of ``module`` and of the code that measures answers.
+
+    Imports are read from the source, those inside functions included; a package that imports on demand through
+    ``__getattr__`` counts with all its modules.
+    """
+    own = {*OWN_PACKAGES, module.partition(".")[0]}
+    sources: dict[str, str] = {}
+    foreign: set[str] = {"numpy", "scipy"}
+    waiting = [module, "cases.run.recording"]
+    while waiting:
+        name = waiting.pop()
+        if name.partition(".")[0] not in own:
+            foreign.add(name.partition(".")[0])
+            continue
+        path = _source_file(name)
+        if path is None or name in sources:
+            continue
+        text = path.read_text(encoding="utf-8")
+        sources[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
+        waiting += _imports(ast.parse(text), path, name)
+    return Closure(tuple(sorted(sources.items())), tuple(sorted(_versions(foreign).items())))
+
+
+def _source_file(module: str) -> Path | None:
+    try:
+        spec = importlib.util.find_spec(module)
+    except ModuleNotFoundError:
+        return None  # "from package import name" may name a function, not a module
+    return Path(spec.origin) if spec and spec.origin and spec.origin.endswith(".py") else None
+
+
+def _imports(tree: ast.Module, path: Path, module: str) -> list[str]:
+    found: list[str] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+            found += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+        elif isinstance(node, ast.ImportFrom):
+            package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+            found.append(importlib.util.resolve_name("." * node.level + (node.module or ""), package))
+        elif isinstance(node, ast.FunctionDef) and node.name == "__getattr__" and path.name == "__init__.py":
+            found += [f"{module}.{file.stem}" for file in path.parent.glob("*.py") if file.stem != "__init__"]
+    return [*found, *_parents(module)]
+
+
+def _parents(module: str) -> list[str]:
+    parts = module.split(".")
+    return [".".join(parts[:depth]) for depth in range(1, len(parts))]
+
+
+def _versions(names: set[str]) -> dict[str, str]:
+    installed = packages_distributions()
+    found = {name: version(installed[name][0]) for name in names if name in installed}
+    return {**found, "python": platform.python_version()}

@@ -1,0 +1,219 @@
+"""Carry out cases: plan their tasks, solve each once, keep every finished one, judge the claims.
+
+Results stream to disk as they finish; a failed task is a row; an interrupted run is valid and says that it is
+incomplete; timing tasks run after all others, one by one, so that they never share the machine.
+"""
+
+import time
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+
+from cases.declare.case import Case
+from cases.results.files import write_run
+from cases.results.records import CaseResult, RunResult, SceneRun
+from cases.results.status import Status
+from cases.run.executors import ExecutorFactory, fresh_processes, process_pool, serial
+from cases.run.judge import case_result
+from cases.run.keys import content_key, key_parts
+from cases.run.progress import Event, Progress, silent
+from cases.run.solve_task import solve
+from cases.run.stamp import stamp
+from cases.run.store import TaskStore
+from cases.run.task import Answers, Task
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunOptions:
+    """How a run is carried out.
+
+    Attributes:
+        out: folder of results; finished tasks lie in ``out/tasks``.
+        suite: name of the suite, for the record.
+        jobs: tasks at a time.
+        executor: where they run.
+        resume: use finished tasks of an earlier run in the same folder whose keys are equal.
+        time_limit: seconds a task may take; zero for no limit.
+        timing: whether timing tasks run; without them there are no work-precision records.
+        only_costs: whether only the tasks of work studies run; no claim is then judged.
+        progress: told of every event.
+    """
+
+    out: Path
+    suite: str = ""
+    jobs: int = 2
+    executor: ExecutorFactory = process_pool
+    resume: bool = False
+    time_limit: float = 0.0
+    timing: bool = True
+    only_costs: bool = False
+    progress: Progress = silent
+
+
+@dataclass
+class _Run:
+    """A run under way."""
+
+    options: RunOptions
+    store: TaskStore
+    total: int
+    rows: dict[tuple[str, str, str, str], SceneRun] = field(default_factory=dict)
+
+    def finish(self, planned: "_Planned", row: SceneRun, *, reused: bool = False) -> None:
+        """Keep a finished task and tell of it."""
+        self.rows[planned.task.identity] = row
+        if not reused:
+            self.store.put(planned.key, planned.parts, row)
+        kind = "reused" if reused else "finished"
+        self.tell(kind, planned.task.label, row.status, row.reason)
+
+    def tell(self, kind: str, label: str, status: Status | None = None, reason: str = "") -> None:
+        """Report an event."""
+        event = Event(
+            kind=kind,  # type: ignore[arg-type]  # one of the four words, by its callers
+            label=label,
+            done=len(self.rows),
+            total=self.total,
+            status=status,
+            reason=reason,
+        )
+        self.options.progress(event)
+
+
+@dataclass(frozen=True)
+class _Planned:
+    """A task with its key."""
+
+    task: Task
+    key: str
+    parts: dict[str, object]
+
+
+def run_cases(cases: Sequence[Case], options: RunOptions) -> RunResult:
+    """Run ``cases`` and return the result, which also lies in ``options.out`` as results.json and results.h5.
+
+    An interrupt (Ctrl-C) ends the run early with ``complete`` False; every finished task is kept.
+    """
+    started, clock = datetime.now(UTC), time.perf_counter()
+    planned = plan(cases, timing=options.timing, only_costs=options.only_costs)
+    run = _Run(options, TaskStore(options.out / "tasks"), total=len(planned))
+    run.tell("planned", f"{len(cases)} cases")
+    complete = True
+    try:
+        _carry_out(run, planned)
+    except KeyboardInterrupt:
+        complete = False
+    answers = Answers(run.rows)
+    results = tuple(_judged(run, case, answers, complete=complete) for case in cases)
+    result = RunResult(
+        suite=options.suite,
+        complete=complete,
+        stamp=stamp(started, time.perf_counter() - clock),
+        cases=results,
+    )
+    write_run(result, options.out)
+    return result
+
+
+def plan(cases: Iterable[Case], *, timing: bool = True, only_costs: bool = False) -> list[_Planned]:
+    """Return every task of ``cases`` once, with its key; timing tasks last."""
+    tasks: dict[tuple[str, str, str, str], Task] = {}
+    for case in cases:
+        for task in case.cost_tasks() if only_costs else case.tasks():
+            tasks.setdefault(task.identity, task)
+    wanted = [task for task in tasks.values() if timing or not task.timed]
+    return [_planned(task) for task in sorted(wanted, key=lambda task: task.timed)]
+
+
+def _planned(task: Task) -> _Planned:
+    parts = key_parts(task)
+    return _Planned(task, content_key(parts), parts)
+
+
+def _judged(run: _Run, case: Case, answers: Answers, *, complete: bool) -> CaseResult:
+    whole = run.options.timing and not run.options.only_costs
+    result = case_result(case, answers, complete=complete and whole)
+    run.tell("judged", case.name, result.status)
+    return result
+
+
+def _carry_out(run: _Run, planned: list[_Planned]) -> None:
+    waiting = [p for p in planned if not _reused(run, p)]
+    _solve_in(run, run.options.executor, run.options.jobs, [p for p in waiting if not p.task.timed])
+    alone = serial if run.options.executor is serial else fresh_processes
+    _solve_in(run, alone, 1, [p for p in waiting if p.task.timed])
+
+
+def _reused(run: _Run, planned: _Planned) -> bool:
+    row = run.store.get(planned.key) if run.options.resume else None
+    if row is None or row.status in (Status.TIMEOUT, Status.INVALID):
+        return False
+    run.finish(planned, row, reused=True)
+    return True
+
+
+def _solve_in(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> None:
+    """Solve in an executor; when a process dies, the tasks it may have held are repeated one by one, apart."""
+    while planned:
+        suspects = _solve_until_broken(run, factory, jobs, planned)
+        for suspect in suspects:
+            _solve_apart(run, factory, suspect)
+        planned = [p for p in planned if p.task.identity not in run.rows]
+
+
+def _solve_until_broken(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> list[_Planned]:
+    """Return the tasks that were under way when the executor broke; none if it did not."""
+    waiting, under_way = deque(planned), dict[Future[SceneRun], _Planned]()
+    ahead = 1 if factory is serial else 2 * jobs  # few enough that little is repeated after a breakdown
+    with _closing(factory(jobs)) as executor:
+        try:
+            while waiting or under_way:
+                while waiting and len(under_way) < ahead:
+                    next_one = waiting.popleft()
+                    under_way[_submit(executor, run, next_one)] = next_one
+                for future in wait(under_way, return_when=FIRST_COMPLETED).done:
+                    row = future.result()
+                    run.finish(under_way.pop(future), row)
+        except BrokenExecutor:
+            return list(under_way.values())
+    return []
+
+
+@contextmanager
+def _closing(executor: Executor) -> Iterator[Executor]:
+    """Wait for the executor's own threads and processes to end, unless the run itself is over."""
+    try:
+        yield executor
+    except BaseException:  # Ctrl-C above all
+        executor.shutdown(wait=False, cancel_futures=True)
+        raise
+    executor.shutdown(wait=True, cancel_futures=True)
+
+
+def _submit(executor: Executor, run: _Run, planned: _Planned) -> Future[SceneRun]:
+    return executor.submit(solve, planned.task, planned.key, run.options.time_limit)
+
+
+def _solve_apart(run: _Run, factory: ExecutorFactory, planned: _Planned) -> None:
+    with _closing(factory(1)) as executor:
+        try:
+            row = _submit(executor, run, planned).result()
+        except BrokenExecutor as error:
+            row = _died(planned, f"the process that solved it died: {error}")
+    run.finish(planned, row)
+
+
+def _died(planned: _Planned, reason: str) -> SceneRun:
+    return SceneRun(
+        key=planned.key,
+        scene=planned.task.scene,
+        method=planned.task.method,
+        settings={},
+        status=Status.INVALID,
+        reason=reason,
+        cost=None,
+    )

@@ -1,0 +1,72 @@
+"""Where and with what a run was made."""
+
+import os
+import platform
+import subprocess
+from datetime import UTC, datetime
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from threadpoolctl import threadpool_info  # type: ignore[import-untyped]  # ships no types
+
+from cases.results.records import Stamp
+
+_PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "pyfftw", "h5py", "pydantic", "contact-verification")
+_SOURCE = Path(__file__).resolve().parent.parent
+
+
+def stamp(started: datetime, wall_seconds: float) -> Stamp:
+    """Return the stamp of a run that began at ``started`` (UTC) and took ``wall_seconds``."""
+    return Stamp(
+        started=started.astimezone(UTC).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        wall_seconds=wall_seconds,
+        revision=revision(),
+        dirty=is_dirty(),
+        python=platform.python_version(),
+        platform=f"{platform.system()} {platform.machine()}",
+        processor=_processor(),
+        cores=len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1,
+        threads={_library(info): int(info["num_threads"]) for info in threadpool_info()},
+        versions={name: found for name in _PACKAGES if (found := _version(name))},
+    )
+
+
+def revision(directory: Path = _SOURCE) -> str:
+    """Return the commit checked out in ``directory``, "unknown" outside a repository."""
+    return _git(directory, "rev-parse", "HEAD") or "unknown"
+
+
+def is_dirty(directory: Path = _SOURCE) -> bool:
+    """Whether tracked files differ from the commit."""
+    return bool(_git(directory, "status", "--porcelain", "--untracked-files=no"))
+
+
+def _git(directory: Path, *arguments: str) -> str:
+    try:
+        done = subprocess.run(
+            ["git", *arguments], cwd=directory, capture_output=True, text=True, check=True, timeout=20
+        )
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return done.stdout.strip()
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return ""
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor() or "unknown"
+    names = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
+    return names[0] if names else platform.processor() or "unknown"
+
+
+def _library(info: dict[str, object]) -> str:
+    parts = [info.get("internal_api"), info.get("version"), info.get("architecture")]
+    return " ".join(str(part) for part in parts if part)

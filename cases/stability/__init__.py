@@ -1,8 +1,0 @@
-"""Where the methods break: hard parameters walked in steps, random scenes by the thousand, hostile input.
-
-- ``units``: the same scene in another system of units
-- ``random_scenes``: seeded scenes over the whole range of every parameter
-- ``second_opinion``, ``half_space_forms``: an answer to elastic scenes that shares no code with any method
-- ``campaign``: random scenes against their referee, coverage and sharpness of stated errors
-- ``hostile``: seeded input that nobody should trust
-"""

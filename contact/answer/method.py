@@ -1,0 +1,55 @@
+"""What every method is: a frozen record of numerical settings with one verb, `solve`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import ClassVar, Protocol, Self, TypeAlias, runtime_checkable
+
+from contact.answer.solution import Solution
+from contact.scene.scene import Scene
+
+
+@dataclass(frozen=True)
+class Supported:
+    """The method models the scene. True in a condition."""
+
+    def __bool__(self) -> bool:
+        return True
+
+
+@dataclass(frozen=True)
+class Unsupported:
+    """The method does not model the scene. False in a condition.
+
+    Attributes:
+        reason: What is missing, in words a user can act on.
+    """
+
+    reason: str
+
+    def __bool__(self) -> bool:
+        return False
+
+
+Support: TypeAlias = Supported | Unsupported
+
+
+@runtime_checkable
+class Method(Protocol):
+    """A frozen record of numerical settings."""
+
+    name: ClassVar[str]
+
+    def supports(self, scene: Scene) -> Support:
+        """Whether this method models the scene, with the reason if not."""
+
+    def solve(self, scene: Scene) -> Solution:
+        """The answer with its evidence.
+
+        Raises:
+            UnsupportedSceneError: If `supports` says no.
+            NotConvergedError: If a tolerance was missed.
+        """
+
+    def refined(self) -> Self:
+        """A copy with half the discretisation length."""

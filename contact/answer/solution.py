@@ -1,0 +1,292 @@
+"""The answers: arrays with their evidence. A non-finite number is refused here, so NaN never travels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Protocol, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contact.answer.stages import Cost, StageRecord
+from contact.records.errors import InvalidInput, NotConvergedError
+from contact.records.validation import FloatArray
+from contact.scene.scene import Scene
+
+Setting: TypeAlias = bool | int | float | str | None
+
+UNITS: Mapping[str, str] = {
+    "time": "s",
+    "contact_radius": "m",
+    "indentation_depth": "m",
+    "velocity": "m/s",
+    "normal_force": "N",
+    "contact_stiffness": "N/m",
+    "pressure": "Pa",
+    "surface_displacement": "m",
+    "kinetic_energy": "J",
+    "stored_energy": "J",
+    "dissipated_energy": "J",
+    "coefficient_of_restitution": "1",
+    "contact_time": "s",
+    "peak_force": "N",
+    "peak_depth": "m",
+    "peak_contact_radius": "m",
+    "pull_off_force": "N",
+    "pull_off_depth": "m",
+    "pull_off_contact_radius": "m",
+}
+
+
+class Fields(Protocol):
+    """Surface fields of one equilibrium."""
+
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
+        """p(r) [Pa], zero outside the contact."""
+
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
+        """w(r) [m], positive into the layer."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Solution:
+    """What every answer carries.
+
+    Attributes:
+        scene: The problem that was solved.
+        method: Name of the method.
+        settings: Its numerical settings.
+        error_estimate: Own estimate of each quantity's relative error, shape (n,) or scalar; relative to `scale`.
+        cost: Seconds, memory, unknowns, counters.
+        stages: Which computations ran.
+        notes: What a reader should know before relying on the numbers.
+    """
+
+    ARRAYS: ClassVar[tuple[str, ...]] = ()
+    SCALARS: ClassVar[tuple[str, ...]] = ()
+
+    scene: Scene
+    method: str
+    settings: Mapping[str, Setting]
+    error_estimate: Mapping[str, FloatArray]
+    cost: Cost
+    stages: tuple[StageRecord, ...] = ()
+    notes: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Freeze the arrays; refuse non-finite numbers and unequal lengths."""
+        for name in self.ARRAYS:
+            object.__setattr__(self, name, _frozen(name, getattr(self, name), self.method))
+        lengths = {name: len(getattr(self, name)) for name in self.ARRAYS}
+        if len(set(lengths.values())) > 1:
+            raise InvalidInput(f"{type(self).__name__}: all arrays need one length, got {lengths}")
+        for name in self.SCALARS:
+            _frozen(name, np.atleast_1d(getattr(self, name)), self.method)
+        estimates = {name: _frozen(f"error of {name}", e, self.method) for name, e in self.error_estimate.items()}
+        object.__setattr__(self, "error_estimate", estimates)
+
+    def __len__(self) -> int:
+        """Number of states."""
+        return len(getattr(self, self.ARRAYS[0]))
+
+    def scale(self, quantity: str) -> FloatArray:
+        """What a relative error of this quantity refers to; along a path that crosses zero, its largest magnitude."""
+        values = np.abs(np.atleast_1d(np.asarray(getattr(self, quantity), dtype=np.float64)))
+        return np.full(values.shape, values.max(initial=0.0))
+
+    def uncertainty(self, quantity: str) -> FloatArray:
+        """Absolute error estimate in the quantity's own unit.
+
+        Raises:
+            InvalidInput: If the method states no error for this quantity.
+        """
+        if quantity not in self.error_estimate:
+            known = ", ".join(sorted(self.error_estimate)) or "none"
+            raise InvalidInput(f"{self.method} states no error of {quantity!r}; it does for: {known}")
+        return self.error_estimate[quantity] * self.scale(quantity)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ContactPath(Solution):
+    """Equilibria at the prescribed radii, depths or forces, in their order.
+
+    Attributes:
+        contact_radius: a [m], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_stiffness: k_N = dF/d(delta) at fixed radius [N/m], shape (n,).
+        fields: Pressure and displacement at the surface, where the method gives them.
+    """
+
+    ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+
+    contact_radius: FloatArray
+    indentation_depth: FloatArray
+    normal_force: FloatArray
+    contact_stiffness: FloatArray
+    fields: Fields | None = None
+
+    def scale(self, quantity: str) -> FloatArray:
+        """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path."""
+        if self.scene.effects:
+            return super().scale(quantity)
+        return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))
+
+    def pressure(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact."""
+        return self._field("pressure", radius, step)
+
+    def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
+        """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
+        return self._field("surface_displacement", radius, step)
+
+    def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:
+        if self.fields is None:
+            raise InvalidInput(f"{self.method} gave no surface fields; ask a method that does")
+        if not -len(self) <= step < len(self):
+            raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
+        r = np.asarray(radius, dtype=np.float64)
+        if not np.all(np.isfinite(r) & (r >= 0.0)):
+            raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
+        values: FloatArray = getattr(self.fields, name)(np.atleast_1d(r), step % len(self))
+        return _frozen(name, values, self.method).reshape(r.shape)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CriticalPoint:
+    """A state where the equilibrium branch gains or loses stability.
+
+    Attributes:
+        control: "displacement" or "force".
+        kind: "pull-off", "snap-in" or "start" (detachment begins at a punch's edge).
+        contact_radius: a [m].
+        indentation_depth: delta [m].
+        normal_force: F_N [N].
+    """
+
+    control: str
+    kind: str
+    contact_radius: float
+    indentation_depth: float
+    normal_force: float
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class DetachmentPath(Solution):
+    """The equilibrium branch of an adhering indenter, in order of decreasing contact radius.
+
+    Attributes:
+        contact_radius: a [m], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        stable_displacement_control: Whether the state is stable at prescribed depth, shape (n,).
+        stable_force_control: Whether it is stable at prescribed force, shape (n,).
+        pull_off_force: Largest tensile force on the way, as a (negative) F_N [N], under the scene's control.
+        pull_off_depth: delta [m] where contact is lost under the scene's control.
+        pull_off_contact_radius: a [m] where contact is lost.
+        critical_points: All changes of stability under either control.
+    """
+
+    ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force")
+    SCALARS: ClassVar[tuple[str, ...]] = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+
+    contact_radius: FloatArray
+    indentation_depth: FloatArray
+    normal_force: FloatArray
+    stable_displacement_control: NDArray[np.bool_]
+    stable_force_control: NDArray[np.bool_]
+    pull_off_force: float
+    pull_off_depth: float
+    pull_off_contact_radius: float
+    critical_points: tuple[CriticalPoint, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class HistoryPath(Solution):
+    """Response to a prescribed depth or force history.
+
+    Attributes:
+        time: t [s], shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_radius: a [m], shape (n,); zero where the indenter is free.
+    """
+
+    ARRAYS: ClassVar[tuple[str, ...]] = ("time", "indentation_depth", "normal_force", "contact_radius")
+
+    time: FloatArray
+    indentation_depth: FloatArray
+    normal_force: FloatArray
+    contact_radius: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ImpactHistory(Solution):
+    """An impact from first touch (first sample) to the loss of contact (last sample).
+
+    Attributes:
+        time: t [s] since first touch, shape (n,).
+        indentation_depth: delta [m], shape (n,).
+        velocity: d(delta)/dt [m/s], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_radius: a [m], shape (n,).
+        kinetic_energy: [J], shape (n,).
+        stored_energy: Recoverable energy in the layer [J], shape (n,).
+        dissipated_energy: [J], shape (n,). What a part of the surface keeps when contact leaves it does no work on the
+            body any more: MDR counts it as dissipated at once, finite elements as stored until it has relaxed.
+        peak_force: max F_N [N], between samples too.
+        peak_depth: max delta [m].
+        peak_contact_radius: max a [m].
+    """
+
+    ARRAYS: ClassVar[tuple[str, ...]] = (
+        "time",
+        "indentation_depth",
+        "velocity",
+        "normal_force",
+        "contact_radius",
+        "kinetic_energy",
+        "stored_energy",
+        "dissipated_energy",
+    )
+    SCALARS: ClassVar[tuple[str, ...]] = ("peak_force", "peak_depth", "peak_contact_radius")
+
+    time: FloatArray
+    indentation_depth: FloatArray
+    velocity: FloatArray
+    normal_force: FloatArray
+    contact_radius: FloatArray
+    kinetic_energy: FloatArray
+    stored_energy: FloatArray
+    dissipated_energy: FloatArray
+    peak_force: float
+    peak_depth: float
+    peak_contact_radius: float
+
+    @property
+    def coefficient_of_restitution(self) -> float:
+        """Rebound speed over approach speed [-]."""
+        return float(-self.velocity[-1] / self.velocity[0])
+
+    @property
+    def contact_time(self) -> float:
+        """Duration of the contact [s]."""
+        return float(self.time[-1] - self.time[0])
+
+    @property
+    def energy_residual(self) -> float:
+        """Largest violation of kinetic + stored + dissipated = initial kinetic energy, relative to the latter."""
+        total = self.kinetic_energy + self.stored_energy + self.dissipated_energy
+        return float(np.max(np.abs(total / self.kinetic_energy[0] - 1.0)))
+
+
+def _frozen(name: str, values: ArrayLike, method: str) -> FloatArray:
+    """A read-only float64 copy, refused if any entry is not finite."""
+    array = np.array(values, dtype=np.float64)
+    if not np.isfinite(array).all():
+        bad = np.argwhere(~np.isfinite(array))[0]
+        place = ", ".join(str(i) for i in bad)
+        raise NotConvergedError(f"{method}: {name} is {array[tuple(bad)]} at entry ({place}); refused as an answer")
+    array.setflags(write=False)
+    return array

@@ -1,0 +1,98 @@
+"""`record`: a frozen, keyword-only, validated dataclass whose errors say value, place and remedy."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+from typing import Any, Self, TypeVar, dataclass_transform
+
+import numpy as np
+import pydantic
+import pydantic.dataclasses
+
+from contact.records.errors import InvalidInput
+
+_CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True)
+_SHOWN = 80  # characters of an offending value that an error shows
+_MOST_LINES = 8  # problems that one error tells
+
+
+class Record:
+    """Base of all records: equality, hash and change by copying, by content (arrays included)."""
+
+    def _content(self) -> tuple[Any, ...]:
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]  # every subclass is made a dataclass by `record`
+        values = (getattr(self, field.name) for field in fields)
+        return type(self), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Record) and self._content() == other._content()
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def replace(self, **changes: Any) -> Self:
+        """A copy with some fields changed, validated like a new one."""
+        return dataclasses.replace(self, **changes)  # type: ignore[type-var]  # see _content
+
+
+R = TypeVar("R", bound=Record)
+
+
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field,))
+def record(cls: type[R]) -> type[R]:
+    """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
+
+    Raises:
+        InvalidInput: At construction, one line for each offending field.
+    """
+    made: Any = pydantic.dataclasses.dataclass(cls, frozen=True, kw_only=True, eq=False, config=_CONFIG)
+    unchecked = made.__init__
+
+    @functools.wraps(unchecked)
+    def checked(self: R, *args: Any, **kwargs: Any) -> None:
+        try:
+            unchecked(self, *args, **kwargs)
+        except pydantic.ValidationError as error:
+            raise InvalidInput(describe(error, made)) from None
+
+    made.__init__ = checked
+    return made  # type: ignore[no-any-return]  # pydantic returns the class it was given
+
+
+def describe(error: pydantic.ValidationError, cls: type[Any]) -> str:
+    """One line for each problem: path of the field, its value, what is required, how to mend it."""
+    lines = [_line(dict(detail), cls) for detail in error.errors()[:_MOST_LINES]]
+    more = error.error_count() - len(lines)
+    return "\n".join([*lines, f"{cls.__name__}: {more} more problems"] if more else lines)
+
+
+def _line(detail: dict[str, Any], cls: type[Any]) -> str:
+    place, kind = _place(detail["loc"], cls), detail["type"]
+    if kind.startswith("missing"):
+        return f"{place} is missing; add it"
+    if kind == "unexpected_keyword_argument":
+        return f"{place} = {shown(detail['input'])}: no such field; remove it or correct its spelling"
+    if kind == "unexpected_positional_argument":
+        return f"{cls.__name__}: {shown(detail['input'])} came without a name; write the fields as name=value"
+    message = detail["msg"].removeprefix("Value error, ")
+    return f"{place} = {shown(detail['input'])}: {message}" if detail["loc"] else f"{place}: {message}"
+
+
+def _place(path: tuple[str | int, ...], cls: type[Any]) -> str:
+    """The path of a field; an argument that came by position is called by its field's name."""
+    names = [field.name for field in dataclasses.fields(cls)]
+    steps = [
+        names[s] if isinstance(s, int) and s < len(names) and i == 0 else str(s)[:_SHOWN] for i, s in enumerate(path)
+    ]
+    return ".".join([cls.__name__, *steps])
+
+
+def shown(value: object) -> str:
+    """The value as an error message shows it: at most 80 characters, however large it is."""
+    head = value[: _SHOWN + 1] if isinstance(value, str | bytes) else value
+    try:
+        text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
+    except (ValueError, RecursionError):  # an integer of more digits than Python prints, or tables in tables in tables
+        text = f"a huge {type(value).__name__}"
+    return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

@@ -1,0 +1,60 @@
+"""Two rigid bodies with equal elastic coatings, reduced to one rigid indenter on one layer, Eqs. (23)-(25)."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import model_validator
+
+from contact.records.record import Record, record
+from contact.records.validation import PositiveLength, in_range, positive, positive_or_infinite
+from contact.scene.effects import Effect
+from contact.scene.layer import Layer, Support
+from contact.scene.loading import Loading
+from contact.scene.profiles import Paraboloid
+from contact.scene.scene import Scene
+
+
+@record
+class CoatedPair(Record):
+    """Two coated bodies of revolution in contact.
+
+    Attributes:
+        first_radius: R_1 [m], radius of curvature of the first body; infinite for a plane one.
+        second_radius: R_2 [m].
+        first_thickness: h_1 [m], coating thickness of the first body.
+        second_thickness: h_2 [m]; Eq. (25) is an approximation unless h_1 = h_2.
+        youngs_modulus: E [Pa] of both coatings.
+        poissons_ratio: nu of both coatings.
+        support: How the coatings sit on their bodies.
+        loading: What is prescribed, depths being the approach of the two bodies.
+        effects: As in a scene.
+    """
+
+    first_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres")]
+    second_radius: Annotated[float, *positive_or_infinite("give the radius of curvature in metres")]
+    first_thickness: PositiveLength
+    second_thickness: PositiveLength
+    youngs_modulus: Annotated[float, *positive("give Young's modulus of the coatings in pascals")]
+    poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for incompressible coatings")]
+    support: Support = "bonded"
+    loading: Loading
+    effects: tuple[Effect, ...] = ()
+
+    @model_validator(mode="after")
+    def _check(self) -> CoatedPair:
+        if 1.0 / self.first_radius + 1.0 / self.second_radius == 0.0:
+            raise ValueError("two plane bodies touch everywhere at once; give at least one finite radius of curvature")
+        return self
+
+    def scene(self) -> Scene:
+        """The equivalent rigid paraboloid on one layer; depth is the approach of the two bodies."""
+        curvature = 1.0 / self.first_radius + 1.0 / self.second_radius  # Eq. (23)
+        layer = Layer(
+            thickness=0.5 * (self.first_thickness + self.second_thickness),  # Eq. (25)
+            youngs_modulus=0.5 * self.youngs_modulus,  # Eq. (24)
+            poissons_ratio=self.poissons_ratio,
+            support=self.support,
+        )
+        indenter = Paraboloid(radius_of_curvature=1.0 / curvature)
+        return Scene(layer=layer, indenter=indenter, loading=self.loading, effects=self.effects)

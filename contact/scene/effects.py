@@ -1,0 +1,141 @@
+"""Effects that a scene may list. None listed means bare elastic frictionless contact, and nothing else is computed."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+from pydantic import model_validator
+
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray, bounded_vector, in_range, positive
+
+_MODULUS = "give the shear modulus in pascals"
+_VISCOSITY = "give the viscosity in pascal seconds"
+
+
+class Effect(Record):
+    """Base of every effect."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Relaxation:
+    """Shear relaxation G(t) = G_inf + sum_j G_j exp(-t/tau_j), and a dashpot eta in parallel.
+
+    Attributes:
+        long_term_modulus: G_inf [Pa].
+        moduli: G_j [Pa], shape (m,).
+        times: tau_j [s], shape (m,).
+        viscosity: eta [Pa s].
+    """
+
+    long_term_modulus: float
+    moduli: FloatArray
+    times: FloatArray
+    viscosity: float
+
+    @property
+    def instantaneous_modulus(self) -> float:
+        """G_inf + sum_j G_j [Pa]."""
+        return float(self.long_term_modulus + math.fsum(self.moduli))
+
+
+class Viscoelasticity(Effect):
+    """Base of the linear viscoelastic effects; all of them are one relaxation function."""
+
+    @property
+    def relaxation(self) -> Relaxation:
+        """The shear relaxation function."""
+        raise TypeError(f"{type(self).__name__} declares no relaxation function")
+
+
+@record
+class Adhesion(Effect):
+    """Short-ranged (JKR) adhesion.
+
+    Attributes:
+        work_of_adhesion: dgamma [J/m^2].
+    """
+
+    work_of_adhesion: Annotated[float, *in_range(0.0, math.inf, "give the work of adhesion in joules per square metre")]
+
+
+@record
+class KelvinVoigt(Viscoelasticity):
+    """A spring and a dashpot in parallel.
+
+    Attributes:
+        shear_modulus: G [Pa].
+        viscosity: eta [Pa s].
+    """
+
+    shear_modulus: Annotated[float, *positive(_MODULUS)]
+    viscosity: Annotated[float, *in_range(0.0, math.inf, _VISCOSITY)]
+
+    @property
+    def relaxation(self) -> Relaxation:
+        return Relaxation(
+            long_term_modulus=self.shear_modulus, moduli=np.empty(0), times=np.empty(0), viscosity=self.viscosity
+        )
+
+
+@record
+class StandardSolid(Viscoelasticity):
+    """A spring in parallel with a Maxwell element (Zener).
+
+    Attributes:
+        long_term_shear_modulus: G_inf [Pa].
+        maxwell_shear_modulus: G_1 [Pa].
+        viscosity: eta [Pa s] of the Maxwell element; it relaxes in eta / G_1.
+    """
+
+    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS)]
+    maxwell_shear_modulus: Annotated[float, *positive(_MODULUS)]
+    viscosity: Annotated[float, *positive(_VISCOSITY)]
+
+    @property
+    def relaxation(self) -> Relaxation:
+        moduli = np.array([self.maxwell_shear_modulus])
+        return Relaxation(
+            long_term_modulus=self.long_term_shear_modulus, moduli=moduli, times=self.viscosity / moduli, viscosity=0.0
+        )
+
+
+@record
+class PronySeries(Viscoelasticity):
+    """A spring in parallel with any number of Maxwell elements.
+
+    Attributes:
+        long_term_shear_modulus: G_inf [Pa].
+        shear_moduli: G_j [Pa], shape (m,).
+        relaxation_times: tau_j [s], shape (m,).
+    """
+
+    long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS)]
+    shear_moduli: Annotated[FloatArray, *bounded_vector("give the shear moduli in pascals", least=0.0)]
+    relaxation_times: Annotated[
+        FloatArray, *bounded_vector("give the relaxation times in seconds", least=0.0, strict=True)
+    ]
+
+    @model_validator(mode="after")
+    def _check(self) -> PronySeries:
+        if self.shear_moduli.shape != self.relaxation_times.shape:
+            sizes = f"got {self.shear_moduli.size} and {self.relaxation_times.size}"
+            raise ValueError(f"a Prony series needs one relaxation time for each shear modulus; {sizes}")
+        if not self.long_term_shear_modulus + self.shear_moduli.sum() > 0.0:
+            raise ValueError("a Prony series needs at least one positive shear modulus")
+        return self
+
+    @property
+    def relaxation(self) -> Relaxation:
+        return Relaxation(
+            long_term_modulus=self.long_term_shear_modulus,
+            moduli=self.shear_moduli,
+            times=self.relaxation_times,
+            viscosity=0.0,
+        )
+
+
+EFFECTS: tuple[type[Effect], ...] = (Adhesion, KelvinVoigt, StandardSolid, PronySeries)

@@ -1,0 +1,63 @@
+"""The layer: an isotropic linear elastic slab on a rigid base, or its limit, the half-space."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated, Literal, Self
+
+from contact.records.record import Record, record
+from contact.records.validation import in_range, positive, positive_or_infinite
+
+Support = Literal["bonded", "unbonded"]
+
+
+@record
+class Layer(Record):
+    """An elastic layer on a rigid base.
+
+    Attributes:
+        thickness: h [m]; infinite for a half-space (see `Layer.half_space`).
+        youngs_modulus: E [Pa]; for a viscoelastic layer the instantaneous (glassy) value.
+        poissons_ratio: nu in [0, 0.5]; 0.5 is exactly incompressible.
+        support: "bonded" (no displacement at the base) or "unbonded" (frictionless base, no lift-off).
+    """
+
+    thickness: Annotated[
+        float, *positive_or_infinite("give the thickness in metres, or use Layer.half_space for an infinite one")
+    ]
+    youngs_modulus: Annotated[float, *positive("give Young's modulus in pascals")]
+    poissons_ratio: Annotated[float, *in_range(0.0, 0.5, "Poisson's ratio is 0.5 for an incompressible layer")]
+    support: Support = "bonded"
+
+    @classmethod
+    def half_space(cls, *, youngs_modulus: float, poissons_ratio: float) -> Self:
+        """A layer of infinite thickness; its support no longer matters."""
+        return cls(thickness=math.inf, youngs_modulus=youngs_modulus, poissons_ratio=poissons_ratio)
+
+    @classmethod
+    def incompressible(cls, *, thickness: float, shear_modulus: float, support: Support = "bonded") -> Self:
+        """A layer with nu = 1/2 given by its shear modulus G [Pa]: E = 3 G."""
+        return cls(thickness=thickness, youngs_modulus=3.0 * shear_modulus, poissons_ratio=0.5, support=support)
+
+    @property
+    def is_half_space(self) -> bool:
+        """Whether the layer is infinitely thick."""
+        return math.isinf(self.thickness)
+
+    @property
+    def contact_modulus(self) -> float:
+        """E* = E / (1 - nu^2) [Pa]."""
+        return self.youngs_modulus / ((1.0 - self.poissons_ratio) * (1.0 + self.poissons_ratio))
+
+    @property
+    def shear_modulus(self) -> float:
+        """G = E / (2 (1 + nu)) [Pa]."""
+        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+
+    @property
+    def confined_modulus(self) -> float:
+        """Modulus of uniaxial strain, E (1-nu) / ((1+nu)(1-2nu)) [Pa], Eq. (16); infinite at nu = 1/2."""
+        nu = self.poissons_ratio
+        if nu == 0.5:
+            return math.inf
+        return self.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))

@@ -1,0 +1,133 @@
+"""What is prescribed: contact radii, depths, forces, a detachment, an impact, or a history in time."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray, PositiveLength, finite_vector, increasing_vector, positive
+
+
+class Loading(Record):
+    """Base of every loading."""
+
+
+@record
+class ContactRadii(Loading):
+    """Equilibria at given contact radii: the natural parameter of every axisymmetric contact.
+
+    Attributes:
+        values: a [m], positive and increasing, shape (n,).
+    """
+
+    values: Annotated[FloatArray, *increasing_vector("give contact radii in metres that increase", above=0.0)] = Field(
+        kw_only=False
+    )
+
+
+@record
+class IndentationDepths(Loading):
+    """Equilibria at given depths, each reached from the undeformed layer.
+
+    With adhesion a negative depth has two answers: nothing on the way in, since a contact forms at the first touch, and
+    a contact on the way out. MDR and finite elements give the contact; boundary elements follow the values in order,
+    beginning out of contact.
+
+    Attributes:
+        values: delta [m], shape (n,); negative only with adhesion.
+    """
+
+    values: Annotated[FloatArray, *finite_vector("give indentation depths in metres")] = Field(kw_only=False)
+
+
+@record
+class NormalForces(Loading):
+    """Equilibria at given forces, each reached from the unloaded layer.
+
+    Attributes:
+        values: F_N [N], pressing positive, shape (n,); negative only with adhesion.
+    """
+
+    values: Annotated[FloatArray, *finite_vector("give normal forces in newtons")] = Field(kw_only=False)
+
+
+@record
+class Detachment(Loading):
+    """Slow separation of an adhering indenter.
+
+    Attributes:
+        control: What the testing machine prescribes: "displacement" (stiff) or "force" (soft).
+        initial_contact_radius: a [m] where the separation starts; a flat punch starts at its own radius, and other
+            profiles, when it is omitted, at a radius from which the whole unloading branch is seen.
+    """
+
+    control: Literal["displacement", "force"] = "displacement"
+    initial_contact_radius: PositiveLength | None = None
+
+
+@record
+class Impact(Loading):
+    """A rigid body hits the layer along its axis and rebounds.
+
+    Attributes:
+        mass: M [kg].
+        velocity: v0 [m/s] at first touch, towards the layer.
+    """
+
+    mass: Annotated[float, *positive("give the mass in kilograms")]
+    velocity: Annotated[float, *positive("give the approach velocity in metres per second")]
+
+
+@record
+class DepthHistory(Loading):
+    """A prescribed depth in time, linear between the given instants.
+
+    Attributes:
+        time: t [s], increasing, shape (n,), n >= 2.
+        depth: delta [m] at these instants, shape (n,).
+    """
+
+    time: Annotated[FloatArray, *increasing_vector("give instants in seconds that increase")]
+    depth: Annotated[FloatArray, *finite_vector("give one depth in metres for each instant")]
+
+    @model_validator(mode="after")
+    def _check(self) -> DepthHistory:
+        _check_lengths(self.time, self.depth, "depth")
+        return self
+
+
+@record
+class ForceHistory(Loading):
+    """A prescribed normal force in time, linear between the given instants.
+
+    Attributes:
+        time: t [s], increasing, shape (n,), n >= 2.
+        force: F_N [N] at these instants, shape (n,).
+    """
+
+    time: Annotated[FloatArray, *increasing_vector("give instants in seconds that increase")]
+    force: Annotated[FloatArray, *finite_vector("give one force in newtons for each instant")]
+
+    @model_validator(mode="after")
+    def _check(self) -> ForceHistory:
+        _check_lengths(self.time, self.force, "force")
+        return self
+
+
+def _check_lengths(time: FloatArray, values: FloatArray, name: str) -> None:
+    if time.shape != values.shape or time.size < 2:
+        sizes = f"got {time.size} instants and {values.size} values"
+        raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")
+
+
+LOADINGS: tuple[type[Loading], ...] = (
+    ContactRadii,
+    IndentationDepths,
+    NormalForces,
+    Detachment,
+    Impact,
+    DepthHistory,
+    ForceHistory,
+)

@@ -1,0 +1,279 @@
+"""Rigid indenters: profiles of revolution z = f(r) with f(0) = 0, measured from the tip.
+
+A profile is one class. It says its height and slope at any radius, where its slope jumps (`kinks`), where it is merely
+not analytic (`breakpoints`, kinks included), the radius of its flat end and the radius where it stops.
+"""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from functools import cached_property
+from typing import TYPE_CHECKING, Annotated
+
+import numpy as np
+from numpy.typing import ArrayLike
+from pydantic import model_validator
+
+from contact.records.record import Record, record
+from contact.records.validation import FloatArray, PositiveLength, finite_vector, in_range, increasing_vector, positive
+
+if TYPE_CHECKING:
+    from scipy.interpolate import PchipInterpolator
+
+
+class Profile(Record, ABC):
+    """What every indenter of revolution answers. Radii r [m] may be arrays of any shape."""
+
+    @abstractmethod
+    def height(self, radius: ArrayLike) -> FloatArray:
+        """f(r) [m], infinite beyond `max_radius`."""
+
+    @abstractmethod
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        """f'(r) [-]; at a kink the value from outside."""
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        """Radii > 0 [m] where the slope jumps."""
+        return ()
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        """Radii > 0 [m] where the profile is not analytic; kinks included."""
+        return self.kinks
+
+    @property
+    def max_radius(self) -> float:
+        """Radius [m] where the profile ends."""
+        return math.inf
+
+    if TYPE_CHECKING:  # at run time a property here would hide the fields of that name below
+
+        @property
+        def flat_radius(self) -> float:
+            """Radius [m] of the flat end; zero for a profile that starts in a point."""
+
+
+class Pointed(Profile):
+    """A profile without a flat end."""
+
+    @property
+    def flat_radius(self) -> float:
+        """A single point."""
+        return 0.0
+
+
+@record
+class FlatPunch(Profile):
+    """A flat-ended cylinder; its contact radius is its own.
+
+    Attributes:
+        radius: a [m].
+    """
+
+    radius: PositiveLength
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        return np.where(np.asarray(radius) <= self.radius, 0.0, np.inf)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        return np.where(np.asarray(radius) <= self.radius, 0.0, np.inf)
+
+    @property
+    def flat_radius(self) -> float:
+        return self.radius
+
+    @property
+    def max_radius(self) -> float:
+        return self.radius
+
+
+@record
+class Paraboloid(Pointed):
+    """f(r) = r^2 / (2 R).
+
+    Attributes:
+        radius_of_curvature: R [m].
+    """
+
+    radius_of_curvature: PositiveLength
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        return np.asarray(radius, dtype=np.float64) ** 2 / (2.0 * self.radius_of_curvature)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        return np.asarray(radius, dtype=np.float64) / self.radius_of_curvature
+
+
+@record
+class Sphere(Pointed):
+    """The exact sphere, f(r) = R - sqrt(R^2 - r^2); a paraboloid for r << R.
+
+    Attributes:
+        radius: R [m].
+    """
+
+    radius: PositiveLength
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        r = np.asarray(radius, dtype=np.float64)
+        return np.where(r <= self.radius, r**2 / (self.radius + self._depth_of_cap(r)), np.inf)  # no cancellation
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        r = np.asarray(radius, dtype=np.float64)
+        below = self._depth_of_cap(r)
+        return np.asarray(np.divide(r, below, out=np.full(r.shape, np.inf), where=below > 0.0))
+
+    def _depth_of_cap(self, r: FloatArray) -> FloatArray:
+        """sqrt(R^2 - r^2), factored so that it keeps its digits near the equator; zero beyond."""
+        return np.sqrt(np.maximum((self.radius - r) * (self.radius + r), 0.0))
+
+    @property
+    def max_radius(self) -> float:
+        return self.radius
+
+
+@record
+class Cone(Pointed):
+    """f(r) = slope r.
+
+    Attributes:
+        slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
+    """
+
+    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        return self.slope * np.asarray(radius, dtype=np.float64)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        return np.full(np.shape(radius), self.slope)
+
+
+@record
+class TruncatedCone(Profile):
+    """Eq. (35): flat up to b, then f(r) = slope (r - b).
+
+    Attributes:
+        flat_radius: b [m].
+        slope: tan(theta) [-].
+    """
+
+    flat_radius: PositiveLength
+    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        return self.slope * np.maximum(np.asarray(radius, dtype=np.float64) - self.flat_radius, 0.0)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        return np.where(np.asarray(radius) >= self.flat_radius, self.slope, 0.0)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return (self.flat_radius,)
+
+
+@record
+class TruncatedParaboloid(Profile):
+    """A worn paraboloid: flat up to b, then f(r) = (r^2 - b^2) / (2 R).
+
+    Attributes:
+        flat_radius: b [m].
+        radius_of_curvature: R [m].
+    """
+
+    flat_radius: PositiveLength
+    radius_of_curvature: PositiveLength
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        r, b = np.asarray(radius, dtype=np.float64), self.flat_radius
+        return np.maximum((r - b) * (r + b), 0.0) / (2.0 * self.radius_of_curvature)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        r = np.asarray(radius, dtype=np.float64)
+        return np.where(r >= self.flat_radius, r / self.radius_of_curvature, 0.0)
+
+    @property
+    def kinks(self) -> tuple[float, ...]:
+        return (self.flat_radius,)
+
+
+@record
+class PowerLaw(Pointed):
+    """f(r) = H (r / R)^n: a cone for n = 1, a paraboloid for n = 2, ever flatter at the tip as n grows.
+
+    Attributes:
+        exponent: n >= 1 [-].
+        reference_radius: R [m].
+        reference_height: H [m], the height at r = R.
+    """
+
+    exponent: Annotated[float, *in_range(1.0, math.inf, "1 is a cone; a smaller exponent has an infinitely sharp tip")]
+    reference_radius: PositiveLength
+    reference_height: PositiveLength
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        rho = np.asarray(radius, dtype=np.float64) / self.reference_radius
+        return np.asarray(self.reference_height * rho**self.exponent)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        rho = np.asarray(radius, dtype=np.float64) / self.reference_radius
+        return np.asarray(self.reference_height / self.reference_radius * self.exponent * rho ** (self.exponent - 1.0))
+
+
+@record
+class Tabulated(Pointed):
+    """A measured profile, joined by shape-preserving cubics (PCHIP: no overshoot, continuous slope).
+
+    Attributes:
+        radii: r [m], increasing from zero, shape (n,), n >= 3.
+        heights: f [m] at these radii, starting at zero, shape (n,).
+    """
+
+    radii: Annotated[FloatArray, *increasing_vector("give radii in metres that start at 0 and increase", least=0.0)]
+    heights: Annotated[FloatArray, *finite_vector("give heights in metres, one for each radius")]
+
+    @model_validator(mode="after")
+    def _check(self) -> Tabulated:
+        if self.radii.shape != self.heights.shape or self.radii.size < 3:
+            sizes = f"got {self.radii.size} radii and {self.heights.size} heights"
+            raise ValueError(f"a table needs at least three radii and one height for each; {sizes}")
+        if self.radii[0] != 0.0 or self.heights[0] != 0.0:
+            start = f"({self.radii[0]:g}, {self.heights[0]:g})"
+            raise ValueError(f"a table starts at the tip (0, 0), got {start}; shift it so that it does")
+        return self
+
+    @cached_property
+    def _curve(self) -> PchipInterpolator:
+        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415  # only tabulated scenes pay for this import
+
+        return PchipInterpolator(self.radii, self.heights)
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        r = np.asarray(radius, dtype=np.float64)
+        return np.where(r <= self.max_radius, self._curve(np.minimum(r, self.max_radius)), np.inf)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        r = np.asarray(radius, dtype=np.float64)
+        return np.where(r <= self.max_radius, self._curve(np.minimum(r, self.max_radius), 1), np.inf)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        return tuple(float(r) for r in self.radii[1:])
+
+    @property
+    def max_radius(self) -> float:
+        return float(self.radii[-1])
+
+
+PROFILES: tuple[type[Profile], ...] = (
+    FlatPunch,
+    Paraboloid,
+    Sphere,
+    Cone,
+    TruncatedCone,
+    TruncatedParaboloid,
+    PowerLaw,
+    Tabulated,
+)

@@ -1,0 +1,103 @@
+"""The scene: a layer, an indenter, what is prescribed, and the effects that matter. It knows no mesh and no method."""
+
+from __future__ import annotations
+
+import math
+from typing import TypeVar
+
+import numpy as np
+from pydantic import model_validator
+
+from contact.records.record import Record, record
+from contact.scene.effects import Adhesion, Effect, Viscoelasticity
+from contact.scene.layer import Layer
+from contact.scene.loading import ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
+from contact.scene.profiles import FlatPunch, Profile
+
+_MODULUS_AGREEMENT = 1e-9  # relative; a user's rounding of E = 2 (1 + nu) G is far above it only by mistake
+
+E = TypeVar("E", bound=Effect)
+
+
+@record
+class Scene(Record):
+    """One contact problem.
+
+    Attributes:
+        layer: The elastic layer.
+        indenter: The rigid profile pressed into it.
+        loading: What is prescribed.
+        effects: What is modelled beyond elastic frictionless contact; each kind at most once.
+    """
+
+    layer: Layer
+    indenter: Profile
+    loading: Loading
+    effects: tuple[Effect, ...] = ()
+
+    def effect(self, kind: type[E]) -> E | None:
+        """The listed effect of this kind, or None."""
+        return next((effect for effect in self.effects if isinstance(effect, kind)), None)
+
+    @model_validator(mode="after")
+    def _check(self) -> Scene:
+        _check_effects(self)
+        _check_radii(self)
+        _check_signs(self)
+        _check_moduli(self)
+        return self
+
+
+def _check_effects(scene: Scene) -> None:
+    kinds = [Viscoelasticity if isinstance(effect, Viscoelasticity) else type(effect) for effect in scene.effects]
+    if len(set(kinds)) < len(kinds):
+        names = ", ".join(type(effect).__name__ for effect in scene.effects)
+        raise ValueError(f"effects = {names}: each effect, and one viscoelastic model, may stand only once")
+    if isinstance(scene.loading, Detachment) and scene.effect(Adhesion) is None:
+        raise ValueError("loading = Detachment needs adhesion; add Adhesion(work_of_adhesion=...) to the effects")
+
+
+def _check_radii(scene: Scene) -> None:
+    if isinstance(scene.loading, ContactRadii):
+        if isinstance(scene.indenter, FlatPunch):
+            raise ValueError("loading = ContactRadii: a flat punch's contact radius is its own; give depths or forces")
+        _check_radius(scene, float(scene.loading.values[0]), "loading.values")
+        _check_radius(scene, float(scene.loading.values[-1]), "loading.values")
+    start = scene.loading.initial_contact_radius if isinstance(scene.loading, Detachment) else None
+    if start is not None:
+        if isinstance(scene.indenter, FlatPunch) and start != scene.indenter.radius:
+            raise ValueError(
+                f"loading.initial_contact_radius = {start:g}: a flat punch starts at its own; leave it out"
+            )
+        _check_radius(scene, start, "loading.initial_contact_radius")
+
+
+def _check_radius(scene: Scene, radius: float, place: str) -> None:
+    flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
+    if radius < flat or (radius == flat and not isinstance(scene.indenter, FlatPunch) and not scene.effects):
+        raise ValueError(f"{place} = {radius:g}: the indenter's flat end already touches out to {flat:g} m; go beyond")
+    if radius > end:
+        raise ValueError(f"{place} = {radius:g}: the indenter ends at {end:g} m; stay within")
+
+
+def _check_signs(scene: Scene) -> None:
+    if scene.effect(Adhesion) is not None or not isinstance(scene.loading, IndentationDepths | NormalForces):
+        return
+    if np.any(scene.loading.values <= 0.0):
+        worst = float(scene.loading.values.min())
+        raise ValueError(
+            f"loading.values = {worst:g}: without adhesion only positive values press; list Adhesion or press"
+        )
+
+
+def _check_moduli(scene: Scene) -> None:
+    model = scene.effect(Viscoelasticity)
+    if model is None:
+        return
+    modulus = model.relaxation.instantaneous_modulus
+    expected = scene.layer.shear_modulus
+    if not math.isclose(modulus, expected, rel_tol=_MODULUS_AGREEMENT):
+        raise ValueError(
+            f"effects: {type(model).__name__} answers at once with {modulus:.10g} Pa, but the layer's shear modulus "
+            f"E/(2(1+nu)) is {expected:.10g} Pa; make them agree (Layer.incompressible takes a shear modulus)"
+        )

@@ -1,0 +1,205 @@
+"""Adhesive contact (JKR) at prescribed radius, depth or force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from contact import (
+    Adhesion,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    NotConvergedError,
+    Scene,
+)
+from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
+from fem_reference.elastic.error_estimate import CertifiedContact
+from fem_reference.elastic.path import ContactSolver, Equilibrium
+
+Array = NDArray[np.float64]
+
+NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
+INTERPOLATED = 0.5  # of the accuracy
+SPANS = (12.0, 100.0)  # half-spaces let go a paraboloid at 1/6 of the first radius, a cone at 1/40
+LARGEST_RATIO = 6.0  # of the radii that end one piece
+SAMPLES = 241
+
+
+def work_of_adhesion(scene: Scene) -> float:
+    """dgamma / E* [m]."""
+    adhesion = scene.effect(Adhesion)
+    return adhesion.work_of_adhesion / scene.layer.contact_modulus if adhesion else 0.0
+
+
+def adhesive_equilibrium(contact: CertifiedContact, work: float) -> Equilibrium:
+    """The state in which the energy release rate equals the work of adhesion dgamma / E* [m]."""
+    answer, error = contact.answer, contact.error
+    scaled_work = work / contact.indenter.contact_radius
+    elongation = np.sqrt(4 * np.pi * scaled_work / answer.stiffness_slope)
+    depth = float(answer.smooth_depth - elongation)
+    return fixed_radius_equilibrium(
+        contact, depth, error["smooth_depth"] * answer.smooth_depth + 0.5 * error["stiffness_slope"] * elongation
+    )
+
+
+def fixed_radius_equilibrium(contact: CertifiedContact, depth: float, depth_error: float) -> Equilibrium:
+    """Contact held at its radius, at depth / a known within depth_error."""
+    answer, error = contact.answer, contact.error
+    force = answer.force(depth)
+    force_error = (
+        answer.stiffness * (depth_error + error["stiffness"] * abs(depth - answer.smooth_depth))
+        + error["smooth_force"] * answer.smooth_force
+        + answer.stiffness * error["smooth_depth"] * answer.smooth_depth
+    )
+    reported = {
+        "contact_radius": 0.0,
+        "indentation_depth": depth_error / abs(depth) if depth else 0.0,
+        "normal_force": force_error / abs(force) if force else 0.0,
+        "contact_stiffness": error["stiffness"],
+        "pressure": contact.pressure_error,
+    }
+    return Equilibrium(contact=contact, depth=depth, force=force, error=reported)
+
+
+def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | None) -> list[Equilibrium]:
+    """States at prescribed radii, depths or forces; of several states at one load, the stable one.
+
+    Args:
+        scene: the scene.
+        solve: contact of a given radius.
+        accuracy: asked of the interpolation between solved radii, relative.
+
+    Raises:
+        InvalidInput: no stable state carries the load: the indenter has come off.
+    """
+    loading, work = scene.loading, work_of_adhesion(scene)
+    if isinstance(loading, ContactRadii):
+        return [adhesive_equilibrium(solve(float(a)), work) for a in loading.values]
+    if not isinstance(loading, IndentationDepths | NormalForces):
+        raise InvalidInput(f"loading = {type(loading).__name__}: adhesion takes radii, depths, forces or a detachment")
+    by_depth = isinstance(loading, IndentationDepths)
+    targets = loading.values / (1.0 if by_depth else scene.layer.contact_modulus)
+    start = None if isinstance(scene.indenter, FlatPunch) else _radius_beyond(scene, float(targets.max()), by_depth)
+    branch = branch_of(scene, start, solve, accuracy)
+    return [_state_at(scene, branch, float(target), by_depth, solve) for target in targets]
+
+
+def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: bool, solve: ContactSolver) -> Equilibrium:
+    load = branch.depth if by_depth else branch.force
+    end = branch.pieces[-1].high
+    if isinstance(scene.indenter, FlatPunch) and target >= load(np.array([end]))[0]:
+        contact = branch.contacts[-1]
+        scaled = target / end if by_depth else target / end**2 / contact.answer.stiffness
+        return fixed_radius_equilibrium(contact, scaled, 0.0 if by_depth else contact.error["stiffness"] * abs(scaled))
+    radius = stable_radius(branch, load, target)
+    state = adhesive_equilibrium(solve(radius), work_of_adhesion(scene))
+    name, found = ("indentation_depth", state.depth) if by_depth else ("normal_force", state.force)
+    slope = branch.slope(load, np.array([radius]))[0]  # d load / da, in SI lengths
+    interpolated = (branch.depth_error if by_depth else branch.force_error)(np.array([radius]))[0]
+    solved = state.error[name] * abs(found) * radius ** (1 if by_depth else 2)
+    moved = (solved + interpolated) / radius / abs(slope)
+    return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
+
+
+def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target: float) -> float:
+    """The largest radius at which a load (that grows with the radius there) has the target value.
+
+    Raises:
+        InvalidInput: the load is beyond the last stable one.
+    """
+    radii = branch_samples(branch)[::-1]
+    values = load(radii)
+    falling = np.flatnonzero(np.diff(values) > 0)  # from large radii to small ones a stable load falls
+    last = int(falling[0]) if len(falling) else len(radii) - 1
+    below = np.flatnonzero(values[: last + 1] <= target)
+    if not len(below) or values[0] < target:
+        raise InvalidInput(
+            f"no stable adhesive state at this load ({target:g} in units of E*); pull-off is at {values[last]:g}"
+        )
+    i = int(below[0])
+    if values[i] == target:
+        return float(radii[i])
+    return float(brentq(lambda a: load(np.array([a]))[0] - target, radii[i], radii[i - 1], xtol=1e-13 * radii[i]))
+
+
+def branch_samples(branch: AdhesiveBranch) -> Array:
+    """Radii along the branch, increasing, the ends of all pieces among them."""
+    ends = [branch.pieces[0].low, *(piece.high for piece in branch.pieces)]
+    return np.unique(np.concatenate([np.geomspace(ends[0], ends[-1], SAMPLES), ends]))
+
+
+def branch_of(
+    scene: Scene, start: float | None, solve: ContactSolver, accuracy: float | None, span: float = SPANS[0]
+) -> AdhesiveBranch:
+    """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller.
+
+    Raises:
+        NotConvergedError: the interpolation between solved radii misses its share of the accuracy.
+    """
+    high = start or _first_radius(scene)
+    kinks = [k for k in scene.indenter.kinks if k < high]
+    smallest = min([high / 3, scene.layer.thickness, *kinks])
+    low = 3 * smallest / span if isinstance(scene.indenter, FlatPunch) or kinks else high / span
+    breaks = [low]
+    for end in (*kinks, high):
+        pieces = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(LARGEST_RATIO))))
+        breaks += [*np.geomspace(breaks[-1], end, pieces + 1)[1:-1], end]
+    solved: dict[float, CertifiedContact] = {}
+
+    def once(radius: float) -> CertifiedContact:
+        if radius not in solved:
+            solved[radius] = solve(radius)
+        return solved[radius]
+
+    for nodes in NODES:
+        branch = solve_branch(breaks, kinks, work_of_adhesion(scene), once, nodes)
+        if accuracy is None or _is_fine_enough(branch, INTERPOLATED * accuracy, nodes):
+            return branch
+    raise NotConvergedError(
+        f"accuracy {accuracy:g} was not reached along the branch",
+        {"interpolation_error": branch.depth_interpolation_error},
+    )
+
+
+def _is_fine_enough(branch: AdhesiveBranch, error: float, nodes: int) -> bool:
+    """Whether depth and force are interpolated within an error; the force gets one finer attempt, then it states it."""
+    force = nodes > NODES[0] or branch.force_interpolation_error <= error
+    return force and branch.depth_interpolation_error <= error
+
+
+def _first_radius(scene: Scene) -> float:
+    """A flat punch's own radius; else where f exceeds twice the elongation of a half-space, hence contact presses."""
+    if isinstance(scene.indenter, FlatPunch):
+        return scene.indenter.radius
+    work = work_of_adhesion(scene)
+    return _bisect(scene, lambda r: float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work))
+
+
+def _radius_beyond(scene: Scene, target: float, by_depth: bool) -> float:
+    """A radius at which the elastic load exceeds the target, adhesion included."""
+    work = work_of_adhesion(scene)
+
+    def excess(r: float) -> float:
+        height = float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work)
+        return float(height - (1.5 * target if by_depth else target / r))
+
+    return _bisect(scene, excess)
+
+
+def _bisect(scene: Scene, excess: Callable[[float], float]) -> float:
+    """Where an excess that grows with the radius becomes positive, within the profile."""
+    end = scene.indenter.max_radius
+    low, high = 1e-15, min(end, 1e15)
+    if excess(high) < 0:
+        return high
+    for _ in range(120):
+        middle = float(np.sqrt(low * high))
+        low, high = (middle, high) if excess(middle) < 0 else (low, middle)
+    return high

@@ -1,0 +1,76 @@
+"""The measured inf-sup constant of an element pair: how well displacements control the pressure as meshes refine.
+
+    beta = min_q max_v  int q div v / (|v|_1 |q|_0),
+
+the square root of the smallest eigenvalue of ``B H^-1 B^T q = beta^2 M q``, with H the product of displacement
+gradients and M the pressure mass.  A stable pair keeps beta bounded below; where it falls, or spurious pressures make
+it vanish, the pair is flagged.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve, eigh
+from skfem import Basis, ElementVector, MeshTri
+
+from contact import InvalidInput
+from fem_reference.discrete_layer import weak_forms
+from fem_reference.discrete_layer.elements import ElementPair
+from fem_reference.discrete_layer.mesh import named_layer_mesh
+
+Array = NDArray[np.float64]
+
+LARGEST_FALL = 0.75  # of beta per halving of the cells; a stable pair's beta changes by a few per cent
+LEAST = 0.1  # stable pairs keep most of the continuous constant, about 0.6 here
+
+
+@dataclass(frozen=True)
+class InfSup:
+    """Constants on a sequence of meshes.
+
+    Attributes:
+        pair: the element pair.
+        cells: cells across the thickness.
+        constants: beta on each mesh.
+    """
+
+    pair: ElementPair
+    cells: tuple[int, ...]
+    constants: Array
+
+    @property
+    def is_stable(self) -> bool:
+        """Whether beta stays bounded below."""
+        last, previous = self.constants[-1], self.constants[-2]
+        return bool(last > max(LARGEST_FALL * previous, LEAST))
+
+
+def measure_inf_sup(pair: ElementPair, cells: Sequence[int] = (2, 4, 8)) -> InfSup:
+    """Constants on uniform meshes of a bonded section one thick and two wide.
+
+    Raises:
+        InvalidInput: the pair has no pressure.
+    """
+    if not pair.is_mixed:
+        raise InvalidInput(f"{pair.name} has no pressure; take a mixed pair such as P3P2")
+    return InfSup(pair, tuple(cells), np.array([_inf_sup_constant(pair, n) for n in cells]))
+
+
+def _inf_sup_constant(pair: ElementPair, cells: int) -> float:
+    uniform = MeshTri.init_tensor(np.linspace(0, 2, 2 * cells + 1), np.linspace(0, 1, cells + 1))
+    mesh = named_layer_mesh(uniform.p, uniform.t).mesh
+    displacement = Basis(mesh, ElementVector(pair.displacement))
+    pressure = displacement.with_element(pair.pressure)
+    axis = displacement.get_dofs("axis").all(["u^1"])
+    held = np.concatenate([axis, displacement.get_dofs("base").all()])
+    free = np.setdiff1d(np.arange(displacement.N), held)
+    gradient = weak_forms.displacement_gradient.assemble(displacement).toarray()[np.ix_(free, free)]
+    divergence = weak_forms.constraint.assemble(displacement, pressure).toarray()[:, free]
+    mass = weak_forms.pressure_mass.assemble(pressure).toarray()
+    schur = divergence @ cho_solve(cho_factor(gradient), divergence.T)
+    smallest = eigh((schur + schur.T) / 2, mass, eigvals_only=True, subset_by_index=[0, 0])[0]
+    return float(np.sqrt(max(smallest, 0.0)))

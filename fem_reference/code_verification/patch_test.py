@@ -1,0 +1,36 @@
+"""The patch test on the mesh of the answer: a constant strain must leave every inner node in equilibrium.
+
+Nodal values of ``u_r = s r, u_z = c z`` with their constant pressure are put into the assembled equations (form A of
+Taylor, Simo, Zienkiewicz and Chan, Int. J. Numer. Meth. Engng 22 (1986) 39-62).  What is left over on unknowns off the
+boundary is an error of assembly: geometry, quadrature, hoop strain or coupling.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_reference.discrete_layer.problem import LayerProblem
+
+STRETCH = 0.1  # s; with c = (1 - 2 nu) - 2 s the volume strain is 1 - 2 nu, so that the pressure is finite at nu = 1/2
+
+
+def patch_defect(problem: LayerProblem) -> float:
+    """Largest residual of the constant-strain state over the sum of its terms' magnitudes, of all inner equations."""
+    state = constant_strain(problem)
+    inner = np.setdiff1d(np.arange(problem.space.size), _boundary_unknowns(problem))
+    terms = abs(problem.matrix) @ np.abs(state)
+    return float(np.max((np.abs(problem.matrix @ state) / terms)[inner], initial=0.0))
+
+
+def constant_strain(problem: LayerProblem) -> NDArray[np.float64]:
+    """All unknowns of the state: its displacements, then, in a mixed formulation, its pressure."""
+    nu, (r, z) = problem.poissons_ratio, problem.positions
+    displacement = np.column_stack([STRETCH * r, ((1 - 2 * nu) - 2 * STRETCH) * z]).ravel()
+    pressure = -2 * problem.moduli.shear * (1 + nu) / 3  # p = -K div u with K = 2 mu (1 + nu) / (3 (1 - 2 nu))
+    return np.concatenate([displacement, np.full(problem.space.size - displacement.size, pressure)])
+
+
+def _boundary_unknowns(problem: LayerProblem) -> NDArray[np.int64]:
+    nodes = np.concatenate([problem.nodes_on(name) for name in problem.layer_mesh.mesh.boundaries])
+    return np.concatenate([2 * nodes, 2 * nodes + 1])

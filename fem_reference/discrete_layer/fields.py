@@ -1,0 +1,126 @@
+"""Strain, pressure and gradient of discrete solutions at the quadrature points of chosen triangles."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from fem_reference.discrete_layer.assembly import DEVIATOR, Space
+from fem_reference.discrete_layer.material import Moduli
+from fem_reference.discrete_layer.outer_edge import decay_rate
+from fem_reference.discrete_layer.problem import LayerProblem
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class PointFields:
+    """Fields of m solutions at the quadrature points of some triangles.
+
+    Attributes:
+        measure: ``2 pi r dr dz``, shape (triangle, point).
+        radius: r, same shape.
+        displacement: (u_r, u_z), shape (m, triangle, point, 2).
+        gradient: ``u_i,j``, shape (m, triangle, point, 2, 2).
+        hoop: ``u_r / r``, shape (m, triangle, point).
+        pressure: p, shape (m, triangle, point).
+        shear_modulus: mu.
+        compressibility: 1/K.
+    """
+
+    measure: Array
+    radius: Array
+    displacement: Array
+    gradient: Array
+    hoop: Array
+    pressure: Array
+    shear_modulus: float
+    compressibility: float
+
+    @property
+    def divergence(self) -> Array:
+        """div u."""
+        return np.asarray(self.gradient[..., 0, 0] + self.gradient[..., 1, 1] + self.hoop)
+
+    @property
+    def deviator(self) -> Array:
+        """Deviatoric strain (rr, zz, hoop, sqrt(2) rz), shape (m, triangle, point, 4)."""
+        g = self.gradient
+        shear = (g[..., 0, 1] + g[..., 1, 0]) * np.sqrt(0.5)
+        return np.stack([g[..., 0, 0], g[..., 1, 1], self.hoop, shear], axis=-1) @ DEVIATOR
+
+    @property
+    def stress(self) -> Array:
+        """(rr, zz, hoop, rz), shape (m, triangle, point, 4)."""
+        stress = 2 * self.shear_modulus * self.deviator
+        stress[..., 3] *= np.sqrt(0.5)
+        stress[..., :3] -= self.pressure[..., None]
+        return stress
+
+    @property
+    def energy_products(self) -> Array:
+        """Twice the mutual energy density, ``2 mu dev(u_i) : dev(u_j) + p_i p_j / K``; (m, m, triangle, point)."""
+        deviatoric = np.einsum("itqs,jtqs->ijtq", self.deviator, self.deviator)
+        volumetric = np.einsum("itq,jtq->ijtq", self.pressure, self.pressure)
+        return np.asarray(2 * self.shear_modulus * deviatoric + self.compressibility * volumetric)
+
+
+def point_fields(space: Space, moduli: Moduli, solutions: Array, triangles: Index) -> PointFields:
+    """Fields of solutions (size, m) on the given triangles."""
+    local = solutions.T[:, space.element_displacements[triangles]]
+    nodal = local.reshape(*local.shape[:2], -1, 2)
+    gradient = np.einsum("mtbi,tjbq->mtqij", nodal, space.gradients[triangles], optimize=True)
+    displacement = np.einsum("mtbi,bq->mtqi", nodal, space.displacement_values, optimize=True)
+    radius = space.radius[triangles]
+    hoop = displacement[..., 0] / radius
+    if space.pair.is_mixed:
+        pressure = solutions.T[:, space.element_pressures[triangles]] @ space.pressure_values
+    else:
+        pressure = -moduli.bulk * (gradient[..., 0, 0] + gradient[..., 1, 1] + hoop)
+    return PointFields(
+        measure=space.measure[triangles],
+        radius=radius,
+        displacement=displacement,
+        gradient=gradient,
+        hoop=hoop,
+        pressure=pressure,
+        shear_modulus=moduli.shear,
+        compressibility=moduli.compressibility,
+    )
+
+
+@dataclass(frozen=True)
+class MutualEnergies:
+    """Twice the mutual strain energies of m solutions.
+
+    Attributes:
+        total: of the whole section (and the spring on its outer edge), shape (m, m).
+        beyond: estimate of what a longer section would store beyond the outer radius, shape (m, m).
+        decay: rate per length at which ``beyond`` falls with the outer radius.
+    """
+
+    total: Array
+    beyond: Array
+    decay: float
+
+
+def mutual_energies(problem: LayerProblem, solutions: Array) -> MutualEnergies:
+    """Energies of solutions (size, m), from stresses and strains at points.
+
+    Energy densities decay like ``exp(-2 s r / h)``; hence ``beyond = strip / (exp(2 s w / h) - 1)`` for the outermost
+    strip of width w.
+    """
+    mesh, layer = problem.layer_mesh.mesh, problem.layer_mesh
+    fields = point_fields(problem.space, problem.moduli, solutions, np.arange(mesh.t.shape[1]))
+    by_triangle = np.einsum("ijtq,tq->ijt", fields.energy_products, fields.measure)
+    decay = 2 * decay_rate(problem.poissons_ratio, problem.support) / layer.thickness
+    width = min(layer.thickness, layer.outer_radius / 2)
+    strip = mesh.p[0, mesh.t].mean(axis=0) > layer.outer_radius - width
+    beyond = by_triangle[:, :, strip].sum(axis=2) / np.expm1(decay * width)
+    total = by_triangle.sum(axis=2)
+    if problem.support == "unbonded":
+        total = total + solutions.T @ (problem.outer_edge_matrix @ solutions)
+    return MutualEnergies(total, beyond, decay)

@@ -1,0 +1,143 @@
+"""The discrete layer: its matrix, its supports, and the unknowns on its top."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from skfem import ElementVector, FacetBasis
+
+from fem_reference.discrete_layer import weak_forms
+from fem_reference.discrete_layer.assembly import Space, node_positions, stiffness_matrix
+from fem_reference.discrete_layer.elements import ElementPair
+from fem_reference.discrete_layer.linear_solver import CheckedSolver
+from fem_reference.discrete_layer.material import Moduli, moduli
+from fem_reference.discrete_layer.mesh import LayerMesh
+from fem_reference.discrete_layer.ordering import nested_dissection
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+Support = Literal["bonded", "unbonded"]
+
+
+@dataclass(frozen=True)
+class LayerProblem:
+    """An elastic layer discretised on one mesh, in units of its contact modulus.
+
+    Attributes:
+        layer_mesh: the section.
+        pair: element pair.
+        poissons_ratio: nu.
+        support: "bonded" or "unbonded" base.
+        backend: linear solver, a key of `linear_solver.BACKENDS`.
+    """
+
+    layer_mesh: LayerMesh
+    pair: ElementPair
+    poissons_ratio: float
+    support: Support
+    backend: str = "superlu"
+
+    @cached_property
+    def moduli(self) -> Moduli:
+        """Shear modulus and compressibility at E* = 1."""
+        return moduli(self.poissons_ratio)
+
+    @cached_property
+    def space(self) -> Space:
+        """Unknowns and basis."""
+        return Space(self.layer_mesh.mesh, self.pair)
+
+    @cached_property
+    def matrix(self) -> sparse.csc_array:
+        """Stiffness matrix of all unknowns, the outer edge of an unbonded layer included."""
+        matrix = stiffness_matrix(self.space, self.moduli)
+        return matrix + self.outer_edge_matrix if self.support == "unbonded" else matrix
+
+    @cached_property
+    def outer_edge_matrix(self) -> sparse.csc_array:
+        """The elastic edge that replaces the unbonded layer beyond the mesh."""
+        return outer_edge_matrix(self.space, self.moduli.shear)
+
+    @cached_property
+    def positions(self) -> Array:
+        """(r, z) of the scalar displacement unknowns, shape (2, n)."""
+        return node_positions(self.space)
+
+    def nodes_on(self, boundary: str) -> Index:
+        """Scalar displacement unknowns on a named boundary."""
+        return facet_nodes(self.space, self.layer_mesh.mesh.boundaries[boundary])
+
+    @cached_property
+    def supported_unknowns(self) -> Index:
+        """Displacements that the axis and the base hold at zero."""
+        held = [2 * self.nodes_on("axis"), 2 * self.nodes_on("base") + 1]
+        if self.support == "bonded":
+            held.append(2 * self.nodes_on("base"))
+        return np.unique(np.concatenate(held))
+
+    def top_nodes(self, radius: float) -> Index:
+        """Scalar displacement unknowns of the top cells within ``radius``, in the order of increasing r."""
+        mesh = self.layer_mesh.mesh
+        facets = mesh.boundaries["top"]
+        inside = mesh.p[0, mesh.facets[:, facets]].max(axis=0) <= radius * (1 + 1e-14)
+        nodes = facet_nodes(self.space, facets[inside])
+        return nodes[np.argsort(self.positions[0, nodes])]
+
+    def solver(self, held: Index) -> RestrictedSolver:
+        """Factorise once with these unknowns prescribed."""
+        return RestrictedSolver(self, held)
+
+
+def facet_nodes(space: Space, facets: Index) -> Index:
+    """Scalar displacement unknowns on facets."""
+    return np.asarray(space.displacement_dofs.get_facet_dofs(facets).all(), dtype=np.int64)
+
+
+def outer_edge_matrix(space: Space, shear_modulus: float) -> sparse.csc_array:
+    """``weak_forms.outer_edge_spring``, in the numbering of all unknowns."""
+    edge = FacetBasis(space.mesh, ElementVector(space.pair.displacement), facets="outer")
+    spring = weak_forms.outer_edge_spring.assemble(edge, mu=shear_modulus).tocoo()
+    return sparse.coo_array((spring.data, (spring.row, spring.col)), shape=(space.size, space.size)).tocsc()
+
+
+class RestrictedSolver:
+    """Solutions with prescribed unknowns, all from one factorisation.
+
+    Attributes:
+        problem: the discrete layer.
+        held: the prescribed unknowns.
+        checked: the factorised matrix of the others.
+    """
+
+    def __init__(self, problem: LayerProblem, held: Index) -> None:
+        order = nested_dissection(problem.space)
+        is_free = np.ones(problem.space.size, dtype=bool)
+        is_free[held] = False
+        self.problem = problem
+        self.held = held
+        self._free = order[is_free[order]]
+        rows = problem.matrix.T[self._free]  # symmetric: the transpose is the same matrix, stored by rows
+        self._coupling = rows[:, held]
+        self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend)
+
+    def solve_displaced(self, values: Array) -> Array:
+        """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""
+        solution = np.zeros((self.problem.space.size, values.shape[1]))
+        solution[self.held] = values
+        solution[self._free] = self.checked.solve(-(self._coupling @ values))
+        return solution
+
+    def solve_loaded(self, loads: Array) -> Array:
+        """All unknowns, shape (size, m), for loads of that shape, the prescribed unknowns at zero."""
+        solution = np.zeros_like(loads)
+        solution[self._free] = self.checked.solve(loads[self._free])
+        return solution
+
+    def reactions(self, solution: Array, unknowns: Index) -> Array:
+        """Nodal forces that act on the layer at these unknowns."""
+        return np.asarray(self.problem.matrix[unknowns] @ solution)

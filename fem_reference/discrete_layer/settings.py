@@ -1,0 +1,113 @@
+"""Numerical settings of one solve, and the mesh they make around a contact of radius one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import InvalidInput, Layer
+from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
+from fem_reference.discrete_layer.outer_edge import outer_distance
+
+Array = NDArray[np.float64]
+
+
+LEAST_CELL = 1e-13  # a thousand roundings of the radius there
+
+
+@dataclass(frozen=True, kw_only=True)
+class Discretisation:
+    """Everything that decides the mesh and its elements.
+
+    Attributes:
+        order: polynomial degree k of the displacement, 2, 3 or 4; the pressure has degree k - 1.
+        edge_cell: cell size at the contact edge, relative to the smallest of contact radius, thickness and the
+            distance from the edge to the next kink.
+        growth: increase of cell size per distance from a graded point; also the largest cell per thickness.
+        truncation: relative change of the stiffness allowed to the outer edge.
+        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        outer_distance: from contact edge to outer edge, in thicknesses; None for what ``truncation`` asks at this nu.
+    """
+
+    order: int = 4
+    edge_cell: float = 1e-7
+    growth: float = 0.5
+    truncation: float = 1e-8
+    half_space_thickness: float = 1e8
+    outer_distance: float | None = None
+
+    def __post_init__(self) -> None:
+        """Refuse settings outside their ranges."""
+        if self.order not in (2, 3, 4):
+            raise InvalidInput(f"order must be 2, 3 or 4, got {self.order}")
+        bounds = {
+            "edge_cell": (1e-12, 0.2),
+            "growth": (0.02, 2.0),
+            "truncation": (1e-14, 0.1),
+            "half_space_thickness": (10.0, 1e12),
+        }
+        for name, (low, high) in bounds.items():
+            if not low <= getattr(self, name) <= high:
+                raise InvalidInput(f"{name} must lie in [{low:g}, {high:g}], got {getattr(self, name)}")
+        if self.outer_distance is not None and not 1.0 <= self.outer_distance <= 100.0:
+            raise InvalidInput(f"outer_distance must lie in [1, 100] thicknesses, got {self.outer_distance}")
+
+    @property
+    def pair(self) -> ElementPair:
+        """The element pair of the answer."""
+        return taylor_hood(self.order)
+
+    def refined(self) -> Self:
+        """Cells half as large; the edge cell shrinks as the error of the others does, by 2^(2k)."""
+        return replace(
+            self,
+            growth=max(self.growth / 2, 0.02),
+            edge_cell=max(self.edge_cell / 4**self.order, 1e-12),
+            truncation=max(self.truncation / 4**self.order, 1e-14),
+            half_space_thickness=min(self.half_space_thickness * 4**self.order, 1e12),
+        )
+
+    def thickness(self, layer: Layer, contact_radius: float) -> float:
+        """h / a, or its stand-in for a half-space."""
+        return self.half_space_thickness if layer.is_half_space else layer.thickness / contact_radius
+
+    def distance(self, layer: Layer) -> float:
+        """From contact edge to outer edge, in thicknesses."""
+        return self.outer_distance or outer_distance(layer.poissons_ratio, layer.support, self.truncation)
+
+
+def contact_mesh(layer: Layer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
+    """The graded section, lengths by the contact radius, with vertices at the edge and at every kink and breakpoint."""
+    thickness = settings.thickness(layer, indenter.contact_radius)
+    grading = Grading(
+        points=graded_points(thickness, indenter, settings),
+        growth=settings.growth,
+        max_cell=settings.growth * thickness,
+    )
+    return layer_mesh(thickness, 1 + thickness * settings.distance(layer), grading)
+
+
+def graded_points(
+    thickness: float, indenter: ScaledIndenter, settings: Discretisation
+) -> tuple[tuple[float, float], ...]:
+    """(radius, cell size) at the edge, the kinks, a sharp tip, and plain vertices at the other breakpoints.
+
+    At the edge the energy error of the last cell falls like its size; at a kink, where the stress is merely
+    logarithmic, like its square, but the L2 error of the pressure like its root.
+    """
+    last_kink = max(indenter.kinks, default=0.0)
+    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), LEAST_CELL)
+    cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
+    ends = (0.0, *sorted(indenter.kinks), 1.0)
+    cells |= {
+        r: 0.5 * settings.edge_cell * min(r - left, right - r, thickness)
+        for left, r, right in zip(ends, ends[1:], ends[2:], strict=False)
+    }
+    if indenter.has_sharp_tip:
+        cells[0.0] = edge_cell
+    return tuple(sorted((cells | {1.0: edge_cell}).items()))

@@ -1,0 +1,114 @@
+"""The polish of a found contact: a mesh with a vertex at its edge, and the prescribed-radius solution there.
+
+A secant iteration on the radius with quick solutions ends within 3e-5; the certified solution there is corrected to
+first order.  At smooth contact dF/da = 0 at given depth, so ``F(delta) = F_0 + k_N (delta - delta_0)`` errs only in the
+square of what is left.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from contact import IndentationDepths, NotConvergedError, Scene, StageLog
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
+from fem_reference.elastic.error_estimate import CertifiedContact
+from fem_reference.elastic.path import ContactSolver, Equilibrium
+from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
+
+QUICK = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
+LEFT_OVER = 1e-4  # relative load left to the first-order correction, whose own error is its square
+MAX_SECANTS = 15
+UNCERTAIN_EXPONENT = 0.2  # relative error of the secant's exponent, hence of the last correction of the radius
+
+
+def polished_equilibrium(scene: Scene, target: float, start: float, solve: ContactSolver, log: StageLog) -> Equilibrium:
+    """The state at a depth [m] or force / E* [m^2], from a first guess of the contact radius [m].
+
+    Raises:
+        NotConvergedError: the secant iteration on the radius does not settle.
+    """
+    by_depth = isinstance(scene.loading, IndentationDepths)
+    flat = scene.indenter.flat_radius
+
+    def ratio(contact: PrescribedContact, radius: float) -> float:
+        load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
+        return load / target
+
+    radius, exponent = radius_of_load(lambda a: ratio(_quick_solution(scene, a, log), a), start, flat)
+    for _ in range(3):
+        contact = solve(radius)
+        defect = ratio(contact.answer, radius)
+        corrected = flat + (radius - flat) * defect ** (-1 / exponent)
+        if abs(defect - 1) <= LEFT_OVER:
+            state = _at_depth if by_depth else _at_force
+            return state(contact, target, corrected / radius, exponent * radius / (radius - flat))
+        radius = corrected
+    raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
+
+
+def _quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
+    indenter, layer = ScaledIndenter(scene.indenter, radius), scene.layer
+    with log.stage("mesh"):
+        mesh = contact_mesh(layer, indenter, QUICK)
+    problem = LayerProblem(mesh, QUICK.pair, layer.poissons_ratio, layer.support)
+    return solve_prescribed_contact(problem, indenter, log)
+
+
+def radius_of_load(ratio_at: Callable[[float], float], start: float, flat: float) -> tuple[float, float]:
+    """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat): secants in logarithms.
+
+    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.
+    """
+    x = float(np.log(max(start - flat, 1e-6 * start)))
+    y = float(np.log(ratio_at(flat + np.exp(x))))
+    exponent, step = 2.0, float(np.clip(-y / 2, -1, 1)) or 1e-3
+    for _ in range(MAX_SECANTS):
+        following = float(np.log(ratio_at(flat + np.exp(x + step))))
+        exponent = float(np.clip((following - y) / step, 0.2, 20))
+        x, y = x + step, following
+        step = float(np.clip(-y / exponent, -1, 1))
+        if abs(y) < 0.1 * LEFT_OVER:
+            return flat + float(np.exp(x + step)), exponent
+    raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})
+
+
+def _at_depth(contact: CertifiedContact, depth: float, factor: float, exponent: float) -> Equilibrium:
+    answer, error = contact.answer, contact.error
+    scaled = depth / contact.indenter.contact_radius
+    force = answer.force(scaled)
+    absolute = error["smooth_force"] * answer.smooth_force + answer.stiffness * error["smooth_depth"] * scaled
+    reported = {
+        "contact_radius": error["smooth_depth"] / exponent,
+        "indentation_depth": 0.0,
+        "normal_force": absolute / force,
+    }
+    return _equilibrium(contact, scaled, force, factor, reported)
+
+
+def _at_force(contact: CertifiedContact, force: float, factor: float, exponent: float) -> Equilibrium:
+    answer, error = contact.answer, contact.error
+    scaled = force / contact.indenter.contact_radius**2
+    depth = answer.smooth_depth + (scaled - answer.smooth_force) / answer.stiffness
+    absolute = error["smooth_depth"] * answer.smooth_depth + error["smooth_force"] * scaled / answer.stiffness
+    reported = {
+        "contact_radius": error["smooth_force"] / exponent,
+        "indentation_depth": absolute / depth,
+        "normal_force": 0.0,
+    }
+    return _equilibrium(contact, depth, scaled, factor, reported)
+
+
+def _equilibrium(
+    contact: CertifiedContact, depth: float, force: float, factor: float, reported: dict[str, float]
+) -> Equilibrium:
+    """The radius's own error moves the stiffness, too."""
+    answer = contact.answer
+    reported["contact_radius"] += UNCERTAIN_EXPONENT * abs(factor - 1)
+    by_radius = reported["contact_radius"] * answer.stiffness_slope / answer.stiffness
+    reported["contact_stiffness"] = contact.error["stiffness"] + by_radius
+    reported["pressure"] = contact.pressure_error + reported["contact_radius"]
+    return Equilibrium(contact=contact, depth=depth, force=force, error=reported, radius_factor=factor)

@@ -1,0 +1,163 @@
+"""Contact of unknown radius: the active set on the condensed top finds it, on a strip that fits the contact."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import IndentationDepths, InvalidInput, NotConvergedError, Scene, StageLog
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.active_set import Complementary, solve_complementarity
+from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense, strip_mesh
+
+Array = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+STRIP_CELLS = 120
+EDGE = (0.11, 1.0, 0.04)  # measured on paraboloids and cones on thick, thin and compressible layers, to 0.06 cells
+WIDENINGS = 12
+
+
+@dataclass(frozen=True)
+class FoundContact:
+    """A contact found by the active set, in units of the strip's radius [m] and of E*.
+
+    Attributes:
+        strip: the condensed layer.
+        radius: the strip's radius [m].
+        depth: delta / radius.
+        state: pressures and gaps.
+    """
+
+    strip: SurfaceCompliance
+    radius: float
+    depth: float
+    state: Complementary
+
+    @property
+    def force(self) -> float:
+        """F / (E* radius^2)."""
+        return float(self.strip.resultants @ self.state.pressure)
+
+    @property
+    def active_vertices(self) -> int:
+        """How many vertices are in contact."""
+        return int(self.state.active.sum())
+
+    @property
+    def is_disc(self) -> bool:
+        """Whether the contact is one circle around the axis."""
+        return bool(self.state.active[: self.active_vertices].all())
+
+    @property
+    def contact_radius(self) -> float:
+        """a / radius."""
+        return edge_radius(self.strip.radii, self.state.pressure)
+
+
+def edge_radius(radii: Array, pressure: Array) -> float:
+    """Contact radius from the last two pressures that press, to a few hundredths of a cell.
+
+    Next to its edge every smooth contact is the same problem of the half-plane, p = K sqrt(a - r).  Solved on equal
+    cells, the distance from the last pressed vertex to the true edge is one function of the ratio of the last two
+    pressures, whatever K: the polynomial `EDGE`.  A last pressure above its neighbour is that of a sharp rim, where the
+    contact ends.
+    """
+    pressed = np.flatnonzero(pressure > 0)
+    if not len(pressed):
+        return 0.0
+    last = int(pressed[-1])
+    if last == 0:
+        return float(radii[:2].mean())
+    inner, outer = pressure[last - 1 : last + 1]
+    if outer >= inner:
+        return float(radii[last])
+    return float(radii[last] + np.polyval(EDGE, outer / inner) * (radii[last] - radii[last - 1]))
+
+
+class ContactSearch:
+    """Contacts of one scene on one strip; the factorisation is made once."""
+
+    def __init__(self, scene: Scene, radius: float, settings: Discretisation, backend: str, log: StageLog) -> None:
+        kinks = scene.indenter.kinks
+        mesh = strip_mesh(scene.layer, radius, STRIP_CELLS, kinks, settings)
+        self._log = log
+        self.radius = radius
+        self.strip = condense(scene.layer, mesh, backend, log)
+        quadrature, _ = self.strip.pressure_space.gauss(4)
+        self._profile = self.strip.weighted(scene.indenter.height(quadrature * radius) / radius)
+        self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
+        self._active: Mask | None = None
+
+    def at_depth(self, depth: float) -> FoundContact:
+        """Contact at depth [m]; starts from the last active set."""
+        approach = depth / self.radius * self.strip.resultants - self._profile
+        with self._log.stage("active_set"):
+            state = solve_complementarity(self.strip.matrix, approach, self._active)
+        self._log.count("active_sets", state.iterations)
+        self._active = state.active
+        return FoundContact(self.strip, self.radius, depth / self.radius, state)
+
+    def at_force(self, force: float) -> FoundContact:
+        """Contact at force / E* [m^2], by Newton's method on the convex F(delta)."""
+        depth = self._start_depth
+        for _ in range(40):
+            found = self.at_depth(depth)
+            defect = force / self.radius**2 - found.force
+            if abs(defect) <= 1e-10 * force / self.radius**2:
+                return found
+            depth += defect / self._tangent(found) * self.radius
+        raise NotConvergedError("force control of the contact search", {"force_defect": defect})
+
+    def _tangent(self, found: FoundContact) -> float:
+        active = found.state.active
+        block, w = self.strip.matrix[np.ix_(active, active)], self.strip.resultants[active]
+        return float(w @ np.linalg.solve(block, w))
+
+    def reaches_end(self, found: FoundContact) -> bool:
+        """Whether the contact comes within a tenth of the strip's end."""
+        return bool(found.state.active[self.strip.radii > 0.9].any())
+
+
+def find_contact(scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog) -> FoundContact:
+    """Contact at a depth [m] or force / E* [m^2] (as the scene's loading says) on a strip that fits it.
+
+    Raises:
+        InvalidInput: contact would reach the end of the profile, or is not one circle.
+        NotConvergedError: no strip fits.
+    """
+    by_depth = isinstance(scene.loading, IndentationDepths)
+    end = scene.indenter.max_radius
+    radius = _first_radius(scene, target, by_depth)
+    for _ in range(WIDENINGS):
+        search = ContactSearch(scene, radius, settings, backend, log)
+        found = search.at_depth(target) if by_depth else search.at_force(target)
+        if search.reaches_end(found):
+            if radius >= end:
+                raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; press less")
+            radius = min(1.8 * radius, end)
+        elif found.active_vertices < STRIP_CELLS // 4:
+            radius *= max(1.6 * found.contact_radius, 0.05)
+        else:
+            return _one_circle(found)
+    raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})
+
+
+def _first_radius(scene: Scene, target: float, by_depth: bool) -> float:
+    """1.6 times the radius r at which the profile alone suggests contact: f(r) = delta, or 4 r f(r) = F / E*."""
+    low, high = 1e-15, 1e15
+    for _ in range(100):
+        middle = float(np.sqrt(low * high))
+        height = float(scene.indenter.height(middle))
+        low, high = (middle, high) if (height if by_depth else 4 * middle * height) < target else (low, middle)
+    return min(1.6 * high, scene.indenter.max_radius)
+
+
+def _one_circle(found: FoundContact) -> FoundContact:
+    if found.active_vertices == 0 or not found.is_disc:
+        raise InvalidInput(
+            "the contact is not one circle around the axis (its active set has a gap); this profile makes ring contact"
+        )
+    return found

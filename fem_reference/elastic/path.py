@@ -1,0 +1,135 @@
+"""Elastic frictionless contact at prescribed radius, or of a flat punch at prescribed depth or force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from fem_reference.elastic.error_estimate import CertifiedContact
+from fem_reference.elastic.surface_fields import FemFields, SurfaceState
+
+Array = NDArray[np.float64]
+
+OWN_CHECKS = ("energy_defect", "patch_defect")  # residuals published beside the error estimates
+ContactSolver = Callable[[float], CertifiedContact]  # of a contact radius [m]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Equilibrium:
+    """One state of a path, in units of its contact radius and of E*.
+
+    Attributes:
+        contact: the solved contact radius with its error bars.
+        depth: delta / a.
+        force: F / (E* a^2).
+        error: relative error of each reported quantity.
+        radius_factor: contact radius over that of the mesh, one up to a last correction.
+    """
+
+    contact: CertifiedContact
+    depth: float
+    force: float
+    error: Mapping[str, float]
+    radius_factor: float = 1.0
+
+    @property
+    def stiffness(self) -> float:
+        """k_N / (E* a) at the corrected radius."""
+        answer = self.contact.answer
+        return answer.stiffness + answer.stiffness_slope * (self.radius_factor - 1)
+
+
+def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
+    """The state in which the pressure vanishes at the contact edge."""
+    answer, error = contact.answer, contact.error
+    if answer.smooth_depth <= 0 or answer.smooth_force <= 0:
+        raise InvalidInput(
+            f"the profile presses nowhere at contact radius {contact.indenter.contact_radius:g} m: its slope is not "
+            "positive there; prescribe a radius beyond its flat end"
+        )
+    reported = {
+        "contact_radius": 0.0,
+        "indentation_depth": error["smooth_depth"],
+        "normal_force": error["smooth_force"],
+        "contact_stiffness": error["stiffness"],
+        "pressure": contact.pressure_error,
+    }
+    return Equilibrium(contact=contact, depth=answer.smooth_depth, force=answer.smooth_force, error=reported)
+
+
+def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibrium:
+    """A flat punch at depth / a; its pressure error is measured with the weight (1 - r^2/a^2), which its edge needs."""
+    reported = {
+        "contact_radius": 0.0,
+        "indentation_depth": 0.0,
+        "normal_force": contact.error["stiffness"],
+        "contact_stiffness": contact.error["stiffness"],
+        "pressure": contact.pressure_error,
+    }
+    return Equilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
+
+
+def equilibria_at_radii(radii: Array, solve: ContactSolver) -> list[Equilibrium]:
+    """Smooth contact at prescribed radii [m]."""
+    return [smooth_equilibrium(solve(float(a))) for a in radii]
+
+
+def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver) -> list[Equilibrium]:
+    """A flat punch at prescribed depths or forces: one solution, scaled."""
+    contact = solve(punch.radius)
+    loading, a = scene.loading, punch.radius
+    if isinstance(loading, IndentationDepths):
+        return [flat_punch_equilibrium(contact, depth / a) for depth in loading.values]
+    if isinstance(loading, NormalForces):
+        unit = scene.layer.contact_modulus * a**2 * contact.answer.stiffness
+        return [_known_force(flat_punch_equilibrium(contact, force / unit)) for force in loading.values]
+    raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
+
+
+def _known_force(state: Equilibrium) -> Equilibrium:
+    """Depth carries the error when the force is prescribed."""
+    error = dict(state.error) | {"indentation_depth": state.error["normal_force"], "normal_force": 0.0}
+    return Equilibrium(contact=state.contact, depth=state.depth, force=state.force, error=error)
+
+
+def contact_path(
+    scene: Scene,
+    equilibria: Sequence[Equilibrium],
+    settings: Mapping[str, bool | int | float | str | None],
+    log: StageLog,
+    notes: tuple[str, ...] = (),
+) -> ContactPath:
+    """The path in SI units."""
+    modulus = scene.layer.contact_modulus
+    radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
+    stiffness = np.array([state.stiffness for state in equilibria])
+    states = tuple(
+        SurfaceState(state.contact.answer, state.contact.indenter.contact_radius, state.depth, modulus)
+        for state in equilibria
+    )
+    force = modulus * radius**2 * np.array([state.force for state in equilibria])
+    depth = radius * np.array([state.depth for state in equilibria])
+    errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
+    own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
+    if scene.effects:  # depth and force may cross zero: their errors refer to the largest along the path
+        errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
+        errors["normal_force"] *= np.abs(force) / np.abs(force).max()
+    meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))
+    return ContactPath(
+        scene=scene,
+        method="fem",
+        settings={**settings, "mesh": meshes},
+        error_estimate=errors | own_checks,
+        cost=log.cost(unknowns=max(state.contact.answer.unknowns for state in equilibria)),
+        stages=log.records,
+        notes=notes,
+        contact_radius=radius * np.array([state.radius_factor for state in equilibria]),
+        indentation_depth=depth,
+        normal_force=force,
+        contact_stiffness=modulus * radius * stiffness,
+        fields=FemFields(states),
+    )

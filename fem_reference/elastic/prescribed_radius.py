@@ -1,0 +1,182 @@
+"""Contact of one given radius: stiffness, its derivative, the depth of smooth contact, forces and surface fields.
+
+Units: lengths by the contact radius, stresses by E*.  Two solutions of one factorisation tell everything: u_1, the
+unit depth of a flat punch of that radius, and u_2, the profile -f(r) at depth zero.  At depth delta the layer carries
+``F = k_N delta + F_2``, and since the energy release rate is a perfect square in delta,
+
+    dPi/da = k_N' (delta - delta_0)^2 / 2,     delta_0 = -(dF_2/da) / k_N',
+
+where delta_0 = g(a) is the depth at which the stress at the contact edge vanishes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import NotConvergedError, StageLog
+from fem_reference.code_verification.patch_test import patch_defect
+from fem_reference.discrete_layer.elements import ElementPair
+from fem_reference.discrete_layer.fields import mutual_energies
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.material import Moduli
+from fem_reference.discrete_layer.mesh import LayerMesh
+from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.trace import TraceSpace
+from fem_reference.elastic.shape_derivative import cut_off, energy_shape_derivative
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+ENERGY_AGREEMENT = 1e-8
+PATCH_AGREEMENT = 1e-11
+
+
+@dataclass(frozen=True, kw_only=True)
+class PrescribedContact:
+    """Answers of one mesh and element pair at contact radius one.
+
+    Attributes:
+        stiffness: k_N.
+        stiffness_slope: k_N' = dk_N/da.
+        smooth_depth: delta_0, zero for a flat punch.
+        profile_force: F_2, the force at depth zero (negative: the profile alone would have to be pulled in).
+        tail_energies: twice the mutual energies stored beyond the mesh, estimated from its outermost strip, (2, 2).
+        decay: rate at which these fall with the outer radius.
+        contact_trace: polynomials on the contact.
+        pressures: pressure of u_1 and u_2 at its nodes, shape (node, 2).
+        top_trace: polynomials on the whole top.
+        displacements: u_z of u_1 and u_2 at its nodes, shape (node, 2).
+        energy_defect: |energy stiffness / reaction stiffness - 1|.
+        patch_defect: of `patch.patch_defect`.
+        layer_mesh: the section.
+        pair: element pair.
+        moduli: shear modulus and compressibility at E* = 1.
+        solutions: all unknowns of u_1 and u_2, shape (size, 2).
+    """
+
+    stiffness: float
+    stiffness_slope: float
+    smooth_depth: float
+    profile_force: float
+    tail_energies: Array
+    decay: float
+    contact_trace: TraceSpace
+    pressures: Array
+    top_trace: TraceSpace
+    displacements: Array
+    energy_defect: float
+    patch_defect: float
+    layer_mesh: LayerMesh
+    pair: ElementPair
+    moduli: Moduli
+    solutions: Array
+
+    @property
+    def unknowns(self) -> int:
+        """Size of the linear system."""
+        return len(self.solutions)
+
+    def force(self, depth: float) -> float:
+        """Normal force at any depth, the contact radius held."""
+        return self.stiffness * depth + self.profile_force
+
+    @property
+    def smooth_force(self) -> float:
+        """Normal force at the depth of smooth contact."""
+        return self.force(self.smooth_depth)
+
+    @property
+    def smooth_depth_slope(self) -> float:
+        """d(delta_0)/da, from the pressures of smooth contact and flat punch: p / p_1 = 2 (a - r) delta_0' at the edge.
+
+        Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one.
+        """
+        inside = self.contact_trace.vertices[-4:][:1]
+        punch = self.contact_trace.evaluate(self.pressures[:, 0], inside)
+        return float((self.pressure(inside, self.smooth_depth) / punch / (2 * (1 - inside)))[0])
+
+    def pressure(self, radius: Array, depth: float) -> Array:
+        """p(r), zero outside the contact."""
+        return self.contact_trace.evaluate(self.pressures @ [depth, 1.0], radius)
+
+    def surface_displacement(self, radius: Array, depth: float) -> Array:
+        """u_z(r) on the top; zero beyond the mesh."""
+        return self.top_trace.evaluate(self.displacements @ [depth, 1.0], radius)
+
+    def release_rate(self, depth: float) -> float:
+        """Energy released per new free area, ``G = k_N' (delta - delta_0)^2 / (4 pi a)``."""
+        return self.stiffness_slope * (depth - self.smooth_depth) ** 2 / (4 * np.pi)
+
+
+def solve_prescribed_contact(problem: LayerProblem, indenter: ScaledIndenter, log: StageLog) -> PrescribedContact:
+    """Solve the contact of radius one on a mesh with a vertex there.
+
+    Raises:
+        NotConvergedError: the linear solve is inaccurate, energy and reactions disagree, or the patch test fails.
+    """
+    contact = problem.top_nodes(1.0)
+    radii = problem.positions[0, contact]
+    pressed = 2 * contact + 1
+    with log.stage("assemble"):
+        log.hold(problem.matrix.data.nbytes)
+    with log.stage("factor"):
+        solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
+    log.count("factorisations", solver.checked.factorisations)
+    with log.stage("solve"):
+        values = np.zeros((len(solver.held), 2))
+        values[-len(pressed) :] = np.column_stack([np.ones_like(radii), -indenter.height(radii)])
+        solutions = solver.solve_displaced(values)
+        reactions = solver.reactions(solutions, pressed)
+    with log.stage("recover"):
+        return _evaluate(problem, indenter, contact, solutions, reactions)
+
+
+def _evaluate(
+    problem: LayerProblem, indenter: ScaledIndenter, contact: Index, solutions: Array, reactions: Array
+) -> PrescribedContact:
+    """All numbers from u_1, u_2 (size, 2) and their reactions on the contact nodes."""
+    stiffness, profile_force = reactions.sum(axis=0)
+    energies = mutual_energies(problem, solutions)
+    defect = abs(energies.total[0, 0] / stiffness - 1)
+    if not defect < ENERGY_AGREEMENT:
+        raise NotConvergedError("energy and reactions give different stiffnesses", {"energy_defect": defect})
+    patch = patch_defect(problem)
+    if not patch < PATCH_AGREEMENT:
+        raise NotConvergedError("a constant strain is not in equilibrium on this mesh", {"patch_defect": patch})
+    derivative, moving_slope = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact])
+    profile_force_slope = derivative[0, 1] - reactions[:, 0] @ moving_slope
+    top, degree = problem.top_nodes(np.inf), problem.pair.degree
+    contact_trace = TraceSpace(problem.positions[0, contact], degree)
+    return PrescribedContact(
+        stiffness=float(stiffness),
+        stiffness_slope=float(derivative[0, 0]),
+        smooth_depth=float(-profile_force_slope / derivative[0, 0]),
+        profile_force=float(profile_force),
+        tail_energies=energies.beyond,
+        decay=energies.decay,
+        contact_trace=contact_trace,
+        pressures=contact_trace.recover(reactions),
+        top_trace=TraceSpace(problem.positions[0, top], degree),
+        displacements=solutions[2 * top + 1],
+        energy_defect=float(defect),
+        patch_defect=patch,
+        layer_mesh=problem.layer_mesh,
+        pair=problem.pair,
+        moduli=problem.moduli,
+        solutions=solutions,
+    )
+
+
+def _shape_derivative(
+    problem: LayerProblem, solutions: Array, indenter: ScaledIndenter, radii: Array
+) -> tuple[Array, Array]:
+    """A'(u_i, u_j), and ``eta f'`` at the contact nodes: the change of the profile seen by nodes that move."""
+    mesh = problem.layer_mesh.mesh
+    reach = 0.6 * min(1.0, problem.layer_mesh.thickness, 1.0 - max(indenter.kinks, default=0.0))
+    derivative = energy_shape_derivative(problem, solutions, cut_off(mesh.p, 1.0, reach))
+    vertices = TraceSpace(radii, problem.pair.degree).vertices
+    eta = np.interp(radii, vertices, cut_off(np.array([vertices, np.zeros_like(vertices)]), 1.0, reach))
+    return derivative, eta * indenter.slope(radii)

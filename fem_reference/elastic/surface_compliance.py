@@ -1,0 +1,112 @@
+"""The layer condensed to its top: one factorisation, then contact problems of a few hundred unknowns.
+
+Pressures are continuous and piecewise linear on a strip of equal cells, two in every cell of the mesh, whose
+displacements are of fourth degree: the mesh then adds less than the contact set, found to a cell.
+``C_ij = int phi_i u_z(phi_j) 2 pi r dr`` is the compliance, ``w_i = int phi_i 2 pi r dr`` the resultant of each
+pressure function.  Units: lengths by the strip's radius, stresses by E*.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import Layer, StageLog
+from fem_reference.discrete_layer.elements import taylor_hood
+from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
+from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.discrete_layer.trace import TraceSpace
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+STRIP_ORDER = 4
+GROWTH_ONE = 120  # cells that go with a growth of one
+STRIDE = 2  # displacement nodes from one pressure vertex to the next
+
+
+@dataclass(frozen=True)
+class SurfaceCompliance:
+    """Compliance of the top within radius one.
+
+    Attributes:
+        layer_mesh: the mesh.
+        pressure_space: piecewise linear pressures; their vertices are the candidates for contact.
+        matrix: C, shape (n, n).
+        resultants: w, shape (n,).
+        vertex_displacements: u_z at these vertices under each pressure function, shape (n, n).
+        unknowns: size of the condensed system.
+    """
+
+    layer_mesh: LayerMesh
+    pressure_space: TraceSpace
+    matrix: Array
+    resultants: Array
+    vertex_displacements: Array
+    unknowns: int
+
+    @property
+    def radii(self) -> Array:
+        """Candidate vertices."""
+        return self.pressure_space.radii
+
+    def weighted(self, function: Array) -> Array:
+        """``int phi_i f 2 pi r dr`` for f given at ``pressure_space.gauss(4)``."""
+        return self.pressure_space.moments(function, 4)
+
+
+def strip_mesh(
+    layer: Layer, radius: float, cells: int, kinks: tuple[float, ...], settings: Discretisation
+) -> LayerMesh:
+    """A section with ``cells`` equal pressure cells on the strip of ``radius`` [m], lengths by that radius.
+
+    Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike.
+    """
+    thickness = settings.thickness(layer, radius)
+    cell = STRIP_ORDER / STRIDE / cells
+    outer = 1 + thickness * settings.distance(layer)
+    points = (*((r / radius, cell) for r in kinks if r < radius), (1.0, cell))
+    growth = (GROWTH_ONE / cells) ** (1 / 3)
+    grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))
+    return layer_mesh(thickness, outer, grading)
+
+
+def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> SurfaceCompliance:
+    """Factorise the layer once and load it by every pressure function of the strip of radius one."""
+    problem = LayerProblem(mesh, taylor_hood(STRIP_ORDER), layer.poissons_ratio, layer.support, backend)
+    with log.stage("assemble"):
+        log.hold(problem.matrix.data.nbytes)
+    with log.stage("factor"):
+        solver = problem.solver(problem.supported_unknowns)
+    log.count("factorisations", solver.checked.factorisations)
+    with log.stage("condense"):
+        loads = strip_loads(problem)
+        solution = solver.solve_loaded(loads)
+        compliance = loads.T @ solution
+        vertices = strip_vertices(problem)
+        log.hold(compliance.nbytes)
+    return SurfaceCompliance(
+        layer_mesh=mesh,
+        pressure_space=TraceSpace(problem.positions[0, vertices], 1),
+        matrix=(compliance + compliance.T) / 2,
+        resultants=loads.sum(axis=0),
+        vertex_displacements=solution[2 * vertices + 1],
+        unknowns=problem.space.size,
+    )
+
+
+def strip_vertices(problem: LayerProblem) -> Index:
+    """Scalar displacement unknowns at the vertices of the pressures on the strip of radius one."""
+    return problem.top_nodes(1.0)[::STRIDE]
+
+
+def strip_loads(problem: LayerProblem) -> Array:
+    """Loads of the piecewise linear pressures on the strip of radius one, shape (size, n)."""
+    nodes = problem.top_nodes(1.0)
+    moments = TraceSpace(problem.positions[0, nodes], problem.pair.degree).hat_moments(STRIDE)
+    loads = np.zeros((problem.space.size, moments.shape[1]))
+    loads[2 * nodes + 1] = moments
+    return loads

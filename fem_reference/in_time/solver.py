@@ -1,0 +1,165 @@
+"""Viscoelastic scenes: impacts and prescribed histories, their answers in SI units with error bars.
+
+Every scene is solved three times: with half the cells and half the steps, with half the cells, and as asked.  The
+differences are the error estimates, see `history_errors`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
+from fem_reference.in_time.condensed_layer import Stage
+from fem_reference.in_time.errors import with_errors
+from fem_reference.in_time.impact import Body, Record, simulate_impact
+from fem_reference.in_time.prescribed import simulate_depths, simulate_forces
+from fem_reference.in_time.setup import Theatre
+
+Array = NDArray[np.float64]
+Settings = Mapping[str, bool | int | float | str | None]
+
+
+def impact_history(theatre: Theatre, loading: Impact, shown: Settings) -> ImpactHistory:
+    """An impact from first touch to the loss of contact."""
+    scene, log = theatre.scene, theatre.log
+    modulus = scene.layer.shear_modulus
+
+    def simulate(stage: Stage, duration: float) -> Record:
+        body = Body(mass=loading.mass / (modulus * stage.radius), velocity=loading.velocity / stage.radius)
+        with log.stage("time_steps"):
+            record = simulate_impact(stage, body, theatre.relaxation, duration)
+        log.count("steps", len(record.time))
+        return record
+
+    guess, span = _impact_scales(scene, loading)
+    radius, pilot = theatre.fitted_radius(1.6 * guess, lambda stage: simulate(stage, span / 60))
+    duration = pilot.time[-1] / theatre.resolution.steps
+    histories = []
+    for cells, steps in ((2, 2), (2, 1), (1, 1)):
+        stage = theatre.set(radius, theatre.resolution.cells // cells)
+        record = simulate(stage, steps * duration)
+        histories.append(_impact_in_si(theatre, loading, stage, record, shown))
+    coarse, wider, fine = histories
+    return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.peak_contact_radius))
+
+
+def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
+    """A contact radius [m] with E* r f(r)^2 = kinetic energy, and the time [s] to reach the depth f(r)."""
+    if isinstance(scene.indenter, FlatPunch):
+        a = scene.indenter.radius
+        return a, float(np.pi * np.sqrt(loading.mass / (2 * scene.layer.contact_modulus * a)))
+    height, modulus = scene.indenter.height, scene.layer.contact_modulus
+    energy = loading.mass * loading.velocity**2 / 2
+    r = _radius_where(lambda r: modulus * r * float(height(r)) ** 2 / energy)
+    r = min(r, scene.indenter.max_radius)
+    return r, 3 * float(height(r)) / loading.velocity
+
+
+def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Record, shown: Settings) -> ImpactHistory:
+    scene, log = theatre.scene, theatre.log
+    length, modulus = stage.radius, scene.layer.shear_modulus
+    energy = modulus * length**3
+    force, depth = np.array(record.force), np.array(record.depth)
+    velocity = np.array(record.velocity) * length
+    radius = np.maximum(np.array(record.radius) * length, scene.indenter.flat_radius)
+    return ImpactHistory(
+        scene=scene,
+        method="fem",
+        settings=shown,
+        error_estimate={},
+        cost=log.cost(unknowns=stage.unknowns),
+        stages=log.records,
+        time=np.array(record.time),
+        indentation_depth=depth * length,
+        velocity=velocity,
+        normal_force=force * modulus * length**2,
+        contact_radius=radius,
+        kinetic_energy=loading.mass * velocity**2 / 2,
+        stored_energy=np.array(record.stored) * energy,
+        dissipated_energy=np.array(record.dissipated) * energy,
+        peak_force=peak(force) * modulus * length**2,
+        peak_depth=peak(depth) * length,
+        peak_contact_radius=peak(radius),
+    )
+
+
+def peak(values: Array) -> float:
+    """Largest value of a smooth sampled function: the vertex of the parabola through the three highest samples."""
+    i = int(np.argmax(values))
+    if i in (0, len(values) - 1):
+        return float(values[i])
+    left, top, right = values[i - 1 : i + 2]
+    curvature = left - 2 * top + right
+    return float(top - (right - left) ** 2 / (8 * curvature)) if curvature < 0 else float(top)
+
+
+def prescribed_history(theatre: Theatre, loading: DepthHistory | ForceHistory, shown: Settings) -> HistoryPath:
+    """Response to a prescribed history of depth or force."""
+    scene, log = theatre.scene, theatre.log
+    modulus = scene.layer.shear_modulus
+
+    def simulate(stage: Stage, steps: int) -> Record:
+        with log.stage("time_steps"):
+            if isinstance(loading, DepthHistory):
+                depth = loading.depth / stage.radius
+                record = simulate_depths(stage, theatre.relaxation, loading.time, depth, steps)
+            else:
+                force = loading.force / (modulus * stage.radius**2)
+                record = simulate_forces(stage, theatre.relaxation, loading.time, force, steps)
+        log.count("steps", len(record.time))
+        return record
+
+    radius, _ = theatre.fitted_radius(1.6 * _history_radius(scene, loading), lambda stage: simulate(stage, 40))
+    histories = []
+    for cells, steps in ((2, 2), (2, 1), (1, 1)):
+        stage = theatre.set(radius, theatre.resolution.cells // cells)
+        record = simulate(stage, theatre.resolution.steps // steps)
+        histories.append(_history_in_si(theatre, stage, record, shown))
+    coarse, wider, fine = histories
+    return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.contact_radius.max()))
+
+
+def _history_in_si(theatre: Theatre, stage: Stage, record: Record, shown: Settings) -> HistoryPath:
+    scene, log, length = theatre.scene, theatre.log, stage.radius
+    force, radius = np.array(record.force), np.array(record.radius) * length
+    return HistoryPath(
+        scene=scene,
+        method="fem",
+        settings=shown,
+        error_estimate={},
+        cost=log.cost(unknowns=stage.unknowns),
+        stages=log.records,
+        time=np.array(record.time),
+        indentation_depth=np.array(record.depth) * length,
+        normal_force=force * scene.layer.shear_modulus * length**2,
+        contact_radius=np.where(force > 0, np.maximum(radius, scene.indenter.flat_radius), 0.0),
+    )
+
+
+def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
+    """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
+    if isinstance(scene.indenter, FlatPunch):
+        return scene.indenter.radius
+    height = scene.indenter.height
+    if isinstance(loading, DepthHistory):
+        largest = float(loading.depth.max())
+        radius = _radius_where(lambda r: float(height(r)) / largest) if largest > 0 else 0.0
+    else:
+        largest = float(loading.force.max())
+        stiffness = 4 * scene.layer.contact_modulus
+        radius = _radius_where(lambda r: stiffness * r * float(height(r)) / largest) if largest > 0 else 0.0
+    if largest <= 0:
+        raise InvalidInput("the history never presses; give a positive depth or force somewhere")
+    return min(radius, scene.indenter.max_radius)
+
+
+def _radius_where(ratio: Callable[[float], float]) -> float:
+    """Where a growing ratio reaches one."""
+    low, high = 1e-15, 1e15
+    for _ in range(120):
+        middle = float(np.sqrt(low * high))
+        low, high = (middle, high) if ratio(middle) < 1 else (low, middle)
+    return high

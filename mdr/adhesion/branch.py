@@ -1,0 +1,207 @@
+"""The equilibrium branch of an adhering indenter, parametrised by the contact radius, Eqs. (40)-(46).
+
+Along a = b + (y - y_b)^2, b the last breakpoint, depth and force are smooth functions of y: both the elongation, which
+starts like sqrt(a), and g, which starts like sqrt(a - b) behind a kink. Folds are roots of polynomials, all of which
+are found; nothing is stepped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol
+
+import numpy as np
+from numpy.polynomial import chebyshev as series
+
+from bem.polynomials import chebyshev
+from bem.polynomials.adaptive import NODES, Panel, Piecewise, resolved_panels
+from contact.records.validation import FloatArray
+
+DEPTH, FORCE = 0, 1
+_TIP = 1e-5  # of the largest y: below it, depth and force have left the tip with a known sign
+_EDGE = 1e-6  # how far outside its panel a root may lie; whether it is one is decided by the signs beside it
+_NEWTON_STEPS, _ROUNDING = 60, 1e-13  # a Newton step this short has squared its error already
+_Y_ROUNDING = float(np.finfo(float).eps)  # of a position and of the middle of its panel, half of it each
+
+
+class AdheringSprings(Protocol):
+    """What the branch asks of an equivalent system."""
+
+    @property
+    def flat_radius(self) -> float:
+        """b [m], where the profile begins to rise."""
+
+    def spring_stiffness(self, x: FloatArray) -> FloatArray:
+        """c_N(x) [Pa]."""
+
+    def contact_stiffness(self, contact_radius: FloatArray) -> FloatArray:
+        """k_N(a) [N/m]."""
+
+    def profile_beyond(self, excess: FloatArray) -> FloatArray:
+        """g [m] at an excess x - b [m] over the flat radius."""
+
+    def moment_beyond(self, excess: FloatArray) -> FloatArray:
+        """2 int_0^a c_N g dx [N] at an excess a - b [m]."""
+
+
+def critical_elongation(springs: AdheringSprings, radius: FloatArray, work_of_adhesion: float) -> FloatArray:
+    """Elongation dl(a) [m] at which the outermost spring lets go, Eq. (40)."""
+    return np.sqrt(2.0 * np.pi * work_of_adhesion * radius / springs.spring_stiffness(radius))
+
+
+@dataclass(frozen=True)
+class AdhesiveBranch:
+    """Depth and force of all equilibria up to a largest radius.
+
+    Attributes:
+        functions: delta, F, and their first and second derivatives by y.
+        coefficients: Chebyshev coefficients of the two slopes, shape (count, 2, panels).
+        section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
+        section_radii: a [m] there.
+        truncation: What the polynomials leave out of delta [m] and F [N], and the rounding of y moves, shape (2,).
+    """
+
+    functions: Piecewise
+    coefficients: FloatArray
+    section_ends: FloatArray
+    section_radii: FloatArray
+    truncation: FloatArray
+
+    def radius(self, y: FloatArray) -> FloatArray:
+        """a [m] at y."""
+        section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
+        return np.asarray(self.section_radii[section] + (y - self.section_ends[section]) ** 2)
+
+    def values(self, y: FloatArray) -> FloatArray:
+        """delta [m] and F_N [N], shape (2, n)."""
+        return self.functions(y, slice(2))
+
+    def slopes(self, y: FloatArray) -> FloatArray:
+        """d(delta)/dy and dF/dy; a state is stable under prescribed depth, or force, where they are positive."""
+        return self.functions(y, slice(2, 4))
+
+    def curvatures(self, y: FloatArray) -> FloatArray:
+        """Second derivatives of depth and force by y."""
+        return self.functions(y, slice(4, 6))
+
+    def folds(self, quantity: int) -> FloatArray:
+        """All y > 0 where the slope of depth or force changes sign, increasing."""
+        return self._folds[quantity]
+
+    def solutions(self, quantity: int, target: FloatArray) -> FloatArray:
+        """For each target the smallest y on a stable part of the branch with that depth or force; NaN where none."""
+        ends = np.concatenate([[0.0], self.folds(quantity), self.section_ends[-1:]])
+        found = np.full(target.shape, np.nan)
+        for low, high in zip(ends[-2::-1], ends[:0:-1], strict=True):  # the smallest is written last
+            if self.slopes(np.array([0.5 * (low + high)]))[quantity, 0] > 0.0:
+                reach = self.values(np.array([low, high]))[quantity]
+                inside = (target >= reach[0]) & (target <= reach[1])
+                found[inside] = self._inverted(quantity, target[inside], low, high)
+        return found
+
+    @cached_property
+    def _folds(self) -> tuple[FloatArray, ...]:
+        kinks = self.section_ends[1:-1]
+        return tuple(self._sign_changes(np.concatenate([kinks, *self._roots(q)]), q) for q in (DEPTH, FORCE))
+
+    def _roots(self, quantity: int) -> list[FloatArray]:
+        """Real roots of the slope on every panel where its mean does not exclude them."""
+        own = self.coefficients[:, quantity]
+        doubtful = np.flatnonzero(np.abs(own[0]) <= np.abs(own[1:]).sum(axis=0))
+        return [self._panel_roots(own[:, i], int(i)) for i in doubtful]
+
+    def _panel_roots(self, coefficients: FloatArray, panel: int) -> FloatArray:
+        size = np.abs(coefficients).max()
+        if size == 0.0:
+            return np.empty(0)
+        roots = series.chebroots(series.chebtrim(coefficients, 1e-15 * size))
+        z = roots.real[(np.abs(roots.imag) < _EDGE) & (np.abs(roots.real) < 1.0 + _EDGE)]
+        slope = series.chebder(coefficients)
+        with np.errstate(
+            divide="ignore", invalid="ignore"
+        ):  # a double root is no change of sign; where it stays is idle
+            polished = z - series.chebval(z, coefficients) / series.chebval(z, slope)
+        z = np.where(np.abs(polished - z) < _EDGE, polished, z)
+        return np.asarray(self.functions.centres[panel] + z / self.functions.scales[panel])
+
+    def _sign_changes(self, candidates: FloatArray, quantity: int) -> FloatArray:
+        end = self.section_ends[-1]
+        inside = candidates[(candidates > _TIP * end) & (candidates < end)]
+        points = np.unique(np.concatenate([[0.0], inside, [end]]))
+        points = points[np.append(True, np.diff(points) > 1e-12 * points[-1])]
+        signs = np.sign(self.slopes(0.5 * (points[1:] + points[:-1]))[quantity])
+        return np.asarray(points[1:-1][signs[1:] != signs[:-1]])
+
+    def _inverted(self, quantity: int, target: FloatArray, low: float, high: float) -> FloatArray:
+        """The y of each target on a part where the quantity increases; a Newton step out of its bracket is halved."""
+        left, right = np.full(target.shape, low), np.full(target.shape, high)
+        y = 0.5 * (left + right)
+        for _ in range(_NEWTON_STEPS):
+            both = self.functions(y, slice(4))
+            excess, slope = both[quantity] - target, both[2 + quantity]
+            left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)
+            step = y - excess / np.where(slope > 0.0, slope, np.inf)
+            new = np.where((step >= left) & (step <= right) & (slope > 0.0), step, 0.5 * (left + right))
+            if np.all(np.abs(new - y) <= _ROUNDING * high):
+                return np.asarray(new)
+            y = new
+        return np.asarray(y)
+
+
+def adhesive_branch(
+    springs: AdheringSprings,
+    *,
+    breakpoints: tuple[float, ...],
+    radius: float,
+    work_of_adhesion: float,
+    error: float = 0.0,
+) -> AdhesiveBranch:
+    """All equilibria with contact radii in (0, radius].
+
+    Args:
+        springs: The equivalent system.
+        breakpoints: Radii [m] where the profile is not analytic, its flat end included.
+        radius: Largest contact radius [m].
+        work_of_adhesion: dgamma [J/m^2].
+        error: Relative error of the springs.
+
+    Raises:
+        NotConvergedError: If the springs are rougher than that.
+    """
+    radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
+    ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
+    panels: list[Panel] = []
+    for start, low, high in zip(radii, ends, ends[1:], strict=False):
+        panels += resolved_panels(_sampler(springs, start, low, work_of_adhesion), low, high, error)
+    values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])  # (panels, 2, nodes)
+    derivative = chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
+    slopes = values @ derivative
+    rows = np.transpose(np.concatenate([values, slopes, slopes @ derivative], axis=1), (2, 1, 0))
+    return AdhesiveBranch(
+        functions=Piecewise.of(panels, rows),
+        coefficients=rows[:, 2:4],
+        section_ends=ends,
+        section_radii=radii,
+        truncation=np.max([panel.tails for panel in panels], axis=0) + _Y_ROUNDING * ends[-1] * _steepest(panels),
+    )
+
+
+def _steepest(panels: list[Panel]) -> FloatArray:
+    """Largest slopes of depth and force by y: a section beside a flat end hardly outgrown is short and steep."""
+    return np.asarray(np.max([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels], axis=0))
+
+
+def _sampler(
+    springs: AdheringSprings, start: float, low: float, work_of_adhesion: float
+) -> Callable[[FloatArray], FloatArray]:
+    """Depth and force along the section that begins at the radius `start`, where y = low."""
+
+    def sample(y: FloatArray) -> FloatArray:
+        way = (y - low) ** 2
+        radius, excess = start + way, (start - springs.flat_radius) + way
+        depth = springs.profile_beyond(excess) - critical_elongation(springs, radius, work_of_adhesion)  # Eq. (41)
+        return np.stack([depth, springs.contact_stiffness(radius) * depth - springs.moment_beyond(excess)])  # Eq. (4)
+
+    return sample

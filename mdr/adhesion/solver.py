@@ -1,0 +1,297 @@
+"""JKR adhesion of any profile with any layer, Eqs. (40)-(46): detachment, and equilibria at prescribed values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.layer_equation.protocol import FlatPunchSource
+from contact import (
+    Adhesion,
+    ContactPath,
+    ContactRadii,
+    Detachment,
+    DetachmentPath,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
+from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
+from mdr.adhesion.branch import DEPTH, FORCE, AdhesiveBranch, adhesive_branch, critical_elongation
+from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
+from mdr.adhesion.withdrawal import CONTROLS, Route
+from mdr.elastic import PathFields, solve_elastic
+from mdr.springs.assembly import equivalent_system
+from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.shared_tables import bisected, growing_radii, power_law, upper
+
+POINTS = 200  # states of a detachment path
+_PINNED = POINTS // 5  # of them with the front at a punch's edge
+_FIRST_WAY = 2.0  # beyond the flat end, in units of the way to where height and elongation are equal
+_CONFINED = 0.45  # Poisson's ratio from which a punch's pressure may have a second maximum in its centre
+_THINNEST = 50.0  # a/h beyond which the pressure inside no longer changes its shape
+_INSIDE = 0.1  # of the contact radius: where the pressure is compared with its value in the centre
+
+
+def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> DetachmentPath:
+    """The whole equilibrium branch of a withdrawal, in order of decreasing contact radius.
+
+    Raises:
+        InvalidInput: If there is nothing to detach, or the indenter ends too early.
+    """
+    log, loading = StageLog(), scene.loading
+    if not isinstance(loading, Detachment):
+        raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a detachment path needs Detachment")
+    with log.stage("adhesion"):
+        route, bounds, uncertain = _withdrawal(scene, loading, flat_punch)
+        system = bounds.system
+        radius, values, errors, stable = _states(route, bounds, uncertain)
+        control = CONTROLS.index(loading.control)
+        loss, tension = route.loss(control), route.largest_tension(control)
+        lost_radius, lost_depth, _ = route.state(loss)
+        lost, torn = (bounds.of_point(y, uncertain) for y in (loss, tension))
+        force = route.state(tension)[2]
+    depth_scale, force_scale = np.abs(values).max(axis=1)
+    return DetachmentPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate={
+            "contact_radius": errors[RADIUS] / radius.max(),
+            "indentation_depth": errors[DEPTH] / depth_scale,
+            "normal_force": errors[FORCE] / force_scale,
+            "pull_off_force": _relative(torn[FORCE], force),
+            "pull_off_depth": _relative(lost[DEPTH], lost_depth),
+            "pull_off_contact_radius": _relative(lost[RADIUS], lost_radius),
+        },
+        cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
+        stages=log.records,
+        notes=_notes(scene, system, radius[0]),
+        contact_radius=radius,
+        indentation_depth=values[DEPTH],
+        normal_force=values[FORCE],
+        stable_displacement_control=stable[DEPTH],
+        stable_force_control=stable[FORCE],
+        pull_off_force=force,
+        pull_off_depth=lost_depth,
+        pull_off_contact_radius=lost_radius,
+        critical_points=route.critical_points(),
+    )
+
+
+def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
+    """Adhesive equilibria at prescribed radii, depths or forces.
+
+    A depth or force is reached from the undeformed layer: of several stable states the one of smallest radius.
+
+    Raises:
+        InvalidInput: If a prescribed value lies beyond pull-off.
+    """
+    if work_of_adhesion(scene) == 0.0:
+        return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
+    log = StageLog()
+    with log.stage("adhesion"):
+        system, radius, depth, errors = _prescribed(scene, flat_punch)
+        force = np.asarray(system.force(radius, depth))
+        if isinstance(scene.loading, NormalForces):
+            force = scene.loading.values
+        stiffness = np.asarray(system.contact_stiffness(radius))
+        springs = 2.0 * system.spring_stiffness(radius)
+    relative = system.relative_errors(radius)["contact_stiffness"]
+    return ContactPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate={
+            "contact_radius": _relative(errors[RADIUS], radius),
+            "indentation_depth": _relative(errors[DEPTH], depth),
+            "normal_force": _relative(errors[FORCE], force),
+            "contact_stiffness": _relative(relative * stiffness + springs * errors[RADIUS], stiffness),  # Eq. (6)
+        },
+        cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
+        stages=log.records,
+        contact_radius=radius,
+        indentation_depth=depth,
+        normal_force=force,
+        contact_stiffness=stiffness,
+        fields=PathFields(scene, system.flat_punch, radius, depth, singular_edge=True),
+    )
+
+
+def _relative(errors: FloatArray | float, values: FloatArray | float) -> FloatArray:
+    """Errors over the values' largest magnitude, as a path states them; what is exactly zero has no error."""
+    largest = np.abs(np.atleast_1d(values)).max()
+    return np.atleast_1d(errors) / (largest if largest > 0.0 else 1.0)
+
+
+def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) -> tuple[Route, BranchErrors, float]:
+    """The way from the first contact radius inwards, errors along it, and how uncertain its start is in y."""
+    is_punch = isinstance(scene.indenter, FlatPunch)
+    if is_punch or loading.initial_contact_radius is not None:
+        system, branch = _branch(scene, loading.initial_contact_radius or scene.indenter.max_radius, flat_punch)
+        return Route(branch, float(branch.section_ends[-1]), pinned=is_punch), BranchErrors(system, branch), 0.0
+    if work_of_adhesion(scene) == 0.0:
+        raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
+    system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= _strength(b))
+    bounds, start = BranchErrors(system, branch), branch.solutions(FORCE, np.array([_strength(branch)]))
+    if np.isnan(start[0]):
+        return Route(branch, float(branch.section_ends[-1]), pinned=False), bounds, 0.0
+    strongest = max(float(bounds.of_point(y, 0.0)[FORCE]) for y in branch.folds(FORCE))
+    uncertain = float(bounds.shift(FORCE, start, strongest)[0])
+    return Route(branch, float(start[0]), pinned=False), bounds, uncertain
+
+
+def _strength(branch: AdhesiveBranch) -> float:
+    """Largest tension of the branch [N]: pressing as hard shows all of the way back."""
+    folds = branch.folds(FORCE)
+    return -float(branch.values(folds)[FORCE].min(initial=0.0)) if folds.size else np.inf
+
+
+def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, AdhesiveBranch]:
+    """Springs and equilibria up to a radius [m]."""
+    system = equivalent_system(scene.layer, scene.indenter, radius, flat_punch)
+    breakpoints = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
+    return system, adhesive_branch(
+        system,
+        breakpoints=breakpoints,
+        radius=radius,
+        work_of_adhesion=work_of_adhesion(scene),
+        error=system.relative_error["contact_stiffness"],
+    )
+
+
+def _reaching(
+    scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[AdhesiveBranch], bool]
+) -> tuple[EquivalentSystem, AdhesiveBranch]:
+    """A branch that is long enough, or ends at the indenter's rim."""
+    flat, balance = scene.indenter.flat_radius, balance_radius(scene)
+    for radius in growing_radii(scene.indenter, flat + _FIRST_WAY * (balance - flat)):
+        system, branch = _branch(scene, radius, flat_punch)
+        if enough(branch):
+            break
+    return system, branch
+
+
+def balance_radius(scene: Scene) -> float:
+    """The contact radius [m] at which the indenter is as high as the elongation on the half-space is long."""
+    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / scene.layer.contact_modulus
+    law = power_law(indenter)
+    if law is not None:
+        coefficient, exponent = law
+        return float((length / coefficient**2) ** (1.0 / (2.0 * exponent - 1.0)))
+
+    def excess(r: float) -> float:
+        return float(indenter.height(r)) ** 2 - length * r
+
+    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
+
+
+def _prescribed(
+    scene: Scene, flat_punch: FlatPunchSource
+) -> tuple[EquivalentSystem, FloatArray, FloatArray, FloatArray]:
+    """Contact radius and depth under prescribed radii, depths or forces, and errors of depth, force and radius."""
+    loading = scene.loading
+    if isinstance(loading, ContactRadii):
+        system = equivalent_system(scene.layer, scene.indenter, float(loading.values[-1]), flat_punch)
+        depth = system.mdr_profile(loading.values) - critical_elongation(
+            system, loading.values, work_of_adhesion(scene)
+        )  # Eq. (41)
+        errors = errors_at_radius(system, loading.values, depth)
+        return system, loading.values, depth, np.vstack([errors, np.zeros(depth.size)])
+    if not isinstance(loading, IndentationDepths | NormalForces):
+        raise UnsupportedSceneError(
+            f"loading = {type(loading).__name__}: adhesion needs radii, depths, forces, Detachment"
+        )
+    quantity = DEPTH if isinstance(loading, IndentationDepths) else FORCE
+    if isinstance(scene.indenter, FlatPunch):
+        return _on_punch(scene, scene.indenter.radius, quantity, loading.values, flat_punch)
+    largest = float(loading.values.max())
+    system, branch = _reaching(scene, flat_punch, lambda b: bool(b.values(b.section_ends[-1:])[quantity, 0] >= largest))
+    y = branch.solutions(quantity, loading.values)
+    _refuse_missing(y, loading.values, branch, quantity)
+    depth = loading.values if quantity == DEPTH else branch.values(y)[DEPTH]
+    return system, branch.radius(y), depth, _errors_on_branch(system, branch, quantity, y)
+
+
+def _errors_on_branch(system: EquivalentSystem, branch: AdhesiveBranch, quantity: int, y: FloatArray) -> FloatArray:
+    """Errors of depth, force and radius of states with a prescribed quantity, which is exact."""
+    errors = BranchErrors(system, branch)
+    spread = errors.of_states(y, errors.shift(quantity, y))
+    spread[quantity] = 0.0
+    return spread
+
+
+def _on_punch(
+    scene: Scene, radius: float, quantity: int, values: FloatArray, flat_punch: FlatPunchSource
+) -> tuple[EquivalentSystem, FloatArray, FloatArray, FloatArray]:
+    """A flat punch keeps its radius down to where the front sets off; then it peels, if it can do so stably."""
+    system, branch = _branch(scene, radius, flat_punch)
+    stiffness = float(system.contact_stiffness(radius))
+    held = values >= branch.values(branch.section_ends[-1:])[quantity, 0]
+    y = np.where(held, branch.section_ends[-1], branch.solutions(quantity, values))
+    _refuse_missing(y, values, branch, quantity)
+    depth = values if quantity == DEPTH else np.where(held, values / stiffness, branch.values(y)[DEPTH])
+    linear = system.relative_errors(np.full(values.size, radius))["contact_stiffness"] * np.abs(depth)
+    at_rest = np.stack([np.zeros(values.size), linear * stiffness, np.zeros(values.size)])  # Eq. (43)
+    if quantity == FORCE:
+        at_rest = np.stack([linear, *np.zeros((2, values.size))])
+    errors = np.where(held, at_rest, _errors_on_branch(system, branch, quantity, y))
+    return system, np.where(held, radius, branch.radius(y)), depth, errors
+
+
+def _refuse_missing(y: FloatArray, values: FloatArray, branch: AdhesiveBranch, quantity: int) -> None:
+    missing = np.flatnonzero(np.isnan(y))
+    if not missing.size:
+        return
+    reach = branch.values(np.append(branch.folds(quantity), branch.section_ends[-1]))[quantity]
+    unit = "m" if quantity == DEPTH else "N"
+    raise InvalidInput(
+        f"loading.values = {values[missing[0]]:g} (entry {missing[0]}): no stable contact; "
+        f"the indenter holds from {reach.min():g} {unit} on, up to {reach.max():g} {unit} at its rim"
+    )
+
+
+def _states(
+    route: Route, bounds: BranchErrors, uncertain: float
+) -> tuple[FloatArray, FloatArray, FloatArray, NDArray[np.bool_]]:
+    """Radius, depth and force, their errors (as rows depth, force, radius) and stability by control, radius falling.
+
+    A pinned front comes first: from rest to where it sets off, depth and force are shares of what they are there.
+    """
+    held, branch = _PINNED if route.pinned else 0, route.branch
+    share = np.append(np.arange(held) / max(held, 1), np.ones(POINTS - held))
+    y = np.append(np.full(held, route.start), route.start * np.linspace(1.0, 0.0, POINTS - held, endpoint=False))
+    errors = share * bounds.of_states(y, uncertain * y / route.start)
+    return branch.radius(y), share * branch.values(y), errors, (branch.slopes(y) > 0.0) | (share < 1.0)
+
+
+def work_of_adhesion(scene: Scene) -> float:
+    """The scene's dgamma [J/m^2]."""
+    adhesion = scene.effect(Adhesion)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion
+
+
+def _notes(scene: Scene, system: EquivalentSystem, radius: float) -> tuple[str, ...]:
+    """A warning where the contact is likely to lose its circle before the theory lets it detach."""
+    layer = scene.layer
+    if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio < _CONFINED:
+        return ()
+    ratio = min(radius / layer.thickness, system.flat_punch.max_ratio)  # the branch's first radius carries rounding
+    asked = min(ratio, _THINNEST)
+    smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, asked))
+    pressure = smooth / np.sqrt(1.0 - np.array([0.0, _INSIDE]) ** 2)
+    if pressure[0] <= pressure[1]:
+        return ()
+    warning = (
+        f"At a/h = {ratio:.3g} the tension under the indenter has a second maximum in its centre: cavitation or "
+        "fingering may come before the axisymmetric detachment computed here (Webber et al. 2003)."
+    )
+    return (warning,)

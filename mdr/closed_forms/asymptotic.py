@@ -1,0 +1,74 @@
+"""Thin layers, a >> h: closed forms of section 2.1 of Forsbach (2023). The half-space's stand in `half_space_profile`.
+
+A layer that may flow sideways (unbonded) or be compressed (bonded, nu < 1/2) becomes a bed of independent springs under
+the indenter itself. A bonded incompressible layer has to squeeze its material out and resists like a lubricating film.
+The forms hold to first order: their relative errors fall like h/a.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact import InvalidInput, Layer, Profile
+from contact.records.validation import FloatArray
+
+NODES = 32  # between two breakpoints of the profile
+
+
+def is_film(layer: Layer) -> bool:
+    """Whether the thin layer resists like a film: bonded and incompressible.
+
+    Raises:
+        InvalidInput: For a half-space, which has no thin limit.
+    """
+    if layer.is_half_space:
+        raise InvalidInput("thickness = inf: a half-space has no thin-layer limit; give the layer's thickness")
+    return layer.support == "bonded" and layer.poissons_ratio == 0.5
+
+
+def foundation_modulus(layer: Layer) -> float:
+    """E~ [Pa] of the bed p = E~ w/h: confined modulus if bonded, Eq. (17), E* if unbonded, Eq. (22)."""
+    return layer.contact_modulus if layer.support == "unbonded" else layer.confined_modulus
+
+
+def thin_contact_stiffness(layer: Layer, contact_radius: ArrayLike) -> FloatArray:
+    """k_N [N/m], Eqs. (16), (18) and (21)."""
+    a, h = np.asarray(contact_radius, dtype=float), layer.thickness
+    if is_film(layer):
+        return np.pi * layer.youngs_modulus * a**4 / (8 * h**3)  # Eq. (18)
+    return np.pi * foundation_modulus(layer) * a**2 / h  # Eqs. (16), (21)
+
+
+def thin_spring_stiffness(layer: Layer, x: ArrayLike) -> FloatArray:
+    """c_N = k_N'/2 [Pa], Eqs. (17), (20) and (22)."""
+    x, h = np.asarray(x, dtype=float), layer.thickness
+    if is_film(layer):
+        return np.pi * layer.youngs_modulus * x**3 / (4 * h**3)  # Eq. (20), E* = 4 E/3
+    return np.pi * foundation_modulus(layer) * x / h  # Eqs. (17), (22)
+
+
+def thin_profile(layer: Layer, indenter: Profile, x: ArrayLike) -> FloatArray:
+    """g [m]: the profile itself, Eqs. (17) and (22), or its mean over the contact area, Eq. (20)."""
+    x = np.asarray(x, dtype=float)
+    return _mean_height(indenter, x) if is_film(layer) else indenter.height(x)
+
+
+def thin_flat_punch_pressure(layer: Layer, rho: ArrayLike) -> FloatArray:
+    """p_bar of a flat punch over rho = r/a: constant, or the parabola of Eq. (19)."""
+    rho = np.asarray(rho, dtype=float)
+    return 2 * (1 - rho) * (1 + rho) if is_film(layer) else np.ones_like(rho)
+
+
+def _mean_height(indenter: Profile, x: FloatArray) -> FloatArray:
+    """(2/x^2) int_0^x f(r) r dr by Gauss quadrature between breakpoints."""
+    nodes, weights = gauss_nodes(NODES)
+    flat = indenter.flat_radius
+    ends = [flat, *(k for k in indenter.breakpoints if flat < k < np.max(x, initial=0.0)), np.inf]
+    total = np.zeros_like(x)
+    for k, start in enumerate(ends[:-1]):
+        low, high = np.minimum(start, x), np.minimum(ends[k + 1], x)
+        r = low[..., None] + (high - low)[..., None] * nodes
+        total += (high - low) * ((indenter.height(r) * r) @ weights)
+    return 2 * total / x**2

@@ -1,0 +1,166 @@
+"""Where the front of a spring bed stands, and what the springs within it carry.
+
+The front lies between two springs. Its place is extrapolated from the three outermost springs in contact, the force
+integrated by the trapezoidal rule with end corrections and a parabola beyond the last spring: fourth order in the
+spring distance while spring forces are smooth, second where old fronts have left a bend.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact.records.validation import FloatArray
+from mdr.history.springs_in_time import BedState, SpringLaw
+
+_FEW = 5
+_NEEDED = 3  # springs of one section, to extrapolate in y
+
+
+@dataclass(frozen=True)
+class Bed:
+    """Springs at equal distances of the front coordinate y within each section between breakpoints of the profile.
+
+    Attributes:
+        y: Where they stand, shape (n,), from 0 on; a breakpoint has two, one for each side.
+        radius: a [m] there.
+        profile: g [m].
+        density: dk/dy, shape (n,), seen from inside the section.
+        core: Stiffness k(b) within the flat end [N/m]; its springs all behave as the first one.
+        starts: Number of the first spring of each section.
+    """
+
+    y: FloatArray
+    radius: FloatArray
+    profile: FloatArray
+    density: FloatArray
+    core: float
+    starts: tuple[int, ...] = (0,)
+
+    def sections(self) -> list[slice]:
+        """The springs of each section."""
+        return [slice(*ends) for ends in pairwise((*self.starts, self.y.size))]
+
+    def section(self, spring: int) -> slice:
+        """The springs of one spring's section."""
+        return next(own for own in self.sections() if spring < own.stop)
+
+    def step(self, spring: int) -> float:
+        """Distance of the springs around one of them."""
+        start = self.section(spring).start
+        return float(self.y[start + 1] - self.y[start])
+
+
+def released_front(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray) -> float:
+    """y of the outermost contact where the spring force falls to zero, seen from inside."""
+    last = int(np.flatnonzero(touching)[-1])
+    if last + 1 == bed.y.size:
+        return float(bed.y[-1])
+    start = bed.section(last).start
+    if last - start < _NEEDED - 1 and start:
+        return _by_radius(bed, last, (start - 2, last), forces)
+    inner = forces[max(last - 2, start) : last + 1][::-1]
+    return float(bed.y[last] + _way_to_zero(inner, bed.step(last)))
+
+
+def touched_front(bed: Bed, state: BedState) -> float:
+    """y of the outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
+    first = int(np.flatnonzero(state.touching)[-1]) + 1
+    if first == bed.y.size:
+        return float(bed.y[-1])
+    gaps, stop = state.surface + bed.profile - state.depth, bed.section(first).stop
+    if stop - first >= _NEEDED or stop == bed.y.size:
+        return float(bed.y[first] - _way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+    if not state.surface[first:stop].any():  # where nothing has been pressed, the gap goes on inside the contact
+        last = slice(stop - _NEEDED, stop)
+        zero = _zero(bed.y[last], bed.profile[last] - state.depth)
+        return float(min(max(zero, bed.y[first - 1]), bed.y[first]))
+    return _by_radius(bed, first - 1, (first, stop + 1), gaps)
+
+
+def _zero(y: FloatArray, values: FloatArray) -> float:
+    """Where a function that increases through three points vanishes: inverse quadratic interpolation."""
+    (a, b, c), (p, q, r) = y, values
+    return float(a * q * r / ((p - q) * (p - r)) + b * p * r / ((q - p) * (q - r)) + c * p * q / ((r - p) * (r - q)))
+
+
+def _by_radius(bed: Bed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
+    """y where values of two springs on both sides of a breakpoint vanish: across it they are smooth in a, not in y."""
+    (a, b), (u, v) = bed.radius[list(pair)], values[list(pair)]
+    low, high = bed.radius[last], bed.radius[last + 1]
+    zero = min(max(a + (b - a) * u / (u - v), low), high) if u != v else low
+    start = bed.section(last + 1).start
+    way = zero - float(bed.radius[start])
+    return float(bed.y[start] + (np.sqrt(max(way, 0.0)) if bed.radius[start] > 0.0 else way))  # see `SpringTable`
+
+
+def _way_to_zero(values: FloatArray, step: float) -> float:
+    """How far before the first of up to three equidistant values their polynomial vanishes, at most one step."""
+    if not np.isfinite(values).all():  # beyond a flat punch's rim the gap is infinite
+        return step
+    if values.size < 3:
+        slope = (values[1] - values[0]) / step if values.size == 2 else values[0] / step
+        way = values[0] / slope if slope > 0.0 else step
+        return float(min(max(way, 0.0), step))
+    slope = (-1.5 * values[0] + 2.0 * values[1] - 0.5 * values[2]) / step
+    curvature = (values[0] - 2.0 * values[1] + values[2]) / step**2
+    root = slope + np.sqrt(max(slope**2 - 2.0 * curvature * values[0], 0.0))
+    way = 2.0 * values[0] / root if root > 0.0 else step
+    return float(min(max(way, 0.0), step))
+
+
+def total_force(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray, y: float, at_front: float) -> float:
+    """Force of all springs within the front at y, `at_front` the spring force there."""
+    last = int(np.flatnonzero(touching)[-1])
+    own, load = bed.section(last), bed.density * forces
+    inner = sum(_integral(load[one], bed.step(one.start)) for one in bed.sections() if one.start < own.start)
+    inner += _integral(load[own.start : last + 1], bed.step(last))
+    return float(bed.core * forces[0] + inner + _beyond(bed, load, last, y, at_front))
+
+
+def _integral(load: FloatArray, step: float) -> float:
+    """Trapezoidal rule with end corrections."""
+    inner = step * (load.sum() - 0.5 * (load[0] + load[-1])) if load.size > 1 else 0.0
+    if load.size >= _FEW:
+        end = (1.5 * load[-1] - 2.0 * load[-2] + 0.5 * load[-3]) / step
+        begin = (-1.5 * load[0] + 2.0 * load[1] - 0.5 * load[2]) / step
+        inner -= step**2 / 12.0 * (end - begin)
+    return float(inner)
+
+
+def _beyond(bed: Bed, load: FloatArray, last: int, y: float, at_front: float) -> float:
+    """Integral from the last spring in contact to the front, by a parabola through its inner neighbour."""
+    own, way, step = bed.section(last), y - float(bed.y[last]), bed.step(last)
+    if way <= 0.0:
+        return 0.0
+    edge = float(np.interp(y, bed.y[own], bed.density[own])) * at_front
+    rise = (edge - load[last]) / way
+    bend = (rise - (load[last] - load[last - 1]) / step) / (way + step) if last > own.start else 0.0
+    return float(load[last] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
+
+
+def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[float, float]:
+    """Force [N] and front coordinate, which is negative where nothing touches."""
+    if not state.touching.any():
+        return 0.0, -1.0
+    forces = law.force(state.surface, state.branches, speed)
+    if bed.y.size < _FEW:  # a flat punch has no flank
+        return bed.core * float(forces[0]), 0.0
+    if law.viscosity == 0.0 or speed <= 0.0:
+        y = released_front(bed, state.touching, forces)
+        return total_force(bed, state.touching, forces, y, 0.0), y
+    y = touched_front(bed, state)
+    return total_force(bed, state.touching, forces, y, _continued(bed, state.touching, forces, y)), y
+
+
+def _continued(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:
+    """The spring force at the front, from those inside."""
+    last = int(np.flatnonzero(touching)[-1])
+    if last - bed.section(last).start < _NEEDED - 1:
+        return float(forces[last])
+    share = (y - float(bed.y[last])) / bed.step(last)
+    outer, middle, inner = forces[last], forces[last - 1], forces[last - 2]
+    return float(outer + share * (outer - middle) + 0.5 * share * (share + 1.0) * (outer - 2.0 * middle + inner))

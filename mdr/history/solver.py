@@ -1,0 +1,342 @@
+"""Incompressible viscoelastic layers under a prescribed depth or force history, Eqs. (47), (51) and (52).
+
+Loading, unloading with a receding front, and reloading over a surface that has not yet recovered: one bed of springs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.layer_equation.protocol import FlatPunchSource
+from contact import (
+    DepthHistory,
+    ForceHistory,
+    HistoryPath,
+    InvalidInput,
+    NotConvergedError,
+    Profile,
+    Scene,
+    StageLog,
+    UnsupportedSceneError,
+)
+from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
+from mdr.history.contact_edge import Bed, carried
+from mdr.history.force_control import Ramp, pressed_at_once, to_force
+from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
+from mdr.impact.units import is_flat, relaxation_of
+from mdr.springs.assembly import equivalent_system
+from mdr.springs.shared_tables import bisected, growing_radii, own_table, upper
+from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
+
+ACCURACY = 1e-9  # of the method's time integration, for which the next two numbers stand; one digit more doubles both
+_GAPS = 640  # between springs
+_FINENESS = 400  # substeps of a whole force history, at least four an interval
+_LEVELS = (4, 2, 1)  # times the fewest substeps
+_FEWEST, _MOST = -2, 2  # how often they may be doubled
+_FEWEST_GAPS = 16  # of a section between breakpoints
+_SHARES = (1.0, 0.7, 0.5)  # of the springs: where the front lies between two of them, fewer may err as much by chance,
+_CAUTION = 2.0  # so two numbers of them tell the error, times this
+_SEARCHED = 64  # points of each section, among which the largest front is looked for
+_MARGIN = 1.01  # of the way to the largest front: a few springs stay outside
+_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
+_ROUNDING = 1e-12  # of sums over hundreds of springs
+_LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: all numbers of springs miss the same kinks of a profile
+_BEND = 1e-6  # of the largest spring force: an outward rise that counts
+
+
+@dataclass(frozen=True)
+class _Track:
+    """One pass over the history.
+
+    Attributes:
+        depth: delta [m] at the given instants, shape (n,).
+        force: F_N [N], shape (n,).
+        y: Front coordinate, negative where there is no contact, shape (n,).
+        bent: Whether the spring forces ever rose outwards.
+    """
+
+    depth: FloatArray
+    force: FloatArray
+    y: FloatArray
+    bent: bool
+
+
+def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
+    """Force under a prescribed depth, or depth under a prescribed force.
+
+    Raises:
+        InvalidInput: If a force is negative or nothing is ever pressed.
+        UnsupportedSceneError: If the contact would leave a gap inside itself.
+        NotConvergedError: If fewer springs give another answer.
+    """
+    log, loading = StageLog(), scene.loading
+    if not isinstance(loading, DepthHistory | ForceHistory):
+        raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
+    law, doublings = SpringLaw.of(relaxation_of(scene)), _doublings(settings)
+    gaps, fineness = int(_GAPS * 2.0**doublings), int(_FINENESS * 2.0**doublings)
+    with log.stage("equivalent_system"):
+        table, beds, springs = _beds(scene, loading, law, flat_punch, gaps)
+    with log.stage("history"):
+        found = _followed(law, beds, loading, _substeps(loading, fineness))
+    log.count("springs", beds[0].y.size)
+    log.count("instants", loading.time.size)
+    return HistoryPath(
+        scene=scene,
+        method="mdr",
+        settings=settings,
+        error_estimate=_errors(scene, table, found, springs),
+        cost=log.cost(unknowns=beds[0].y.size),
+        stages=log.records,
+        notes=(_BENT,) if found.track.bent else (),
+        time=loading.time,
+        indentation_depth=found.track.depth,
+        normal_force=found.track.force,
+        contact_radius=_radius(scene, table, found.track.y),
+    )
+
+
+def _errors(scene: Scene, table: SpringTable | None, found: _Found, springs: float) -> dict[str, FloatArray]:
+    """Relative to the largest values, the same at all instants.
+
+    Args:
+        scene: The scene.
+        table: Its springs; None under a flat punch.
+        found: The history.
+        springs: Relative error of the springs.
+    """
+    by_springs, by_steps = (
+        max(
+            (_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs), default=0.0
+        )
+        for pairs in (found.by_springs, found.by_steps)
+    )
+    known = _SPRINGS_TO_MOTION * springs + _ROUNDING
+    moved = _CAUTION * (by_springs + by_steps) + known
+    if found.error > _LARGEST_ERROR:
+        raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
+    error = np.full(found.track.y.size, found.error + known)
+    return {"indentation_depth": error, "normal_force": error, "contact_radius": np.full(error.size, moved)}
+
+
+_BENT = (
+    "Reloading has left spring forces that rise outwards somewhere; that the pressure is positive everywhere then "
+    "follows no longer from the springs alone."
+)
+
+
+def _doublings(settings: Mapping[str, Setting]) -> int:
+    """How much finer than usual the springs and substeps are for the method's accuracy."""
+    accuracy = settings.get("accuracy") or ACCURACY
+    return int(np.clip(round(np.log10(ACCURACY / float(accuracy))), _FEWEST, _MOST))
+
+
+def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np.intp]:
+    """Fewest substeps of each interval."""
+    durations = np.diff(loading.time)
+    counts: NDArray[np.intp] = np.maximum(np.ceil(fineness / _LEVELS[0] * durations / durations.sum()), 1.0).astype(int)
+    return counts
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A history and what tells its errors.
+
+    Attributes:
+        track: The history.
+        by_springs: Pairs that differ in the number of springs only.
+        by_steps: Pairs that differ in the number of substeps only.
+        error: Of depth and force, relative to their largest values.
+    """
+
+    track: _Track
+    by_springs: list[tuple[_Track, _Track]]
+    by_steps: list[tuple[_Track, _Track]]
+    error: float
+
+
+def _followed(
+    law: SpringLaw, beds: list[Bed], loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
+) -> _Found:
+    """The history on the first bed, and how much it changes on the others and with fewer substeps.
+
+    Between two instants a prescribed depth needs no substeps, nor does an elastic layer. Under a force their errors
+    go with the second and fourth powers of their number, so three numbers of them have a limit (Romberg).
+    """
+    if isinstance(loading, DepthHistory) or law.is_elastic:
+        fine, *others = (_follow(law, bed, loading, np.ones_like(substeps)) for bed in beds)
+        pairs = [(fine, other) for other in others]
+        return _Found(fine, pairs, [], _largest_change(pairs))
+    fine, middle, coarse = (_follow(law, beds[0], loading, level * substeps) for level in _LEVELS)
+    pairs = [(coarse, _follow(law, bed, loading, substeps)) for bed in beds[1:]]
+    depth, error = _limit(fine.depth, middle.depth, coarse.depth)
+    change = float(error.max() / np.abs(depth).max()) + _largest_change(pairs)
+    return _Found(_Track(depth, fine.force, fine.y, fine.bent), pairs, [(fine, middle)], change)
+
+
+def _largest_change(pairs: list[tuple[_Track, _Track]]) -> float:
+    """Of force or depth, whichever is not prescribed, with caution."""
+    return _CAUTION * max(max(_change(one.force, other.force), _change(one.depth, other.depth)) for one, other in pairs)
+
+
+def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Without the errors of second and fourth order, and twice what the last extrapolation has changed.
+
+    Of one c h^p with p >= 1 what is left is no more than that change; releases leave several powers, which may cancel.
+    """
+    first, second = fine + (fine - middle) / 3.0, middle + (middle - coarse) / 3.0
+    return first + (first - second) / 15.0, 2.0 * np.abs(first - second)
+
+
+def _change(fine: FloatArray, coarse: FloatArray) -> float:
+    """Largest difference against the largest value."""
+    return float(np.abs(fine - coarse).max() / max(float(np.abs(fine).max()), np.finfo(float).tiny))
+
+
+def _radius(scene: Scene, table: SpringTable | None, y: FloatArray) -> FloatArray:
+    """a [m], zero without contact."""
+    radius = np.full(y.shape, scene.indenter.max_radius) if table is None else table.radius(np.maximum(y, 0.0))
+    return np.where(y >= 0.0, radius, 0.0)
+
+
+def _beds(
+    scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
+) -> tuple[SpringTable | None, list[Bed], float]:
+    """Springs out to the largest radius that the history can reach, in each of the `_SHARES`, and their own error."""
+    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
+    _refuse_idle(loading, prescribed)
+    if is_flat(scene):
+        end = scene.indenter.max_radius
+        system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
+        core = float(system.contact_stiffness(end))
+        bed = Bed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
+        return None, [bed, bed], system.relative_error["contact_stiffness"]
+    largest = float(prescribed.max())
+    for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
+        table = own_table(scene.layer, scene.indenter, radius, flat_punch)
+        y = np.concatenate([np.linspace(*ends, _SEARCHED) for ends in pairwise(table.section_ends)])
+        reached = _reached(table, y, loading, law)
+        if np.interp(_farther(table, float(y[-1]), 1.0 / _MARGIN), y, reached) >= largest:
+            break
+    if reached[-1] < largest:
+        raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
+    end = _farther(table, float(np.interp(largest, reached, y)), _MARGIN)
+    pointed = scene.indenter.flat_radius == 0.0
+    beds = [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in _SHARES]
+    return table, beds, table.error
+
+
+def _farther(table: SpringTable, y: float, times: float) -> float:
+    """A front so many times as far along the sections, each as long as the root of the radii it spans; in the table."""
+    lengths = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(table.section_radii)))])  # y begins as a radius
+    return float(np.interp(times * np.interp(y, table.section_ends, lengths), lengths, table.section_ends))
+
+
+def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed: bool) -> Bed:
+    """Springs up to y = end, each section between breakpoints with its share of the gaps."""
+    ends = np.append(table.section_ends[table.section_ends < end], end)
+    lengths = np.sqrt(np.diff(table.radius(ends)))  # y itself is a radius before the first breakpoint
+    shares = [max(round(gaps * part), fewest) for part in lengths / lengths.sum()]
+    places = [np.linspace(low, high, share + 1) for (low, high), share in zip(pairwise(ends), shares, strict=True)]
+    rows = np.concatenate([table.evaluate(y, section=i) for i, y in enumerate(places)], axis=1)
+    radius = np.concatenate([table.radius_within(y, i) for i, y in enumerate(places)])
+    return Bed(
+        y=np.concatenate(places),
+        radius=radius,
+        profile=np.maximum(rows[PROFILE], 0.0),
+        density=rows[STIFFENING],
+        core=0.0 if pointed else float(rows[STIFFNESS, 0]),
+        starts=(0, *np.cumsum([y.size for y in places])[:-1].tolist()),
+    )
+
+
+def _refuse_idle(loading: DepthHistory | ForceHistory, prescribed: FloatArray) -> None:
+    if isinstance(loading, ForceHistory) and prescribed.min() < 0.0:
+        worst = int(prescribed.argmin())
+        raise InvalidInput(
+            f"loading.force = {prescribed[worst]:g} (entry {worst}): without adhesion nothing pulls; stay above zero"
+        )
+    if prescribed.max() <= 0.0:
+        raise InvalidInput(f"loading: its largest value is {prescribed.max():g}; the indenter never presses")
+
+
+def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
+    """A radius [m] to start from: where the half-space, roughly, has the largest depth or force."""
+    indenter, modulus = scene.indenter, scene.layer.contact_modulus
+    if isinstance(loading, DepthHistory):
+        largest = float(loading.depth.max())
+        return _beyond_flat(indenter, lambda r: float(indenter.height(r)) - largest)
+    largest = float(loading.force.max())
+    return _beyond_flat(indenter, lambda r: modulus * r * float(indenter.height(r)) - largest)
+
+
+def _beyond_flat(indenter: Profile, excess: Callable[[float], float]) -> float:
+    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
+
+
+def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHistory, law: SpringLaw) -> FloatArray:
+    """The largest depth, or force, that keeps the front within y: the force of a layer relaxed for the whole time."""
+    rows = table.evaluate(y)
+    if isinstance(loading, DepthHistory):
+        return np.asarray(rows[PROFILE])
+    decay = np.exp(-(loading.time[-1] - loading.time[0]) / law.times)
+    softest = law.long_term + float((law.weights * decay).sum())
+    return np.asarray(softest * (rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]))
+
+
+def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
+    """March through the history and record depth, force and front at the given instants."""
+    time = loading.time
+    states = (
+        _by_depth(law, bed, loading) if isinstance(loading, DepthHistory) else _by_force(law, bed, loading, substeps)
+    )
+    records, bent = [], False
+    for (state, speed), instant in zip(states, time, strict=True):
+        bent |= _check_circle(law, state, speed, float(instant))
+        records.append((state.depth, *carried(law, bed, state, speed)))
+    depth, force, y = np.array(records).T
+    force = force if isinstance(loading, DepthHistory) else loading.force
+    y = np.where(force > _ROUNDING * force.max(), y, -1.0)  # what is held by a rounding error is no contact
+    return _Track(depth, force, y, bent)
+
+
+def _by_depth(law: SpringLaw, bed: Bed, loading: DepthHistory) -> Iterator[tuple[BedState, float]]:
+    """The bed and the speed of the depth at each instant."""
+    state = undeformed(law, bed.profile, float(loading.depth[0]))
+    yield state, 0.0
+    for duration, depth in zip(np.diff(loading.time), loading.depth[1:], strict=True):
+        speed = float(depth - state.depth) / float(duration)
+        state = advance(law, bed.profile, state, float(depth), float(duration))
+        yield state, speed
+
+
+def _by_force(
+    law: SpringLaw, bed: Bed, loading: ForceHistory, substeps: NDArray[np.intp]
+) -> Iterator[tuple[BedState, float]]:
+    """The same under prescribed force."""
+    force, durations = loading.force, np.diff(loading.time)
+    state = pressed_at_once(law, bed, float(force[0])) if force[0] > 0.0 else undeformed(law, bed.profile, 0.0)
+    yield state, 0.0
+    for i, duration in enumerate(durations):
+        ramp = Ramp(float(force[i]), float(force[i + 1]), float(duration))
+        state, speed = to_force(law, bed, state, ramp, int(substeps[i]))
+        yield state, speed
+
+
+def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:
+    """Refuse a contact with a gap inside; say whether spring forces rise outwards."""
+    touching = np.flatnonzero(state.touching)
+    if not touching.size:
+        return False
+    if touching[-1] > touching.size:
+        raise UnsupportedSceneError(
+            f"at t = {time:g} s the contact opens inside while it holds outside: the method needs one circle; "
+            "end the history earlier, or let the layer recover before reloading"
+        )
+    forces = law.force(state.surface, state.branches, speed)[touching]
+    return bool(np.any(np.diff(forces) > _BEND * np.abs(forces).max()))

@@ -1,0 +1,161 @@
+"""What many impacts lead to: restitution, contact time and peaks, as arrays."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.polynomials import chebyshev
+from contact import NotConvergedError
+from contact.records.validation import FloatArray
+from mdr.impact.collocation import states
+from mdr.impact.equations import ImpactLanes, force, outline
+from mdr.impact.motion import Impacts, Leg
+from mdr.impact.units import ScaledImpacts
+from mdr.springs.table import MOMENT, PROFILE, STIFFNESS
+
+_PROFILE_ROUNDING = 4.0 * float(np.finfo(float).eps)  # of g, of the panel's largest
+ROUNDING = 1e-14  # of results in units of the impact, added to what the tolerance changes
+_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
+_CHANCE = 0.3  # of the accuracy: a closer agreement of two runs
+_OPEN = 0.1  # of the errors within steps
+_REST = 1e-10  # of the approach speed
+_TIME = 1  # row of the contact time
+_NODES = 14  # of the force on each step
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImpactResults:
+    """Outcome of many impacts, each array of shape (n,).
+
+    Attributes:
+        coefficient_of_restitution: [-].
+        contact_time: [s].
+        peak_force: [N].
+        peak_depth: [m].
+        peak_contact_radius: [m].
+        relative_error: Of these five, in this order, shape (5, n).
+    """
+
+    coefficient_of_restitution: FloatArray
+    contact_time: FloatArray
+    peak_force: FloatArray
+    peak_depth: FloatArray
+    peak_contact_radius: FloatArray
+    relative_error: FloatArray
+
+
+def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactResults:
+    """Back to SI units.
+
+    Args:
+        scaled: The impacts and their units.
+        impacts: Their motions.
+        accuracy: That was asked for.
+
+    Raises:
+        NotConvergedError: If an indenter comes to rest in the layer.
+    """
+    lanes = impacts.lanes
+    refuse_rest(impacts.end[3, : scaled.lanes.count], scaled.lanes.long_term)
+    depth = np.empty(lanes.count)
+    peak = np.zeros(lanes.count)
+    for leg in impacts.way_in:
+        own = lanes.take(leg.lanes)
+        depth[leg.lanes] = own.springs(impacts.turn[:1, leg.lanes], leg.section, 1)[0, 0]
+        peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
+    radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
+    both = np.stack([-impacts.end[3], impacts.end[1] + impacts.drift, peak, depth, radius])
+    values, change = fine_and_change(both, accuracy, impacts.within, ROUNDING + _depth_rounding(scaled.lanes, depth))
+    change += _SPRINGS_TO_MOTION * lanes.table.error
+    change[_TIME] += _SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
+    return ImpactResults(
+        coefficient_of_restitution=values[0],
+        contact_time=values[1] * scaled.time,
+        peak_force=values[2] * scaled.stiffness * scaled.depth,
+        peak_depth=values[3] * scaled.depth,
+        peak_contact_radius=values[4] * scaled.length,
+        relative_error=change,
+    )
+
+
+def _depth_rounding(lanes: ImpactLanes, depth: FloatArray) -> FloatArray:
+    """Rounding of g on the first panel of the table over the peak depth: a stiff dashpot stops a body far below it."""
+    first = lanes.table.evaluate(lanes.table.functions.edges[1:2], 1)[PROFILE]
+    return np.asarray(_PROFILE_ROUNDING * first / (lanes.units[0] * depth[: lanes.count]))
+
+
+def fine_and_change(
+    both: FloatArray, accuracy: float, within: FloatArray, rounding: FloatArray | float = ROUNDING
+) -> tuple[FloatArray, FloatArray]:
+    """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
+
+    One number may agree by chance, so the largest change of all but the contact time counts for each; two runs may, so
+    an error is never stated far below the accuracy that their steps were chosen for. Where relaxation is fast or a tip
+    is not smooth, times converge slower than the rest: they also get a share of what stays open within the steps.
+
+    Args:
+        both: Restitution, contact time, peaks of force, depth and radius, shape (5, 2 n).
+        accuracy: That was asked for.
+        within: Sum of the local errors within steps, shape (2 n,).
+        rounding: Relative, shape (n,).
+    """
+    fine, coarse = np.split(both, 2, axis=1)
+    change = np.abs(fine - coarse) / np.abs(fine) + _CHANCE * accuracy + rounding
+    worst = np.delete(change, _TIME, axis=0).max(axis=0)
+    change += worst
+    change[_TIME] += 2.0 * worst * leaving(fine)  # of the way left and of the speed
+    change[_TIME] += _OPEN * within[: fine.shape[1]] / fine[_TIME]
+    return fine, change
+
+
+def leaving(outcomes: FloatArray) -> FloatArray:
+    """How much relative errors of the depth count in the contact time: the peak depth over the way at leaving speed."""
+    restitution, time, _, depth, _ = outcomes
+    return np.asarray(depth / (restitution * time))
+
+
+def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
+    """A layer without long-term stiffness may hold the indenter: what is left then is rounding, no rebound.
+
+    Args:
+        final_velocity: Over the approach speed, negative for a rebound, shape (lanes,).
+        long_term: G_inf / G_0, shape (lanes,).
+    """
+    resting = np.flatnonzero((final_velocity >= 0.0) | ((long_term == 0.0) & (final_velocity > -_REST)))
+    if resting.size:
+        first = resting[0]
+        why = (
+            "it comes to rest in a layer that relaxes completely; give that a long-term shear modulus above zero"
+            if long_term[first] == 0.0
+            else "what viscosity leaves of its speed is lost in rounding; lower the viscosity or take a heavier body"
+        )
+        raise NotConvergedError(f"impact {first} does not rebound: {why}")
+
+
+def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:
+    """Dimensionless force at z in [-1, 1] on every step, shape (len(z), steps, lanes)."""
+    own = lanes.take(leg.lanes)
+    state = states(leg.trajectory, z)
+    shared, memory = outline(own.branches)
+    flat = state.reshape(state.shape[0], -1, state.shape[-1])
+    springs = own.springs(flat[0], leg.section, 5)
+    taken = springs[MOMENT] + np.add.reduce(springs[STIFFNESS] * flat[shared] - flat[memory])
+    return force(own, springs, springs[PROFILE], flat[2], taken).reshape(state.shape[1:])
+
+
+def _peak_force(lanes: ImpactLanes, leg: Leg) -> FloatArray:
+    """Largest force of each lane. A viscous layer relaxes at the turn, so it never comes after it."""
+    values = force_on_way_in(lanes, leg, chebyshev.nodes(_NODES))
+    matrix = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
+    present = np.arange(values.shape[1])[:, None] < leg.trajectory.counts
+    return chebyshev.largest(np.tensordot(matrix, values, 1), present)
+
+
+def joined(parts: list[ImpactResults], order: NDArray[np.intp]) -> ImpactResults:
+    """Several results as one, rearranged."""
+    names = [field.name for field in fields(ImpactResults)]
+    columns = {name: np.concatenate([getattr(part, name) for part in parts], axis=-1) for name in names}
+    return ImpactResults(**{name: column[..., order] for name, column in columns.items()})

@@ -1,0 +1,121 @@
+"""From scenes to dimensionless impacts and back."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bem.layer_equation.protocol import FlatPunchSource
+from contact import FlatPunch, Impact, Scene, UnsupportedSceneError
+from contact.records.validation import FloatArray
+from contact.scene.effects import Relaxation, Viscoelasticity
+from mdr.impact.equations import ImpactLanes
+from mdr.springs.shared_tables import (
+    Reference,
+    contact_scale,
+    coordinate_at,
+    reference,
+    table_for_energy,
+)
+from mdr.springs.table import PROFILE, STIFFNESS, SpringTable
+
+SOFTEST = (0.02, 1e-3, 1e-5)  # of the instantaneous modulus: how soft a layer may become during the way in
+
+
+@dataclass(frozen=True)
+class ScaledImpacts:
+    """Impacts on one spring table.
+
+    Attributes:
+        lanes: Their dimensionless equations.
+        length: Unit of the table's radii [m], shape (lanes,).
+        depth: Unit of depth [m].
+        time: Unit of time [s].
+        stiffness: Unit of stiffness [N/m].
+        velocity: v0 [m/s].
+        mass: M [kg].
+    """
+
+    lanes: ImpactLanes
+    length: FloatArray
+    depth: FloatArray
+    time: FloatArray
+    stiffness: FloatArray
+    velocity: FloatArray
+    mass: FloatArray
+
+
+def relaxation_of(scene: Scene) -> Relaxation:
+    """The scene's shear relaxation; an elastic layer has a constant one."""
+    model = scene.effect(Viscoelasticity)
+    if model is None:
+        return Relaxation(
+            long_term_modulus=scene.layer.shear_modulus, moduli=np.empty(0), times=np.empty(0), viscosity=0.0
+        )
+    relaxation = model.relaxation
+    present = relaxation.moduli > 0.0
+    return Relaxation(
+        long_term_modulus=relaxation.long_term_modulus,
+        moduli=relaxation.moduli[present],
+        times=relaxation.times[present],
+        viscosity=relaxation.viscosity,
+    )
+
+
+def impact_of(scene: Scene) -> Impact:
+    """The scene's loading, which must be an impact."""
+    if not isinstance(scene.loading, Impact):
+        raise UnsupportedSceneError(f"loading = {type(scene.loading).__name__}: an impact batch needs Impact")
+    return scene.loading
+
+
+def table_of(scene: Scene, flat_punch: FlatPunchSource, softest: float = SOFTEST[0]) -> tuple[Reference, SpringTable]:
+    """The shared problem of one scene and a table for its impact on a layer that gets no softer than that meanwhile."""
+    impact, layer = impact_of(scene), scene.layer
+    energy = 0.5 * impact.mass * impact.velocity**2
+    scale = contact_scale(layer, scene.indenter, energy)
+    shared = reference(layer, scene.indenter, scale)
+    soft = max(relaxation_of(scene).long_term_modulus / layer.shear_modulus, softest)
+    needed = energy / (soft * shared.stiffness * shared.depth**2)
+    return shared, table_for_energy(shared.layer, shared.indenter, scale / shared.length, needed, flat_punch)
+
+
+def scaled(scenes: Sequence[Scene], references: Sequence[Reference], table: SpringTable) -> ScaledImpacts:
+    """The dimensionless impacts of scenes that share a table and a number of Prony branches.
+
+    The unit of depth is the smaller of the depths at which an elastic impact of the same energy, and a body that only
+    dashpots slow down, come to rest: their impulse is eta/G times the elastic force there, since dF = k d(delta).
+    """
+    mass = np.array([impact_of(scene).mass for scene in scenes])
+    velocity = np.array([impact_of(scene).velocity for scene in scenes])
+    length, depth, stiffness = (
+        np.array([getattr(r, name) for r in references]) for name in ("length", "depth", "stiffness")
+    )
+    relaxations = [relaxation_of(scene) for scene in scenes]
+    modulus = np.array([r.instantaneous_modulus for r in relaxations])
+    lag = np.array([r.viscosity for r in relaxations]) / modulus
+    y = coordinate_at(table.survey.energy, table, 0.5 * mass * velocity**2 / (stiffness * depth**2))
+    impulse = mass * velocity / (stiffness * depth)
+    force = np.divide(impulse, lag, out=np.full(lag.shape, np.inf), where=lag > 0.0)
+    y = np.minimum(y, coordinate_at(table.survey.force, table, force))
+    rows = table.evaluate(y)
+    g, k = rows[PROFILE], rows[STIFFNESS]
+    units = np.stack([g, g / y, k, k / y, k * g, k * g**2, y])
+    time = depth * g / velocity
+    lanes = ImpactLanes(
+        table=table,
+        units=units,
+        long_term=np.array([r.long_term_modulus for r in relaxations]) / modulus,
+        viscosity=lag / time,
+        weights=np.stack([r.moduli for r in relaxations], axis=1)[:, None] / modulus,
+        rates=time / np.stack([r.times for r in relaxations], axis=1)[:, None],
+        inertia=stiffness * k * (depth * g / velocity) ** 2 / mass,
+    )
+    return ScaledImpacts(lanes, length, depth * g, time, stiffness * k, velocity, mass)
+
+
+def is_flat(scene: Scene) -> bool:
+    """Whether the indenter is a flat punch, whose contact radius never changes."""
+    return isinstance(scene.indenter, FlatPunch)

@@ -1,0 +1,299 @@
+"""From a layer and an indenter to the equivalent one-dimensional system."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bem.layer_equation.contact_density import ContactDensity
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
+from bem.layer_equation.half_space import HalfSpaceFlatPunch
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+from bem.layer_equation.thin_layers import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
+from bem.polynomials.mapped import MappedFunction, MappedGrid, resolve
+from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
+from contact.records.validation import FloatArray
+from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.half_space_profile import half_space_profile
+from mdr.springs.layer_profile import contact_averages, edge_values
+from mdr.springs.published_transform import published_profile
+from mdr.springs.surface_fields import ContactFields
+from mdr.springs.thin_layer_profile import wide_profile
+
+NODES = 24  # on each piece, where the flat-punch data do not prescribe their own
+TABLE_NODES = 12  # with a table, whose functions are no smoother than its splines
+FIRST_OCTAVE = -5  # below a/h = 1/32 a table's functions are linear to its accuracy
+RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half-space profile
+SHARE = 0.01  # of the flat punch's error, below which a profile on coarse panels is resolved no further
+_FLATTEST = 16.0  # exponent at first touch; u^4n leaves double precision beyond 30, and errs by 1e-11 from 23 on
+_CLOSE = (1e-9, 1e-4, 1e-1)  # to first touch, relative
+GAP = 1e-12  # relative distance below which two piece ends are one
+
+
+def equivalent_system(
+    layer: Layer, indenter: Profile, max_radius: float, flat_punch: FlatPunchSource
+) -> EquivalentSystem:
+    """Springs and profile for contact radii up to max_radius; a few milliseconds once the flat-punch data exist.
+
+    Args:
+        layer: Layer or half-space.
+        indenter: Profile of revolution.
+        max_radius: Largest contact radius [m], above the indenter's flat radius, or equal to a flat punch's own.
+        flat_punch: Where k_bar, c_bar and the profile transform come from.
+
+    Raises:
+        InvalidInput: If the flat-punch data do not cover max_radius/h.
+        SeveralContacts: If the contact would not be one circle.
+    """
+    _refuse_endless_depth(indenter, max_radius)
+    unit = max_radius if layer.is_half_space else layer.thickness
+    solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
+    if isinstance(solution, LargeRatioSolution) and not isinstance(indenter, FlatPunch):
+        if max(indenter.flat_radius, *indenter.breakpoints, 0.0) > FIRST_RATIO / 2 * unit:
+            solution = solution.wide_alone
+        else:
+            max_radius = _known_radius(solution, indenter, unit, max_radius)
+    g_hs = _half_space_function(solution, indenter, unit, max_radius)
+    springs = _springs_at_nodes(solution, g_hs, indenter.flat_radius / unit)
+    profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
+    _refuse_rings(profile, indenter, unit, _noise(solution, max_radius / unit))
+    return EquivalentSystem(
+        contact_modulus=layer.contact_modulus,
+        length_unit=unit,
+        flat_radius=indenter.flat_radius,
+        max_radius=max_radius,
+        flat_punch=solution,
+        profile=profile,
+        moment=MappedFunction(profile.grid, 2 * springs * profile.node_values, profile.lead).integral(),  # Eq. (4)
+        profile_error=own_error,
+    )
+
+
+def contact_fields(
+    layer: Layer, indenter: Profile, flat_punch: FlatPunchSolution, *, contact_radius: float, depth: float, edge: bool
+) -> ContactFields:
+    """Pressure and displacement of one contact of radius a [m] under a depth delta [m].
+
+    Args:
+        layer: Layer or half-space.
+        indenter: Profile of revolution.
+        flat_punch: The solution that the equivalent system was made of.
+        contact_radius: a [m].
+        depth: delta [m].
+        edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
+    """
+    unit = contact_radius if layer.is_half_space else layer.thickness
+    density, table, ratio, delta = None, None, contact_radius / unit, depth / unit
+    if isinstance(flat_punch, LargeRatioSolution):
+        flat_punch = flat_punch.one_contact(ratio)
+    if isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution):
+        profile = _half_space_function(flat_punch, indenter, unit, contact_radius)
+    else:
+        g_hs, table = _half_space_function(flat_punch, indenter, unit, contact_radius), flat_punch
+        springs = _springs_at_nodes(flat_punch, g_hs, indenter.flat_radius / unit)
+        profile, _ = _profile(flat_punch, indenter, unit, g_hs, springs)
+    if isinstance(flat_punch, IntegralEquationSolution):
+        averages = np.full((int(np.ceil(ratio / flat_punch.factor.panel_width)), profile.grid.count), delta)
+        if not isinstance(indenter, FlatPunch):
+            averages -= contact_averages(flat_punch.factor, profile, indenter.flat_radius / unit)
+        density = flat_punch.density(ratio, averages)
+    return ContactFields(
+        indenter=indenter,
+        contact_modulus=layer.contact_modulus,
+        unit=unit,
+        contact_radius=ratio,
+        indentation_depth=delta,
+        profile=profile,
+        density=density,
+        table=table,
+        edge_density=_edge_density(profile, density, delta) if edge else 0.0,
+    )
+
+
+def density_error(flat_punch: FlatPunchSolution, ratio: FloatArray) -> FloatArray:
+    """What solving for a contact's pressure adds to the relative error of its depth."""
+    if isinstance(flat_punch, LargeRatioSolution):
+        return flat_punch.density_error(ratio)
+    return np.zeros_like(ratio)
+
+
+def _edge_density(profile: MappedFunction, density: ContactDensity | None, delta: float) -> float:
+    """phi(a) = delta - g_hs(a) + psi(a); with a table the spring displacement delta - g(a)."""
+    share = 0.0 if density is None else density.edge_value
+    return delta - float(profile(np.asarray(profile.grid.end))) + share
+
+
+class SeveralContacts(UnsupportedSceneError):
+    """The indenter would touch outside its circle of contact.
+
+    Args:
+        radius: Largest contact radius [m] that is one circle.
+    """
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+        message = f"the MDR profile stops rising at a contact radius of {radius:g} m: the contact is no single circle"
+        super().__init__(f"{message} beyond; keep radii, depths or forces below")
+
+
+def _profile(
+    solution: FlatPunchSolution, indenter: Profile, unit: float, g_hs: MappedFunction, springs: FloatArray
+) -> tuple[MappedFunction, float]:
+    """g in units of `unit`, and its relative error beyond that of the flat-punch data.
+
+    Args:
+        solution: The flat punch.
+        indenter: Profile of revolution.
+        unit: Length unit [m].
+        g_hs: The half-space's profile; g is known on the same grid.
+        springs: c_bar at the grid's nodes.
+    """
+    if isinstance(indenter, FlatPunch):
+        return g_hs, 0.0
+    flat, seen = indenter.flat_radius / unit, 0.0
+    match solution:
+        case HalfSpaceFlatPunch():
+            profile = g_hs
+        case IntegralEquationSolution():
+            edge = edge_values(solution.factor, g_hs, flat)
+            profile = MappedFunction(g_hs.grid, edge / np.sqrt(springs), g_hs.lead)  # yg/y1, Eq. (8)
+        case LargeRatioSolution():
+            profile, seen = wide_profile(solution, g_hs, flat)
+        case _:
+            profile = published_profile(solution, indenter, unit, g_hs)
+    return profile, profile.relative_error() + seen
+
+
+def _half_space_function(
+    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float
+) -> MappedFunction:
+    """g_hs in units of `unit`, on pieces that also suit the flat-punch data."""
+    count = _nodes_for(solution)
+    if isinstance(indenter, FlatPunch):  # zero wherever it is asked
+        rest = MappedGrid(np.zeros(1), np.full(1, np.finfo(float).tiny), np.ones(1), count)
+        return MappedFunction(rest, np.zeros((1, count)), 0.0)
+    grid, lead = _initial_grid(solution, indenter, unit, max_radius, count)
+    scale = np.inf if isinstance(solution, HalfSpaceFlatPunch) else 1.0
+    far = (indenter.max_radius - indenter.flat_radius) / unit
+    tolerance = max(RESOLVED, SHARE * _panel_error(solution))
+    return resolve(
+        lambda d: half_space_profile(indenter, unit * d) / unit, grid, lead, tolerance=tolerance, scale=scale, far=far
+    )
+
+
+def _panel_error(solution: FlatPunchSolution) -> float:
+    """What the nodes of a panel leave of the flat punch's stiffness; other data have no panels."""
+    if not isinstance(solution, IntegralEquationSolution):
+        return 0.0
+    return float(solution.relative_error(solution.max_ratio))
+
+
+def _known_radius(solution: LargeRatioSolution, indenter: Profile, unit: float, max_radius: float) -> float:
+    """The next radius at which the flat punch's density is known; profiles there are fitted, not integrated."""
+    radius = unit * solution.reach(max_radius / unit)
+    if radius > indenter.max_radius:
+        message = f"the indenter ends at {indenter.max_radius:g} m, but its answer at {max_radius:g} m takes it"
+        raise InvalidInput(f"{message} out to {radius:g} m; describe it that far")
+    return radius
+
+
+def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:
+    """A contact up to a sphere's equator would need an infinite depth."""
+    with np.errstate(divide="ignore"):  # that infinity is what is looked for
+        depth = half_space_profile(indenter, np.asarray(max_radius - indenter.flat_radius))
+    if not np.isfinite(depth):
+        raise InvalidInput(f"contact radius = {max_radius:g} m: the indenter is upright there; stay a little below")
+
+
+def _initial_grid(
+    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float, count: int
+) -> tuple[MappedGrid, float]:
+    """Pieces between panel ends and breakpoints, and the exponent of u with which g_hs begins in the first."""
+    flat, end = indenter.flat_radius / unit, (max_radius - indenter.flat_radius) / unit
+    breakpoints = np.array([k - indenter.flat_radius for k in indenter.breakpoints]) / unit
+    panels = _panel_ends(solution, flat + end) - flat
+    inner = _separate(breakpoints, end)
+    left = np.concatenate([[0.0], inner, _apart(_separate(panels, end), inner)])
+    power = np.concatenate([[1.0], np.full(inner.size, 2.0), np.ones(left.size - inner.size - 1)])
+    order = np.argsort(left)
+    left, power = left[order], power[order]
+    exponent = _leading_exponent(indenter, unit * min(left[1] if left.size > 1 else end, flat or np.inf))
+    power[0] = 1 if exponent % 1 == 0 else 2 if exponent % 0.5 == 0 else 4
+    return MappedGrid(left, np.diff(left, append=end), power, count), exponent * power[0]
+
+
+def _nodes_for(solution: FlatPunchSolution) -> int:
+    if isinstance(solution, IntegralEquationSolution):
+        return solution.factor.count
+    if isinstance(solution, LargeRatioSolution):
+        return solution.near.factor.count
+    return NODES if isinstance(solution, HalfSpaceFlatPunch) else TABLE_NODES
+
+
+def _panel_ends(solution: FlatPunchSolution, ratio: float) -> FloatArray:
+    """Where a grid for these data should have piece ends: the factor's panels, or octaves of a table's ratios."""
+    if isinstance(solution, IntegralEquationSolution):
+        return solution.factor.panel_width * np.arange(1.0, np.ceil(ratio / solution.factor.panel_width))
+    if isinstance(solution, HalfSpaceFlatPunch):
+        return np.empty(0)
+    if isinstance(solution, LargeRatioSolution):
+        narrow = _panel_ends(solution.near, solution.near.max_ratio * (1 + GAP))
+        return np.sort(np.append(narrow, _apart(np.arange(PANEL_WIDTH, ratio, PANEL_WIDTH), narrow)))
+    return np.exp2(np.arange(FIRST_OCTAVE, np.ceil(np.log2(ratio)), dtype=np.float64))
+
+
+def _separate(points: FloatArray, end: float) -> FloatArray:
+    """Points well inside (0, end)."""
+    return points[(points > GAP * end) & (points < end * (1 - GAP))]
+
+
+def _apart(points: FloatArray, others: FloatArray) -> FloatArray:
+    """Points that do not coincide with others."""
+    if not others.size:
+        return points
+    distance = np.min(np.abs(points[:, None] - others), axis=1, initial=np.inf)
+    apart: FloatArray = points[distance > GAP * np.abs(points)]
+    return apart
+
+
+def _leading_exponent(indenter: Profile, scale: float) -> float:
+    """n in g_hs ~ (x - b)^n at first touch, from two points very close to it, or less close for r^100.
+
+    Raises:
+        InvalidInput: If the profile does not rise there.
+        UnsupportedSceneError: If it rises too flatly for the pieces to keep its digits.
+    """
+    for step in _CLOSE:
+        near, far = half_space_profile(indenter, scale * step * np.array([1.0, 2.0]))
+        if near > 0.0:
+            exponent = float(np.log2(far / near))
+            if exponent > _FLATTEST:
+                raise UnsupportedSceneError(
+                    f"indenter: rises like r^{exponent:.3g}; mdr takes r^{_FLATTEST:g} at most, ask fem"
+                )
+            halves = round(2 * exponent) / 2
+            return halves if abs(exponent - halves) < 1e-6 else exponent
+    raise InvalidInput(
+        f"indenter: does not rise within {scale:g} m of first touch; a flat end needs a truncated profile or a punch"
+    )
+
+
+def _springs_at_nodes(solution: FlatPunchSolution, g_hs: MappedFunction, flat: float) -> FloatArray:
+    """c_bar at the nodes of a profile's grid."""
+    return solution.normalized_spring_stiffness(np.minimum(flat + g_hs.grid.nodes, solution.max_ratio))
+
+
+def _noise(solution: FlatPunchSolution, ratio: float) -> float:
+    """How far a profile may fall, relative to its height, for no other reason than a table's noise."""
+    if isinstance(solution, HalfSpaceFlatPunch | IntegralEquationSolution | LargeRatioSolution):
+        return 0.0
+    return float(solution.relative_error(ratio) + solution.moment_error(ratio))
+
+
+def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float, noise: float) -> None:
+    """One circle of contact needs g to increase; where it does not, the indenter touches somewhere else first."""
+    if isinstance(indenter, FlatPunch):
+        return
+    highest = np.maximum.accumulate(profile.node_values.ravel()).reshape(profile.node_values.shape)
+    falling = (profile.node_slopes <= 0) & (profile.node_values <= (1 - noise) * highest)
+    if np.any(falling):
+        raise SeveralContacts(indenter.flat_radius + unit * float(profile.grid.nodes[falling].min()))

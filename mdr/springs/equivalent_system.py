@@ -1,0 +1,216 @@
+"""The equivalent one-dimensional system: a bed of independent springs and a plane profile, Eqs. (2)-(6).
+
+A rigid profile g(x; h) is pressed by delta into springs of stiffness c_N(x; h) per length. Whatever an effect adds
+(adhesion, viscosity) acts on these springs; the elastic three-dimensional contact is already inside g and c_N.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bem.layer_equation.protocol import FlatPunchSolution
+from bem.polynomials.mapped import MappedFunction
+from contact import InvalidInput, NotConvergedError
+from contact.records.validation import FloatArray
+
+NEWTON_STEPS = 60
+NEWTON_TOLERANCE = 2e-14
+NOISE_TOLERANCE = 1e-11  # accepted after all steps, where rounding in the curve hides its root
+ROUNDING = 16 * np.finfo(float).eps
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EquivalentSystem:
+    """Springs and profile of one layer and indenter, for contact radii up to `max_radius`.
+
+    All methods take arrays of any shape [m, N] and answer in SI units; asked outside their range they raise
+    `InvalidInput`.
+
+    Attributes:
+        contact_modulus: E* [Pa].
+        length_unit: Length [m] in which the fields below count: the layer thickness, or a radius on the half-space.
+        flat_radius: b [m], where the profile begins to rise.
+        max_radius: Largest contact radius [m] that is covered.
+        flat_punch: Normalised stiffness of layer and springs, Eq. (10).
+        profile: g over the excess x - b, both in units of length_unit.
+        moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
+        profile_error: Relative error of g and of the moment beyond that of the flat-punch data.
+    """
+
+    contact_modulus: float
+    length_unit: float
+    flat_radius: float
+    max_radius: float
+    flat_punch: FlatPunchSolution
+    profile: MappedFunction
+    moment: MappedFunction
+    profile_error: float
+
+    def spring_stiffness(self, x: ArrayLike) -> FloatArray:
+        """c_N(x; h) [Pa], Eq. (6)."""
+        stiffness: FloatArray = self.contact_modulus * self.flat_punch.normalized_spring_stiffness(self._ratio(x))
+        return stiffness
+
+    def contact_stiffness(self, contact_radius: ArrayLike) -> FloatArray:
+        """k_N(a; h) = 2 int_0^a c_N dx [N/m], Eqs. (5) and (10)."""
+        a = np.asarray(contact_radius, dtype=float)
+        stiffness: FloatArray = (
+            2 * self.contact_modulus * a * self.flat_punch.normalized_contact_stiffness(self._ratio(a))
+        )
+        return stiffness
+
+    def mdr_profile(self, x: ArrayLike) -> FloatArray:
+        """g(x; h) [m], zero within the flat radius."""
+        return self.profile_beyond(np.asarray(x, dtype=float) - self.flat_radius)
+
+    def mdr_profile_slope(self, x: ArrayLike) -> FloatArray:
+        """dg/dx [-], infinite at a flat end with a sharp rim."""
+        excess = np.asarray(x, dtype=float) - self.flat_radius
+        return np.where(excess >= 0, self.profile.derivative(self._beyond(excess)), 0.0)
+
+    def profile_beyond(self, excess: FloatArray) -> FloatArray:
+        """g [m] at an excess x - b [m] over the flat radius, which says more than the rounded x close to it."""
+        inside = self._beyond(excess)
+        return np.where(inside > 0, self.length_unit * self.profile(inside), 0.0)
+
+    def profile_moment(self, contact_radius: ArrayLike) -> FloatArray:
+        """2 int_0^a c_N g dx [N]: what the profile takes away from the force of a flat punch, Eq. (4)."""
+        return self.moment_beyond(np.asarray(contact_radius, dtype=float) - self.flat_radius)
+
+    def moment_beyond(self, excess: FloatArray) -> FloatArray:
+        """The same at an excess a - b [m]."""
+        inside = self._beyond(excess)
+        return np.where(inside > 0, self._force_unit * self.moment(inside), 0.0)
+
+    def force(self, contact_radius: ArrayLike, indentation_depth: ArrayLike) -> FloatArray:
+        """F_N [N] of springs within a under a depth delta that need not belong to a (adhesion), Eq. (4)."""
+        stiffness = self.contact_stiffness(contact_radius)
+        force: FloatArray = stiffness * np.asarray(indentation_depth) - self.profile_moment(contact_radius)
+        return force
+
+    def elastic_force(self, contact_radius: ArrayLike) -> FloatArray:
+        """F_N [N] of the non-adhesive contact with this radius, Eqs. (3) and (4)."""
+        return self.force(contact_radius, self.mdr_profile(contact_radius))
+
+    def excess_at_depth(self, indentation_depth: ArrayLike) -> FloatArray:
+        """a - b [m] with g(a) = delta, Eq. (3); 0 <= delta <= g(max_radius)."""
+        depth = np.asarray(indentation_depth, dtype=float) / self.length_unit
+        curve = _Curve(self.profile.at, self.profile.slope_at, self.profile.lead)
+        return self._invert(depth, curve, "indentation_depth", self.length_unit)
+
+    def excess_at_force(self, normal_force: ArrayLike) -> FloatArray:
+        """a - b [m] of the elastic contact with this force F_N; 0 <= F_N <= elastic_force(max_radius)."""
+        force = np.asarray(normal_force, dtype=float) / self._force_unit
+        lead = self.profile.lead + (0.0 if self.flat_radius else float(self.profile.grid.power[0]))
+        return self._invert(force, _Curve(self._force_at, self._force_slope_at, lead), "normal_force", self._force_unit)
+
+    @property
+    def relative_error(self) -> Mapping[str, float]:
+        """Bounds at `max_radius`, where they are largest; see `relative_errors`."""
+        return {name: float(values) for name, values in self.relative_errors(np.asarray(self.max_radius)).items()}
+
+    def relative_errors(self, contact_radius: FloatArray) -> dict[str, FloatArray]:
+        """Bounds of the relative errors of an elastic contact's quantities at each radius."""
+        ratio = self._ratio(contact_radius)
+        stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
+        moment = self.flat_punch.moment_error(ratio, self._flat_share(contact_radius)) + ROUNDING
+        depth = stiffness + np.maximum(stiffness, moment) + self.profile_error
+        return {
+            "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
+            "indentation_depth": depth,
+            "normal_force": depth + stiffness,
+            "contact_stiffness": stiffness,
+        }
+
+    def _flat_share(self, contact_radius: FloatArray) -> FloatArray:
+        """b/a: beside the flat end, only flat-punch pressures near the edge count."""
+        a = np.asarray(contact_radius, dtype=float)
+        return np.asarray(np.divide(self.flat_radius, a, out=np.zeros_like(a), where=a > self.flat_radius))
+
+    @property
+    def _force_unit(self) -> float:
+        return self.contact_modulus * self.length_unit**2
+
+    def _ratio(self, x: ArrayLike) -> FloatArray:
+        x = np.asarray(x, dtype=float)
+        covered = (x >= 0) & (x <= self.max_radius * (1 + ROUNDING))
+        if not np.all(covered):
+            worst = x[~covered].flat[0]
+            raise InvalidInput(f"radius = {worst:g} m: this equivalent system covers [0, {self.max_radius:g}] m")
+        ratio: FloatArray = np.minimum(x, self.max_radius) / self.length_unit
+        return ratio
+
+    def _beyond(self, excess: FloatArray) -> FloatArray:
+        """The excess in units of length_unit, zero within the flat radius."""
+        self._ratio(self.flat_radius + excess)
+        return np.maximum(excess / self.length_unit, 0.0)
+
+    def _position(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """x in units of length_unit."""
+        grid = self.profile.grid
+        return self.flat_radius / self.length_unit + grid.left[piece] + grid.width[piece] * u ** grid.power[piece]
+
+    def _force_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        x = self._position(piece, u)
+        stiffness = 2 * x * self.flat_punch.normalized_contact_stiffness(np.minimum(x, self._last))
+        return stiffness * self.profile.at(piece, u) - self.moment.at(piece, u)
+
+    def _force_slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
+        """dF = k_N dg, Eq. (5)."""
+        x = self._position(piece, u)
+        stiffness = 2 * x * self.flat_punch.normalized_contact_stiffness(np.minimum(x, self._last))
+        return stiffness * self.profile.slope_at(piece, u)
+
+    @property
+    def _last(self) -> float:
+        return self.max_radius / self.length_unit
+
+    def _invert(self, target: FloatArray, curve: _Curve, name: str, unit: float) -> FloatArray:
+        """Excess [m] over the flat radius where an increasing curve takes the target value."""
+        grid = self.profile.grid
+        pieces = np.arange(len(grid.left))
+        ends = curve.value(pieces, np.ones(pieces.size))
+        covered = (target >= 0) & (target <= ends[-1] * (1 + ROUNDING))
+        if not np.all(covered):
+            worst = target[~covered].flat[0] * unit
+            raise InvalidInput(f"{name} = {worst:g}: this equivalent system covers [0, {ends[-1] * unit:g}]")
+        piece = np.minimum(np.searchsorted(ends, target), pieces.size - 1)
+        before = np.append(0.0, ends)[piece]
+        share = np.clip((target - before) / (ends[piece] - before), 0.0, 1.0)
+        start = share ** np.where(piece == 0, 1 / max(curve.lead, 1.0), 1.0)
+        u = _safeguarded_newton(curve, piece, target, start)
+        return self.length_unit * (grid.left[piece] + grid.width[piece] * u ** grid.power[piece])
+
+
+@dataclass(frozen=True)
+class _Curve:
+    """An increasing function of the position u in a piece, its slope by u, and the power of u it begins with."""
+
+    value: Callable[[NDArray[np.intp], FloatArray], FloatArray]
+    slope: Callable[[NDArray[np.intp], FloatArray], FloatArray]
+    lead: float
+
+
+def _safeguarded_newton(curve: _Curve, piece: NDArray[np.intp], target: FloatArray, start: FloatArray) -> FloatArray:
+    """Positions u in [0, 1] where the curve takes its targets; a Newton step that leaves its bracket is bisected.
+
+    In the first piece u is found to rounding relative to itself, in the others relative to the piece.
+    """
+    low, high, u = np.zeros_like(start), np.ones_like(start), start
+    size = np.where(piece > 0, 1.0, 0.0)
+    for _ in range(NEWTON_STEPS):
+        residual, slope = curve.value(piece, u) - target, curve.slope(piece, u)
+        low, high = np.where(residual <= 0, u, low), np.where(residual >= 0, u, high)
+        step = u - np.divide(residual, slope, out=np.full_like(u, np.inf), where=slope > 0)
+        new = np.where((step >= low) & (step <= high), step, (low + high) / 2)
+        if np.all(np.minimum(np.abs(new - u), high - low) <= NEWTON_TOLERANCE * np.maximum(u, size)):
+            return new
+        u = new
+    left = np.max(np.minimum(np.abs(new - u), high - low) / np.maximum(u, np.maximum(size, np.finfo(float).tiny)))
+    if left > NOISE_TOLERANCE:
+        raise NotConvergedError("contact radius not found", {"relative bracket": float(left)})
+    return u

@@ -1,0 +1,93 @@
+"""MDR profile of the half-space, Eq. (15): ``g_hs(x) = x int_0^x f'(r)/sqrt(x^2 - r^2) dr``.
+
+It is also the right-hand side of the layer's equation. Positions are given as *excess* ``d = x - b`` over the
+indenter's flat radius b, because a difference formed by the caller is exact while ``x - b`` of rounded x is not: that
+keeps all digits when the contact has grown only slightly beyond the flat end. For a pointed profile d = x.
+
+Profiles with a closed form are registered below; every other profile is integrated.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import singledispatch
+
+import numpy as np
+
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact import Cone, FlatPunch, Paraboloid, PowerLaw, Profile, Sphere, TruncatedCone, TruncatedParaboloid
+from contact.records.validation import FloatArray
+
+NODES = 48  # on each analytic stretch of the profile
+
+
+@singledispatch
+def half_space_profile(indenter: Profile, excess: FloatArray) -> FloatArray:
+    """g_hs [m] at x = flat radius + excess [m], any shape; by Gauss quadrature between the profile's breakpoints."""
+    return integrated_half_space_profile(indenter, excess)
+
+
+def integrated_half_space_profile(indenter: Profile, excess: FloatArray) -> FloatArray:
+    """g_hs [m] of any profile by quadrature, with r = x cos(psi): no singularity is left."""
+    b = indenter.flat_radius
+    x = b + excess
+    inner = [b, *(k for k in indenter.breakpoints if b < k < np.max(x, initial=0.0))]
+    total = np.zeros_like(x)
+    for start, stop in zip(inner, [*inner[1:], np.inf], strict=True):
+        total += np.where(x > start, _stretch(indenter, x, np.maximum(x - start, 0), np.minimum(x, stop)), 0.0)
+    return x * total
+
+
+def _stretch(indenter: Profile, x: FloatArray, beyond: FloatArray, stop: FloatArray) -> FloatArray:
+    """int f'(x cos psi) dpsi between r = x - beyond and r = stop.
+
+    The nodes crowd with the fourth power towards the inner end, where a profile like r^1.7 is not analytic.
+    """
+    nodes, weights = gauss_nodes(NODES)
+    widest = np.arctan2(np.sqrt(beyond * (2 * x - beyond)), x - beyond)  # arccos((x - beyond)/x), exact near zero
+    narrowest = np.arctan2(np.sqrt((x - stop) * (x + stop)), stop)
+    span = (widest - narrowest)[..., None]
+    slope = indenter.slope_at(x[..., None] * np.cos(widest[..., None] - span * nodes**4))
+    values: FloatArray = span[..., 0] * ((slope * 4 * nodes**3) @ weights)
+    return values
+
+
+@half_space_profile.register
+def _(indenter: FlatPunch, excess: FloatArray) -> FloatArray:
+    return np.zeros_like(excess)
+
+
+@half_space_profile.register
+def _(indenter: Cone, excess: FloatArray) -> FloatArray:
+    return np.pi / 2 * indenter.slope * excess
+
+
+@half_space_profile.register
+def _(indenter: Paraboloid, excess: FloatArray) -> FloatArray:
+    return excess**2 / indenter.radius_of_curvature
+
+
+@half_space_profile.register
+def _(indenter: Sphere, excess: FloatArray) -> FloatArray:
+    return excess * np.arctanh(excess / indenter.radius)
+
+
+@half_space_profile.register
+def _(indenter: PowerLaw, excess: FloatArray) -> FloatArray:
+    n = indenter.exponent
+    # n int_0^1 s^(n-1)/sqrt(1 - s^2) ds
+    factor = n * math.sqrt(math.pi) / 2 * math.exp(math.lgamma(n / 2) - math.lgamma((n + 1) / 2))
+    return factor * indenter.height(excess)
+
+
+@half_space_profile.register
+def _(indenter: TruncatedCone, excess: FloatArray) -> FloatArray:
+    b = indenter.flat_radius
+    angle = np.arctan2(np.sqrt(excess * (excess + 2 * b)), b)  # arccos(b/x)
+    return indenter.slope * (b + excess) * angle
+
+
+@half_space_profile.register
+def _(indenter: TruncatedParaboloid, excess: FloatArray) -> FloatArray:
+    b = indenter.flat_radius
+    return (b + excess) * np.sqrt(excess * (excess + 2 * b)) / indenter.radius_of_curvature

@@ -1,0 +1,101 @@
+"""MDR profile of a layer from the factor of its integral equation: ``g = yg/y1`` with ``yg = C^-1 g_hs``.
+
+Inside each panel of the factor the edge value at x is
+
+    yg(x) = g_hs(x) + S(x) + int_X^x G(x, t) [g_hs(t) + S(t)] dt,    X the panel's start,
+
+S being what the panel inherits from the earlier ones: a polynomial, while g_hs has a kink's square root. So S goes
+through the factor's own matrices, and the integral over g_hs is taken piece by piece of the mapped grid.
+All lengths in units of the layer thickness; the grid counts from the indenter's flat radius b.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
+from bem.polynomials.mapped import MappedFunction
+from contact.records.validation import FloatArray
+
+WHOLE = 1e-12  # relative: what rounding makes of the width of a piece that fills its panel
+
+
+def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
+    """C^-1 of a load that is zero within the flat radius.
+
+    Args:
+        factor: Factor of the layer; its panels' ends inside the grid are piece ends.
+        load: W on a grid with as many nodes on a piece as the factor has on a panel.
+        flat_radius: b, in units of the thickness.
+
+    Returns:
+        Values at the nodes of the load's grid, shape (q, m).
+    """
+    H, grid = factor.panel_width, load.grid
+    panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
+    position = (grid.nodes + flat_radius) / H - panel[:, None]
+    whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=WHOLE, atol=0.0)
+    whole[0] = (
+        False  # values near first touch are tiny and keep their relative accuracy only if integrated by themselves
+    )
+    averages = panel_averages(load, panel, position, np.full(panel[-1] + 1, H))
+    averages[panel[whole]] = load.node_values[whole]  # by moments, a width off by e would cost e / (last Gauss weight)
+    _, inherited = factor.eliminate(averages)
+    values = factor.edge_values(averages + inherited)[panel]  # right as it stands where a piece fills its panel
+    polynomial = factor.edge_values(inherited)
+    for piece in np.flatnonzero(~whole):
+        smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
+        values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece)
+    return values
+
+
+def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
+    """Averages of a load on the panels that cover the contact [0, b + end of the grid], the last ending there."""
+    H, grid = factor.panel_width, load.grid
+    ratio = flat_radius + grid.end
+    panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
+    widths = np.full(panel[-1] + 1, H)
+    widths[-1] = ratio - panel[-1] * H
+    position = (grid.nodes + flat_radius - H * panel[:, None]) / widths[panel][:, None]
+    return panel_averages(load, panel, position, widths)
+
+
+def panel_averages(
+    load: MappedFunction, panel: NDArray[np.intp], position: FloatArray, widths: FloatArray
+) -> FloatArray:
+    """int l_j W dt / w_j on each panel, shape (panels, m).
+
+    Args:
+        load: W.
+        panel: Number of the panel that each piece lies in, shape (q,).
+        position: The grid's nodes relative to their panels, shape (q, m).
+        widths: Of the panels, shape (panels,).
+    """
+    weighted = load.node_values * load.grid.weights
+    moments = (weighted[:, None, :] @ lagrange_matrix(load.grid.count, position))[:, 0]
+    averages = np.zeros((len(widths), load.grid.count))
+    np.add.at(averages, panel, moments)
+    return averages / (widths[:, None] * gauss_nodes(load.grid.count)[1])
+
+
+def _own_integral(
+    factor: VolterraFactor, load: MappedFunction, panel: NDArray[np.intp], position: FloatArray, piece: np.intp
+) -> FloatArray:
+    """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x."""
+    grid, own = load.grid, panel[piece]
+    before = np.flatnonzero(panel[:piece] == own)
+    points = np.broadcast_to(position[before].ravel(), (grid.count, before.size * grid.count))
+    G = factor.resolvent_at(own, position[piece], points)
+    earlier = G @ (load.node_values * grid.weights)[before].ravel()
+
+    u, omega = gauss_nodes(grid.count)
+    inner = np.multiply.outer(u, u)
+    stretch = grid.width[piece] / factor.panel_width
+    origin = position[piece, 0] - stretch * u[0] ** grid.power[piece]
+    points = origin + stretch * inner ** grid.power[piece]
+    weights = grid.width[piece] * grid.power[piece] * inner ** (grid.power[piece] - 1) * np.multiply.outer(u, omega)
+    G = factor.resolvent_at(own, position[piece], np.maximum(points, 0.0))
+    values: FloatArray = earlier + np.sum(G * weights * load.at(np.full(inner.shape, piece), inner), axis=1)
+    return values

@@ -1,0 +1,119 @@
+"""How far a loading reaches: the equivalent system that covers the largest radius a scene will need."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from bem.layer_equation.protocol import FlatPunchSource
+from contact import (
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Loading,
+    NormalForces,
+    Profile,
+    Scene,
+    UnsupportedSceneError,
+)
+from contact.records.validation import FloatArray
+from mdr.springs.assembly import SeveralContacts, equivalent_system
+from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.half_space_profile import half_space_profile
+
+FIRST_RATIO = 10.0  # a/h beyond which the half-space says nothing about the radius on a layer
+LEAST_EXCESS = 1e-12  # over the flat end, relative to it; the next floating-point numbers tell no radii apart
+TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)  # in units of a length made of the loading
+
+
+def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSystem:
+    """The equivalent system up to the largest radius under prescribed radii, depths or forces.
+
+    Raises:
+        InvalidInput: If the indenter or the flat-punch data end before the loading is reached.
+        SeveralContacts: If the contact would not be one circle.
+    """
+    layer, indenter, loading = scene.layer, scene.indenter, scene.loading
+    if isinstance(indenter, FlatPunch):
+        return equivalent_system(layer, indenter, indenter.radius, flat_punch)
+    if isinstance(loading, ContactRadii):
+        return equivalent_system(layer, indenter, float(loading.values.max()), flat_punch)
+    radius = _first_radius(scene)
+    while True:
+        system, ring = _up_to(scene, radius, flat_punch)
+        reached, wanted = _reached(system, loading)
+        if reached >= wanted:
+            return system
+        if ring is not None:
+            raise ring
+        if radius >= indenter.max_radius:
+            raise InvalidInput(
+                f"loading.values = {wanted:g}: the indenter ends at a radius of {radius:g} m, where {reached:g} is "
+                "reached; ask for less or describe the indenter further out"
+            )
+        further = _extrapolated(system, wanted / reached, isinstance(loading, NormalForces))
+        radius = min(further, _furthest(indenter, radius))
+
+
+def _up_to(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, SeveralContacts | None]:
+    """The system up to this radius, or up to where the contact stops being one circle, and that objection."""
+    try:
+        return equivalent_system(scene.layer, scene.indenter, radius, flat_punch), None
+    except SeveralContacts as ring:
+        if ring.radius <= scene.indenter.flat_radius:
+            raise
+        return equivalent_system(scene.layer, scene.indenter, ring.radius, flat_punch), ring
+
+
+def _reached(system: EquivalentSystem, loading: Loading) -> tuple[float, float]:
+    """What the system's largest radius stands for, and what is wanted."""
+    if isinstance(loading, IndentationDepths):
+        return float(system.mdr_profile(system.max_radius)), float(loading.values.max())
+    if isinstance(loading, NormalForces):
+        return float(system.elastic_force(system.max_radius)), float(loading.values.max())
+    raise UnsupportedSceneError(f"loading {type(loading).__name__} has no largest contact radius of its own")
+
+
+def _furthest(indenter: Profile, radius: float) -> float:
+    """Largest next radius: the indenter's end, or half way to an end where it stands upright, as a sphere does."""
+    end = indenter.max_radius
+    with np.errstate(divide="ignore"):  # an infinite depth is what is looked for
+        upright = np.isfinite(end) and not np.isfinite(
+            half_space_profile(indenter, np.array(end - indenter.flat_radius))
+        )
+    return (radius + end) / 2 if upright else end
+
+
+def _extrapolated(system: EquivalentSystem, factor: float, is_force: bool) -> float:
+    """Where depth or force has grown by the factor if it goes on with its present power of the radius, and a little."""
+    a = system.max_radius
+    rise = float(system.mdr_profile_slope(a))
+    if is_force:  # dF = k_N dg, Eq. (5)
+        exponent = a * float(system.contact_stiffness(a)) * rise / float(system.elastic_force(a))
+    else:
+        exponent = a * rise / float(system.mdr_profile(a))
+    return a * float(np.clip(1.05 * factor ** (1 / exponent), 1.05, 2.0))
+
+
+def _first_radius(scene: Scene) -> float:
+    """About the half-space's contact radius, within the indenter and `FIRST_RATIO`."""
+    values = getattr(scene.loading, "values", np.ones(1))
+    wanted = float(values.max())
+    is_force = isinstance(scene.loading, NormalForces)
+    scale = np.sqrt(wanted / scene.layer.contact_modulus) if is_force else wanted
+    flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
+    limit = (
+        min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.thickness, 1.5 * flat)) - flat
+    )  # a sphere's end is upright
+    excess = np.minimum(scale * TRIAL_RADII, limit)
+    depth, force = _half_space_answer(scene.indenter, excess)
+    answer = scene.layer.contact_modulus * force if is_force else depth
+    guess = np.interp(wanted, answer, excess)  # between neighbouring trial radii, which differ by a fifth
+    return flat + max(min(1.02 * float(guess), limit), LEAST_EXCESS * flat)
+
+
+def _half_space_answer(indenter: Profile, excess: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Depth and force/E* on the half-space, the force by the trapezoidal rule: a guess needs no more."""
+    depth = half_space_profile(indenter, excess)
+    steps = np.diff(excess, prepend=0.0) * (depth + np.concatenate([[0.0], depth[:-1]])) / 2
+    return depth, 2 * ((indenter.flat_radius + excess) * depth - np.cumsum(steps))

@@ -1,0 +1,183 @@
+"""Spring tables that many scenes share.
+
+A power-law profile f = C r^n looks the same in every layer of the same ratio a/h: with lengths in h and depths in
+C h^n one table serves all thicknesses, radii and moduli. Other profiles get a table of their own.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from bem.layer_equation.protocol import FlatPunchSource
+from contact import Cone, InvalidInput, Layer, Paraboloid, PowerLaw, Profile
+from contact.records.validation import FloatArray
+from mdr.springs.assembly import equivalent_system
+from mdr.springs.table import SpringTable, spring_table
+
+_KEPT = 64  # tables
+_NEAR_RIM = 0.7  # of the rim's radius: beyond, trial radii no longer double
+_UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)  # of the rim's radius that trial radii stay away from it
+
+
+@dataclass(frozen=True)
+class Reference:
+    """How a scene becomes a shared problem.
+
+    Attributes:
+        layer: The layer of the shared problem.
+        indenter: Its indenter.
+        length: What its unit of length means in the scene [m].
+        depth: What its unit of depth means [m].
+        stiffness: What its unit of stiffness means [N/m].
+    """
+
+    layer: Layer
+    indenter: Profile
+    length: float
+    depth: float
+    stiffness: float
+
+
+def reference(layer: Layer, indenter: Profile, scale: float) -> Reference:
+    """The shared problem of a power law, or the scene itself in its own units.
+
+    Args:
+        layer: The scene's layer.
+        indenter: The scene's indenter.
+        scale: A typical contact radius [m]; the unit of length where the layer has no thickness.
+    """
+    law = power_law(indenter)
+    if law is None:
+        return Reference(layer, indenter, 1.0, 1.0, 1.0)
+    coefficient, exponent = law
+    length = scale if layer.is_half_space else layer.thickness
+    nu = layer.poissons_ratio
+    unit_layer = Layer(
+        thickness=math.inf if layer.is_half_space else 1.0,
+        youngs_modulus=(1.0 - nu) * (1.0 + nu),  # E* = 1
+        poissons_ratio=nu,
+        support=layer.support,
+    )
+    unit_indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
+    return Reference(unit_layer, unit_indenter, length, coefficient * length**exponent, layer.contact_modulus * length)
+
+
+def power_law(indenter: Profile) -> tuple[float, float] | None:
+    """C and n of f = C r^n."""
+    match indenter:
+        case Paraboloid():
+            return 0.5 / indenter.radius_of_curvature, 2.0
+        case Cone():
+            return indenter.slope, 1.0
+        case PowerLaw():
+            return indenter.reference_height / indenter.reference_radius**indenter.exponent, indenter.exponent
+    return None
+
+
+def contact_scale(layer: Layer, indenter: Profile, energy: float) -> float:
+    """A typical contact radius [m], where E* r f(r)^2 (1 + r/h) equals the energy [J]."""
+    law, volume = power_law(indenter), energy / layer.contact_modulus
+    if law is not None:
+        coefficient, exponent = law
+        high = float((volume / coefficient**2) ** (1.0 / (2.0 * exponent + 1.0)))
+        if layer.is_half_space:
+            return high
+        return bisected(
+            lambda r: r * (coefficient * r**exponent) ** 2 * (1.0 + r / layer.thickness) - volume, 0.0, high
+        )
+
+    def excess(r: float) -> float:
+        return r * float(indenter.height(r)) ** 2 * (1.0 + r / layer.thickness) - volume
+
+    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
+
+
+def upper(excess: Callable[[float], float], indenter: Profile) -> float:
+    """A radius beyond the root, or the rim."""
+    if math.isfinite(indenter.max_radius):
+        return indenter.max_radius
+    high = max(indenter.flat_radius, 1e-9)
+    while excess(high) < 0.0:
+        high *= 2.0
+    return high
+
+
+def bisected(excess: Callable[[float], float], low: float, high: float) -> float:
+    """The root of an increasing function to one per cent of its distance from `low`."""
+    origin = low
+    while high - low > 0.01 * (high - origin) and high > origin * (1.0 + 1e-13):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
+    return high
+
+
+@lru_cache(maxsize=_KEPT)
+def _table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
+    """The spring table of a reference problem up to a radius; the last few dozen are kept."""
+    springs = equivalent_system(layer, indenter, radius, flat_punch)
+    return spring_table(
+        springs,
+        flat_radius=indenter.flat_radius,
+        breakpoints=indenter.breakpoints,
+        radius=radius,
+        error=springs.relative_error["normal_force"],
+    )
+
+
+def own_table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
+    """The spring table of one scene in SI units."""
+    return _table(layer, indenter, radius, flat_punch)  # type: ignore[arg-type]  # sources are frozen records
+
+
+def table_for_energy(
+    layer: Layer, indenter: Profile, start: float, energy: float, flat_punch: FlatPunchSource
+) -> SpringTable:
+    """A table whose springs hold at least this energy before the front leaves it.
+
+    The front's ways go in octaves, so that scenes of similar size share one table.
+
+    Raises:
+        InvalidInput: If the indenter ends before.
+    """
+    flat = indenter.flat_radius
+    for end in growing_radii(indenter, flat + 2.0 ** math.ceil(math.log2(start - flat))):
+        table = own_table(layer, indenter, end, flat_punch)
+        if table.survey.energy[-1] >= energy:
+            return table
+    raise InvalidInput(
+        f"indenter: the impact presses it in beyond its rim at {indenter.max_radius:g} m; "
+        "reduce mass or velocity, or extend the profile"
+    )
+
+
+def growing_radii(indenter: Profile, first: float) -> Iterator[float]:
+    """Trial radii [m], each way from the flat end twice the one before, up to the rim.
+
+    A rim where the flank is upright is approached, not reached.
+    """
+    flat, rim = indenter.flat_radius, indenter.max_radius
+    way = first - flat
+    while math.isinf(rim) or flat + way < _NEAR_RIM * rim:
+        yield flat + way
+        way *= 2.0
+    upright = not np.isfinite(indenter.slope_at(rim))
+    yield from (rim * (1.0 - share) for share in _UPRIGHT_SHARES if upright)
+    if not upright:
+        yield rim
+
+
+def coordinate_at(held: FloatArray, table: SpringTable, target: FloatArray) -> FloatArray:
+    """y where the springs hold an energy, or a force, to a few per cent: a unit for an impact, not a result.
+
+    Args:
+        held: Energy or force along the survey of the table.
+        table: The springs.
+        target: What they shall hold.
+    """
+    usable = held > 1e-14 * held[-1]  # below, the difference of moments is rounding
+    return np.asarray(np.exp(np.interp(np.log(target), np.log(held[usable]), np.log(table.survey.y[usable]))))

@@ -1,0 +1,64 @@
+"""A plate is a figure of the report with what belongs to it: picture, data, caption, how to make it again."""
+
+import csv
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from matplotlib.figure import Figure as Drawing
+
+from reports.figures.style import figure_style, png_bytes, svg_text
+
+Cell = str | float | int | bool | None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plate:
+    """A figure of the report.
+
+    Attributes:
+        name: file name without ending, unique in the run: "truncated_cone-work-precision-a_h-2".
+        title: one line.
+        caption: what is shown, symbols and uncertainties explained.
+        paint: makes the picture; called inside the common figure style, maybe in another process.
+        columns: heads of the data, with units.
+        rows: the data drawn, digit for digit those of results.json.
+        command: one shell line that makes the numbers and the figure again.
+    """
+
+    name: str
+    title: str
+    caption: str
+    paint: Callable[[], Drawing]
+    columns: tuple[str, ...]
+    rows: tuple[tuple[Cell, ...], ...]
+    command: str
+
+    def csv_text(self) -> str:
+        """The data as CSV; floats keep all digits that tell them apart, a missing number is an empty cell."""
+        buffer = io.StringIO()
+        writer = csv.writer(buffer, lineterminator="\n")
+        writer.writerow(self.columns)
+        writer.writerows(self.rows)
+        return buffer.getvalue()
+
+
+def write_plate(plate: Plate, directory: Path) -> str:
+    """Write NAME.svg, NAME.png and NAME.csv into `directory` and return the SVG for the page."""
+    with figure_style():
+        drawing = plate.paint()
+        _lay_out(drawing)
+        svg = svg_text(drawing, key=plate.name)
+        directory.joinpath(f"{plate.name}.png").write_bytes(png_bytes(drawing))
+    directory.joinpath(f"{plate.name}.svg").write_text(svg, encoding="utf-8")
+    directory.joinpath(f"{plate.name}.csv").write_text(plate.csv_text(), encoding="utf-8")
+    return svg
+
+
+def _lay_out(drawing: Drawing) -> None:
+    """Lay out once, so that both files show the same picture, and nothing is drawn a third time for it."""
+    engine = drawing.get_layout_engine()
+    if engine is not None:
+        engine.execute(drawing)
+        drawing.set_layout_engine("none")

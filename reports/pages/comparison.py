@@ -1,0 +1,149 @@
+"""comparison.html: two runs side by side, what ends otherwise first, then numbers by how far they moved, then times."""
+
+from collections import Counter
+from pathlib import Path
+
+from cases.results.compare_runs import Change, ClaimChange, NumberChange, RunComparison, TimeChange
+from cases.results.files import write_whole
+from cases.results.records import RunResult
+from reports.pages.report import stamp_lines, stylesheet, template
+from reports.tables.table import Table
+from reports.words.method_names import display_name
+from reports.words.numbers import duration, measured, scaled_unit, small
+
+MOST_ROWS = 400
+"""Rows of a table on the page; the largest changes come first and the rest is counted."""
+
+ORDER = (Change.INCOMPARABLE, Change.BEYOND, Change.UNKNOWN, Change.WITHIN, Change.IDENTICAL)
+
+
+def write_comparison(comparison: RunComparison, runs: tuple[RunResult, RunResult], page: Path) -> None:
+    """Write the page of a comparison."""
+    words, tone = headline(comparison)
+    text = template("comparison.html").render(
+        headline=words,
+        tone=tone,
+        stamps=[stamp_lines(run) for run in runs],
+        claims=claim_table(comparison.claims),
+        numbers=number_table(comparison.numbers),
+        times=time_table(comparison.times),
+        missing=comparison.missing,
+        counts=counts_sentence(comparison),
+        css=stylesheet(),
+    )
+    write_whole(page, text)
+
+
+def headline(comparison: RunComparison) -> tuple[str, str]:
+    """The result in a few words, and its tone."""
+    tally = Counter(number.change for number in comparison.numbers)
+    worse = sum(_got_worse(claim) for claim in comparison.claims)
+    moved, total = tally[Change.BEYOND] + tally[Change.INCOMPARABLE], len(comparison.numbers)
+    checks = f"{worse} check{'s'[: worse != 1]} got worse; " if worse else ""
+    if not total:
+        return f"{checks}no number in common", "bad"
+    tone = "bad" if worse or moved else "warn" if comparison.claims or comparison.missing else "good"
+    if tally[Change.IDENTICAL] == total:
+        return f"{checks}all {total} numbers identical", tone
+    return f"{checks}{moved} of {total} numbers moved beyond their uncertainty", tone
+
+
+def counts_sentence(comparison: RunComparison) -> str:
+    """How many numbers are identical, moved within their uncertainty, and so on."""
+    tally = Counter(number.change for number in comparison.numbers)
+    return ", ".join(f"{tally[change]} {change}" for change in ORDER if tally[change])
+
+
+def _got_worse(change: ClaimChange) -> bool:
+    before, after = change.statuses
+    failed_before = before is not None and before.is_failure
+    return (after is None or after.is_failure) and not failed_before
+
+
+def claim_table(claims: tuple[ClaimChange, ...]) -> Table | None:
+    """Checks that end otherwise, the worse ones first."""
+    if not claims:
+        return None
+    ordered = sorted(claims, key=lambda change: not _got_worse(change))
+    return Table(
+        title="Checks that end otherwise",
+        note="Fraction: error over tolerance.",
+        heads=(
+            "case",
+            "check",
+            "scene",
+            "methods",
+            "first",
+            "second",
+            "fraction first",
+            "fraction second",
+            "seen in the second",
+        ),
+        rows=tuple(_claim_row(change) for change in ordered),
+        words=9,
+    )
+
+
+def _claim_row(change: ClaimChange) -> tuple[str, ...]:
+    statuses = ["absent" if status is None else str(status) for status in change.statuses]
+    fractions = ["" if fraction is None else small(fraction) for fraction in change.fractions]
+    return (
+        change.case,
+        change.claim,
+        change.scene,
+        " against ".join(change.methods),
+        *statuses,
+        *fractions,
+        change.message,
+    )
+
+
+def number_table(numbers: tuple[NumberChange, ...], most: int = MOST_ROWS) -> Table:
+    """Every number that moved, the furthest first."""
+    moved = [number for number in numbers if number.change is not Change.IDENTICAL]
+    moved.sort(key=lambda number: (ORDER.index(number.change), -abs(number.difference or 0.0)))
+    left_out = len(moved) - most
+    rest = f" {left_out} smaller changes are not listed." if left_out > 0 else ""
+    return Table(
+        title="Numbers that moved",
+        note=f"Difference: second minus first, over the scale of the quantity, at the step where it is largest.{rest}",
+        heads=("change", "scene", "quantity", "methods", "first", "second", "difference", "uncertainty"),
+        rows=tuple(_number_row(number) for number in moved[:most]),
+        words=4,
+    )
+
+
+def _number_row(number: NumberChange) -> tuple[str, ...]:
+    methods = " against ".join(dict.fromkeys(display_name(method) for method in number.methods))
+    names = (str(number.change), f"{number.case} / {number.scene}", number.quantity.replace("_", " "), methods)
+    sizes = ("" if size is None else small(size) for size in (number.difference, number.uncertainty))
+    return *names, _value(number, 0), _value(number, 1), *sizes
+
+
+def _value(number: NumberChange, place: int) -> str:
+    """One of the two values, both in the unit that fits the first."""
+    if number.values is None:
+        return "not comparable"
+    factor, unit = scaled_unit(number.values[0], number.unit)
+    uncertainty = number.uncertainties[place] if number.uncertainties else float("inf")
+    return f"{measured(number.values[place] / factor, uncertainty / factor)} {unit}".strip()
+
+
+def time_table(times: tuple[TimeChange, ...]) -> Table | None:
+    """Seconds of both runs; a ratio, not a verdict, because nothing says that the machine was idle."""
+    if not times:
+        return None
+    ordered = sorted(times, key=lambda change: -change.ratio)
+    return Table(
+        title="Times",
+        note="One run each: a hint. `contact-verify gate` measures times alternately and judges them.",
+        heads=("case", "scene", "methods", "first", "second", "ratio"),
+        rows=tuple(_time_row(change) for change in ordered[:MOST_ROWS]),
+        words=3,
+    )
+
+
+def _time_row(change: TimeChange) -> tuple[str, ...]:
+    names = tuple(dict.fromkeys(display_name(method) for method in change.methods))
+    seconds = [duration(value) for value in change.seconds]
+    return change.case, change.scene, " against ".join(names), *seconds, f"{change.ratio:.2f}"

@@ -1,0 +1,57 @@
+"""summary.md for the summary page of a CI job: verdict, counts, then every check, failing rows first."""
+
+from collections.abc import Iterable, Sequence
+
+from cases.results.records import RunResult
+from reports.pages.report import baseline_sentence
+from reports.words.numbers import duration
+from reports.words.outcomes import Outcome, counts, headline, outcomes
+
+LARGEST = 900 * 1024
+"""Bytes; GitHub refuses a job summary above 1 MiB."""
+
+HEAD = (
+    "| verdict | case | check | method | error / tolerance | measured | tolerance | what was seen |\n"
+    "|---|---|---|---|--:|---|---|---|\n"
+)
+
+
+def summary_text(run: RunResult, *, largest: int = LARGEST) -> str:
+    """The summary in Markdown, never above `largest` bytes; what does not fit is counted, failures come first."""
+    rows = outcomes(run)
+    words, _ = headline(run, rows)
+    tally = ", ".join(f"{number} {status}" for status, number in counts(rows))
+    suite = f"Suite {run.suite}" if run.suite else "Chosen cases"
+    taken = f"{suite}, revision {run.stamp.revision[:12]}, {duration(run.stamp.wall_seconds)}."
+    top = f"# {words}\n\n{tally}. {taken} {baseline_sentence(run)}\n\n"
+    return top + _table(rows, largest - len(top.encode()))
+
+
+def _table(rows: Sequence[Outcome], room: int) -> str:
+    """As many rows as fit, and how many did not."""
+    lines = [_line(row) for row in rows]
+    fitting = _fitting(lines, room - len(HEAD.encode()) - 200)
+    missing = len(lines) - fitting
+    more = f"\n{missing} further rows, the best ones, are in results.json.\n" if missing else ""
+    return HEAD + "".join(lines[:fitting]) + more
+
+
+def _fitting(lines: Iterable[str], room: int) -> int:
+    """How many lines from the front have at most `room` bytes together."""
+    used = number = 0
+    for number, line in enumerate(lines, start=1):
+        used += len(line.encode())
+        if used > room:
+            return number - 1
+    return number
+
+
+def _line(row: Outcome) -> str:
+    word = f"**{row.word}**" if row.tone == "bad" else row.word
+    cells = (word, row.case, row.place, row.who, row.fraction_text, row.observed, row.tolerance, row.message)
+    return "| " + " | ".join(_escaped(cell) for cell in cells) + " |\n"
+
+
+def _escaped(text: str) -> str:
+    """Text that cannot end a table cell."""
+    return " ".join(text.split()).replace("|", "\\|")

@@ -1,0 +1,150 @@
+"""An answer as people and spreadsheets read it: a table with error bars, and a CSV file with every digit."""
+
+import csv
+import io
+from collections.abc import Iterable
+
+import numpy as np
+
+from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
+from reports.tables.table import Table
+from reports.words.method_names import display_name
+from reports.words.numbers import duration, measured, memory, prefix_for, scaled_unit, small
+
+SYMBOLS = {
+    "time": "t",
+    "contact_radius": "a",
+    "indentation_depth": "δ",
+    "velocity": "v",
+    "normal_force": "F",
+    "contact_stiffness": "k_N",
+    "kinetic_energy": "E_kin",
+    "stored_energy": "E_el",
+    "dissipated_energy": "E_diss",
+}
+BRACKETS = (
+    "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none."
+)
+LONGEST = 40
+"""Rows of a printed table; longer answers show every n-th state and the last one."""
+
+PRINTED = {
+    ContactPath: ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"),
+    DetachmentPath: ("contact_radius", "indentation_depth", "normal_force"),
+    HistoryPath: ("time", "indentation_depth", "normal_force", "contact_radius"),
+    ImpactHistory: ("time", "indentation_depth", "velocity", "normal_force", "contact_radius"),
+}
+
+
+def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
+    """The states of an answer, each number with the uncertainty that the method states."""
+    names = PRINTED[type(solution)]
+    shown = _shown(len(solution), longest)
+    factors = {name: prefix_for(getattr(solution, name)) for name in names}
+    heads = tuple(f"{SYMBOLS[name]} [{factors[name][1]}{UNITS[name]}]" for name in names)
+    columns = [_column(solution, name, factors[name][0], shown) for name in names]
+    omitted = len(solution) - len(shown)
+    skipped = f" {omitted} of {len(solution)} states are not printed; --write FILE.csv writes all." if omitted else ""
+    return Table(
+        title=_title(solution),
+        note=f"{BRACKETS}{skipped}",
+        heads=heads,
+        rows=tuple(zip(*columns, strict=True)),
+        words=0,
+    )
+
+
+def _title(solution: Solution) -> str:
+    """Method, indenter, layer: "MDR: TruncatedCone on a bonded layer, nu = 0.45"."""
+    layer = solution.scene.layer
+    below = "half-space" if layer.is_half_space else f"{layer.support} layer"
+    effects = "".join(f", {type(effect).__name__}" for effect in solution.scene.effects)
+    indenter = type(solution.scene.indenter).__name__
+    return f"{display_name(solution.method)}: {indenter} on a {below}, nu = {layer.poissons_ratio:g}{effects}"
+
+
+def _shown(states: int, longest: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
+    """Indices of the printed states, first and last among them."""
+    return np.unique(np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp))
+
+
+def _column(solution: Solution, name: str, factor: float, shown: Iterable[int]) -> list[str]:
+    values = np.asarray(getattr(solution, name), dtype=np.float64) / factor
+    uncertain = _uncertainty(solution, name) / factor
+    return [measured(float(values[i]), float(uncertain[i])) for i in shown]
+
+
+def _uncertainty(solution: Solution, name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
+    """Absolute uncertainty, shape (n,): zero for what the scene prescribes, infinite where the method states none."""
+    states = (len(solution),)
+    if name in _prescribed(solution):
+        return np.zeros(states)
+    if name not in solution.error_estimate:
+        return np.full(states, np.inf)
+    return np.array(np.broadcast_to(solution.uncertainty(name), states))
+
+
+def _prescribed(solution: Solution) -> tuple[str, ...]:
+    """What the loading gives: exact by definition."""
+    given = {
+        "ContactRadii": ("contact_radius",),
+        "IndentationDepths": ("indentation_depth",),
+        "NormalForces": ("normal_force",),
+        "DepthHistory": ("time", "indentation_depth"),
+        "ForceHistory": ("time", "normal_force"),
+        "Impact": ("time",),
+        "Detachment": ("contact_radius",),
+    }
+    return given[type(solution.scene.loading).__name__]
+
+
+def solution_facts(solution: Solution) -> list[tuple[str, str]]:
+    """What is said once of an answer: critical values, cost, own error estimate, notes."""
+    facts = _critical_values(solution)
+    worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
+    estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
+    facts += [("relative error estimate", estimates)] if estimates else []
+    facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
+    facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
+    return facts + [("note", note) for note in solution.notes]
+
+
+def _critical_values(solution: Solution) -> list[tuple[str, str]]:
+    """Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path."""
+    names: tuple[str, ...] = ()
+    if isinstance(solution, DetachmentPath):
+        names = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+    elif isinstance(solution, ImpactHistory):
+        names = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
+    return [(name.replace("_", " "), _critical_value(solution, name)) for name in names]
+
+
+def _critical_value(solution: Solution, name: str) -> str:
+    value = float(getattr(solution, name))
+    relative = solution.error_estimate.get(name)
+    factor, unit = scaled_unit(value, UNITS[name])
+    uncertainty = float("inf") if relative is None else float(np.max(relative)) * abs(value)
+    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
+
+
+def solution_csv(solution: Solution) -> str:
+    """Every state in SI units with its absolute uncertainty; an uncertainty the method does not state stays empty."""
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    heads = [(name, UNITS[name].replace("/", "_per_")) for name in solution.ARRAYS]
+    writer.writerow([head for name, unit in heads for head in (f"{name}_{unit}", f"{name}_uncertainty_{unit}")])
+    columns = [part for name in solution.ARRAYS for part in _csv_columns(solution, name)]
+    writer.writerows(zip(*columns, strict=True))
+    return buffer.getvalue()
+
+
+def _csv_columns(solution: Solution, name: str) -> tuple[list[float], list[float | str]]:
+    uncertain = _uncertainty(solution, name).tolist()
+    return getattr(solution, name).tolist(), [u if np.isfinite(u) else "" for u in uncertain]
+
+
+def _stage(stage: StageRecord) -> str:
+    """The effect ledger in words: what ran, how long, how often, and the bytes it declared."""
+    times = "" if stage.calls == 1 else f" in {stage.calls} calls"
+    size = f", {memory(stage.bytes)}" if stage.bytes else ""
+    return f"{stage.name.replace('_', ' ')} {duration(stage.wall_seconds)}{times}{size}"

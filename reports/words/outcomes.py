@@ -1,0 +1,203 @@
+"""What each check ended with, in words: the rows that page, summary, JUnit file and terminal share, worst first."""
+
+import re
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from cases.results.records import CaseResult, Claim, Kind, RunResult, SceneRun, Verdict
+from cases.results.status import Status
+from reports.words.numbers import NOT_FINITE, measured, small
+
+WORST_FIRST = (
+    Status.INVALID,
+    Status.FAIL,
+    Status.TIMEOUT,
+    Status.INCOMPARABLE,
+    Status.XPASS,
+    Status.DIFF,
+    Status.PERF,
+    Status.INCONCLUSIVE,
+    Status.SKIP,
+    Status.XFAIL,
+    Status.PASS,
+)
+"""The order of reading; skips stand before passes because someone has to look at their reasons."""
+
+EXPLANATIONS: Mapping[Status, str] = {
+    Status.PASS: "within tolerance",
+    Status.FAIL: "outside its tolerance",
+    Status.DIFF: "differs from the accepted baseline",
+    Status.PERF: "slower than the accepted baseline",
+    Status.INVALID: "a number that is not finite, or a solver that broke down",
+    Status.INCOMPARABLE: "shape, unit or specification differ",
+    Status.INCONCLUSIVE: "the numerical uncertainty is larger than the tolerance",
+    Status.TIMEOUT: "stopped at its time limit",
+    Status.SKIP: "the method does not model this scene",
+    Status.XFAIL: "fails, as declared with a reason",
+    Status.XPASS: "declared to fail, yet it passes: the declaration is out of date",
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """One check in words: a claim, or the solution of one scene by one method.
+
+    `fraction` is error over tolerance, -1 where nothing could be compared. `tone` is the class of colour:
+    "bad", "warn", "skip" or "good".
+    """
+
+    case: str
+    scene: str
+    name: str
+    methods: tuple[str, ...]
+    what: str
+    status: Status
+    word: str
+    fraction: float
+    observed: str
+    tolerance: str
+    origin: str
+    message: str
+    because: str
+    seconds: float
+
+    @property
+    def tone(self) -> str:
+        """Class of colour."""
+        return tone_of(self.status)
+
+    @property
+    def fraction_text(self) -> str:
+        """Fraction of the tolerance that is used up, empty where nothing was compared."""
+        return "" if self.fraction < 0.0 else small(self.fraction)
+
+    @property
+    def place(self) -> str:
+        """Name and scene of the check: "force agrees [bonded nu=0.3]"."""
+        return self.name if self.scene in self.name else f"{self.name} [{self.scene}]"
+
+    @property
+    def who(self) -> str:
+        """The methods that took part: "mdr against fem"."""
+        return " against ".join(self.methods)
+
+
+def tone_of(status: Status) -> str:
+    """Colour class of a status."""
+    if status.is_failure:
+        return "bad"
+    return {Status.INCONCLUSIVE: "warn", Status.SKIP: "skip", Status.XFAIL: "warn"}.get(status, "good")
+
+
+def outcomes(run: RunResult) -> tuple[Outcome, ...]:
+    """Every check of the run, worst first."""
+    rows = [row for case in run.cases for row in case_outcomes(case)]
+    return tuple(sorted(rows, key=severity))
+
+
+def case_outcomes(case: CaseResult) -> tuple[Outcome, ...]:
+    """Every check of a case, in the order of the case."""
+    claims = (claim_outcome(case.name, claim) for claim in case.claims)
+    return (*claims, *(_solved(case.name, run) for run in case.runs))
+
+
+def severity(row: Outcome) -> tuple[int, float]:
+    """Sorting key: the worst status first, within it the largest fraction of the tolerance."""
+    return WORST_FIRST.index(row.status), -row.fraction
+
+
+def counts(rows: Iterable[Outcome]) -> tuple[tuple[Status, int], ...]:
+    """How many checks ended with which status, worst first."""
+    tally = Counter(row.status for row in rows)
+    return tuple((status, tally[status]) for status in WORST_FIRST if tally[status])
+
+
+def headline(run: RunResult, rows: Iterable[Outcome]) -> tuple[str, str]:
+    """The verdict in a few words, and its tone."""
+    tally = Counter(row.tone for row in rows)
+    checks = sum(tally.values()) - tally["skip"]
+    if checks == 0:
+        measured = sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
+        return (
+            (f"MEASURED: {measured} case{'s'[: measured != 1]}, no claims", "good")
+            if measured
+            else ("Nothing ran", "bad")
+        )
+    if tally["bad"]:
+        return f"FAILED: {tally['bad']} of {checks} checks", "bad"
+    if not run.complete:
+        return f"INCOMPLETE: {checks} checks so far, none failed", "warn"
+    if tally["warn"]:
+        return f"PASSED: {checks} checks, {tally['warn']} to look at", "warn"
+    return f"PASSED: all {checks} checks", "good"
+
+
+def claim_outcome(case: str, claim: Claim) -> Outcome:
+    """A claim in words."""
+    return Outcome(
+        case=case,
+        scene=claim.scene,
+        name=claim.name,
+        methods=claim.methods,
+        what=f"{claim.kind}: {claim.quantity}",
+        status=claim.status,
+        word=str(claim.status if claim.verdict is Verdict.NONE or claim.status.is_failure else claim.verdict),
+        fraction=-1.0 if claim.fraction is None else claim.fraction,
+        observed=observed_text(claim),
+        tolerance=f"{small(claim.tolerance)}{_unit(claim.unit)}",
+        origin=f"{claim.origin}: {claim.source}",
+        message=worded(claim.message),
+        because=claim.because,
+        seconds=0.0,
+    )
+
+
+def _solved(case: str, run: SceneRun) -> Outcome:
+    return Outcome(
+        case=case,
+        scene=run.scene,
+        name=f"solves {run.scene}",
+        methods=(run.method,),
+        what="solution",
+        status=run.status,
+        word=str(run.status),
+        fraction=-1.0,
+        observed="",
+        tolerance="",
+        origin="",
+        message=worded(run.reason),
+        because="",
+        seconds=run.cost.wall_seconds if run.cost else 0.0,
+    )
+
+
+def worded(message: str) -> str:
+    """A message with its non-finite numbers in words, so that pages can be searched for stray ones."""
+    return re.sub(r"(?<![\w-])([-+]?)(nan|inf)\b", lambda found: found[1] + NON_FINITE[found[2]], message)
+
+
+NON_FINITE = {"nan": "not-a-number", "inf": "infinity"}
+
+
+def observed_text(claim: Claim) -> str:
+    """What was measured, with the uncertainty of each method; errors and residuals have two digits."""
+    if claim.observed is None:
+        return NOT_FINITE if claim.status is Status.INVALID else "not compared"
+    unit = _unit(claim.unit)
+    if claim.kind is Kind.ORDER and claim.expected is not None:
+        return f"{claim.observed:.2f}{unit}, formal {claim.expected:g}"
+    if claim.kind is Kind.REGRESSION and claim.expected is not None:
+        new, accepted = (measured(value, claim.tolerance) for value in (claim.observed, claim.expected))
+        return f"{new}{unit}, accepted {accepted}{unit}"
+    uncertain = ", ".join(f"{method} {small(u)}" for method, u in claim.uncertainty.items())
+    return f"{small(claim.observed)}{unit}" + (f" (uncertainty {uncertain})" if uncertain else "")
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else f" {unit}"
+
+
+def value_text(value: float, uncertainty: float | None) -> str:
+    """A value as the tables show it; three digits where a method states no uncertainty."""
+    return measured(value, float("inf") if uncertainty is None else uncertainty)
