@@ -14,6 +14,7 @@ from bem.grid.equilibrium import Boundary, Prescribed, Press, PressedState
 from bem.grid.flat_punch import grid_punch
 from bem.grid.quadrant import LEAST_CELLS, Grid, UnresolvedLayer
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
+from bem.kernels.moduli import contact_modulus
 from contact import (
     Adhesion,
     ContactPath,
@@ -211,7 +212,7 @@ class Bem(Record):
         with log.stage("contact"):
             punch, disc = grid_punch(scene.layer, a, self.points)
             coarse, _ = grid_punch(scene.layer, a, self.points // 2)
-        stiffness = 2.0 * scene.layer.contact_modulus * a * punch.stiffness  # Eq. (10)
+        stiffness = 2.0 * contact_modulus(scene.layer) * a * punch.stiffness  # Eq. (10)
         depth = value if kind == "depth" else value / stiffness
         scale = depth * stiffness / (np.pi * a**2)  # p = k_N delta / (pi a^2) p_bar, Eq. (10)
         cell_size = a / disc.radius
@@ -222,7 +223,7 @@ class Bem(Record):
             pressure_scale=scale,
             shape=punch.shape,
             grid=Grid(2 * len(punch.pressure), cell_size),
-            cell_pressure=punch.pressure * (scene.layer.contact_modulus * depth / cell_size),
+            cell_pressure=punch.pressure * (contact_modulus(scene.layer) * depth / cell_size),
         )
         error = abs(coarse.stiffness / punch.stiffness - 1.0)
         values = {"contact_radius": a, "indentation_depth": depth, "normal_force": stiffness * depth}

@@ -30,6 +30,7 @@ from contact import (
 )
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
+from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.elastic.error_estimate import CertifiedContact, solve_certified_contact
@@ -149,7 +150,7 @@ class Fem:
         if isinstance(loading, IndentationDepths):
             return [self._equilibrium_at_load(scene, float(depth), log) for depth in loading.values]
         if isinstance(loading, NormalForces):
-            modulus = scene.layer.contact_modulus
+            modulus = contact_modulus(scene.layer)
             return [self._equilibrium_at_load(scene, float(force) / modulus, log) for force in loading.values]
         raise UnsupportedSceneError(f"fem has no elastic path for loading {type(loading).__name__}")
 

@@ -15,6 +15,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhesion.disc import AdheringDisc
 from bem.grid.quadrant import first_radius
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Adhesion, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
@@ -137,7 +138,7 @@ class AdhesiveBranch:
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""
-        return np.asarray(self.scene.layer.contact_modulus * self._at(radius)[2])
+        return np.asarray(contact_modulus(self.scene.layer) * self._at(radius)[2])
 
     def depth(self, radius: FloatArray) -> FloatArray:
         """delta [m] where phi = -sqrt(2 pi dgamma a/E*): Eq. (40)."""
@@ -148,7 +149,7 @@ class AdhesiveBranch:
         """F_N [N], in equilibrium or at another depth."""
         _, _, stiffness, moment = self._at(radius)
         delta = self.depth(radius) if depth is None else depth
-        return np.asarray(self.scene.layer.contact_modulus * (stiffness * delta - moment))
+        return np.asarray(contact_modulus(self.scene.layer) * (stiffness * delta - moment))
 
     def value(self, quantity: Quantity, radius: FloatArray) -> FloatArray:
         """Depth or force."""
@@ -205,7 +206,7 @@ class AdhesiveBranch:
 def adhesive_length(scene: Scene) -> float:
     """dgamma/E* [m]."""
     adhesion = scene.effect(Adhesion)
-    return 0.0 if adhesion is None else adhesion.work_of_adhesion / scene.layer.contact_modulus
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
 
 
 def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], bool]) -> float:

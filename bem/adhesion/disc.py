@@ -26,6 +26,7 @@ from bem.grid.calibrated_disc import PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import Grid
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Layer, Profile
 from contact.records.validation import FloatArray
@@ -67,7 +68,7 @@ class AdheringDisc:
         operator = FreeSpaceOperator(layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
         height = np.where(disc.contact, indenter.height(np.minimum(grid.radius, indenter.max_radius)), 0.0)
         flat, risen = (
-            solve_on_contact(operator, disc.contact, target, tolerance=TOLERANCE).pressure / layer.contact_modulus
+            solve_on_contact(operator, disc.contact, target, tolerance=TOLERANCE).pressure / contact_modulus(layer)
             for target in (1.0, height)
         )
         if not np.any(height) or not is_measured(layer, indenter):

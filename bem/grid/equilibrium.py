@@ -15,6 +15,7 @@ from bem.grid.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius
 from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.grid.quadrant import Grid, first_radius, grid_sequence, prolonged, refuse_thin_layer
+from bem.kernels.moduli import contact_modulus
 from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
@@ -310,7 +311,7 @@ class Press:
 
     def _depth_of_force(self, force: float) -> float:
         """The depth at which 2 E* r f(r) equals the force, r the radius where f equals the depth."""
-        stiffness = 2.0 * self.layer.contact_modulus
+        stiffness = 2.0 * contact_modulus(self.layer)
         radius = first_radius(lambda r: stiffness * r * self._depth_scale(r) >= force, self.indenter.max_radius)
         return self._depth_scale(radius * (1.0 - 1e-12))
 

@@ -8,6 +8,7 @@ from typing import Final
 import numpy as np
 
 from bem.grid.calibrated_disc import THIN, PixelDisc, PunchSolution, measured_disc
+from bem.kernels.moduli import contact_modulus
 from contact import Layer, NotConvergedError
 
 RADIUS_TOLERANCE: Final = 1e-7  # relative, of the stiffness
@@ -26,7 +27,7 @@ def grid_punch(layer: Layer, radius: float, cells: int) -> tuple[PunchSolution, 
 def contact_stiffness(layer: Layer, radius: float, cells: int) -> float:
     """k_N(a) [N/m], Eq. (10)."""
     punch, _ = grid_punch(layer, radius, cells)
-    return 2.0 * layer.contact_modulus * radius * punch.stiffness
+    return 2.0 * contact_modulus(layer) * radius * punch.stiffness
 
 
 def radius_of_stiffness(layer: Layer, stiffness: float, near: float, cells: int) -> float:

@@ -23,6 +23,7 @@ from bem.grid.transforms import (
     fast_period,
 )
 from bem.kernels.layer import compliance_kernel, zero_mode
+from bem.kernels.moduli import contact_modulus
 from contact import InvalidInput, Layer
 
 FloatArray = npt.NDArray[np.float64]
@@ -74,7 +75,7 @@ class GridOperator:
         if self.padded:
             self._forward = transform(fast_period(2 * cells))
             influence = self._influence(layer, self._forward.period // 2, cell_size)
-            self._symbol = convolution_symbol(self._forward, influence * (cell_size / layer.contact_modulus))
+            self._symbol = convolution_symbol(self._forward, influence * (cell_size / contact_modulus(layer)))
 
     padded: ClassVar[bool]
 
@@ -132,7 +133,7 @@ def layer_symbol(wavenumber: FloatArray, layer: Layer) -> FloatArray:
     k = np.where(zero, 1.0, wavenumber)
     chi = 1.0 if isinf(layer.thickness) else compliance_kernel(k * layer.thickness, layer.support, layer.poissons_ratio)
     at_zero = 0.0 if layer.is_half_space else layer.thickness * zero_mode(layer.support, layer.poissons_ratio)
-    return np.asarray(2.0 / layer.contact_modulus * np.where(zero, at_zero, chi / k))
+    return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, at_zero, chi / k))
 
 
 def _wavenumbers(transform: Transform, cell_size: float) -> FloatArray:

@@ -17,6 +17,7 @@ from scipy.interpolate import PchipInterpolator
 from bem.grid.equilibrium import PressedState
 from bem.grid.influence import REACH, correction_function
 from bem.grid.quadrant import Grid
+from bem.kernels.moduli import contact_modulus
 from contact import Layer, Profile, Scene
 from contact.records.validation import FloatArray
 
@@ -144,7 +145,7 @@ class AdheringFields:
         if a == 0.0:
             return np.zeros(radius.shape)
         r = np.minimum(radius, a - 0.5 * self._disc.grid.cell_size)
-        unit = self.scene.layer.contact_modulus / np.pi
+        unit = contact_modulus(self.scene.layer) / np.pi
         return np.where(radius <= a, unit * self._density(r) / np.sqrt(a**2 - r**2), 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
@@ -154,7 +155,7 @@ class AdheringFields:
         a, layer, outside = self.contact_radius, self.scene.layer, radius > self.contact_radius
         w = np.asarray(self.indentation_depth - self.scene.indenter.height(np.minimum(radius, a)))
         edge = self.indentation_depth - float(self.scene.indenter.height(a))
-        rim = Rim(layer, self._disc.grid, layer.contact_modulus * self._pressure, a, edge)
+        rim = Rim(layer, self._disc.grid, contact_modulus(layer) * self._pressure, a, edge)
         w[outside] = rim.displacement_outside(radius[outside])
         return w
 
@@ -212,7 +213,7 @@ def summed_displacement(layer: Layer, grid: Grid, pressure: FloatArray, radius: 
     """
     i, j = np.nonzero(pressure)
     x, y = grid.cell_size * (i + 0.5), grid.cell_size * (j + 0.5)
-    force = grid.cell_size**2 * pressure[i, j] / (np.pi * layer.contact_modulus)
+    force = grid.cell_size**2 * pressure[i, j] / (np.pi * contact_modulus(layer))
     w = np.empty(radius.shape)
     for start in range(0, radius.size, CHUNK):
         r = radius[start : start + CHUNK, None]

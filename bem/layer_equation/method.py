@@ -13,6 +13,7 @@ import numpy as np
 from pydantic import Field
 from scipy.optimize import toms748
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import DirectDensity
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (
@@ -199,10 +200,10 @@ class _Solver:
         return self._loose(density)
 
     def _loose(self, density: DirectDensity) -> DirectContact:
-        return DirectContact(density, density.depth, False, self.scene.layer.contact_modulus)
+        return DirectContact(density, density.depth, False, contact_modulus(self.scene.layer))
 
     def _punch(self, value: float) -> DirectContact:
-        density, modulus = self._density(self.scene.indenter.flat_radius), self.scene.layer.contact_modulus
+        density, modulus = self._density(self.scene.indenter.flat_radius), contact_modulus(self.scene.layer)
         depth = value / density.unit
         if isinstance(self.scene.loading, NormalForces):
             depth = value / (modulus * density.stiffness * density.unit**2)
@@ -238,7 +239,7 @@ class _Solver:
 
     def _first_excess(self, value: float) -> float:
         layer, indenter = self.scene.layer, self.scene.indenter
-        length = np.sqrt(value / layer.contact_modulus) if isinstance(self.scene.loading, NormalForces) else value
+        length = np.sqrt(value / contact_modulus(layer)) if isinstance(self.scene.loading, NormalForces) else value
         return float(min(layer.thickness, 10 * length, indenter.max_radius / 2))
 
 

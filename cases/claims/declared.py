@@ -91,7 +91,7 @@ class DeclaredClaim(ABC):
     def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
         """Return the claim on the scenes whose methods are all left in ``solvers``; nothing where no scene is."""
         return self._on(
-            scene.name for scene in self.scenes_of(case) if solvers[scene.name].issuperset(self.labels(case, scene))
+            scene.name for scene in self.scenes_of(case) if solvers[scene.name] >= set(self.labels(case, scene))
         )
 
     def _on(self, scenes: Iterable[str]) -> tuple[Self, ...]:
@@ -162,7 +162,7 @@ class PerMethod(DeclaredClaim, ABC):
         return self.methods or tuple(use.label for use in case.methods_of(scene))
 
     def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
-        """Return the claim on the scenes where a method is left, with the named methods that are left on all of them."""
+        """Return the claim where a method is left, with the named methods that are left on all those scenes."""
         scenes = [s.name for s in self.scenes_of(case) if not solvers[s.name].isdisjoint(self.labels(case, s))]
         if not self.methods:
             return self._on(scenes)

@@ -43,9 +43,15 @@ def half_space(poissons_ratio: float = 0.3) -> Layer:
     return Layer.half_space(youngs_modulus=YOUNGS_MODULUS, poissons_ratio=poissons_ratio)
 
 
-def written_out_modulus(layer: Layer) -> float:
+def contact_modulus(layer: Layer) -> float:
     """E* = E / (1 - nu^2) [Pa] for expected numbers, which must not share a mistake with `Layer.contact_modulus`."""
     return layer.youngs_modulus / (1 - layer.poissons_ratio**2)
+
+
+def confined_modulus(layer: Layer) -> float:
+    """E (1 - nu) / ((1 + nu) (1 - 2 nu)) [Pa] for expected numbers, written out for the same reason."""
+    nu = layer.poissons_ratio
+    return layer.youngs_modulus * (1 - nu) / ((1 + nu) * (1 - 2 * nu))
 
 
 def scene_name(label: str, ratio: float) -> str:
@@ -61,7 +67,7 @@ def doubled_modulus(scene: Scene) -> Scene:
 def other_poissons_ratio(scene: Scene) -> Scene:
     """Return the scene with nu = 0.1 at the same E*: an unbonded layer must not see the difference."""
     nu = 0.1
-    modulus = scene.layer.contact_modulus * (1 - nu**2)
+    modulus = contact_modulus(scene.layer) * (1 - nu**2)
     return scene.replace(layer=scene.layer.replace(poissons_ratio=nu, youngs_modulus=modulus))
 
 

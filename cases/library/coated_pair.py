@@ -8,7 +8,7 @@ from cases.claims.scaling_law import Twin
 from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
 from cases.library._compared import BEM_TOLERANCE, EVERY, FEM, MDR, TABLE_TOLERANCES, agreements
-from cases.library._layers import THICKNESS, YOUNGS_MODULUS, prescribed_radii
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, prescribed_radii
 from cases.results.records import Origin
 from contact import CoatedPair, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 
@@ -88,7 +88,7 @@ def beds_in_series(scene: Scene) -> float:
     """k_N = pi a^2 E~/(h1 + h2): two Winkler beds, one after the other."""
     a = float(prescribed_radii(scene)[0])
     full = Layer(thickness=THICKNESS, youngs_modulus=YOUNGS_MODULUS, poissons_ratio=POISSONS_RATIO)
-    return np.pi * a**2 * full.confined_modulus / sum(UNEQUAL)
+    return np.pi * a**2 * confined_modulus(full) / sum(UNEQUAL)
 
 
 def thinness(scene: Scene) -> float:

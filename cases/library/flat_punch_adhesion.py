@@ -22,7 +22,7 @@ from cases.library._compared import (
     agreements,
     with_reason,
 )
-from cases.library._layers import THICKNESS, YOUNGS_MODULUS, half_space
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, half_space
 from cases.results.records import Figure, Origin
 from cases.run.task import Answers
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
@@ -81,26 +81,26 @@ ABRUPT = (case_scene(0.5, 1.0, "force"),)
 
 def kendall_depth(scene: Scene) -> list[float]:
     """delta_c = -sqrt(2 pi Delta gamma a / E*)."""
-    return [-float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * scene.indenter.flat_radius / scene.layer.contact_modulus))]
+    return [-float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * scene.indenter.flat_radius / contact_modulus(scene.layer)))]
 
 
 def kendall_force(scene: Scene) -> list[float]:
     """F_c = -sqrt(8 pi E* Delta gamma a^3)."""
     a = scene.indenter.flat_radius
-    return [-float(np.sqrt(8 * np.pi * scene.layer.contact_modulus * WORK_OF_ADHESION * a**3))]
+    return [-float(np.sqrt(8 * np.pi * contact_modulus(scene.layer) * WORK_OF_ADHESION * a**3))]
 
 
 def unit_elongation(layer: Layer) -> float:
     """sqrt(2 pi Delta gamma h / E*) [m], the unit of Delta l in Eq. (42)."""
-    return float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * layer.thickness / layer.contact_modulus))
+    return float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * layer.thickness / contact_modulus(layer)))
 
 
 def abrupt_force(scene: Scene) -> list[float]:
     """F_A = -k_N(a*) Delta l(a*), Eq. (46), from tabulated kbar and cbar."""
     a = scene.indenter.flat_radius
     kbar, cbar = STIFFNESS_AND_SPRING[round(a / scene.layer.thickness, 9)]
-    elongation = np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / (scene.layer.contact_modulus * cbar))
-    return [-float(2 * scene.layer.contact_modulus * a * kbar * elongation)]
+    elongation = np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / (contact_modulus(scene.layer) * cbar))
+    return [-float(2 * contact_modulus(scene.layer) * a * kbar * elongation)]
 
 
 def figures(case: Case, answers: Answers) -> Iterator[Figure]:

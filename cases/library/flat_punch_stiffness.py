@@ -11,7 +11,7 @@ from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
 from cases.figures import paper_figure
 from cases.library._compared import BEM, BOUNDARY_PUNCHES, EVERY, FEM, MDR, agreements
-from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, edges
 from cases.results.records import Figure, Origin, Series
 from cases.run.task import Answers, Sampling
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
@@ -104,7 +104,7 @@ HERMANOWICZ_WALKS = tuple(
 
 def stiffness(label: str, kbar: float, ratio: float) -> float:
     """Return k_N [N/m] of a normalised stiffness."""
-    return kbar * 2 * LAYERS[label].contact_modulus * ratio * THICKNESS
+    return kbar * 2 * contact_modulus(LAYERS[label]) * ratio * THICKNESS
 
 
 def tabulated() -> dict[str, tuple[float, ...]]:

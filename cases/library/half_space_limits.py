@@ -11,7 +11,7 @@ from cases.claims.exact import Exact
 from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
 from cases.library._compared import EVERY
-from cases.library._layers import LAYERS, THICKNESS, half_space, layer, prescribed_radii, scene_name
+from cases.library._layers import LAYERS, THICKNESS, contact_modulus, half_space, layer, prescribed_radii, scene_name
 from cases.results.records import Origin
 from contact import (
     Cone,
@@ -91,12 +91,12 @@ def force(scene: Scene) -> list[float]:
     a = float(prescribed_radii(scene)[0])
     exponents: dict[type[Profile], float] = {Cone: 1.0, Paraboloid: 2.0, PowerLaw: 4.0}
     n = exponents[type(scene.indenter)]
-    return [2 * n / (n + 1) * scene.layer.contact_modulus * depth(scene)[0] * a]
+    return [2 * n / (n + 1) * contact_modulus(scene.layer) * depth(scene)[0] * a]
 
 
 def punch_force(scene: Scene) -> list[float]:
     """F = 2 E* a delta."""
-    return [2 * scene.layer.contact_modulus * RADIUS * DEPTH]
+    return [2 * contact_modulus(scene.layer) * RADIUS * DEPTH]
 
 
 def thick_limit(label: str) -> Callable[[Scene], float]:
@@ -104,7 +104,7 @@ def thick_limit(label: str) -> Callable[[Scene], float]:
 
     def limit(scene: Scene) -> float:
         a = scene.indenter.flat_radius
-        return 2 * scene.layer.contact_modulus * a * (1 + ALPHA[label] * a / scene.layer.thickness)
+        return 2 * contact_modulus(scene.layer) * a * (1 + ALPHA[label] * a / scene.layer.thickness)
 
     return limit
 

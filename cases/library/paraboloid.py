@@ -23,7 +23,7 @@ from cases.library._compared import (
     agreements,
     with_reason,
 )
-from cases.library._layers import LAYERS, THICKNESS, edges, in_millimetres, layer, scene_name
+from cases.library._layers import LAYERS, THICKNESS, contact_modulus, edges, in_millimetres, layer, scene_name
 from cases.results.records import Origin
 from cases.run.task import Sampling
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
@@ -59,7 +59,7 @@ def depth(label: str, ratio: float) -> float:
 
 def force(label: str, ratio: float) -> float:
     """Return the tabulated force [N]."""
-    return TABULATED[label][ratio][1] * layer(label).contact_modulus * THICKNESS**3 / RADIUS_OF_CURVATURE
+    return TABULATED[label][ratio][1] * contact_modulus(layer(label)) * THICKNESS**3 / RADIUS_OF_CURVATURE
 
 
 def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScene:
@@ -106,7 +106,7 @@ def hermanowicz(reduced_depth: float) -> float:
 
 def fitted_forces() -> dict[str, tuple[float, ...]]:
     """Return the fitted force [N] at each tabulated depth."""
-    unit = layer("bonded nu=0.5").contact_modulus * THICKNESS**3 / RADIUS_OF_CURVATURE
+    unit = contact_modulus(layer("bonded nu=0.5")) * THICKNESS**3 / RADIUS_OF_CURVATURE
     return {
         scene_name("bonded nu=0.5", ratio) + " by depth": (hermanowicz(row[0]) * unit,)
         for ratio, row in TABULATED["bonded nu=0.5"].items()

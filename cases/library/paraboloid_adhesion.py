@@ -19,7 +19,7 @@ from cases.library._compared import (
     agreements,
     with_reason,
 )
-from cases.library._layers import half_space, layer
+from cases.library._layers import contact_modulus, half_space, layer
 from cases.results.records import Origin
 from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
 
@@ -76,14 +76,16 @@ def jkr_force(scene: Scene) -> list[float]:
 
 def jkr_radius(scene: Scene) -> list[float]:
     """a = (9 or 1 times pi Delta gamma R^2/(8 E*))^(1/3)."""
-    cube = np.pi * WORK_OF_ADHESION * RADIUS_OF_CURVATURE**2 / scene.layer.contact_modulus
+    cube = np.pi * WORK_OF_ADHESION * RADIUS_OF_CURVATURE**2 / contact_modulus(scene.layer)
     return [float(np.cbrt(RADIUS_FACTOR[control_of(scene)] * cube))]
 
 
 def jkr_depth(scene: Scene) -> list[float]:
     """delta = a^2/R - sqrt(2 pi Delta gamma a/E*)."""
     a = jkr_radius(scene)[0]
-    return [float(a**2 / RADIUS_OF_CURVATURE - np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / scene.layer.contact_modulus))]
+    return [
+        float(a**2 / RADIUS_OF_CURVATURE - np.sqrt(2 * np.pi * WORK_OF_ADHESION * a / contact_modulus(scene.layer)))
+    ]
 
 
 JKR = Reason(

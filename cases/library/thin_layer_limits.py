@@ -10,7 +10,7 @@ from cases.claims.declared import Reason
 from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
 from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
-from cases.library._layers import THICKNESS, layer, prescribed_radii, scene_name
+from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
 from cases.results.records import Origin
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
@@ -59,7 +59,7 @@ def _scene(name: str, label: str, ratio: float, indenter: Profile) -> CaseScene:
 
 def bed_modulus(bed: Layer) -> float:
     """Modulus of the Winkler bed [Pa]: E~ when bonded, Eq. (16); E* when unbonded, Eq. (21)."""
-    return bed.contact_modulus if bed.support == "unbonded" else bed.confined_modulus
+    return contact_modulus(bed) if bed.support == "unbonded" else confined_modulus(bed)
 
 
 def is_squeezed(scene: Scene) -> bool:

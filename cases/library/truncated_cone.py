@@ -32,6 +32,7 @@ from cases.library._compared import (
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
+    contact_modulus,
     doubled_modulus,
     edges,
     half_space,
@@ -40,7 +41,6 @@ from cases.library._layers import (
     other_poissons_ratio,
     prescribed_radii,
     scene_name,
-    written_out_modulus,
 )
 from cases.results.records import Figure, Origin, SceneRun, Series
 from cases.run.task import Answers, Sampling
@@ -183,7 +183,7 @@ def half_space_force(scene: Scene) -> list[float]:
     """F = E* a^2 tan(theta) [arccos(b/a) + (b/a) sqrt(1 - b^2/a^2)]."""
     a, b = _radii(scene)
     shape = np.arccos(b / a) + b / a * np.sqrt(1 - (b / a) ** 2)
-    return [written_out_modulus(scene.layer) * a**2 * SLOPE * float(shape)]
+    return [contact_modulus(scene.layer) * a**2 * SLOPE * float(shape)]
 
 
 def _radii(scene: Scene) -> tuple[float, float]:
@@ -212,7 +212,7 @@ def tabulated_depths() -> dict[str, tuple[float, ...]]:
 def tabulated_forces() -> dict[str, tuple[float, ...]]:
     """Return the tabulated forces [N] by scene."""
     return {
-        scene_name(label, ratio): (row[1] * written_out_modulus(layer(label)) * (ratio * THICKNESS) ** 2 * SLOPE,)
+        scene_name(label, ratio): (row[1] * contact_modulus(layer(label)) * (ratio * THICKNESS) ** 2 * SLOPE,)
         for (label, ratio), row in TABULATED.items()
     }
 

@@ -21,6 +21,7 @@ from contact import (
 )
 from fem_reference.adhesion.branch import AdhesiveBranch
 from fem_reference.adhesion.equilibria import SPANS, branch_of, branch_samples
+from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
@@ -64,7 +65,7 @@ def detachment_path(
     depth, force = branch.depth(radius), branch.force(radius)
     critical = [*_start(scene, branch), *_turning_points(branch, radius)]
     pull_off = _pull_off(branch, radius, loading.control, critical)
-    modulus = scene.layer.contact_modulus
+    modulus = contact_modulus(scene.layer)
     passed = radius >= pull_off.contact_radius
     strongest = _point(branch, float(radius[passed][np.argmin(force[passed])]), loading.control, "strongest")
     strongest = min(strongest, pull_off, key=lambda point: point.normal_force)

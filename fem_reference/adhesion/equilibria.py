@@ -20,6 +20,7 @@ from contact import (
     Scene,
 )
 from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
+from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import CertifiedContact
 from fem_reference.elastic.path import ContactSolver, Equilibrium
 
@@ -35,7 +36,7 @@ SAMPLES = 241
 def work_of_adhesion(scene: Scene) -> float:
     """dgamma / E* [m]."""
     adhesion = scene.effect(Adhesion)
-    return adhesion.work_of_adhesion / scene.layer.contact_modulus if adhesion else 0.0
+    return adhesion.work_of_adhesion / contact_modulus(scene.layer) if adhesion else 0.0
 
 
 def adhesive_equilibrium(contact: CertifiedContact, work: float) -> Equilibrium:
@@ -85,7 +86,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | No
     if not isinstance(loading, IndentationDepths | NormalForces):
         raise InvalidInput(f"loading = {type(loading).__name__}: adhesion takes radii, depths, forces or a detachment")
     by_depth = isinstance(loading, IndentationDepths)
-    targets = loading.values / (1.0 if by_depth else scene.layer.contact_modulus)
+    targets = loading.values / (1.0 if by_depth else contact_modulus(scene.layer))
     start = None if isinstance(scene.indenter, FlatPunch) else _radius_beyond(scene, float(targets.max()), by_depth)
     branch = branch_of(scene, start, solve, accuracy)
     return [_state_at(scene, branch, float(target), by_depth, solve) for target in targets]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from contact import InvalidInput
+from contact import InvalidInput, Layer
 
 
 @dataclass(frozen=True)
@@ -36,3 +36,13 @@ def moduli(poissons_ratio: float) -> Moduli:
     nu = poissons_ratio
     mu = (1 - nu) / 2
     return Moduli(mu, 3 * (1 - 2 * nu) / (2 * mu * (1 + nu)))
+
+
+def shear_modulus(layer: Layer) -> float:
+    """Lame's mu = E / (2 (1 + nu)) [Pa]."""
+    return layer.youngs_modulus / (2 * (1 + layer.poissons_ratio))
+
+
+def contact_modulus(layer: Layer) -> float:
+    """The unit of stress of finite elements [Pa]: what makes Lame's mu of `moduli` that of the layer."""
+    return shear_modulus(layer) / moduli(layer.poissons_ratio).shear

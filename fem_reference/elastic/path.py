@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import CertifiedContact
 from fem_reference.elastic.surface_fields import FemFields, SurfaceState
 
@@ -85,7 +86,7 @@ def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver) 
     if isinstance(loading, IndentationDepths):
         return [flat_punch_equilibrium(contact, depth / a) for depth in loading.values]
     if isinstance(loading, NormalForces):
-        unit = scene.layer.contact_modulus * a**2 * contact.answer.stiffness
+        unit = contact_modulus(scene.layer) * a**2 * contact.answer.stiffness
         return [_known_force(flat_punch_equilibrium(contact, force / unit)) for force in loading.values]
     raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
 
@@ -104,7 +105,7 @@ def contact_path(
     notes: tuple[str, ...] = (),
 ) -> ContactPath:
     """The path in SI units."""
-    modulus = scene.layer.contact_modulus
+    modulus = contact_modulus(scene.layer)
     radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
     stiffness = np.array([state.stiffness for state in equilibria])
     states = tuple(

@@ -21,6 +21,7 @@ from contact import (
     Viscoelasticity,
 )
 from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.material import shear_modulus
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
@@ -67,7 +68,7 @@ def relaxation_of(scene: Scene) -> Relaxation:
     if model is not None:
         return model.relaxation
     nothing = np.empty(0)
-    return Relaxation(long_term_modulus=scene.layer.shear_modulus, moduli=nothing, times=nothing, viscosity=0.0)
+    return Relaxation(long_term_modulus=shear_modulus(scene.layer), moduli=nothing, times=nothing, viscosity=0.0)
 
 
 class Theatre:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
+from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.in_time.condensed_layer import Stage
 from fem_reference.in_time.errors import with_errors
 from fem_reference.in_time.impact import Body, Record, simulate_impact
@@ -25,7 +26,7 @@ Settings = Mapping[str, bool | int | float | str | None]
 def impact_history(theatre: Theatre, loading: Impact, shown: Settings) -> ImpactHistory:
     """An impact from first touch to the loss of contact."""
     scene, log = theatre.scene, theatre.log
-    modulus = scene.layer.shear_modulus
+    modulus = shear_modulus(scene.layer)
 
     def simulate(stage: Stage, duration: float) -> Record:
         body = Body(mass=loading.mass / (modulus * stage.radius), velocity=loading.velocity / stage.radius)
@@ -50,8 +51,8 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
     """A contact radius [m] with E* r f(r)^2 = kinetic energy, and the time [s] to reach the depth f(r)."""
     if isinstance(scene.indenter, FlatPunch):
         a = scene.indenter.radius
-        return a, float(np.pi * np.sqrt(loading.mass / (2 * scene.layer.contact_modulus * a)))
-    height, modulus = scene.indenter.height, scene.layer.contact_modulus
+        return a, float(np.pi * np.sqrt(loading.mass / (2 * contact_modulus(scene.layer) * a)))
+    height, modulus = scene.indenter.height, contact_modulus(scene.layer)
     energy = loading.mass * loading.velocity**2 / 2
     r = _radius_where(lambda r: modulus * r * float(height(r)) ** 2 / energy)
     r = min(r, scene.indenter.max_radius)
@@ -60,7 +61,7 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
 
 def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Record, shown: Settings) -> ImpactHistory:
     scene, log = theatre.scene, theatre.log
-    length, modulus = stage.radius, scene.layer.shear_modulus
+    length, modulus = stage.radius, shear_modulus(scene.layer)
     energy = modulus * length**3
     force, depth = np.array(record.force), np.array(record.depth)
     velocity = np.array(record.velocity) * length
@@ -99,7 +100,7 @@ def peak(values: Array) -> float:
 def prescribed_history(theatre: Theatre, loading: DepthHistory | ForceHistory, shown: Settings) -> HistoryPath:
     """Response to a prescribed history of depth or force."""
     scene, log = theatre.scene, theatre.log
-    modulus = scene.layer.shear_modulus
+    modulus = shear_modulus(scene.layer)
 
     def simulate(stage: Stage, steps: int) -> Record:
         with log.stage("time_steps"):
@@ -134,7 +135,7 @@ def _history_in_si(theatre: Theatre, stage: Stage, record: Record, shown: Settin
         stages=log.records,
         time=np.array(record.time),
         indentation_depth=np.array(record.depth) * length,
-        normal_force=force * scene.layer.shear_modulus * length**2,
+        normal_force=force * shear_modulus(scene.layer) * length**2,
         contact_radius=np.where(force > 0, np.maximum(radius, scene.indenter.flat_radius), 0.0),
     )
 
@@ -149,7 +150,7 @@ def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float
         radius = _radius_where(lambda r: float(height(r)) / largest) if largest > 0 else 0.0
     else:
         largest = float(loading.force.max())
-        stiffness = 4 * scene.layer.contact_modulus
+        stiffness = 4 * contact_modulus(scene.layer)
         radius = _radius_where(lambda r: stiffness * r * float(height(r)) / largest) if largest > 0 else 0.0
     if largest <= 0:
         raise InvalidInput("the history never presses; give a positive depth or force somewhere")

@@ -13,6 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, resolved_panels
@@ -48,7 +49,7 @@ def pull_off_table(layer: Layer, indenter: Profile, radius: float, flat_punch: F
 
     def sample(y: FloatArray) -> FloatArray:
         a = y**2
-        softness = np.sqrt(a * layer.contact_modulus / system.spring_stiffness(a))  # Eq. (42)
+        softness = np.sqrt(a * contact_modulus(layer) / system.spring_stiffness(a))  # Eq. (42)
         return np.stack([system.mdr_profile(a), softness, system.contact_stiffness(a), system.profile_moment(a)])
 
     end = float(np.sqrt(radius))

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     Adhesion,
@@ -182,7 +183,7 @@ def _reaching(
 
 def balance_radius(scene: Scene) -> float:
     """The contact radius [m] at which the indenter is as high as the elongation on the half-space is long."""
-    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / scene.layer.contact_modulus
+    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / contact_modulus(scene.layer)
     law = power_law(indenter)
     if law is not None:
         coefficient, exponent = law

@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from bem.kernels.moduli import confined_modulus, contact_modulus
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import InvalidInput, Layer, Profile
 from contact.records.validation import FloatArray
@@ -30,7 +31,7 @@ def is_film(layer: Layer) -> bool:
 
 def foundation_modulus(layer: Layer) -> float:
     """E~ [Pa] of the bed p = E~ w/h: confined modulus if bonded, Eq. (17), E* if unbonded, Eq. (22)."""
-    return layer.contact_modulus if layer.support == "unbonded" else layer.confined_modulus
+    return contact_modulus(layer) if layer.support == "unbonded" else confined_modulus(layer)
 
 
 def thin_contact_stiffness(layer: Layer, contact_radius: ArrayLike) -> FloatArray:

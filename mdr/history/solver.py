@@ -12,6 +12,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     DepthHistory,
@@ -267,7 +268,7 @@ def _refuse_idle(loading: DepthHistory | ForceHistory, prescribed: FloatArray) -
 
 def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
     """A radius [m] to start from: where the half-space, roughly, has the largest depth or force."""
-    indenter, modulus = scene.indenter, scene.layer.contact_modulus
+    indenter, modulus = scene.indenter, contact_modulus(scene.layer)
     if isinstance(loading, DepthHistory):
         largest = float(loading.depth.max())
         return _beyond_flat(indenter, lambda r: float(indenter.height(r)) - largest)

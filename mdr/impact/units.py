@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bem.kernels.moduli import shear_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import FlatPunch, Impact, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
@@ -52,7 +53,7 @@ def relaxation_of(scene: Scene) -> Relaxation:
     model = scene.effect(Viscoelasticity)
     if model is None:
         return Relaxation(
-            long_term_modulus=scene.layer.shear_modulus, moduli=np.empty(0), times=np.empty(0), viscosity=0.0
+            long_term_modulus=shear_modulus(scene.layer), moduli=np.empty(0), times=np.empty(0), viscosity=0.0
         )
     relaxation = model.relaxation
     present = relaxation.moduli > 0.0
@@ -77,7 +78,7 @@ def table_of(scene: Scene, flat_punch: FlatPunchSource, softest: float = SOFTEST
     energy = 0.5 * impact.mass * impact.velocity**2
     scale = contact_scale(layer, scene.indenter, energy)
     shared = reference(layer, scene.indenter, scale)
-    soft = max(relaxation_of(scene).long_term_modulus / layer.shear_modulus, softest)
+    soft = max(relaxation_of(scene).long_term_modulus / shear_modulus(layer), softest)
     needed = energy / (soft * shared.stiffness * shared.depth**2)
     return shared, table_for_energy(shared.layer, shared.indenter, scale / shared.length, needed, flat_punch)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
@@ -57,7 +58,7 @@ def equivalent_system(
     profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
     _refuse_rings(profile, indenter, unit, _noise(solution, max_radius / unit))
     return EquivalentSystem(
-        contact_modulus=layer.contact_modulus,
+        contact_modulus=contact_modulus(layer),
         length_unit=unit,
         flat_radius=indenter.flat_radius,
         max_radius=max_radius,
@@ -98,7 +99,7 @@ def contact_fields(
         density = flat_punch.density(ratio, averages)
     return ContactFields(
         indenter=indenter,
-        contact_modulus=layer.contact_modulus,
+        contact_modulus=contact_modulus(layer),
         unit=unit,
         contact_radius=ratio,
         indentation_depth=delta,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     ContactRadii,
@@ -100,14 +101,14 @@ def _first_radius(scene: Scene) -> float:
     values = getattr(scene.loading, "values", np.ones(1))
     wanted = float(values.max())
     is_force = isinstance(scene.loading, NormalForces)
-    scale = np.sqrt(wanted / scene.layer.contact_modulus) if is_force else wanted
+    scale = np.sqrt(wanted / contact_modulus(scene.layer)) if is_force else wanted
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
     limit = (
         min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.thickness, 1.5 * flat)) - flat
     )  # a sphere's end is upright
     excess = np.minimum(scale * TRIAL_RADII, limit)
     depth, force = _half_space_answer(scene.indenter, excess)
-    answer = scene.layer.contact_modulus * force if is_force else depth
+    answer = contact_modulus(scene.layer) * force if is_force else depth
     guess = np.interp(wanted, answer, excess)  # between neighbouring trial radii, which differ by a fifth
     return flat + max(min(1.02 * float(guess), limit), LEAST_EXCESS * flat)
 

@@ -13,6 +13,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import Cone, InvalidInput, Layer, Paraboloid, PowerLaw, Profile
 from contact.records.validation import FloatArray
@@ -64,7 +65,7 @@ def reference(layer: Layer, indenter: Profile, scale: float) -> Reference:
         support=layer.support,
     )
     unit_indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
-    return Reference(unit_layer, unit_indenter, length, coefficient * length**exponent, layer.contact_modulus * length)
+    return Reference(unit_layer, unit_indenter, length, coefficient * length**exponent, contact_modulus(layer) * length)
 
 
 def power_law(indenter: Profile) -> tuple[float, float] | None:
@@ -81,7 +82,7 @@ def power_law(indenter: Profile) -> tuple[float, float] | None:
 
 def contact_scale(layer: Layer, indenter: Profile, energy: float) -> float:
     """A typical contact radius [m], where E* r f(r)^2 (1 + r/h) equals the energy [J]."""
-    law, volume = power_law(indenter), energy / layer.contact_modulus
+    law, volume = power_law(indenter), energy / contact_modulus(layer)
     if law is not None:
         coefficient, exponent = law
         high = float((volume / coefficient**2) ** (1.0 / (2.0 * exponent + 1.0)))

@@ -15,6 +15,7 @@ from bem.grid.calibrated_disc import FILL, disc, measured_disc
 from bem.grid.contact_edge import AREA_SCATTER
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import Grid
+from bem.kernels.moduli import contact_modulus
 from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, Scene, StageLog
 from contact.records.validation import FloatArray
 
@@ -212,7 +213,7 @@ def _on_grid(
     operator = FreeSpaceOperator(scene.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
     contact = disc(cells, FILL * cells / 2)
     height = np.zeros(contact.shape) if isinstance(scene.indenter, FlatPunch) else _finite_height(scene, grid)
-    tension = strength(scene.layer.contact_modulus, work, grid.cell_size)
+    tension = strength(contact_modulus(scene.layer), work, grid.cell_size)
     indenter = AdheringIndenter(operator, grid, height, tension, log)
     return indenter, indenter.first_state(contact)
 
