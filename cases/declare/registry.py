@@ -1,4 +1,4 @@
-"""All cases of the library: one module each, found by listing the folder."""
+"""All cases of the library: one module each, found by walking the folder."""
 
 import importlib
 import pkgutil
@@ -17,7 +17,8 @@ def load_cases() -> dict[str, Case]:
     Raises:
         InvalidInput: if a module has no ``CASE``, two cases have one name, or a registered method cannot be imported.
     """
-    modules = sorted(info.name for info in pkgutil.iter_modules(library.__path__) if not info.name.startswith("_"))
+    found = (info.name for info in pkgutil.walk_packages(library.__path__, f"{library.__name__}.") if not info.ispkg)
+    modules = sorted((name for name in found if not name.rpartition(".")[2].startswith("_")), key=_last)
     return by_name(with_registered(_case_of(name)) for name in modules)
 
 
@@ -50,8 +51,12 @@ def select(cases: dict[str, Case], *, names: Iterable[str] = (), suite: str = ""
     return tuple(in_suite(cases[name], suite) for name in wanted if not suite or suite in cases[name].suites)
 
 
+def _last(module: str) -> str:
+    return module.rpartition(".")[2]
+
+
 def _case_of(module: str) -> Case:
-    case = getattr(importlib.import_module(f"{library.__name__}.{module}"), "CASE", None)
+    case = getattr(importlib.import_module(module), "CASE", None)
     if not isinstance(case, Case):
-        raise InvalidInput(f"cases/library/{module}.py defines no CASE; a module of the library is one case")
+        raise InvalidInput(f"{module.replace('.', '/')}.py defines no CASE; a module of the library is one case")
     return case

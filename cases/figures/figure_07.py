@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cases.figures._parts import SOURCE, UNBONDED, layer, mdr_line, name_of
-from cases.library._truncated_cone_limits import pressure_limits, profile_limits
+from cases.library.elastic._truncated_cone_limits import pressure_limits, profile_limits
 from cases.results.records import Figure, Panel
 from contact import ContactRadii, Layer, Scene, TruncatedCone
 from contact.records.validation import FloatArray

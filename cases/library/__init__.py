@@ -1,1 +1,1 @@
-"""The cases, one file each."""
+"""The cases, one file each; Python walks the folder to find them."""

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.library._truncated_cone_limits import pressure_limits, profile_limits
+from cases.library.elastic._truncated_cone_limits import pressure_limits, profile_limits
 from contact import ContactRadii, Layer, Scene, TruncatedCone
 from mdr import Mdr
 

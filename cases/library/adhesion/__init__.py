@@ -1,0 +1,1 @@
+"""Adhesive contact and detachment."""

@@ -1,0 +1,1 @@
+"""Impacts on elastic and relaxing layers."""

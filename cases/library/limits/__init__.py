@@ -1,0 +1,1 @@
+"""Limits: thick layers, thin layers, and Poisson's ratio up to exactly one half."""
