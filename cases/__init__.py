@@ -6,7 +6,22 @@
 - ``rules``, ``convergence``: the tests behind a verdict
 - ``results``: the records of a run, how a check can end, the files
 - ``gate``, ``race``: numbers and times against accepted ones
-- ``cost``, ``ladders``, ``campaigns``: what accuracy costs, where methods break, whether stated errors hold
-- ``evidence``, ``advice``: settings from measurements, and what a scene needs
+- ``measurements``: what accuracy costs, where methods break, whether stated errors hold; settings and advice from that
 - ``figures``: the figures of the paper
+
+``solve(scene, accuracy=1e-4)`` chooses method and settings from measurements.
 """
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from cases.measurements.evidence.choice import solve
+
+__all__ = ["solve"]
+
+
+def __getattr__(name: str) -> Any:
+    if name != "solve":
+        raise AttributeError(f"module 'cases' has no attribute {name!r}; it offers solve")
+    return import_module("cases.measurements.evidence.choice").solve

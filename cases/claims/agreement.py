@@ -6,11 +6,11 @@ from typing import ClassVar
 
 from cases.claims.declared import DeclaredClaim, first_missing
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
 from cases.results.records import Claim, Kind, Quantity, SceneRun
 from cases.results.status import Status
 from cases.rules.agreement import judge_agreement
 from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.run.task import Answers
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -7,11 +7,11 @@ from typing import ClassVar
 
 from cases.claims.declared import PerMethod, first_missing
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
 from cases.results.records import Claim, ConvergenceClass, Kind, SceneRun
 from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.rules.order import judge_order
-from cases.run.task import Answers
 from contact import Scene
 
 

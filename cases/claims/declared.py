@@ -6,11 +6,11 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers, Task
 from cases.results.records import Claim, Kind, Origin, SceneRun
 from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.rules.tolerance import positive_tolerance
-from cases.run.task import Answers, Task
 from contact import InvalidInput
 
 

@@ -6,11 +6,11 @@ from typing import ClassVar
 
 from cases.claims.declared import DeclaredClaim, first_missing
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
 from cases.results.records import Claim, Kind, SceneRun
 from cases.results.status import Status
 from cases.rules.invariant import judge_invariant
 from cases.rules.judgement import Judgement, nothing_compared
-from cases.run.task import Answers
 
 
 @dataclass(frozen=True, kw_only=True)

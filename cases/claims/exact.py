@@ -6,11 +6,11 @@ from typing import ClassVar
 
 from cases.claims.declared import PerMethod, missing
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
 from cases.results.records import Claim, Kind, Quantity
 from cases.results.status import Status
 from cases.rules.exact import judge_exact
 from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.run.task import Answers
 from contact import InvalidInput, Scene
 
 Expected = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]

@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from cases.claims.agreement import shared
 from cases.claims.declared import DeclaredClaim, first_missing
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers, Task
 from cases.results.records import Claim, Curve, Kind, SceneRun
 from cases.results.status import Status
 from cases.rules.agreement import judge_agreement
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.rules.norms import RingQuadrature, relative_difference, ring_load_difference
-from cases.run.task import Answers, Task
 
 Array = NDArray[np.float64]
 Norm = Literal["weighted L2", "ring loads"]

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from cases.claims.declared import PerMethod, missing
 from cases.declare.case import Case
+from cases.declare.task import Answers
 from cases.results.records import Claim, Kind, SceneRun
 from cases.rules.invariant import judge_invariant
 from cases.rules.judgement import Judgement, worst_judgement
-from cases.run.task import Answers
 
 
 def chebyshev_radii(lowest: float, highest: float, count: int) -> NDArray[np.float64]:

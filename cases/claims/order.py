@@ -8,11 +8,11 @@ from cases.claims.declared import DeclaredClaim, first_missing
 from cases.convergence.study import Refinements, study_of
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
+from cases.declare.task import Answers, Task
 from cases.results.records import Claim, ConvergenceStudy, Kind, SceneRun
 from cases.results.status import Status
 from cases.rules.judgement import Judgement, nothing_compared
 from cases.rules.order import judge_digits, judge_order
-from cases.run.task import Answers, Task
 from contact import Scene
 
 

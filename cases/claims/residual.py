@@ -6,11 +6,11 @@ from typing import ClassVar
 
 from cases.claims.declared import PerMethod, missing
 from cases.declare.case import Case
+from cases.declare.task import Answers
 from cases.results.records import Claim, Kind, SceneRun
 from cases.results.status import Status
 from cases.rules.invariant import judge_invariant
 from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.run.task import Answers
 
 
 @dataclass(frozen=True, kw_only=True)

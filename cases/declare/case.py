@@ -5,8 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, Self
 
 from cases.declare.methods import MethodUse
+from cases.declare.task import Answers, Sampling, Task
 from cases.results.records import Claim, Figure, Kind, Scalar
-from cases.run.task import Answers, Sampling, Task
 from contact import InvalidInput, Scene
 
 SUITES = ("ci", "nightly")

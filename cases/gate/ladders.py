@@ -13,7 +13,7 @@ from pydantic import TypeAdapter, ValidationError
 from cases.gate.baseline import REMEDY, digest_of
 from cases.gate.history import append_history
 from cases.gate.write_permission import Circumstances
-from cases.ladders.ladders import worsened
+from cases.measurements.ladders.ladders import worsened
 from cases.results.files import write_whole
 from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, Origin, Verdict
 from cases.results.status import Status

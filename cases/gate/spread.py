@@ -13,11 +13,11 @@ from contextlib import contextmanager
 import numpy as np
 
 from cases.declare.case import Case
+from cases.declare.task import Task
 from cases.results.records import Quantity, SceneRun
 from cases.rules.tolerance import relative_spread
 from cases.run.executors import process_pool
 from cases.run.solve_task import solve
-from cases.run.task import Task
 from contact import ContactRadii, IndentationDepths, InvalidInput, NormalForces, Scene
 
 PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice

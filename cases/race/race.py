@@ -8,11 +8,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cases.cost.timing import SHORTEST, Slowdown, is_ambiguous, is_slower, slowdown
 from cases.race.version import Subject, Version
 from cases.results.records import Verdict
 from cases.results.status import Status
 from cases.rules.judgement import Judgement
+from cases.run.timing import SHORTEST, Slowdown, is_ambiguous, is_slower, slowdown
 
 PAIRS = 15
 SLOWEST = 1.10  # ratio that passes on a machine without noise

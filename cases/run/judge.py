@@ -6,8 +6,8 @@ from typing import TypeVar
 
 from cases.claims.order import Order
 from cases.declare.case import Case
+from cases.declare.task import Answers, MissingAnswer
 from cases.results.records import CaseResult, SceneDescription
-from cases.run.task import Answers, MissingAnswer
 from contact import scene_to_mapping
 
 T = TypeVar("T")

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from cases.run.task import Task
+from cases.declare.task import Task
 from contact import scene_to_mapping
 
 OWN_PACKAGES = ("contact", "bem", "mdr", "fem_reference", "cases")

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cases.declare.task import Sampling
 from cases.results.records import CostRecord, Curve, Quantity, Stage
-from cases.run.task import Sampling
 from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding

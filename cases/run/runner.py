@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cases.declare.case import Case
+from cases.declare.task import Answers, Task
 from cases.results.files import write_run
 from cases.results.records import CaseResult, RunResult, SceneRun
 from cases.results.status import Status
@@ -24,7 +25,6 @@ from cases.run.progress import Event, Progress, silent
 from cases.run.solve_task import solve
 from cases.run.stamp import stamp
 from cases.run.store import TaskStore
-from cases.run.task import Answers, Task
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -5,14 +5,14 @@ from collections import deque
 
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
-from cases.cost.empty_caches import forget
-from cases.cost.timing import timed_warm
 from cases.declare.methods import shared_inputs
+from cases.declare.task import Task
 from cases.results.records import Scalar, SceneRun
 from cases.results.status import Status
+from cases.run.empty_caches import forget
 from cases.run.recording import cost_record, curves, quantities, stage_records
-from cases.run.task import Task
 from cases.run.time_limit import TimeLimitReached, time_limited
+from cases.run.timing import timed_warm
 from contact import NotConvergedError, Solution, UnsupportedSceneError
 
 

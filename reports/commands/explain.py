@@ -3,10 +3,10 @@
 from pathlib import Path
 
 from cases.declare.registry import load_cases
+from cases.declare.task import Task
 from cases.results.files import read_run
 from cases.run.keys import content_key, key_parts
 from cases.run.store import TaskStore
-from cases.run.task import Task
 from contact import InvalidInput
 from reports.terminal.terminal import console
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from cases.advice import advise as advice_on
 from cases.declare.methods import build
+from cases.measurements.advice import advise as advice_on
 from cases.results.records import CaseResult
 from contact import InvalidInput, load_scene
 from reports.terminal.terminal import console
@@ -26,8 +26,8 @@ def ladders(names: list[str], methods: list[str], out: Path | None) -> int:
     Raises:
         InvalidInput: If no ladder has such a name.
     """
-    from cases.ladders.ladder_study import CLIMBERS, chosen, ladder_case  # noqa: PLC0415 - only this command needs it
-    from cases.ladders.ladder_table import LADDERS  # noqa: PLC0415
+    from cases.measurements.ladders.ladder_study import CLIMBERS, chosen, ladder_case  # noqa: PLC0415 - only this command needs it
+    from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     plans, climbers = chosen(LADDERS, names), {name: CLIMBERS.get(name, {}) for name in methods}
     return published(lambda: ladder_case(plans, climbers, progress=_say), out)
@@ -35,7 +35,7 @@ def ladders(names: list[str], methods: list[str], out: Path | None) -> int:
 
 def coverage(methods: list[str], families: list[str], seed: int, out: Path | None) -> int:
     """Compare stated with true errors over random scenes; return 1 if a method's are exceeded too often."""
-    from cases.campaigns.coverage import PLANS, coverage_case  # noqa: PLC0415 - only this command needs it
+    from cases.measurements.campaigns.coverage import PLANS, coverage_case  # noqa: PLC0415 - only this command needs it
 
     plans = [
         plan for plan in PLANS if (not methods or plan.method in methods) and (not families or plan.family in families)
@@ -47,8 +47,8 @@ def coverage(methods: list[str], families: list[str], seed: int, out: Path | Non
 
 def accuracy(count: int, seed: int, evidence: Path | None, out: Path | None) -> int:
     """Solve random scenes to random accuracies; return 1 if too many are missed or it takes too long."""
-    from cases.evidence.audit import audit_case  # noqa: PLC0415 - only this command needs it
-    from cases.evidence.records import read  # noqa: PLC0415
+    from cases.measurements.evidence.audit import audit_case  # noqa: PLC0415 - only this command needs it
+    from cases.measurements.evidence.records import read  # noqa: PLC0415
 
     measured = None if evidence is None else read(evidence)
     return published(lambda: audit_case(count, seed, measured, progress=_say), out)
@@ -56,7 +56,7 @@ def accuracy(count: int, seed: int, evidence: Path | None, out: Path | None) -> 
 
 def scaling(out: Path | None) -> int:
     """Time growing problems; return 1 if one grows faster than theory allows."""
-    from cases.cost.scaling import scaling_case  # noqa: PLC0415 - only this command needs it
+    from cases.measurements.cost.scaling import scaling_case  # noqa: PLC0415 - only this command needs it
 
     return published(lambda: scaling_case(progress=_say), out)
 
@@ -67,7 +67,7 @@ def error_maps(names: list[str], out: Path | None) -> int:
     Raises:
         InvalidInput: If no map has such a name.
     """
-    from cases.advice.error_maps import FORMULAS, METHODS, map_case  # noqa: PLC0415 - only this command needs it
+    from cases.measurements.advice.error_maps import FORMULAS, METHODS, map_case  # noqa: PLC0415 - only this command needs it
 
     plans = [plan for plan in (*FORMULAS, *METHODS) if not names or plan.name in names]
     if not plans:
@@ -77,7 +77,7 @@ def error_maps(names: list[str], out: Path | None) -> int:
 
 def published(study: Callable[[], CaseResult], out: Path | None) -> int:
     """Carry out a study, write it as a run of its own if asked, and return 1 if it failed."""
-    from cases.declare.suites import run_of  # noqa: PLC0415
+    from cases.measurements.suites import run_of  # noqa: PLC0415
     from reports.commands.report import write_pages  # noqa: PLC0415
 
     if out is None:
@@ -96,8 +96,8 @@ def _say(line: str) -> None:
 
 def calibrate(out: Path, seed: int) -> None:
     """Measure accuracy and time of all candidate settings on this machine and write them to a file."""
-    from cases.evidence.calibrate import calibrate as measured  # noqa: PLC0415
-    from cases.evidence.records import write  # noqa: PLC0415
+    from cases.measurements.evidence.calibrate import calibrate as measured  # noqa: PLC0415
+    from cases.measurements.evidence.records import write  # noqa: PLC0415
     from cases.run.stamp import revision  # noqa: PLC0415
 
     if out.is_dir() or not out.parent.is_dir():
@@ -108,8 +108,8 @@ def calibrate(out: Path, seed: int) -> None:
 
 def campaign(method: str, family: str, count: int, seed: int) -> int:
     """Solve random scenes and check each answer; return 1 if one is wrong without a word."""
-    from cases.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
-    from cases.campaigns.random_scenes import FAMILIES  # noqa: PLC0415
+    from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
+    from cases.measurements.campaigns.random_scenes import FAMILIES  # noqa: PLC0415
 
     if family not in FAMILIES:
         raise InvalidInput(f"family = {family!r}: must be one of {', '.join(FAMILIES)}")

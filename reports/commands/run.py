@@ -8,7 +8,7 @@ from rich.text import Text
 
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import only_methods
-from cases.declare.suites import with_studies
+from cases.measurements.suites import with_studies
 from cases.results.records import RunResult
 from cases.results.status import ExitCode, exit_code
 from cases.run.executors import by_name

@@ -54,8 +54,8 @@ def _by_evidence(
     scene: Scene, accuracy: float, within: float | None, file: Path | None
 ) -> tuple[Solution, list[tuple[str, str]]]:
     """The answer with measured settings, and what was expected of them."""
-    from cases.evidence import solve as solve_by_evidence  # noqa: PLC0415 - only where it is asked for
-    from cases.evidence.records import read  # noqa: PLC0415 - as above
+    from cases.measurements.evidence import solve as solve_by_evidence  # noqa: PLC0415 - only where it is asked for
+    from cases.measurements.evidence.records import read  # noqa: PLC0415 - as above
 
     measured = None if file is None else read(file)
     found = solve_by_evidence(scene, accuracy=accuracy, within=within, evidence=measured)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping
 
-from cases.cost.overview import methods
+from cases.measurements.cost.overview import methods
 from cases.results.records import CaseResult, CheapestRun, EffectEntry, Quantity, SceneRun, WorkPrecision
 from contact import UNITS
 from reports.tables.table import Table

@@ -1,7 +1,12 @@
 """Tables of the cost page: shortest times of all cases side by side, and every setting with its degrees of accuracy."""
 
-from cases.cost.cost_of_accuracy import degree_of_accuracy, degree_of_efficacy, degree_of_size, true_static_scaling
-from cases.cost.overview import SHOWN, first_speed_up, methods, shortest, speed_up
+from cases.measurements.cost.cost_of_accuracy import (
+    degree_of_accuracy,
+    degree_of_efficacy,
+    degree_of_size,
+    true_static_scaling,
+)
+from cases.measurements.cost.overview import SHOWN, first_speed_up, methods, shortest, speed_up
 from cases.results.records import RunResult, WorkPoint, WorkPrecision
 from reports.tables.table import Table
 from reports.words.method_names import display_name

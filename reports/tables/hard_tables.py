@@ -1,7 +1,7 @@
 """Tables of hard cases: where ladders break and with how many digits, and how well stated errors hold."""
 
-from cases.advice.error_maps import UNBONDED, good_range
-from cases.ladders.ladders import breakdown, fewest_digits
+from cases.measurements.advice.error_maps import UNBONDED, good_range
+from cases.measurements.ladders.ladders import breakdown, fewest_digits
 from cases.results.records import CaseResult, CoverageRecord, ErrorMap, Ladder
 from cases.results.status import Status
 from reports.tables.table import Table

@@ -10,11 +10,11 @@ from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
 from cases.claims.order import Order
 from cases.claims.scaling_law import Twin
-from cases.cost.work_precision import WorkStudy
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
+from cases.declare.task import Sampling
+from cases.measurements.cost.work_precision import WorkStudy
 from cases.results.records import Figure, Origin, Panel, Series
-from cases.run.task import Sampling
 from contact import ContactRadii, Layer, Paraboloid, Scene
 
 RADII = (0.5e-3, 1e-3)

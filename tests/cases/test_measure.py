@@ -1,7 +1,7 @@
 """From an answer to the quantities a run keeps."""
 
+from cases.declare.task import Sampling
 from cases.run.recording import quantities
-from cases.run.task import Sampling
 from mdr import Mdr
 from tests.mdr.viscoelastic_scenes import kelvin_voigt_punch
 

@@ -4,9 +4,9 @@ import dataclasses
 
 import pytest
 
-from cases.declare import suites as studies
-from cases.ladders import ladder_study
-from cases.ladders.ladder_table import LADDERS
+from cases.measurements import suites as studies
+from cases.measurements.ladders import ladder_study
+from cases.measurements.ladders.ladder_table import LADDERS
 from cases.results.files import read_run
 from cases.results.records import Ladder
 from cases.run.executors import serial

@@ -9,8 +9,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.campaigns.units import Units, in_units
 from cases.declare.methods import build
+from cases.measurements.campaigns.units import Units, in_units
 from contact import (
     Adhesion,
     ContactRadii,

@@ -689,7 +689,7 @@ BASELINES = [
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(
-            "cases.cost.timing:is_slower",
+            "cases.run.timing:is_slower",
             lambda f: lambda measured, d: f(dataclasses.replace(measured, lower=measured.lower / 1.5), d),
         ),
         Test(

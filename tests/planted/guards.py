@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 import pytest
 
 from cases.declare.registry import load_cases
+from cases.declare.task import Answers
 from cases.results.status import Status, worst
 from cases.run.judge import case_result
 from cases.run.solve_task import solve
-from cases.run.task import Answers
 from contact import NotConvergedError
 
 TEMPORARY = object()  # stands for a fresh folder among a test's arguments

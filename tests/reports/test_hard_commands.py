@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from cases.campaigns.coverage import QUICK_PLANS
+from cases.measurements.campaigns.coverage import QUICK_PLANS
 from cases.results.records import Ladder, Rung
 from cases.results.status import Status
 from reports.charts.ladder import refusals
@@ -49,7 +49,7 @@ def test_an_unknown_family_names_those_there_are(capsys):
 
 def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
     plan = dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8)
-    monkeypatch.setattr("cases.campaigns.coverage.PLANS", (plan,))
+    monkeypatch.setattr("cases.measurements.campaigns.coverage.PLANS", (plan,))
     assert run(["coverage", "--method", "mdr", "--out", str(tmp_path)]) == 0
     assert "100.0 % of 8 covered" in capsys.readouterr().out
     page = (tmp_path / "report.html").read_text(encoding="utf-8")

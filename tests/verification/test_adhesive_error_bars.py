@@ -4,7 +4,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from cases.campaigns.random_scenes import random_scenes
+from cases.measurements.campaigns.random_scenes import random_scenes
 from contact import (
     Adhesion,
     ContactRadii,

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from benchmarks.fem_error_bars import contacts, impacts
-from cases.campaigns.coverage import CoveragePlan, records_of
-from cases.campaigns.referee import second_opinion
+from cases.measurements.campaigns.coverage import CoveragePlan, records_of
+from cases.measurements.campaigns.referee import second_opinion
 from contact import (
     Adhesion,
     ContactRadii,

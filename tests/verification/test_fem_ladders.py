@@ -7,9 +7,9 @@ import dataclasses
 import pytest
 
 from cases.declare.methods import build
-from cases.ladders.ladder_study import CLIMBERS
-from cases.ladders.ladder_table import LADDERS
-from cases.ladders.ladders import breakdown, climb, fewest_digits
+from cases.measurements.ladders.ladder_study import CLIMBERS
+from cases.measurements.ladders.ladder_table import LADDERS
+from cases.measurements.ladders.ladders import breakdown, climb, fewest_digits
 
 RUNGS = {
     "nearly incompressible": (1e-1, 1e-12, 1e-17),

@@ -4,11 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
-from cases.cost.settings import detachment_costs
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
 from cases.figures import paper_figure
 from cases.library._compared import (
     BEM,
@@ -23,8 +22,9 @@ from cases.library._compared import (
     with_reason,
 )
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, half_space
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import detachment_costs
 from cases.results.records import Figure, Origin
-from cases.run.task import Answers
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
 
 WORK_OF_ADHESION = 0.05  # J/m^2

@@ -2,10 +2,8 @@
 
 import numpy as np
 
-from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
-from cases.cost.settings import detachment_costs
 from cases.declare.case import Case, CaseScene
 from cases.library._compared import (
     BEM,
@@ -20,6 +18,8 @@ from cases.library._compared import (
     with_reason,
 )
 from cases.library._layers import contact_modulus, half_space, layer
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import detachment_costs
 from cases.results.records import Origin
 from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
 

@@ -7,13 +7,13 @@ from numpy.typing import NDArray
 
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
-from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers, Sampling
 from cases.figures import paper_figure
 from cases.library._compared import BEM, BOUNDARY_PUNCHES, EVERY, FEM, MDR, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, edges
+from cases.measurements.cost.settings import elastic_costs
 from cases.results.records import Figure, Origin, Series
-from cases.run.task import Answers, Sampling
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 
 Array = NDArray[np.float64]

@@ -8,8 +8,8 @@ from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
 from cases.claims.scaling_law import Twin
-from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Sampling
 from cases.library._compared import (
     BEM,
     BEM_TOLERANCE,
@@ -24,8 +24,8 @@ from cases.library._compared import (
     with_reason,
 )
 from cases.library._layers import LAYERS, THICKNESS, contact_modulus, edges, in_millimetres, layer, scene_name
+from cases.measurements.cost.settings import elastic_costs
 from cases.results.records import Origin
-from cases.run.task import Sampling
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
 
 RADIUS_OF_CURVATURE = 1e-2  # m

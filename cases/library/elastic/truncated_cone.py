@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.field_agreement import FieldAgreement
@@ -14,8 +13,8 @@ from cases.claims.incremental_stiffness import IncrementalStiffness, chebyshev_r
 from cases.claims.order import Order
 from cases.claims.residual import Residual
 from cases.claims.scaling_law import Twin
-from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers, Sampling
 from cases.figures import paper_figure
 from cases.library._compared import (
     BEM_TOLERANCE,
@@ -42,8 +41,9 @@ from cases.library._layers import (
     prescribed_radii,
     scene_name,
 )
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import elastic_costs
 from cases.results.records import Figure, Origin, SceneRun, Series
-from cases.run.task import Answers, Sampling
 from contact import ContactRadii, Scene, TruncatedCone
 
 SLOPE = 0.1

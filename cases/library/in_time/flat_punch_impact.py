@@ -3,16 +3,16 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.residual import Residual
-from cases.cost.settings import impact_costs
 from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
 from cases.figures import paper_figure
 from cases.library._compared import EVERY, FEM, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import impact_costs
 from cases.results.records import Figure, Origin, Series
-from cases.run.task import Answers
 from contact import FlatPunch, Impact, KelvinVoigt, Layer, Scene
 
 SHEAR_MODULUS = 1e6  # Pa

@@ -5,18 +5,18 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.advice.effects import AblationStudy
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
 from cases.claims.residual import Residual
 from cases.claims.scaling_law import Twin
-from cases.cost.settings import impact_costs
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
+from cases.declare.task import Answers
 from cases.figures import paper_figure
 from cases.library._compared import BEM, EQUATION, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import impact_costs
 from cases.results.records import Figure, Origin, SceneRun, Series
-from cases.run.task import Answers
 from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
 
 Array = NDArray[np.float64]

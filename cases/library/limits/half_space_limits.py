@@ -4,14 +4,14 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.advice.effects import AblationStudy
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
 from cases.claims.exact import Exact
-from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
 from cases.library._compared import EVERY
 from cases.library._layers import LAYERS, THICKNESS, contact_modulus, half_space, layer, prescribed_radii, scene_name
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import elastic_costs
 from cases.results.records import Origin
 from contact import (
     Cone,

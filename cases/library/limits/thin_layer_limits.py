@@ -7,10 +7,10 @@ import numpy as np
 
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
-from cases.cost.settings import elastic_costs
 from cases.declare.case import Case, CaseScene
 from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
+from cases.measurements.cost.settings import elastic_costs
 from cases.results.records import Origin
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 

@@ -6,7 +6,7 @@ import dataclasses
 
 import pytest
 
-from cases.advice import ablations, advise
+from cases.measurements.advice import ablations, advise
 from contact import (
     Adhesion,
     Cone,

@@ -2,12 +2,12 @@
 
 import pytest
 
-from cases.advice.effects import NOTHING_PULLS, AblationStudy
 from cases.claims.exact import Exact
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
+from cases.declare.task import Answers
+from cases.measurements.advice.effects import NOTHING_PULLS, AblationStudy
 from cases.run.solve_task import solve
-from cases.run.task import Answers
 from contact import Adhesion, Detachment, FlatPunch, Impact, KelvinVoigt, Layer, Paraboloid, Scene
 from tests.cases.fake_case import REASON
 

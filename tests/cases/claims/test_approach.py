@@ -7,9 +7,9 @@ import pytest
 from cases.claims.approach import Approach
 from cases.claims.declared import Reason
 from cases.declare.case import CaseScene
+from cases.declare.task import Answers
 from cases.results.records import Origin, Quantity, SceneRun
 from cases.results.status import Status
-from cases.run.task import Answers
 from tests.cases.fake_case import case_scene, fake_case, use
 from tests.cases.fake_method import FakeHertz
 

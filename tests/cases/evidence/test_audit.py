@@ -7,10 +7,10 @@ from itertools import islice
 
 import pytest
 
-from cases.evidence import Evidence, Measurement, audit, choice
-from cases.evidence.audit import Request, accuracy_is_met, audit_case, time_is_short
-from cases.evidence.calibrate import FAMILIES
-from cases.evidence.kinds import kind_of
+from cases.measurements.evidence import Evidence, Measurement, audit, choice
+from cases.measurements.evidence.audit import Request, accuracy_is_met, audit_case, time_is_short
+from cases.measurements.evidence.calibrate import FAMILIES
+from cases.measurements.evidence.kinds import kind_of
 from cases.results.status import Status
 from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 from mdr import Mdr

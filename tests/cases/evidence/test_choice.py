@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from bem.layer_equation.method import IntegralEquationMethod
-from cases.campaigns.referee import second_opinion
-from cases.evidence import Evidence, Measurement, choose, shipped, solve
-from cases.evidence import calibrate as calibration
-from cases.evidence.calibrate import Candidate, CoarseReference, calibrate, error_bound, sample_of
-from cases.evidence.choice import choices
-from cases.evidence.kinds import BANDS, band_of, kind_of, rough_radius
-from cases.evidence.records import read, write
+from cases.measurements.campaigns.referee import second_opinion
+from cases.measurements.evidence import Evidence, Measurement, choose, shipped, solve
+from cases.measurements.evidence import calibrate as calibration
+from cases.measurements.evidence.calibrate import Candidate, CoarseReference, calibrate, error_bound, sample_of
+from cases.measurements.evidence.choice import choices
+from cases.measurements.evidence.kinds import BANDS, band_of, kind_of, rough_radius
+from cases.measurements.evidence.records import read, write
 from contact import (
     Adhesion,
     ContactRadii,

@@ -174,9 +174,9 @@ def test_the_claims_about_time_stand_in_the_run(monkeypatch, repository):
 
 
 def run_of(case: Case):
+    from cases.declare.task import Answers
     from cases.run.judge import case_result
     from cases.run.solve_task import solve
-    from cases.run.task import Answers
     from tests.cases.gate.example_baselines import clean_run
 
     rows = {task.identity: solve(task, "") for task in case.tasks()}

@@ -5,16 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from cases.library import (
-    flat_punch_adhesion,
-    flat_punch_impact,
-    flat_punch_stiffness,
-    half_space_limits,
-    paraboloid,
-    paraboloid_adhesion,
-    thin_layer_limits,
-    truncated_cone,
-)
+from cases.library.adhesion import flat_punch_adhesion, paraboloid_adhesion
+from cases.library.elastic import flat_punch_stiffness, paraboloid, truncated_cone
+from cases.library.in_time import flat_punch_impact
+from cases.library.limits import half_space_limits, thin_layer_limits
 
 
 @pytest.mark.parametrize(

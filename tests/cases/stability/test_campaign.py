@@ -7,7 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.campaigns.campaign import Check, campaign, coverage
+from cases.measurements.campaigns.campaign import Check, campaign, coverage
 from contact import NotConvergedError
 from mdr import Mdr
 

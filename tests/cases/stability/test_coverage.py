@@ -4,8 +4,8 @@ import dataclasses
 
 import pytest
 
-from cases.campaigns import coverage
-from cases.campaigns.coverage import CoveragePlan, coverage_case, errors_are_covered
+from cases.measurements.campaigns import coverage
+from cases.measurements.campaigns.coverage import CoveragePlan, coverage_case, errors_are_covered
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch
 from mdr import Mdr

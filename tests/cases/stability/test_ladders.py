@@ -7,12 +7,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.campaigns.invariants import LAWS, invariant_residuals
-from cases.ladders import ladders
-from cases.ladders.ladder_study import climbs, ladder_case, no_silent_failure
-from cases.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
-from cases.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
-from cases.ladders.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
+from cases.measurements.campaigns.invariants import LAWS, invariant_residuals
+from cases.measurements.ladders import ladders
+from cases.measurements.ladders.ladder_study import climbs, ladder_case, no_silent_failure
+from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
+from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
+from cases.measurements.ladders.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
 from cases.results.records import Ladder, Rung
 from cases.results.status import Status
 from contact import InvalidInput, NotConvergedError, Supported

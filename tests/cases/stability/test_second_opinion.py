@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from cases.campaigns.referee import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
-from cases.campaigns.referee_profiles import equivalent_profile
+from cases.measurements.campaigns.referee import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
+from cases.measurements.campaigns.referee_profiles import equivalent_profile
 from contact import (
     Adhesion,
     Cone,

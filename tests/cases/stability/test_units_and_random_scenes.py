@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.campaigns.random_scenes import FAMILIES, log_uniform, random_scenes
-from cases.campaigns.units import DIMENSIONS, Units, in_units
+from cases.measurements.campaigns.random_scenes import FAMILIES, log_uniform, random_scenes
+from cases.measurements.campaigns.units import DIMENSIONS, Units, in_units
 from contact import UNITS, scene_from_mapping, scene_to_mapping
 from contact.scene.effects import EFFECTS
 from contact.scene.layer import Layer

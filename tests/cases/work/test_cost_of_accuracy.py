@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from cases.cost.cost_of_accuracy import (
+from cases.measurements.cost.cost_of_accuracy import (
     TimedRun,
     cheapest,
     crossover,

@@ -2,7 +2,7 @@
 
 from bem.layer_equation import flat_punch_source as integral_equation
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from cases.cost.empty_caches import forget
+from cases.run.empty_caches import forget
 from contact import Layer
 
 

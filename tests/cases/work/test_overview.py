@@ -1,6 +1,6 @@
 """Shortest times of many cases side by side, never interpolated."""
 
-from cases.cost.overview import first_speed_up, methods, shortest, speed_up
+from cases.measurements.cost.overview import first_speed_up, methods, shortest, speed_up
 from tests.cases.example_run import work_precision
 
 WORK = work_precision()

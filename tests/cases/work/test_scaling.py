@@ -5,7 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.cost.scaling import PLANS, counter_exponents, exponent_of, fitted, grows_no_faster
+from cases.measurements.cost.scaling import PLANS, counter_exponents, exponent_of, fitted, grows_no_faster
 from cases.results.status import Status
 from contact import Cost, InvalidInput
 

@@ -4,7 +4,7 @@ import time
 import numpy as np
 import pytest
 
-from cases.cost.timing import is_ambiguous, is_slower, slowdown, summed_up, timed
+from cases.run.timing import is_ambiguous, is_slower, slowdown, summed_up, timed
 from contact import InvalidInput
 
 NULL_SPREAD = 0.02

@@ -7,7 +7,7 @@
 - ``audit``: random scenes solved to random accuracies: is it met, and in about the shortest time?
 """
 
-from cases.evidence.choice import Choice, Outcome, choose, solve
-from cases.evidence.records import Evidence, Measurement, shipped
+from cases.measurements.evidence.choice import Choice, Outcome, choose, solve
+from cases.measurements.evidence.records import Evidence, Measurement, shipped
 
 __all__ = ["Choice", "Evidence", "Measurement", "Outcome", "choose", "shipped", "solve"]

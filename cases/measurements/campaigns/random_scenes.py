@@ -11,7 +11,7 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
-from cases.campaigns.units import Units, in_units
+from cases.measurements.campaigns.units import Units, in_units
 from contact import (
     Adhesion,
     Cone,

@@ -3,10 +3,10 @@
 from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 
-from cases.advice.ablation import NUMBERS, STATIC, parts_of, without
 from cases.declare.case import Case
+from cases.declare.task import Answers, Task
+from cases.measurements.advice.ablation import NUMBERS, STATIC, parts_of, without
 from cases.results.records import EffectEntry, SceneRun
-from cases.run.task import Answers, Task
 from contact import Adhesion, Detachment
 
 NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"

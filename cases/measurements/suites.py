@@ -40,30 +40,30 @@ def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int
 
 def quick_ladders() -> CaseResult:
     """Some ladders of the fast method."""
-    from cases.ladders.ladder_study import chosen, ladder_case  # noqa: PLC0415 - imported where it is carried out
-    from cases.ladders.ladder_table import LADDERS  # noqa: PLC0415
+    from cases.measurements.ladders.ladder_study import chosen, ladder_case  # noqa: PLC0415 - imported where it is carried out
+    from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     return ladder_case(chosen(LADDERS, QUICK_LADDERS), {"mdr": {}})
 
 
 def all_ladders() -> CaseResult:
     """All ladders by every method that climbs them."""
-    from cases.ladders.ladder_study import ladder_case  # noqa: PLC0415 - imported where it is carried out
-    from cases.ladders.ladder_table import LADDERS  # noqa: PLC0415
+    from cases.measurements.ladders.ladder_study import ladder_case  # noqa: PLC0415 - imported where it is carried out
+    from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     return ladder_case(LADDERS)
 
 
 def quick_coverage() -> CaseResult:
     """Stated errors of the fast method on a few scenes."""
-    from cases.campaigns.coverage import QUICK_PLANS, coverage_case  # noqa: PLC0415
+    from cases.measurements.campaigns.coverage import QUICK_PLANS, coverage_case  # noqa: PLC0415
 
     return coverage_case(QUICK_PLANS)
 
 
 def quick_maps() -> CaseResult:
     """Where closed forms are good."""
-    from cases.advice.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, map_case  # noqa: PLC0415
+    from cases.measurements.advice.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, map_case  # noqa: PLC0415
 
     return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in FORMULAS)
 

@@ -9,10 +9,10 @@ from typing import Any, Final
 
 import numpy as np
 
-from cases.campaigns.campaign import Check, Jury, Trial, coverage, trial
-from cases.campaigns.random_scenes import Family, random_scene
-from cases.campaigns.referee import CHEAP_RATIO
 from cases.declare.methods import build
+from cases.measurements.campaigns.campaign import Check, Jury, Trial, coverage, trial
+from cases.measurements.campaigns.random_scenes import Family, random_scene
+from cases.measurements.campaigns.referee import CHEAP_RATIO
 from cases.results.records import CaseResult, Claim, CoverageRecord, Kind, Origin, Verdict
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch, Method, Scene

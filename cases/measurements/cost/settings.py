@@ -7,8 +7,8 @@ radii; detachments and motions against the fast method at its finest, whose own 
 from collections.abc import Sequence
 from typing import Final
 
-from cases.cost.work_precision import WorkStudy
 from cases.declare.methods import MethodUse
+from cases.measurements.cost.work_precision import WorkStudy
 
 MDR: Final = tuple(MethodUse(label=f"{n} nodes", method="mdr", settings={"nodes": n}) for n in (8, 12, 16, 24))
 MDR_IN_TIME: Final = tuple(

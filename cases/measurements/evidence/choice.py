@@ -10,9 +10,9 @@ from typing import Final
 import numpy as np
 
 from cases.declare.methods import build, method_names
-from cases.evidence.calibrate import largest_stated_error
-from cases.evidence.kinds import band_of, kind_of
-from cases.evidence.records import Evidence, Measurement, shipped
+from cases.measurements.evidence.calibrate import largest_stated_error
+from cases.measurements.evidence.kinds import band_of, kind_of
+from cases.measurements.evidence.records import Evidence, Measurement, shipped
 from contact import InvalidInput, NotConvergedError, Scene, Solution
 
 SAFETY: Final = 2.0  # a scene at hand is another than the sample's

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.cost.empty_caches import forget
+from cases.run.empty_caches import forget
 from contact import ContactError, Detachment, ImpactHistory, Layer, Method, Scene, Solution
 from contact.records.validation import FloatArray
 

@@ -9,7 +9,7 @@ from typing import Any, Final, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
-from cases.campaigns.units import Units, in_units
+from cases.measurements.campaigns.units import Units, in_units
 from contact import ContactRadii, IndentationDepths, Method, NormalForces, Scene, Solution
 from contact.records.record import Record
 

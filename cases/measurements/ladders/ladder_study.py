@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any, Final
 
 from cases.declare.methods import build
-from cases.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits
+from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits
 from cases.results.records import CaseResult, Claim, Kind, Ladder, Origin, Verdict
 from cases.results.status import Status
 from contact import InvalidInput, Method

@@ -13,13 +13,13 @@ from typing import Final, TypeVar
 import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
-from cases.campaigns.campaign import IMPACT_NUMBERS
-from cases.campaigns.random_scenes import Family, random_scene
-from cases.campaigns.referee import second_opinion
-from cases.cost.empty_caches import forget
 from cases.declare.methods import build
-from cases.evidence.kinds import BANDS, band_above, kind_of, rough_radius
-from cases.evidence.records import Evidence, Measurement
+from cases.measurements.campaigns.campaign import IMPACT_NUMBERS
+from cases.measurements.campaigns.random_scenes import Family, random_scene
+from cases.measurements.campaigns.referee import second_opinion
+from cases.measurements.evidence.kinds import BANDS, band_above, kind_of, rough_radius
+from cases.measurements.evidence.records import Evidence, Measurement
+from cases.run.empty_caches import forget
 from contact import ContactError, ContactPath, ImpactHistory, Scene, Solution
 from contact.records.validation import FloatArray
 

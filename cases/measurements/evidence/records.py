@@ -95,7 +95,9 @@ _ADAPTER: TypeAdapter[Evidence] = TypeAdapter(Evidence)
 @cache
 def shipped() -> Evidence:
     """The evidence that comes with the package."""
-    return _parsed(files("cases.evidence").joinpath("measured.json").read_text(encoding="utf-8"), "measured.json")
+    return _parsed(
+        files("cases.measurements.evidence").joinpath("measured.json").read_text(encoding="utf-8"), "measured.json"
+    )
 
 
 def read(path: Path) -> Evidence:

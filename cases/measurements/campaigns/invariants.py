@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from cases.campaigns.referee import CHEAP_RATIO, second_opinion
-from cases.campaigns.units import Units, in_units
+from cases.measurements.campaigns.referee import CHEAP_RATIO, second_opinion
+from cases.measurements.campaigns.units import Units, in_units
 from contact import ContactPath, FlatPunch, ImpactHistory, Layer, Method, Scene, Solution
 
 _POINTS: Final = 400

@@ -8,8 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from cases.campaigns.units import Units, in_units
-from cases.ladders.ladders import LadderPlan
+from cases.measurements.campaigns.units import Units, in_units
+from cases.measurements.ladders.ladders import LadderPlan
 from contact import (
     Adhesion,
     Cone,

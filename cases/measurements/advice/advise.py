@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cases.advice.ablation import Ablation, ablations_of, change_without, first_solution
-from cases.advice.dimensionless_numbers import Number, numbers
+from cases.measurements.advice.ablation import Ablation, ablations_of, change_without, first_solution
+from cases.measurements.advice.dimensionless_numbers import Number, numbers
 from contact import InvalidInput, Method, Scene, Solution
 
 

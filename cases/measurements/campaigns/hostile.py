@@ -24,7 +24,7 @@ from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
 
-from cases.campaigns.random_scenes import FAMILIES, random_scene
+from cases.measurements.campaigns.random_scenes import FAMILIES, random_scene
 from cases.results.files import from_json
 from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, StageRecord
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping

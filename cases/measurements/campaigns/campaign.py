@@ -16,9 +16,9 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.campaigns.random_scenes import RATIO, Family, random_scenes
-from cases.campaigns.referee import LARGEST_RATIO, adhesive_states, second_opinion
-from cases.campaigns.units import Units, in_units
+from cases.measurements.campaigns.random_scenes import RATIO, Family, random_scenes
+from cases.measurements.campaigns.referee import LARGEST_RATIO, adhesive_states, second_opinion
+from cases.measurements.campaigns.units import Units, in_units
 from contact import (
     ContactError,
     ContactPath,

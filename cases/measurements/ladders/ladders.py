@@ -8,9 +8,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cases.campaigns.invariants import invariant_residuals
 from cases.declare.methods import build
-from cases.ladders.repeats import repeated, shared_digits
+from cases.measurements.campaigns.invariants import invariant_residuals
+from cases.measurements.ladders.repeats import repeated, shared_digits
 from cases.results.records import Ladder, Rung
 from cases.results.status import Status
 from contact import ContactError, Method, Scene, Solution

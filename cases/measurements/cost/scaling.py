@@ -11,10 +11,10 @@ import numpy as np
 from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
-from cases.cost.empty_caches import forget
 from cases.declare.methods import build
 from cases.results.records import CaseResult, Claim, Kind, Origin, ScalingFit, Verdict
 from cases.results.status import Status
+from cases.run.empty_caches import forget
 from contact import (
     ContactRadii,
     Cost,

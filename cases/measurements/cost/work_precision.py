@@ -4,7 +4,10 @@ from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
-from cases.cost.cost_of_accuracy import (
+from cases.declare.case import Case
+from cases.declare.methods import MethodUse
+from cases.declare.task import Answers, Task
+from cases.measurements.cost.cost_of_accuracy import (
     TOLERANCES,
     TimedRun,
     cheapest,
@@ -13,11 +16,8 @@ from cases.cost.cost_of_accuracy import (
     pareto_front,
     price_of_a_digit,
 )
-from cases.cost.timing import summed_up
-from cases.declare.case import Case
-from cases.declare.methods import MethodUse
 from cases.results.records import CheapestRun, DigitPrice, SceneRun, WorkPoint, WorkPrecision
-from cases.run.task import Answers, Task
+from cases.run.timing import summed_up
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,12 +12,12 @@ from typing import Final
 
 import numpy as np
 
-from cases.campaigns.random_scenes import log_uniform, random_scene
 from cases.declare.methods import build
-from cases.evidence.calibrate import FAMILIES, CoarseReference, error_bound, timed_first
-from cases.evidence.choice import solve, usable
-from cases.evidence.kinds import BANDS
-from cases.evidence.records import Evidence, Measurement, shipped
+from cases.measurements.campaigns.random_scenes import log_uniform, random_scene
+from cases.measurements.evidence.calibrate import FAMILIES, CoarseReference, error_bound, timed_first
+from cases.measurements.evidence.choice import solve, usable
+from cases.measurements.evidence.kinds import BANDS
+from cases.measurements.evidence.records import Evidence, Measurement, shipped
 from cases.results.records import CaseResult, Claim, Kind, Origin, Verdict
 from cases.results.status import Status
 from contact import ContactError, InvalidInput, NotConvergedError, Scene

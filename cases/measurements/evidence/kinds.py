@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from cases.campaigns.referee_profiles import equivalent_profile
+from cases.measurements.campaigns.referee_profiles import equivalent_profile
 from contact import (
     Adhesion,
     ContactRadii,
