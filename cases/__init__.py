@@ -1,13 +1,12 @@
 """The case registry and the engine around it: what is claimed, how far methods agree, what accuracy costs.
 
 - ``library``: the cases, one file each
-- ``declare``, ``claims``: how a case is written, what it may claim, who solves it
-- ``run``: carrying it out, once, anywhere, without loss; and judging what came out
-- ``rules``, ``convergence``: the tests behind a verdict
+- ``declare``: how a case is written and who solves it
+- ``run``: carrying it out, once, anywhere, without loss
+- ``judgement``: what a case may claim, and the tests behind a verdict
 - ``results``: the records of a run, how a check can end, the files
-- ``gate``, ``race``: numbers and times against accepted ones
+- ``gate``: numbers and times against accepted ones
 - ``measurements``: what accuracy costs, where methods break, whether stated errors hold; settings and advice from that
-- ``figures``: the figures of the paper
 
 ``solve(scene, accuracy=1e-4)`` chooses method and settings from measurements.
 """

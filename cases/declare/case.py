@@ -13,7 +13,7 @@ SUITES = ("ci", "nightly")
 
 
 class ClaimOfCase(Protocol):
-    """What a case asks of its claims; `cases.claims.declared.DeclaredClaim` offers it."""
+    """What a case asks of its claims; `cases.judgement.claims.declared.DeclaredClaim` offers it."""
 
     @property
     def name(self) -> str:
@@ -33,7 +33,7 @@ class ClaimOfCase(Protocol):
 
     @property
     def reason(self) -> Any:
-        """Why it should hold (`cases.claims.declared.Reason`)."""
+        """Why it should hold (`cases.judgement.claims.declared.Reason`)."""
 
     def check(self, case: "Case") -> None:
         """Refuse scenes or methods that the case does not have."""

@@ -7,12 +7,12 @@ attribute); no claim then asks more of it.  Where it says nothing, a claim asks 
 from collections.abc import Iterator
 from dataclasses import replace
 
-from cases.claims.agreement import Agreement
-from cases.claims.declared import DeclaredClaim, PerMethod
-from cases.claims.field_agreement import FieldAgreement
-from cases.claims.residual import Residual
 from cases.declare.case import Case, ClaimOfCase
 from cases.declare.methods import MethodUse, load, registered
+from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.declared import DeclaredClaim, PerMethod
+from cases.judgement.claims.field_agreement import FieldAgreement
+from cases.judgement.claims.residual import Residual
 
 
 def with_registered(case: Case) -> Case:

@@ -18,7 +18,7 @@ def load_cases() -> dict[str, Case]:
         InvalidInput: if a module has no ``CASE``, two cases have one name, or a registered method cannot be imported.
     """
     found = (info.name for info in pkgutil.walk_packages(library.__path__, f"{library.__name__}.") if not info.ispkg)
-    modules = sorted((name for name in found if not name.rpartition(".")[2].startswith("_")), key=_last)
+    modules = sorted((name for name in found if "._" not in name), key=_last)
     return by_name(with_registered(_case_of(name)) for name in modules)
 
 

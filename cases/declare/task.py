@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass, field, replace
 
+from cases.judgement.rules.norms import RingQuadrature, ring_quadrature
 from cases.results.records import SceneRun
-from cases.rules.norms import RingQuadrature, ring_quadrature
 from contact import Method, Scene
 
 

@@ -12,9 +12,9 @@ from typing import Any, Self
 from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
 from pydantic.dataclasses import dataclass
 
+from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.files import write_whole
 from cases.results.records import Finite, Mapping, NotNegative, Positive, Vector
-from cases.rules.tolerance import relative_tolerance
 from contact import InvalidInput
 
 BASELINE_VERSION = 1

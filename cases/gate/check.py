@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
+from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.results.records import Claim, Kind, Origin, SceneRun
 from cases.results.status import Status
-from cases.rules.judgement import Judgement, nothing_compared
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,8 +4,8 @@ from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters
 from cases.gate.check import Check, extra, missing
+from cases.judgement.rules.regression import judge_counter, permitted_count_change
 from cases.results.records import SceneRun
-from cases.rules.regression import judge_counter, permitted_count_change
 
 UNKNOWNS = "unknowns"
 FROM_COUNTS = "unknowns repeat exactly; other counters within max(2, 10 %)"

@@ -7,8 +7,8 @@ from cases.gate.baseline import AcceptedCounters, AcceptedQuantity, Baseline
 from cases.gate.counts import counters_of
 from cases.gate.specification import specification
 from cases.gate.spread import Spreads
+from cases.judgement.rules.tolerance import permitted_difference, relative_tolerance
 from cases.results.records import CaseResult, Quantity, SceneRun
-from cases.rules.tolerance import permitted_difference, relative_tolerance
 from contact import InvalidInput
 
 

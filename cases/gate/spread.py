@@ -14,8 +14,8 @@ import numpy as np
 
 from cases.declare.case import Case
 from cases.declare.task import Task
+from cases.judgement.rules.tolerance import relative_spread
 from cases.results.records import Quantity, SceneRun
-from cases.rules.tolerance import relative_spread
 from cases.run.executors import process_pool
 from cases.run.solve_task import solve
 from contact import ContactRadii, IndentationDepths, InvalidInput, NormalForces, Scene

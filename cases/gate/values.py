@@ -5,11 +5,11 @@ from collections.abc import Iterator, Mapping
 from cases.gate.baseline import AcceptedQuantity
 from cases.gate.check import Check, extra, missing
 from cases.gate.specification import specification
+from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
+from cases.judgement.rules.regression import judge_regression
+from cases.judgement.rules.tolerance import permitted_difference
 from cases.results.records import CaseResult, Quantity, SceneRun
 from cases.results.status import Status
-from cases.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.rules.regression import judge_regression
-from cases.rules.tolerance import permitted_difference
 
 FROM_SPREAD = "max(10 x measured spread, 1e-12) of the accepted value or its scale"
 

@@ -3,10 +3,10 @@
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 
-from cases.claims.agreement import Agreement
-from cases.claims.declared import Reason
 from cases.declare.case import CaseScene
 from cases.declare.methods import MethodUse
+from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.declared import Reason
 from cases.results.records import Origin
 
 MDR = MethodUse(label="mdr")

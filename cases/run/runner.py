@@ -15,11 +15,11 @@ from pathlib import Path
 
 from cases.declare.case import Case
 from cases.declare.task import Answers, Task
+from cases.judgement.judge import case_result
 from cases.results.files import write_run
 from cases.results.records import CaseResult, RunResult, SceneRun
 from cases.results.status import Status
 from cases.run.executors import ExecutorFactory, fresh_processes, process_pool, serial
-from cases.run.judge import case_result
 from cases.run.keys import content_key, key_parts
 from cases.run.progress import Event, Progress, silent
 from cases.run.solve_task import solve

@@ -11,8 +11,8 @@ from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.ladders import read_ladders
-from cases.race.against import with_times_against
-from cases.race.race import PAIRS
+from cases.gate.race.against import with_times_against
+from cases.gate.race.race import PAIRS
 from cases.results.files import read_run, write_run
 from cases.results.records import RunResult, SceneRun
 from cases.results.status import ExitCode, exit_code

@@ -4,15 +4,15 @@ import dataclasses
 
 import numpy as np
 
-from cases.claims.agreement import Agreement
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
-from cases.claims.field_agreement import FieldAgreement
-from cases.claims.order import Order
-from cases.claims.scaling_law import Twin
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
 from cases.declare.task import Sampling
+from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
+from cases.judgement.claims.field_agreement import FieldAgreement
+from cases.judgement.claims.order import Order
+from cases.judgement.claims.scaling_law import Twin
 from cases.measurements.cost.work_precision import WorkStudy
 from cases.results.records import Figure, Origin, Panel, Series
 from contact import ContactRadii, Layer, Paraboloid, Scene

@@ -31,7 +31,7 @@ def test_the_last_bit_of_a_scene_changes_the_key():
 def test_the_closure_holds_what_a_method_can_import_and_nothing_else():
     sources = dict(import_closure("tests.cases.fake_method").sources)
     assert "contact.answer.solution" in sources
-    assert "cases.rules.norms" in sources  # what measures the answer is a part of it
+    assert "cases.judgement.rules.norms" in sources  # what measures the answer is a part of it
     assert not any(name.startswith(("fem_reference", "reports")) for name in sources)
     assert {"numpy", "python"} <= set(dict(import_closure("tests.cases.fake_method").versions))
 

@@ -4,9 +4,9 @@ import dataclasses
 
 import pytest
 
-from cases.claims.exact import Exact
 from cases.declare.registry import load_cases
 from cases.declare.selection import in_suite, nightly_only, only_methods
+from cases.judgement.claims.exact import Exact
 from contact import InvalidInput
 from tests.cases.fake_case import SLOW, fake_case
 

@@ -4,14 +4,14 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from cases.claims.agreement import Agreement
-from cases.claims.exact import Exact
-from cases.claims.order import Order
-from cases.claims.residual import Residual
-from cases.claims.scaling_law import Twin
 from cases.declare import methods
 from cases.declare.foreign_methods import with_newcomer, with_registered
 from cases.declare.registry import load_cases
+from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.exact import Exact
+from cases.judgement.claims.order import Order
+from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.scaling_law import Twin
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
 

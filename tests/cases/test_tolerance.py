@@ -2,7 +2,7 @@ import math
 
 import pytest
 
-from cases.rules.tolerance import is_equal, permitted_difference, relative_spread, relative_tolerance
+from cases.judgement.rules.tolerance import is_equal, permitted_difference, relative_spread, relative_tolerance
 from contact import InvalidInput
 
 

@@ -11,8 +11,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
+from cases.judgement.rules.judgement import Judgement
 from cases.results.status import Status
-from cases.rules.judgement import Judgement
 from tests.planted.guards import TEMPORARY, Claims, Test
 from tests.planted.planting import override, set_to, swap
 
@@ -315,9 +315,9 @@ def plane_strain_bulk(moduli):
     return wrong
 
 
-def modulus_of_e(moduli):
-    """mu = 1/(2 (1 + nu)) is that of E = 1, not of E* = 1."""
-    return lambda nu: dataclasses.replace(moduli(nu), shear=1 / (2 * (1 + nu)))
+def unit_of_e(_):
+    """Stresses in units of E, where the moduli of finite elements are those of E* = 1."""
+    return lambda layer: layer.youngs_modulus
 
 
 def free_outer_edge(matrix):
@@ -366,8 +366,8 @@ WEAK_FORMS = [
         REFUSED,
     ),
     weak(
-        "shear modulus at E = 1",
-        swap("fem_reference.discrete_layer.material:moduli", modulus_of_e),
+        "Young's modulus as the unit of stress",
+        swap("fem_reference.discrete_layer.material:contact_modulus", unit_of_e),
         (0.1, 0.5, "bonded"),
     ),
     weak(
@@ -507,63 +507,71 @@ COMPARATORS = [
     Fault(
         "sign of an error ignored",
         "comparators",
-        swap("cases.rules.judgement:passed_or_failed", sign_ignored),
-        Test("cases.rules.test_rules:test_exact_passes_within_and_fails_beyond"),
+        swap("cases.judgement.rules.judgement:passed_or_failed", sign_ignored),
+        Test("cases.judgement.rules.test_rules:test_exact_passes_within_and_fails_beyond"),
     ),
     Fault(
         "NaN taken for a number",
         "comparators",
-        set_to("cases.rules.regression:math", everything_finite(None)),
-        Test("cases.rules.test_rules:test_non_finite_is_invalid_and_never_equal_to_itself", (math.nan, math.nan)),
+        set_to("cases.judgement.rules.regression:math", everything_finite(None)),
+        Test(
+            "cases.judgement.rules.test_rules:test_non_finite_is_invalid_and_never_equal_to_itself",
+            (math.nan, math.nan),
+        ),
     ),
     Fault(
         "negative tolerances taken as positive",
         "comparators",
-        swap("cases.rules.tolerance:positive_tolerance", lambda _: abs),
-        Test("cases.rules.test_rules:test_a_tolerance_of_the_wrong_sign_is_refused", (-1e-10,)),
+        swap("cases.judgement.rules.tolerance:positive_tolerance", lambda _: abs),
+        Test("cases.judgement.rules.test_rules:test_a_tolerance_of_the_wrong_sign_is_refused", (-1e-10,)),
     ),
     Fault(
         "uncertainties ignored in a verdict",
         "comparators",
-        swap("cases.rules.agreement:_verdict", lambda f: lambda error, spread, tolerance: f(error, 0.0, tolerance)),
+        swap(
+            "cases.judgement.rules.agreement:_verdict",
+            lambda f: lambda error, spread, tolerance: f(error, 0.0, tolerance),
+        ),
         Test("cases.test_runner:test_a_coarse_method_is_inconclusive", (TEMPORARY,)),
     ),
     Fault(
         "an answer compared with itself",
         "comparators",
-        override("cases.claims.agreement:Agreement", "labels", compared_with_itself),
+        override("cases.judgement.claims.agreement:Agreement", "labels", compared_with_itself),
         Test("cases.test_runner:test_a_wrong_factor_disagrees", (TEMPORARY,)),
     ),
     Fault(
         "the first judgement in place of the worst",
         "comparators",
-        swap("cases.rules.judgement:worst_judgement", lambda _: first_of),
-        Test("cases.rules.test_rules:test_the_worst_judgement_decides_and_an_empty_claim_is_refused"),
+        swap("cases.judgement.rules.judgement:worst_judgement", lambda _: first_of),
+        Test("cases.judgement.rules.test_rules:test_the_worst_judgement_decides_and_an_empty_claim_is_refused"),
     ),
     Fault(
         "observed order with ln r taken as r - 1",
         "comparators",
-        swap("cases.convergence.observed_order:observed_order", natural_for_ratio),
-        Test("cases.convergence.test_observed_order:test_nasa_tutorial"),
+        swap("cases.judgement.convergence.observed_order:observed_order", natural_for_ratio),
+        Test("cases.judgement.convergence.test_observed_order:test_nasa_tutorial"),
     ),
     Fault(
         "safety factor of an order that fits, for any order",
         "comparators",
-        swap("cases.convergence.extrapolation:safety_factor", lambda _: lambda observed, formal: (1.25, formal)),
+        swap(
+            "cases.judgement.convergence.extrapolation:safety_factor", lambda _: lambda observed, formal: (1.25, formal)
+        ),
         Test(
-            "cases.convergence.test_observed_order:test_safety_factor_trusts_the_formal_order_only_within_ten_percent"
+            "cases.judgement.convergence.test_observed_order:test_safety_factor_trusts_the_formal_order_only_within_ten_percent"
         ),
     ),
     Fault(
         "asymptotic range taken for granted",
         "comparators",
-        swap("cases.convergence.asymptotic:is_asymptotic", lambda _: lambda *a: True),
-        Test("cases.convergence.test_asymptotic:test_a_polluted_sequence_is_not"),
+        swap("cases.judgement.convergence.asymptotic:is_asymptotic", lambda _: lambda *a: True),
+        Test("cases.judgement.convergence.test_asymptotic:test_a_polluted_sequence_is_not"),
     ),
     Fault(
         "norm without 2 pi r",
         "comparators",
-        override("cases.rules.norms:RingQuadrature", "norm", without_circumference),
+        override("cases.judgement.rules.norms:RingQuadrature", "norm", without_circumference),
         Test("cases.test_norms:test_weighted_norm_of_one_is_the_root_of_the_area"),
     ),
     Fault(
@@ -628,7 +636,7 @@ BASELINES = [
     Fault(
         "tolerances a thousand times too wide",
         "baselines",
-        swap("cases.rules.tolerance:permitted_difference", lambda f: lambda b, **k: 1e3 * f(b, **k)),
+        swap("cases.judgement.rules.tolerance:permitted_difference", lambda f: lambda b, **k: 1e3 * f(b, **k)),
         Test(
             "cases.gate.test_gate:test_a_change_of_1e_7_with_tolerance_1e_9_always_fails",
             (accepted_folder, "mdr", 1 + 1e-7),
@@ -637,7 +645,7 @@ BASELINES = [
     Fault(
         "unknowns within ten percent",
         "baselines",
-        swap("cases.rules.regression:permitted_count_change", lambda f: lambda name, b: f("iterations", b)),
+        swap("cases.judgement.rules.regression:permitted_count_change", lambda f: lambda name, b: f("iterations", b)),
         Test(
             "cases.gate.test_gate:test_unknowns_repeat_exactly_and_other_counters_nearly",
             (accepted_folder, 21001, 3, Status.DIFF),

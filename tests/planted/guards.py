@@ -8,8 +8,8 @@ import pytest
 
 from cases.declare.registry import load_cases
 from cases.declare.task import Answers
+from cases.judgement.judge import case_result
 from cases.results.status import Status, worst
-from cases.run.judge import case_result
 from cases.run.solve_task import solve
 from contact import NotConvergedError
 

@@ -13,14 +13,14 @@ from mdr.impact import energies as impact_energies
 from mdr.impact import equations as impact_lanes
 from mdr.impact.solver import impact_batch
 from tests.mdr.viscoelastic_scenes import figure_12, kelvin_voigt_sphere
+from tests.planted.planting import swap
 from tests.verification import test_adhesion as adhesion
 from tests.verification import test_impact as impact
 
 
 def test_youngs_modulus_for_the_contact_modulus(monkeypatch):
     """The JKR force does not know the modulus; the radius at pull-off does."""
-    wrong = property(lambda layer: layer.youngs_modulus)
-    monkeypatch.setattr(Layer, "contact_modulus", wrong)
+    swap("bem.kernels.moduli:contact_modulus", lambda _: lambda layer: layer.youngs_modulus)(monkeypatch)
     scene = Scene(
         layer=Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5),
         indenter=Paraboloid(radius_of_curvature=1.0),

@@ -4,11 +4,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers
-from cases.figures import paper_figure
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
 from cases.library._compared import (
     BEM,
     BOUNDARY_ELEMENTS,
@@ -21,6 +20,7 @@ from cases.library._compared import (
     agreements,
     with_reason,
 )
+from cases.library._figures import paper_figure
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, half_space
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import detachment_costs

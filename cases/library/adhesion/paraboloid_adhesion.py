@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
 from cases.declare.case import Case, CaseScene
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
 from cases.library._compared import (
     BEM,
     BOUNDARY_ELEMENTS,

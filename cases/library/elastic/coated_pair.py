@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from cases.claims.approach import Approach
-from cases.claims.declared import Reason
-from cases.claims.scaling_law import Twin
 from cases.declare.case import Case, CaseScene
+from cases.judgement.claims.approach import Approach
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.scaling_law import Twin
 from cases.library._compared import BEM_TOLERANCE, EVERY, FEM, MDR, TABLE_TOLERANCES, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, prescribed_radii
 from cases.measurements.cost.settings import elastic_costs

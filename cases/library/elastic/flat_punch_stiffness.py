@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers, Sampling
-from cases.figures import paper_figure
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
 from cases.library._compared import BEM, BOUNDARY_PUNCHES, EVERY, FEM, MDR, agreements
+from cases.library._figures import paper_figure
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, edges
 from cases.measurements.cost.settings import elastic_costs
 from cases.results.records import Figure, Origin, Series

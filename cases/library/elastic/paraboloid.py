@@ -4,12 +4,12 @@ import math
 
 import numpy as np
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
-from cases.claims.field_agreement import FieldAgreement
-from cases.claims.scaling_law import Twin
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Sampling
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
+from cases.judgement.claims.field_agreement import FieldAgreement
+from cases.judgement.claims.scaling_law import Twin
 from cases.library._compared import (
     BEM,
     BEM_TOLERANCE,

@@ -6,16 +6,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
-from cases.claims.field_agreement import FieldAgreement
-from cases.claims.incremental_stiffness import IncrementalStiffness, chebyshev_radii
-from cases.claims.order import Order
-from cases.claims.residual import Residual
-from cases.claims.scaling_law import Twin
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers, Sampling
-from cases.figures import paper_figure
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
+from cases.judgement.claims.field_agreement import FieldAgreement
+from cases.judgement.claims.incremental_stiffness import IncrementalStiffness, chebyshev_radii
+from cases.judgement.claims.order import Order
+from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.scaling_law import Twin
 from cases.library._compared import (
     BEM_TOLERANCE,
     EQUATION,
@@ -28,6 +27,7 @@ from cases.library._compared import (
     agreements,
     with_reason,
 )
+from cases.library._figures import paper_figure
 from cases.library._layers import (
     LAYERS,
     THICKNESS,

@@ -3,13 +3,13 @@
 import math
 from collections.abc import Iterable, Iterator
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
-from cases.claims.residual import Residual
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers
-from cases.figures import paper_figure
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
+from cases.judgement.claims.residual import Residual
 from cases.library._compared import EVERY, FEM, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
+from cases.library._figures import paper_figure
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import impact_costs
 from cases.results.records import Figure, Origin, Series

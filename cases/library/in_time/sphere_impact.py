@@ -5,15 +5,15 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
-from cases.claims.residual import Residual
-from cases.claims.scaling_law import Twin
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
 from cases.declare.task import Answers
-from cases.figures import paper_figure
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
+from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.scaling_law import Twin
 from cases.library._compared import BEM, EQUATION, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
+from cases.library._figures import paper_figure
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import impact_costs
 from cases.results.records import Figure, Origin, SceneRun, Series
@@ -91,7 +91,7 @@ def twice_the_radius_at_half_the_speed(scene: Scene) -> Scene:
 
 def figure_12(case: Case, answers: Answers) -> Iterator[Figure]:
     """Fig. 12: force over depth, a/h over time, velocity over time; in units of the elastic half-space."""
-    from cases.figures.figure_12 import elastic_half_space  # noqa: PLC0415  # loads MDR, so only for the drawing
+    from cases.library._figures.figure_12 import elastic_half_space  # noqa: PLC0415  # loads MDR, so only for the drawing
 
     unit = elastic_half_space()
     loops: list[Series] = []

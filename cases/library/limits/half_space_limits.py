@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import numpy as np
 
-from cases.claims.approach import Approach
-from cases.claims.declared import Reason
-from cases.claims.exact import Exact
 from cases.declare.case import Case, CaseScene
+from cases.judgement.claims.approach import Approach
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.exact import Exact
 from cases.library._compared import EVERY
 from cases.library._layers import LAYERS, THICKNESS, contact_modulus, half_space, layer, prescribed_radii, scene_name
 from cases.measurements.advice.effects import AblationStudy

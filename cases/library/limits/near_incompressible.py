@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from cases.claims.approach import Approach
-from cases.claims.declared import Reason
-from cases.claims.even_accuracy import EvenAccuracy
-from cases.claims.exact import Exact
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
+from cases.judgement.claims.approach import Approach
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.even_accuracy import EvenAccuracy
+from cases.judgement.claims.exact import Exact
 from cases.library._compared import BEM, BOUNDARY_PUNCHES, EQUATION, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus
 from cases.measurements.cost.settings import elastic_costs

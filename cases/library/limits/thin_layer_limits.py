@@ -5,9 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from cases.claims.approach import Approach
-from cases.claims.declared import Reason
 from cases.declare.case import Case, CaseScene
+from cases.judgement.claims.approach import Approach
+from cases.judgement.claims.declared import Reason
 from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
 from cases.measurements.cost.settings import elastic_costs

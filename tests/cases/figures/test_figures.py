@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cases.figures import (
+from cases.library._figures import (
     figure_03,
     figure_04,
     figure_05,
@@ -14,7 +14,7 @@ from cases.figures import (
     figure_12,
     paper_figure,
 )
-from cases.figures._parts import UNBONDED, layer
+from cases.library._figures._parts import UNBONDED, layer
 
 NUMBERS = (3, 4, 5, 7, 8, 9, 11, 12)
 MADE = {n: paper_figure(n) for n in NUMBERS}

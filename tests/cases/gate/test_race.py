@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from cases.declare.case import Case
+from cases.gate.race import race as race_module
+from cases.gate.race import version
+from cases.gate.race.against import subjects, with_times_against
+from cases.gate.race.race import Race, judge_race, race
+from cases.gate.race.version import Subject, Version, subject
+from cases.gate.race.worktree import worktree
 from cases.gate.write_permission import git
-from cases.race import race as race_module
-from cases.race import version
-from cases.race.against import subjects, with_times_against
-from cases.race.race import Race, judge_race, race
-from cases.race.version import Subject, Version, subject
-from cases.race.worktree import worktree
 from cases.results.records import Kind
 from cases.results.status import Status
 from contact import InvalidInput
@@ -164,7 +164,7 @@ def test_each_method_of_a_case_is_raced_on_the_first_scene_it_solved():
 @pytest.mark.usefixtures("short")
 def test_the_claims_about_time_stand_in_the_run(monkeypatch, repository):
     case = fake_case()
-    monkeypatch.setattr("cases.race.against.subject", lambda *_: dataclasses.replace(busy(), case=case.name))
+    monkeypatch.setattr("cases.gate.race.against.subject", lambda *_: dataclasses.replace(busy(), case=case.name))
     claims = with_times_against(run_of(case), "quick", [case], repository=repository, pairs=7).case(case.name).claims
     timed = [claim for claim in claims if claim.quantity == "cpu_seconds"]
     assert {(claim.kind, claim.status, claim.name) for claim in timed} == {
@@ -175,7 +175,7 @@ def test_the_claims_about_time_stand_in_the_run(monkeypatch, repository):
 
 def run_of(case: Case):
     from cases.declare.task import Answers
-    from cases.run.judge import case_result
+    from cases.judgement.judge import case_result
     from cases.run.solve_task import solve
     from tests.cases.gate.example_baselines import clean_run
 
@@ -186,7 +186,9 @@ def run_of(case: Case):
 @pytest.mark.usefixtures("short")
 def test_what_the_revision_cannot_solve_is_skipped_with_its_words(monkeypatch, repository):
     case = fake_case()
-    monkeypatch.setattr("cases.race.against.subject", lambda *_: dataclasses.replace(busy(fail=True), case=case.name))
+    monkeypatch.setattr(
+        "cases.gate.race.against.subject", lambda *_: dataclasses.replace(busy(fail=True), case=case.name)
+    )
     claims = with_times_against(run_of(case), "quick", [case], repository=repository, pairs=7).case(case.name).claims
     timed = [claim for claim in claims if claim.quantity == "cpu_seconds"]
     assert {claim.status for claim in timed} == {Status.SKIP}

@@ -1,0 +1,186 @@
+"""What every claim states before anything is computed, and how its judgement becomes a record."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable, Iterator, Mapping, Set
+from dataclasses import dataclass, field, replace
+from typing import ClassVar, Self
+
+from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers, Task
+from cases.judgement.rules.judgement import Judgement, nothing_compared
+from cases.judgement.rules.tolerance import positive_tolerance
+from cases.results.records import Claim, Kind, Origin, SceneRun
+from cases.results.status import Status
+from contact import InvalidInput
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reason:
+    """Why a claim should hold, where its expected number comes from, and how its tolerance was chosen.
+
+    Attributes:
+        because: why it should hold.
+        derived_from: theory, then the numerical uncertainty, then ten times a measured spread; never today's result.
+        origin: one of the four origins of an expected number.
+        source: closed form, page and table, or method.
+    """
+
+    because: str
+    derived_from: str
+    origin: Origin
+    source: str
+
+    def __post_init__(self) -> None:
+        """Refuse a reason that says nothing."""
+        for what in ("because", "derived_from", "source"):
+            if not getattr(self, what).strip():
+                raise InvalidInput(f"{what} is empty; a claim states its reason, its tolerance's origin and its source")
+
+
+@dataclass(frozen=True, kw_only=True)
+class DeclaredClaim(ABC):
+    """A claim of a case.
+
+    Attributes:
+        name: unique within the case.
+        quantity: what is compared.
+        tolerance: largest permitted error, relative.
+        reason: why it should hold, and where its numbers come from.
+        scenes: names of the scenes it speaks about; empty for all.
+        expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
+    """
+
+    kind: ClassVar[Kind]
+
+    name: str
+    quantity: str
+    tolerance: float
+    reason: Reason
+    scenes: tuple[str, ...] = ()
+    expected_to_fail: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse a claim without a reason, and a tolerance of the wrong sign."""
+        positive_tolerance(self.tolerance)
+        for what in ("name", "quantity"):
+            if not getattr(self, what).strip():
+                raise InvalidInput(f"claim {self.name!r}: {what} is empty; say what is claimed of what")
+
+    def check(self, case: Case) -> None:
+        """Refuse scenes or methods that the case does not have.
+
+        Raises:
+            InvalidInput: naming the first of them.
+        """
+        for scene in self.scenes_of(case):
+            for label in self.labels(case, scene):
+                case.use(scene, label)
+
+    def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
+        """Return the scenes this claim speaks about."""
+        return tuple(case.scene(name) for name in self.scenes) or case.scenes
+
+    @abstractmethod
+    def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
+        """Return the labels of the methods compared on ``scene``."""
+
+    def tasks(self, case: Case) -> Iterable[Task]:
+        """Return what must be solved beside the case's own scenes."""
+        return ()
+
+    def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
+        """Return the claim on the scenes whose methods are all left in ``solvers``; nothing where no scene is."""
+        return self._on(
+            scene.name for scene in self.scenes_of(case) if solvers[scene.name] >= set(self.labels(case, scene))
+        )
+
+    def _on(self, scenes: Iterable[str]) -> tuple[Self, ...]:
+        names = tuple(scenes)
+        return (replace(self, scenes=names),) if names else ()
+
+    @abstractmethod
+    def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
+        """Judge the finished answers, one record a scene and method."""
+
+    def record(
+        self,
+        judgement: Judgement,
+        scene: str,
+        methods: tuple[str, ...],
+        *,
+        expected: float | None = None,
+        uncertainty: Mapping[str, float] | None = None,
+        shared: tuple[str, ...] = (),
+        tolerance: float = 0.0,
+    ) -> Claim:
+        """Return the record of a judgement."""
+        status, message = self._declared(judgement)
+        return Claim(
+            name=self.name,
+            kind=self.kind,
+            scene=scene,
+            methods=methods,
+            quantity=self.quantity,
+            unit="1",
+            status=status,
+            verdict=judgement.verdict,
+            observed=judgement.observed,
+            expected=expected,
+            tolerance=tolerance or self.tolerance,
+            fraction=judgement.fraction,
+            uncertainty=dict(uncertainty or {}),
+            origin=self.reason.origin,
+            source=self.reason.source,
+            because=self.reason.because,
+            derived_from=self.reason.derived_from,
+            shared_inputs=shared,
+            message=message,
+        )
+
+    def _declared(self, judgement: Judgement) -> tuple[Status, str]:
+        """Turn a declared failure into XFAIL, and its unexpected success into XPASS."""
+        if not self.expected_to_fail or judgement.status not in (Status.PASS, Status.FAIL):
+            return judgement.status, judgement.message
+        status = Status.XPASS if judgement.status is Status.PASS else Status.XFAIL
+        return status, f"{judgement.message} (declared to fail: {self.expected_to_fail})"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PerMethod(DeclaredClaim, ABC):
+    """A claim about single methods.
+
+    Attributes:
+        methods: their labels; empty for every method of the case.
+        tolerances: of methods that need another one than ``tolerance``.
+    """
+
+    methods: tuple[str, ...] = ()
+    tolerances: Mapping[str, float] = field(default_factory=dict)
+
+    def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
+        """Return the labels named, or those of every method that solves ``scene``."""
+        return self.methods or tuple(use.label for use in case.methods_of(scene))
+
+    def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
+        """Return the claim where a method is left, with the named methods that are left on all those scenes."""
+        scenes = [s.name for s in self.scenes_of(case) if not solvers[s.name].isdisjoint(self.labels(case, s))]
+        if not self.methods:
+            return self._on(scenes)
+        methods = tuple(label for label in self.methods if all(label in solvers[name] for name in scenes))
+        return tuple(replace(claim, methods=methods) for claim in self._on(scenes) if methods)
+
+    def tolerance_of(self, label: str) -> float:
+        """Return the tolerance of one method."""
+        return positive_tolerance(self.tolerances.get(label, self.tolerance))
+
+
+def missing(run: SceneRun) -> Judgement | None:
+    """Return why ``run`` cannot be compared, or None when it has numbers."""
+    if run.solved:
+        return None
+    return nothing_compared(run.status, f"{run.method}: {run.reason}")
+
+
+def first_missing(*runs: SceneRun) -> Judgement | None:
+    """Return why the first of ``runs`` without numbers cannot be compared, or None."""
+    return next((judged for run in runs if (judged := missing(run)) is not None), None)

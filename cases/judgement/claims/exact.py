@@ -1,0 +1,58 @@
+"""A quantity against a closed form or the literature."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import ClassVar
+
+from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers
+from cases.judgement.claims.declared import PerMethod, missing
+from cases.judgement.rules.exact import judge_exact
+from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
+from cases.results.records import Claim, Kind, Quantity
+from cases.results.status import Status
+from contact import InvalidInput, Scene
+
+Expected = Mapping[str, Sequence[float]] | Callable[[Scene], Sequence[float]]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exact(PerMethod):
+    """The values along the steps equal ``expected``: by name of the scene, or a function of the scene."""
+
+    kind: ClassVar[Kind] = Kind.EXACT
+
+    expected: Expected
+
+    def scenes_of(self, case: Case) -> tuple[CaseScene, ...]:
+        """Return the scenes named, or those that have an expected value."""
+        if isinstance(self.expected, Mapping) and not self.scenes:
+            return tuple(case.scene(name) for name in self.expected)
+        return super().scenes_of(case)
+
+    def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
+        """Judge each scene and method by its worst step."""
+        for scene in self.scenes_of(case):
+            expected = self._expected(scene)
+            for label in self.labels(case, scene):
+                run = answers.of(case.task(scene, case.use(scene, label)))
+                tolerance = self.tolerance_of(label)
+                judged = missing(run) or _worst_step(run.quantity(self.quantity), expected, tolerance)
+                single = expected[0] if len(expected) == 1 else None
+                yield self.record(judged, scene.name, (label,), expected=single, tolerance=tolerance)
+
+    def _expected(self, scene: CaseScene) -> Sequence[float]:
+        if not isinstance(self.expected, Mapping):
+            return [float(value) for value in self.expected(scene.scene)]
+        if scene.name not in self.expected:
+            raise InvalidInput(f"claim {self.name!r}: no expected value for scene {scene.name!r}")
+        return self.expected[scene.name]
+
+
+def _worst_step(quantity: Quantity, expected: Sequence[float], tolerance: float) -> Judgement:
+    if len(expected) != len(quantity.values):
+        message = f"{len(quantity.values)} steps for {len(expected)} expected values of {quantity.name}"
+        return nothing_compared(Status.INCOMPARABLE, message)
+    scale = quantity.scale if any(value == 0 for value in expected) else 0.0
+    pairs = zip(quantity.values, expected, strict=True)
+    return worst_judgement([judge_exact(v, e, scale=scale, tolerance=tolerance) for v, e in pairs])

@@ -1,0 +1,98 @@
+"""A sampled pressure of one method against that of another, in a norm that converges at a sharp rim."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cases.declare.case import Case, CaseScene
+from cases.declare.task import Answers, Task
+from cases.judgement.claims.agreement import shared
+from cases.judgement.claims.declared import DeclaredClaim, first_missing
+from cases.judgement.rules.agreement import judge_agreement
+from cases.judgement.rules.judgement import Judgement, nothing_compared
+from cases.judgement.rules.norms import RingQuadrature, relative_difference, ring_load_difference
+from cases.results.records import Claim, Curve, Kind, SceneRun
+from cases.results.status import Status
+
+Array = NDArray[np.float64]
+Norm = Literal["weighted L2", "ring loads"]
+
+_NORMS: dict[str, Callable[[Array, Array, RingQuadrature], float]] = {
+    "weighted L2": relative_difference,
+    "ring loads": ring_load_difference,
+}
+
+
+@dataclass(frozen=True, kw_only=True)
+class FieldAgreement(DeclaredClaim):
+    """Two methods give the same pressure in the 2 pi r weighted L2 norm, or the same loads of rings.
+
+    Attributes:
+        fast: label of the method under test.
+        reference: label of the method it is compared with.
+        norm: how fields are compared.
+        refined: labels of methods that state no uncertainty of the field; the change on halving their discretisation
+            length takes its place.
+    """
+
+    kind: ClassVar[Kind] = Kind.AGREEMENT
+
+    fast: str
+    reference: str
+    norm: Norm
+    refined: tuple[str, ...] = ()
+
+    def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
+        """Return both labels."""
+        return self.fast, self.reference
+
+    def tasks(self, case: Case) -> Iterable[Task]:
+        """Return the refined solutions that stand for a missing uncertainty."""
+        for scene in self.scenes_of(case):
+            yield from (self._finer(case, scene, label) for label in self.refined)
+
+    def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
+        """Judge each scene."""
+        for scene in self.scenes_of(case):
+            labels = self.labels(case, scene)
+            runs = [answers.of(case.task(scene, case.use(scene, label))) for label in labels]
+            judged, uncertainty = first_missing(*runs), dict[str, float]()
+            if judged is None:
+                judged, uncertainty = self._compared(case, scene, answers, runs)
+            yield self.record(judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared(*runs))
+
+    def _compared(
+        self, case: Case, scene: CaseScene, answers: Answers, runs: list[SceneRun]
+    ) -> tuple[Judgement, dict[str, float]]:
+        uncertainty: dict[str, float] = {}
+        for run in runs:
+            if _curve(run, self.quantity) is None:
+                return nothing_compared(Status.SKIP, f"{run.method} gives no {self.quantity}"), uncertainty
+            own = self._uncertainty(case, scene, answers, run)
+            if own is None:
+                message = f"{run.method} states no uncertainty of {self.quantity}: no verdict is possible"
+                return nothing_compared(Status.INCONCLUSIVE, message), uncertainty
+            uncertainty[run.method] = own
+        difference = self._difference(scene, *runs)
+        return judge_agreement(difference, uncertainty, tolerance=self.tolerance), uncertainty
+
+    def _difference(self, scene: CaseScene, first: SceneRun, second: SceneRun) -> float:
+        a, b = first.curve(self.quantity), second.curve(self.quantity)
+        return _NORMS[self.norm](np.array(a.y), np.array(b.y), scene.sampling.rings)
+
+    def _uncertainty(self, case: Case, scene: CaseScene, answers: Answers, run: SceneRun) -> float | None:
+        if run.method not in self.refined:
+            return run.curve(self.quantity).relative_uncertainty
+        finer = answers.of(self._finer(case, scene, run.method))
+        return self._difference(scene, run, finer) if finer.solved else None
+
+    def _finer(self, case: Case, scene: CaseScene, label: str) -> Task:
+        task = case.task(scene, case.use(scene, label))
+        return task.changed("refined", solver=task.solver.refined())
+
+
+def _curve(run: SceneRun, name: str) -> Curve | None:
+    return next((curve for curve in run.curves if curve.name == name), None)

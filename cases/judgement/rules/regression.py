@@ -1,0 +1,45 @@
+"""A number against its own accepted earlier value; regression only, never called verification."""
+
+import math
+
+from cases.judgement.rules.judgement import Judgement, nothing_compared
+from cases.judgement.rules.tolerance import permitted_difference
+from cases.results.records import Verdict
+from cases.results.status import Status
+
+
+def judge_regression(value: float, baseline: float, *, scale: float, rtol: float, atol: float = 0.0) -> Judgement:
+    """Judge |value - baseline| <= max(rtol max(|baseline|, scale), atol); non-finite on either side is INVALID."""
+    if not (math.isfinite(value) and math.isfinite(baseline)):
+        return nothing_compared(Status.INVALID, f"value {value}, baseline {baseline}: both must be finite")
+    permitted = permitted_difference(baseline, scale=scale, rtol=rtol, atol=atol)
+    change = value - baseline
+    good = abs(change) <= permitted
+    message = f"{value:.17g} against accepted {baseline:.17g}: change {change:+.1e}, permitted {permitted:.1e}"
+    return Judgement(
+        status=Status.PASS if good else Status.DIFF,
+        verdict=Verdict.PASS if good else Verdict.FAIL,
+        observed=value,
+        fraction=abs(change) / permitted if permitted > 0 else 0.0 if good else math.inf,
+        message=message,
+    )
+
+
+def judge_counter(name: str, value: int, baseline: int) -> Judgement:
+    """Judge a deterministic counter: unknowns exactly, iterations and the like within max(2, 10 %)."""
+    permitted = permitted_count_change(name, baseline)
+    change = abs(value - baseline)
+    good = change <= permitted
+    message = f"{name} {value} against accepted {baseline}, permitted change {permitted:g}"
+    return Judgement(
+        status=Status.PASS if good else Status.DIFF,
+        verdict=Verdict.PASS if good else Verdict.FAIL,
+        observed=float(value),
+        fraction=change / permitted if permitted > 0 else float(change),
+        message=message,
+    )
+
+
+def permitted_count_change(name: str, baseline: int) -> float:
+    """Return the largest change of a counter that counts as equal."""
+    return 0.0 if name == "unknowns" else max(2.0, 0.1 * baseline)

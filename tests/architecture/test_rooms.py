@@ -1,0 +1,84 @@
+"""The house holds: small folders, few arrows between them, no import circle, and a word at every door."""
+
+from __future__ import annotations
+
+import ast
+import graphlib
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("contact", "bem", "mdr", "fem_reference", "cases", "reports")
+FILES = {
+    ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): file
+    for package in PACKAGES
+    for file in (ROOT / package).rglob("*.py")
+}
+LARGEST_FOLDER = 13
+# Arrows between the rooms of one package. The room of a module is the folder directly below the package.
+MOST_ARROWS = {"contact": 15, "bem": 15, "mdr": 15, "fem_reference": 15, "reports": 15, "cases": 21}
+
+
+def imports_of(source, known=FILES):
+    """Modules of ours that a source imports when it is loaded, those for type checkers included."""
+    tree = ast.parse(source)
+    later = {id(n) for f in ast.walk(tree) if isinstance(f, ast.FunctionDef) for n in ast.walk(f)}
+    for node in ast.walk(tree):
+        if id(node) in later or not isinstance(node, ast.Import | ast.ImportFrom):
+            continue
+        if isinstance(node, ast.Import):
+            names = [alias.name for alias in node.names]
+        else:
+            inner = [f"{node.module}.{alias.name}" for alias in node.names]
+            names = [name for name in inner if name in known] or [node.module or ""]
+        yield from (name for name in names if name in known)
+
+
+IMPORTS = {name: set(imports_of(file.read_text(encoding="utf-8"))) - {name} for name, file in FILES.items()}
+
+
+def room(module):
+    return ".".join(module.split(".")[:2])
+
+
+def test_no_folder_holds_more_than_a_reader_surveys():
+    folders = Counter(str(file.parent.relative_to(ROOT)) for file in FILES.values() if file.name != "__init__.py")
+    assert {folder: count for folder, count in folders.items() if count > LARGEST_FOLDER} == {}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_few_arrows_between_rooms(package):
+    arrows = {
+        (room(one), room(other))
+        for one, others in IMPORTS.items()
+        for other in others
+        if one.split(".")[0] == other.split(".")[0] == package and room(one) != room(other)
+    }
+    assert len(arrows) <= MOST_ARROWS[package], sorted(arrows)
+
+
+def test_no_import_circle():
+    assert list(graphlib.TopologicalSorter(IMPORTS).static_order())
+
+
+def test_a_circle_and_a_type_checkers_import_are_seen():
+    source = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from mdr.method import Mdr\n"
+    assert set(imports_of(source)) == {"mdr.method"}
+    with pytest.raises(graphlib.CycleError):
+        list(graphlib.TopologicalSorter({**IMPORTS, "contact.scene.layer": {"mdr.method"}}).static_order())
+
+
+@pytest.mark.parametrize("module", sorted(FILES))
+def test_a_module_says_what_it_is_for_in_one_line(module):
+    text = ast.get_docstring(ast.parse(FILES[module].read_text(encoding="utf-8")))
+    assert text, f"{module} has no docstring"
+    assert text.splitlines()[0].endswith((".", "?")), f"{module}: the first line is no sentence"
+
+
+@pytest.mark.parametrize(
+    "folder", sorted({file.parent for file in FILES.values()}), ids=lambda p: str(p.relative_to(ROOT))
+)
+def test_every_folder_has_a_door(folder):
+    assert (folder / "__init__.py").is_file()
