@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from contact import Layer
 from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
-from fem_reference.adhesion.detachment import TILT, place_error, slope_root
+from fem_reference.adhesion.branch_errors import degree_error, edge_error
+from fem_reference.adhesion.detachment import slope_root
 from fem_reference.adhesion.equilibria import branch_samples
+from fem_reference.adhesion.pull_off_errors import Extremum
 from fem_reference.elastic.error_estimate import CertifiedContact
 
 Array = NDArray[np.float64]
@@ -62,14 +64,19 @@ def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple
 
 
 def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
-    height = float(branch.elongation(np.array([radius]))[0])
-    error = float(branch.elongation_error(np.array([radius]))[0])
+    here, extremum = np.array([radius]), Extremum(branch, AdhesiveBranch.elongation, radius)
+
+    def numbers(other: AdhesiveBranch) -> Array:
+        return np.array([other.elongation(here)[0], extremum.shift(other)])
+
+    height, between = numbers(branch)[0], branch.errors_between(here)[0, 0]
+    error, place = degree_error(branch, numbers) + edge_error(branch, numbers)
     return Reversal(
         kind="maximum" if is_maximum else "minimum",
         ratio=radius / thickness,
-        elongation=height / thickness,
-        ratio_error=place_error(branch, branch.elongation, radius, TILT * error * height),
-        elongation_error=error,
+        elongation=float(height / thickness),
+        ratio_error=float(place + extremum.shift_between(between)),
+        elongation_error=float((error + between + branch.errors_far(here)[0, 0]) / height),
     )
 
 

@@ -20,17 +20,15 @@ from contact import (
     StageLog,
 )
 from fem_reference.adhesion.branch import AdhesiveBranch
+from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.adhesion.equilibria import SPANS, branch_of, branch_samples
+from fem_reference.adhesion.pull_off_errors import ROOT, pull_off_errors
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
 Array = NDArray[np.float64]
 Control = Literal["displacement", "force"]
-
-BEND = 1e-2  # of ln a, for second differences
-TILT = 6.0
-ROOT = 1e-12  # relative, of the search for an extremum
 
 CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
@@ -67,13 +65,15 @@ def detachment_path(
     pull_off = _pull_off(branch, radius, loading.control, critical)
     modulus = contact_modulus(scene.layer)
     passed = radius >= pull_off.contact_radius
-    strongest = _point(branch, float(radius[passed][np.argmin(force[passed])]), loading.control, "strongest")
-    strongest = min(strongest, pull_off, key=lambda point: point.normal_force)
+    sampled = _point(branch, float(radius[passed][np.argmin(force[passed])]), loading.control, "strongest")
+    turned = (point for point in critical if point.contact_radius >= pull_off.contact_radius)
+    strongest = min(sampled, pull_off, *turned, key=lambda point: point.normal_force)
+    depth_error, force_error = errors_along(branch, radius)
     error = {
         "contact_radius": np.zeros_like(radius),
-        "indentation_depth": branch.depth_error(radius) / np.abs(depth).max(),
-        "normal_force": branch.force_error(radius) / np.abs(force).max(),
-        **_pull_off_errors(branch, pull_off, strongest),
+        "indentation_depth": depth_error / np.abs(depth).max(),
+        "normal_force": force_error / np.abs(force).max(),
+        **pull_off_errors(branch, pull_off, strongest),
     }
     cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c.answer)]
     return DetachmentPath(
@@ -108,40 +108,6 @@ def _branch_to_pull_off(
         if np.any(branch.slope(load, branch_samples(branch)) <= 0):
             break
     return branch
-
-
-def _pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, Array]:
-    """Relative errors of the load and the place of pull-off; at the rim of a punch the place is exact.
-
-    An error of the place moves the load that is not stationary there.
-    """
-    here, there = np.array([pull_off.contact_radius]), np.array([strongest.contact_radius])
-    load, error = (
-        (branch.depth, branch.depth_error) if pull_off.control == "displacement" else (branch.force, branch.force_error)
-    )
-    at_end = pull_off.contact_radius == branch.pieces[-1].high
-    interpolated = error(here, 0.0)[0]
-    tilt = TILT * (error(here)[0] - interpolated) + branch.waves(pull_off.contact_radius) * interpolated
-    place = 0.0 if at_end else place_error(branch, load, pull_off.contact_radius, tilt) + ROOT
-    depth = branch.depth_error(here) + place * here * np.abs(branch.slope(branch.depth, here))
-    force = branch.force_error(there) + place * there * np.abs(branch.slope(branch.force, there))
-    return {
-        "pull_off_depth": depth / abs(pull_off.indentation_depth),
-        "pull_off_force": force / abs(strongest.normal_force),
-        "pull_off_contact_radius": np.array([place]),
-    }
-
-
-def place_error(branch: AdhesiveBranch, load: Callable[[Array], Array], radius: float, tilt: float) -> float:
-    """Relative error of the radius at which a load is stationary, its error changing by ``tilt`` per unit of ln a.
-
-    Errors of the contacts differ from one solved radius to the next: they tilt the load by up to `TILT` times their
-    size (measured: up to 3.4 times).
-    """
-    middle = np.clip(radius, branch.pieces[0].low * np.exp(BEND), branch.pieces[-1].high * np.exp(-BEND))
-    left, middle, right = load(middle * np.exp(np.array([-BEND, 0.0, BEND])))
-    curvature = abs(left - 2 * middle + right) / BEND**2
-    return float(tilt / curvature)
 
 
 def presses_most_in_the_centre(contact: PrescribedContact) -> bool:

@@ -20,6 +20,7 @@ from contact import (
     Scene,
 )
 from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
+from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import CertifiedContact
 from fem_reference.elastic.path import ContactSolver, Equilibrium
@@ -103,9 +104,9 @@ def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: boo
     state = adhesive_equilibrium(solve(radius), work_of_adhesion(scene))
     name, found = ("indentation_depth", state.depth) if by_depth else ("normal_force", state.force)
     slope = branch.slope(load, np.array([radius]))[0]  # d load / da, in SI lengths
-    interpolated = (branch.depth_error if by_depth else branch.force_error)(np.array([radius]))[0]
+    on_branch = errors_along(branch, np.array([radius]))[0 if by_depth else 1, 0]
     solved = state.error[name] * abs(found) * radius ** (1 if by_depth else 2)
-    moved = (solved + interpolated) / radius / abs(slope)
+    moved = (solved + on_branch) / radius / abs(slope)
     return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
 
 

@@ -15,14 +15,13 @@ from contact import IndentationDepths, NotConvergedError, Scene, StageLog
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
-from fem_reference.elastic.error_estimate import CertifiedContact
+from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, Equilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
 
 QUICK = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
 LEFT_OVER = 1e-4  # relative load left to the first-order correction, whose own error is its square
 MAX_SECANTS = 15
-UNCERTAIN_EXPONENT = 0.2  # relative error of the secant's exponent, hence of the last correction of the radius
 
 
 def polished_equilibrium(scene: Scene, target: float, start: float, solve: ContactSolver, log: StageLog) -> Equilibrium:
@@ -44,8 +43,9 @@ def polished_equilibrium(scene: Scene, target: float, start: float, solve: Conta
         defect = ratio(contact.answer, radius)
         corrected = flat + (radius - flat) * defect ** (-1 / exponent)
         if abs(defect - 1) <= LEFT_OVER:
-            state = _at_depth if by_depth else _at_force
-            return state(contact, target, corrected / radius, exponent * radius / (radius - flat))
+            scaled = target / radius if by_depth else target / radius**2
+            loaded = LoadedContact(contact=contact, load=scaled, by_depth=by_depth, radius_factor=corrected / radius)
+            return loaded.equilibrium
         radius = corrected
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
@@ -74,41 +74,3 @@ def radius_of_load(ratio_at: Callable[[float], float], start: float, flat: float
         if abs(y) < 0.1 * LEFT_OVER:
             return flat + float(np.exp(x + step)), exponent
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})
-
-
-def _at_depth(contact: CertifiedContact, depth: float, factor: float, exponent: float) -> Equilibrium:
-    answer, error = contact.answer, contact.error
-    scaled = depth / contact.indenter.contact_radius
-    force = answer.force(scaled)
-    absolute = error["smooth_force"] * answer.smooth_force + answer.stiffness * error["smooth_depth"] * scaled
-    reported = {
-        "contact_radius": error["smooth_depth"] / exponent,
-        "indentation_depth": 0.0,
-        "normal_force": absolute / force,
-    }
-    return _equilibrium(contact, scaled, force, factor, reported)
-
-
-def _at_force(contact: CertifiedContact, force: float, factor: float, exponent: float) -> Equilibrium:
-    answer, error = contact.answer, contact.error
-    scaled = force / contact.indenter.contact_radius**2
-    depth = answer.smooth_depth + (scaled - answer.smooth_force) / answer.stiffness
-    absolute = error["smooth_depth"] * answer.smooth_depth + error["smooth_force"] * scaled / answer.stiffness
-    reported = {
-        "contact_radius": error["smooth_force"] / exponent,
-        "indentation_depth": absolute / depth,
-        "normal_force": 0.0,
-    }
-    return _equilibrium(contact, depth, scaled, factor, reported)
-
-
-def _equilibrium(
-    contact: CertifiedContact, depth: float, force: float, factor: float, reported: dict[str, float]
-) -> Equilibrium:
-    """The radius's own error moves the stiffness, too."""
-    answer = contact.answer
-    reported["contact_radius"] += UNCERTAIN_EXPONENT * abs(factor - 1)
-    by_radius = reported["contact_radius"] * answer.stiffness_slope / answer.stiffness
-    reported["contact_stiffness"] = contact.error["stiffness"] + by_radius
-    reported["pressure"] = contact.pressure_error + reported["contact_radius"]
-    return Equilibrium(contact=contact, depth=depth, force=force, error=reported, radius_factor=factor)

@@ -7,6 +7,7 @@ import pytest
 
 from benchmarks.fem_error_bars import contacts, impacts
 from cases.measurements.campaigns.coverage import CoveragePlan, records_of
+from cases.measurements.campaigns.random_scenes import random_scene
 from cases.measurements.campaigns.referee import second_opinion
 from contact import (
     Adhesion,
@@ -14,7 +15,10 @@ from contact import (
     Detachment,
     FlatPunch,
     Impact,
+    IndentationDepths,
     Layer,
+    NormalForces,
+    Paraboloid,
     PowerLaw,
     Scene,
     Tabulated,
@@ -144,3 +148,101 @@ def test_a_punch_whose_stability_reverses_is_lost_at_the_lowest_turning_point():
     path = Fem(order=3, edge_cell=1e-5).solve(scene)
     found, stated = path.pull_off_contact_radius, path.error_estimate["pull_off_contact_radius"][0]
     assert abs(found / 1.91953 - 1) < stated < 0.02  # the maximum of Eq. (42), from the integral equation
+
+
+def at_loads(random_numbers, settings, family_seed):
+    """Stated over true error of every quantity of elastic scenes with prescribed depth or force."""
+    ratios = {}
+    for number in random_numbers:
+        scene = random_scene(np.random.default_rng([family_seed, number]), "elastic", (0.1, 5.0))
+        if isinstance(scene.loading, ContactRadii) or isinstance(scene.indenter, FlatPunch):
+            continue
+        path = Fem(**settings).solve(scene)
+        opinion = second_opinion(path).values
+        for name, expected in opinion.items():
+            stated, error = path.error_estimate[name], np.abs(getattr(path, name) / expected - 1)
+            ratios.setdefault(name, []).extend((stated / np.maximum(error, 1e-15))[stated > 0])
+    return ratios
+
+
+def assert_sharp(ratios):
+    for name, stated_over_true in ratios.items():
+        assert np.mean(np.array(stated_over_true) >= 1) >= 0.95, name
+        assert np.median(stated_over_true) < 10, name
+        assert np.percentile(stated_over_true, 90) < 100, name
+
+
+def test_radius_at_a_load_errs_like_the_load_at_the_radius():
+    """Also force and depth: their errors at a fixed radius cancel where the radius follows the load."""
+    layer = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
+    loads = IndentationDepths(values=[0.05]), NormalForces(values=[0.1])
+    for loading in loads:
+        scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=loading)
+        path = Fem().solve(scene)
+        for name, expected in second_opinion(path).values.items():
+            error = abs(getattr(path, name)[0] / expected[0] - 1)
+            stated = path.error_estimate[name][0]
+            assert stated == 0 or error < stated < 30 * error, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("settings", "seed"), [({}, 5), ({"accuracy": 1e-2}, 3), ({"accuracy": 1e-4}, 1)])
+def test_error_bars_at_a_load_are_sharp(settings, seed):
+    assert_sharp(at_loads(range(30), settings, seed))
+
+
+def test_pressure_at_a_depth():
+    """The mesh's radius misses the load's by 1e-5: as much of a flat punch's singular pressure is left in the field."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.04, support="unbonded")
+    depth = IndentationDepths(values=[0.15])
+    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=25.0), loading=depth)
+    path, exact = Fem().solve(scene), Mdr().solve(scene)
+    s, weight = np.polynomial.legendre.leggauss(100)
+    r = exact.contact_radius[0] * (1 - ((1 - s) / 2) ** 4)
+    weight = weight * (1 - s) ** 3 * r
+    expected = exact.pressure(r)
+    error = np.sqrt(weight @ (path.pressure(r) - expected) ** 2 / (weight @ expected**2))
+    assert error < path.error_estimate["pressure"][0] < 10 * error
+
+
+PULLED = Scene(
+    layer=LAYER,
+    indenter=Paraboloid(radius_of_curvature=1.0),
+    loading=Detachment(control="displacement"),
+    effects=(Adhesion(work_of_adhesion=1e-3),),
+)
+PULL_OFF = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+
+
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_errors_of_a_pull_off_follow_from_those_at_its_radius(control):
+    scene = PULLED.replace(loading=Detachment(control=control))
+    path, exact = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
+    errors = [abs(getattr(path, name) / getattr(exact, name) - 1) for name in PULL_OFF]
+    ratios = [path.error_estimate[name][0] / error for name, error in zip(PULL_OFF, errors, strict=True)]
+    assert min(ratios) > 1
+    # Of the force; depth and radius may hit the truth by accident.
+    assert ratios[0] < 15
+
+
+def test_strongest_pull_is_the_extremum_whatever_is_controlled():
+    """Under displacement control the force passes its extremum, where pull-off lies under force control."""
+    forces = [
+        Fem(accuracy=1e-2).solve(PULLED.replace(loading=Detachment(control=c))).pull_off_force
+        for c in ("displacement", "force")
+    ]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-10, abs=0.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("accuracy", "seed"), [(1e-2, 3), (1e-3, 1)])
+def test_error_bars_of_pull_offs_are_sharp(accuracy, seed):
+    ratios = {}
+    for number in range(20):
+        scene = random_scene(np.random.default_rng([seed, number]), "adhesive", (0.1, 5.0))
+        path, exact = Fem(accuracy=accuracy).solve(scene), Mdr().solve(scene)
+        for name in PULL_OFF:
+            error = abs(getattr(path, name) / getattr(exact, name) - 1)
+            if path.error_estimate[name][0] > 1e-11:
+                ratios.setdefault(name, []).append(path.error_estimate[name][0] / error)
+    assert_sharp(ratios)

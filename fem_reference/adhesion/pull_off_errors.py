@@ -1,0 +1,98 @@
+"""Errors of the load and the place of pull-off, to first order about the extremum that was found.
+
+On a branch that is slightly wrong the load L is extremal at ``ln a - L' / L''``, with derivatives by ln a at the found
+place.  The extremal load is wrong as at a fixed radius, another load besides by its slope times the error of the place.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import CriticalPoint
+from fem_reference.adhesion.branch import AdhesiveBranch
+from fem_reference.adhesion.branch_errors import degree_error, edge_error
+
+Array = NDArray[np.float64]
+Load = Callable[[AdhesiveBranch, Array], Array]
+
+# Of ln a, for second differences of the load.
+BEND = 1e-2
+# Relative, of the search for an extremum.
+ROOT = 1e-12
+# How near the end of a piece an extremum lies exactly there, relative: a thousand times what the search may miss.
+AT_END = 1e-9
+
+
+@dataclass(frozen=True)
+class Extremum:
+    """Where a load is extremal on a branch.
+
+    Attributes:
+        branch: the branch.
+        load: which load, a method of the branch.
+        radius: the place [m].
+    """
+
+    branch: AdhesiveBranch
+    load: Load
+    radius: float
+
+    @cached_property
+    def is_at_end(self) -> bool:
+        """Whether it is the end of a piece: a punch's rim, or a kink where the slope jumps.  No error moves it."""
+        ends = np.array([piece.high for piece in self.branch.pieces])
+        return bool(np.any(np.abs(ends / self.radius - 1) < AT_END))
+
+    @cached_property
+    def curvature(self) -> float:
+        """d^2 load / d(ln a)^2, from values a hundredth apart within the branch."""
+        low, high = self.branch.pieces[0].low * np.exp(BEND), self.branch.pieces[-1].high * np.exp(-BEND)
+        left, middle, right = self.load(self.branch, np.clip(self.radius, low, high) * np.exp([-BEND, 0.0, BEND]))
+        return float((left - 2 * middle + right) / BEND**2)
+
+    def slope(self, branch: AdhesiveBranch, load: Load) -> float:
+        """d load / d(ln a) here of a load on a branch."""
+        here = np.array([self.radius])
+        return float(self.radius * branch.slope(lambda a: load(branch, a), here)[0])
+
+    def shift(self, other: AdhesiveBranch) -> float:
+        """How far, in ln a, the extremum of another branch lies away."""
+        return 0.0 if self.is_at_end else -self.slope(other, self.load) / self.curvature
+
+    def shift_between(self, error: float) -> float:
+        """How far an error of interpolation of the load [its unit] moves it: it waves between the solved radii."""
+        return 0.0 if self.is_at_end else self.branch.waves(self.radius) * error / abs(self.curvature)
+
+
+def pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, Array]:
+    """Relative errors of force, depth and place."""
+    here, there = np.array([pull_off.contact_radius]), np.array([strongest.contact_radius])
+    by_depth = pull_off.control == "displacement"
+    extremum = Extremum(branch, AdhesiveBranch.depth if by_depth else AdhesiveBranch.force, pull_off.contact_radius)
+    depth_slope = extremum.slope(branch, AdhesiveBranch.depth)
+    # The strongest point is the pull-off itself or an extremum of the force.
+    force_slope = extremum.slope(branch, AdhesiveBranch.force) if here[0] == there[0] else 0.0
+
+    def numbers(other: AdhesiveBranch) -> Array:
+        """Depth, force and ln a of the extremum."""
+        shift = extremum.shift(other)
+        return np.array(
+            [other.depth(here)[0] + shift * depth_slope, other.force(there)[0] + shift * force_slope, shift]
+        )
+
+    between = branch.errors_between(here)[:, 0]
+    shift = extremum.shift_between(between[0 if by_depth else 1])
+    depth, force, place = degree_error(branch, numbers) + edge_error(branch, numbers)
+    depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
+    force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
+    is_at_rim = pull_off.contact_radius == branch.pieces[-1].high
+    return {
+        "pull_off_depth": np.array([depth / abs(pull_off.indentation_depth)]),
+        "pull_off_force": np.array([force / abs(strongest.normal_force)]),
+        "pull_off_contact_radius": np.array([0.0 if is_at_rim else place + shift + ROOT]),
+    }
