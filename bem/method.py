@@ -270,7 +270,7 @@ def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: flo
     """
     differences = {name: abs(1.0 - getattr(coarse, name) / getattr(fine, name)) for name in ContactPath.ARRAYS}
     if kind == "radius":
-        by_slope = {"indentation_depth": 1.0, "normal_force": 1.0}
+        by_slope = {"indentation_depth": fine.stiffness_exponent, "normal_force": fine.stiffness_exponent}
     else:
         by_slope = {"contact_radius": 1.0, "contact_stiffness": fine.stiffness_exponent}
     own = SECOND_ORDER * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved

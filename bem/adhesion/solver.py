@@ -114,7 +114,7 @@ class AdheringDiscs:
         own = float(FLOOR + TRUNCATION * fine.truncation(np.array(pull_off["pull_off_contact_radius"])))
         share = dict.fromkeys(pull_off, own) | {"pull_off_depth": own * _swing(depth, pull_off["pull_off_depth"])}
         errors = {
-            name: DIFFERENCE * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]
+            name: np.array([DIFFERENCE * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]])
             for name, value in pull_off.items()
         }
         errors["pull_off_contact_radius"] += RADIUS_FLOOR
