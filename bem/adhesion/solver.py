@@ -43,6 +43,7 @@ RADIUS_FLOOR: Final = 5e-8
 # Factor in the contact radius either way over which the largest difference counts along a branch.
 NEARBY: Final = 1.5
 STATES: Final = 100  # of a detachment
+PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "normal_force": "pull_off_force"}
 PRESCRIBED: Final = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
 
 
@@ -127,6 +128,9 @@ class AdheringDiscs:
             rounding = FLOOR * terms / np.max(np.abs(values))
             nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
             errors[name] = DIFFERENCE * nearby + truncated + rounding
+            at_loss = np.interp(pull_off["pull_off_contact_radius"], radius[::-1], errors[name][::-1])
+            scalar, scale = PULL_OFF[name], np.max(np.abs(values))
+            errors[scalar] = np.maximum(errors[scalar], at_loss * scale / abs(pull_off[scalar]))
         return DetachmentPath(
             scene=self.scene,
             method="bem",
