@@ -277,3 +277,13 @@ def test_scenes_it_does_not_model_are_refused_with_a_reason():
         assert not method.supports(scene)
         with pytest.raises(UnsupportedSceneError):
             method.solve(scene)
+
+
+@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER])
+def test_the_stiffness_at_a_given_radius_states_the_error_of_its_own_punch(layer):
+    """The error of the search for the depth, which does not reach k_N, once stood in its place."""
+    path = solve(PARABOLOID, ContactRadii([0.5e-3]), layer)
+    exact = Mdr().solve(path.scene).contact_stiffness[0]
+    error, stated = abs(path.contact_stiffness[0] / exact - 1.0), path.error_estimate["contact_stiffness"][0]
+    assert error <= stated + 1e-12
+    assert stated <= 100.0 * error + 1e-12
