@@ -15,6 +15,7 @@ from mdr.springs.assembly import contact_fields, density_error
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
+from mdr.springs.table_errors import elastic_errors, pressure_errors
 
 PRESSURE_SHARE = 4.0  # of the depth's error; measured against refined data at most 1/2, with tables 1.6
 
@@ -125,6 +126,8 @@ def _errors(
     system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
 ) -> dict[str, FloatArray]:
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
+    if system.variants:
+        return _table_errors(system, scene, radius, depth, force)
     errors = system.relative_errors(radius)
     stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
     density = density_error(system.flat_punch, radius / system.length_unit)
@@ -151,3 +154,14 @@ def _errors(
         "contact_stiffness": stiffness + growth * moved,
         "pressure": PRESSURE_SHARE * (errors["indentation_depth"] + density),
     }
+
+
+def _table_errors(
+    system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
+) -> dict[str, FloatArray]:
+    """As `_errors`, from the table's own variants."""
+    is_punch = isinstance(scene.indenter, FlatPunch)
+    errors = elastic_errors(system, scene.loading, radius, depth, is_punch=is_punch)
+    values = (radius, depth, force, system.contact_stiffness(radius))
+    relative = {name: error / value for (name, error), value in zip(errors.items(), values, strict=True)}
+    return relative | {"pressure": pressure_errors(system, radius, is_punch=is_punch)}

@@ -25,6 +25,8 @@ BROKEN_NODES: Final = 32  # and on one with breakpoints, whose kinks a layer lea
 SCOUT_CELLS: Final = 64
 KNOTS: Final = 2000  # of a measured profile's values on the half-space
 SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
+# Relative distance from the rim of a flat end, within which a state found by minimisation is one at the rim itself.
+RIM: Final = 1e-7
 GROWTH: Final = 1.6  # of the largest radius while the branch is too short
 FIRST_RATIO: Final = 4.0  # a/h beyond which the half-space says nothing about the radius on a layer
 
@@ -131,10 +133,12 @@ class AdhesiveBranch:
         pieces = (replace(piece, series=piece.series[: 3 * len(piece.series) // 4]) for piece in self.pieces)
         return replace(self, pieces=tuple(pieces))
 
-    @property
-    def truncation(self) -> float:
-        """Relative error of the polynomials."""
-        return max(piece.truncation for piece in self.pieces)
+    def truncation(self, radius: FloatArray) -> FloatArray:
+        """Relative error of the polynomials of the piece that each radius [m] lies on."""
+        answer = np.full(np.shape(radius), self.pieces[0].truncation)
+        for piece in self.pieces[1:]:
+            answer = np.where(radius > piece.inner * (1.0 + RIM), piece.truncation, answer)
+        return answer
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""
@@ -143,7 +147,11 @@ class AdhesiveBranch:
     def depth(self, radius: FloatArray) -> FloatArray:
         """delta [m] where phi = -sqrt(2 pi dgamma a/E*): Eq. (40)."""
         flat, risen, _, _ = self._at(radius)
-        return np.asarray((risen - np.sqrt(2.0 * pi * adhesive_length(self.scene) * radius)) / flat)
+        return np.asarray(risen / flat - self.elongation(radius))
+
+    def elongation(self, radius: FloatArray) -> FloatArray:
+        """By how much adhesion holds the edge below where it would touch [m]."""
+        return np.asarray(np.sqrt(2.0 * pi * adhesive_length(self.scene) * radius) / self._at(radius)[0])
 
     def force(self, radius: FloatArray, depth: FloatArray | None = None) -> FloatArray:
         """F_N [N], in equilibrium or at another depth."""

@@ -35,7 +35,7 @@ NEAREST: Final = 2.5  # cells inside the edge from which the quotient is regular
 FARTHEST: Final = 20.0  # cells inside the edge up to which it is fitted,
 LARGEST_SHARE: Final = 0.3  # but no more than this part of the radius
 CUBIC_FROM: Final = 16.0  # cells that carry a third degree
-TOLERANCE: Final = 1e-6  # of the displacement under the contact
+TOLERANCE: Final = 1e-8  # of the displacement under the contact; an edge value is off by some ten times that
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import log
 from typing import Final
 
 import numpy as np
 
 from bem.adhesion.branch import AdhesiveBranch, Quantity, long_enough
-from bem.adhesion.disc import FARTHEST, is_measured
+from bem.adhesion.disc import FARTHEST
 from bem.adhesion.sequence import Held, at_radii, followed
 from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
@@ -30,10 +31,22 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 
 LEAST_LAYER: Final = 12.0  # cells, so that the ring of the coarse grid begins within half the layer's thickness
-EDGE_ERROR: Final = 0.3  # over the cells across the box: what an edge value may be off besides the grids' difference,
-MEASURED_ERROR: Final = 0.1  # and where the half-space measures it
-FLOOR: Final = 1e-6  # of the linear solutions
+# Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error, and where depth or force cross over
+# from one order to another up to 2.2 was needed (30 detachments on 128 cells, a/h to 5, seed 1, 2026-11-22).
+DIFFERENCE: Final = 2.5
+# Times what the last two orders of the branch's polynomials contribute: those beyond, of profiles that begin with an
+# odd power, added up to three times as much (the same scenes).
+TRUNCATION: Final = 4.0
+# Relative error of depth and force by the linear solutions, which are solved to 1e-8,
+FLOOR: Final = 2e-8
+# and of a radius at which minimisation finds a function least: up to 2.3e-8 at rims (the same scenes).
+RADIUS_FLOOR: Final = 5e-8
+# Factor in the contact radius either way over which the largest difference counts along a branch.
+NEARBY: Final = 1.5
 STATES: Final = 100  # of a detachment
+# Times (w/h)^3: what a fit over a ring of cells of width w leaves of an edge value that changes over the thickness h,
+# where two grids agree by chance. A flat punch at a/h = 1 left 0.11 of it (2026-11-22).
+RING: Final = 0.12
 PRESCRIBED: Final = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
 
 
@@ -68,12 +81,10 @@ class AdheringDiscs:
             {name: np.array([getattr(state, name) for state in steps]) for name in ContactPath.ARRAYS}
             for steps in (states, others)
         )
-        self._refuse_thin_layer(float(values["contact_radius"].max()))
-        times, floor = self._times(values["contact_radius"]), self._floor(fine)
-        errors = {name: times * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
-        errors["normal_force"] += self._cancelled(
-            fine, values["contact_stiffness"] * values["indentation_depth"], values["normal_force"]
-        )
+        radius = values["contact_radius"]
+        self._refuse_thin_layer(float(radius.max()))
+        floor = FLOOR + TRUNCATION * fine.truncation(radius) + self._by_ring(radius)
+        errors = {name: DIFFERENCE * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -100,19 +111,27 @@ class AdheringDiscs:
         start = self._start(fine)
         self._refuse_thin_layer(start)
         withdrawal = Withdrawal(fine, start)
-        pull_off, other = withdrawal.pull_off(control), Withdrawal(coarse, start).pull_off(control)
+        pull_off, other = withdrawal.pull_off(control), withdrawal.compared(coarse, control)
         cut = Withdrawal(fine.cut(), start).pull_off(control)
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
-        depth, force, floor = fine.depth(radius), fine.force(radius), self._floor(fine)
-        share = dict.fromkeys(pull_off, floor) | {"pull_off_depth": floor * _swing(depth, pull_off["pull_off_depth"])}
-        times = self._times(np.array([pull_off["pull_off_contact_radius"]]))
+        depth, force = fine.depth(radius), fine.force(radius)
+        lost_at = np.array(pull_off["pull_off_contact_radius"])
+        own = float(FLOOR + TRUNCATION * fine.truncation(lost_at) + self._by_ring(lost_at))
+        share = dict.fromkeys(pull_off, own) | {"pull_off_depth": own * _swing(depth, pull_off["pull_off_depth"])}
         errors = {
-            name: times * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]
+            name: np.array([DIFFERENCE * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]])
             for name, value in pull_off.items()
         }
-        errors["indentation_depth"] = self._times(radius) * _difference(depth, coarse.depth(radius)) + floor
-        errors["normal_force"] = self._times(radius) * _difference(force, coarse.force(radius)) + floor
-        errors["normal_force"] += self._cancelled(fine, fine.stiffness(radius) * depth, force)
+        errors["pull_off_contact_radius"] += RADIUS_FLOOR
+        truncated = TRUNCATION * fine.truncation(radius)
+        hanging = np.abs(depth) + fine.elongation(radius)
+        for name, values, others, terms in (
+            ("indentation_depth", depth, coarse.depth(radius), hanging),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * hanging),
+        ):
+            rounding = (FLOOR + self._by_ring(radius)) * terms / np.max(np.abs(values))
+            nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
+            errors[name] = DIFFERENCE * nearby + truncated + rounding
         return DetachmentPath(
             scene=self.scene,
             method="bem",
@@ -173,32 +192,14 @@ class AdheringDiscs:
                 return followed(branch, _quantity(loading), loading.values)
         raise UnsupportedSceneError(f"{type(loading).__name__} prescribes no sequence of contacts")
 
-    def _floor(self, branch: AdhesiveBranch) -> float:
-        """Relative error that the difference of two grids may not show."""
-        measured = is_measured(self.scene.layer, self.scene.indenter)
-        return (MEASURED_ERROR if measured else EDGE_ERROR) / self.points + branch.truncation + FLOOR
-
-    def _cancelled(self, branch: AdhesiveBranch, pushed: FloatArray, force: FloatArray) -> float:
-        """What the force loses besides the floor: it is the difference of k_N delta, `pushed`, and the moment.
-
-        Where the half-space measures the edge, its values are far better than the floor and lose nothing visible.
-        """
-        if is_measured(self.scene.layer, self.scene.indenter):
-            return 0.0
-        return self._floor(branch) * float(np.max(np.abs(pushed))) / (float(np.max(np.abs(force))) or np.inf)
-
     def _refuse_thin_layer(self, radius: float) -> None:
         """The ring that tells the edge value has to lie where the edge value is made: within about one thickness."""
         refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
 
-    def _times(self, radius: FloatArray) -> FloatArray:
-        """How often the difference of two grids counts.
-
-        Twice where the ring of cells that tells the edge value is wider than the layer is thick: the edge value changes
-        over that thickness, so convergence is of first order only.
-        """
-        ring = FARTHEST * radius / measured_disc(self.points, False).radius
-        return np.where(ring > self.scene.layer.thickness, 2.0, 1.0)
+    def _by_ring(self, radius: FloatArray) -> FloatArray:
+        """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `RING`."""
+        width = FARTHEST * radius / measured_disc(self.points, False).radius
+        return np.asarray(RING * np.minimum(width / self.scene.layer.thickness, 1.0) ** 3)
 
     def _fields(self, held: Held) -> AdheringFields:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, self.points, self.threads)
@@ -211,6 +212,12 @@ def _quantity(loading: IndentationDepths | NormalForces) -> Quantity:
 def _swing(depth: FloatArray, lost_at: float) -> float:
     """The largest depth over that of the pull-off, which may be near zero under force control."""
     return float(np.max(np.abs(depth)) / abs(lost_at))
+
+
+def _largest_nearby(share: FloatArray, radius: FloatArray) -> FloatArray:
+    """The largest value within a factor of `NEARBY` of each radius, shape (n,): differences of grids cross zero."""
+    near = np.abs(np.log(radius[:, None] / radius)) <= log(NEARBY)
+    return np.asarray(np.max(np.where(near, share, 0.0), axis=1))
 
 
 def _difference(fine: FloatArray, coarse: FloatArray) -> FloatArray:

@@ -8,7 +8,7 @@ from typing import Final, Literal
 import numpy as np
 import numpy.typing as npt
 
-from bem.adhesion.branch import AdhesiveBranch, Quantity
+from bem.adhesion.branch import RIM, AdhesiveBranch, Quantity
 from contact import CriticalPoint, FlatPunch
 from contact.records.validation import FloatArray
 
@@ -38,23 +38,29 @@ class Withdrawal:
         ends = [a for a, least in self.branch.turning_points(quantity) if least and a < self.start]
         return min([self.start, *ends], key=lambda a: float(self.branch.value(quantity, np.array([a]))[0]))
 
-    def strongest_tension(self, control: Control) -> float:
-        """The least force [N] among the states that the withdrawal visits: each the lowest so far."""
+    def strongest(self, control: Control) -> float:
+        """The radius [m] of the least force among the states that the withdrawal visits: each the lowest so far."""
         radii = self.branch.samples()
         radii = np.concatenate([[self.start], radii[(radii < self.start) & (radii > self.loss(control))][::-1]])
         radii = np.append(radii, self.loss(control))
         controlled = self.branch.value(QUANTITIES[control], radii)
-        visited = controlled <= np.minimum.accumulate(controlled)
-        return float(np.min(self.branch.force(radii[visited])))
+        visited = radii[controlled <= np.minimum.accumulate(controlled)]
+        return float(visited[np.argmin(self.branch.force(visited))])
 
     def pull_off(self, control: Control) -> dict[str, float]:
         """The scalars of a detachment path."""
-        a = self.loss(control)
-        return {
-            "pull_off_force": self.strongest_tension(control),
-            "pull_off_depth": float(self.branch.depth(np.array([a]))[0]),
-            "pull_off_contact_radius": a,
-        }
+        return _scalars(self.branch, self.loss(control), self.strongest(control))
+
+    def compared(self, other: AdhesiveBranch, control: Control) -> dict[str, float]:
+        """The same scalars of another grid's branch; lost at the rim of a flat end, where both are, at the same radii.
+
+        Just beyond a rim a coarse grid may not see yet that the profile rises, and make up states of its own.
+        """
+        lost, rim = self.loss(control), self.branch.scene.indenter.flat_radius
+        if rim == 0.0 or abs(lost / rim - 1.0) > RIM:
+            return Withdrawal(other, self.start).pull_off(control)
+        strongest = self.strongest(control)
+        return _scalars(other, rim, rim if abs(strongest / rim - 1.0) < RIM else strongest)
 
     def critical_points(self) -> tuple[CriticalPoint, ...]:
         """Every change of stability inside the start, under either control; and a punch's own edge."""
@@ -73,6 +79,15 @@ class Withdrawal:
         return CriticalPoint(
             control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force
         )
+
+
+def _scalars(branch: AdhesiveBranch, lost: float, strongest: float) -> dict[str, float]:
+    """Force at one radius [m], depth at another, and that."""
+    return {
+        "pull_off_force": float(branch.force(np.array([strongest]))[0]),
+        "pull_off_depth": float(branch.depth(np.array([lost]))[0]),
+        "pull_off_contact_radius": lost,
+    }
 
 
 def stable(branch: AdhesiveBranch, quantity: Quantity, radius: FloatArray) -> npt.NDArray[np.bool_]:

@@ -37,7 +37,7 @@ Scalar = TypeVar("Scalar", bound=np.generic)
 THIN: Final = 8.0  # a/h above which images at a distance are cheaper than zero padding
 GAP: Final = 28.0  # h between images: exp(-0.739 GAP) = 1e-9, the slowest decay (bonded, nu = 1/2)
 FILL: Final = 0.97  # disc radius over half the grid
-TOLERANCE: Final = 1e-7  # of the displacement; the stiffness is in error by its square
+TOLERANCE: Final = 1e-10  # of the displacement; q may be off by three times that, the stiffness by its square
 MODULUS: Final = 1.0  # E*
 LARGEST_DEGREE: Final = 20  # of q in 2 rho^2 - 1
 

@@ -22,7 +22,9 @@ from contact.records.validation import FloatArray
 AREA_SHIFT: Final = 0.11  # cells
 AREA_SCATTER: Final = 0.05  # cells, largest seen from 128 to 1024 cells
 STEP: Final = 0.03  # of ln(depth), either way
-SLOPE_SCATTER: Final = 0.01  # relative to s/a
+# Times s/a, besides the difference of two grids: what the slope may be off although both agree. Depth, force and radius
+# of smooth profiles needed 0.0013 at most, k_N 0.0024 (250 steps on 128 cells, seeds 1 and 5, 2026-11-22).
+SLOPE_SCATTER: Final = 0.003
 THIN_SCATTER: Final = 0.05  # times (s/h)^2, likewise: measured 0.7 of it at h = s, nu = 1/2, and 0.4 for nu = 0.3
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import ceil, exp, log, log2
 from typing import Final, Literal
 
@@ -12,7 +12,7 @@ import numpy as np
 from bem.grid.calibrated_disc import FILL as DISC_FILL
 from bem.grid.conjugate_gradients import Equilibrium, solve_contact
 from bem.grid.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius, slope
-from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness
+from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.grid.quadrant import Grid, first_radius, grid_sequence, prolonged, refuse_thin_layer
 from bem.kernels.moduli import contact_modulus
@@ -98,6 +98,7 @@ class PressedState:
         radius_scatter: How far that may be off for want of cells [m].
         normal_force: F_N [N].
         contact_stiffness: dF/d(delta) [N/m].
+        stiffness_exponent: Bound of d ln(k_N)/d ln(a).
     """
 
     grid: Grid
@@ -106,6 +107,7 @@ class PressedState:
     radius_scatter: float
     normal_force: float
     contact_stiffness: float
+    stiffness_exponent: float
 
     @property
     def indentation_depth(self) -> float:
@@ -180,7 +182,9 @@ class Press:
                 answer, exponent = self._as_stiff(bed, stiffness, bed.at_depth(depth, start), exponent)
             depth, start = answer.indentation_depth, prolonged(answer.pressure)
             states.append(self._state(bed, answer, radius, stiffness))
-        return states[-1], states[-2]
+        with self.log.stage("contact_stiffness"):
+            coarse = contact_stiffness(self.layer, radius, self._punch_cells(points, radius) // 2)
+        return states[-1], replace(states[-2], contact_stiffness=coarse)
 
     def _as_stiff(self, bed: Bed, stiffness: float, answer: Equilibrium, exponent: float) -> tuple[Equilibrium, float]:
         """Secant method in ln(depth) over ln(k_N), which grows like a power of the depth; and that power's inverse."""
@@ -248,7 +252,8 @@ class Press:
         scatter = (
             SLOPE_SCATTER * bed.grid.cell_size + THIN_SCATTER * punch_cell * (punch_cell / self.layer.thickness) ** 2
         )
-        return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness)
+        exponent = stiffness_exponent(radius / self.layer.thickness)
+        return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness, exponent)
 
     def _punch_cells(self, cells: int, radius: float) -> int:
         """Cells of the flat punch behind k_N."""

@@ -13,6 +13,9 @@ from contact import Layer, NotConvergedError
 
 RADIUS_TOLERANCE: Final = 1e-7  # relative, of the stiffness
 LARGEST_EXPONENT: Final = 4.0  # of k_N over a, on a thin incompressible layer
+# How fast that exponent leaves 1 with a/h: 1.4 on an incompressible layer at a/h = 0.3, where it is fastest (integral
+# equation, 2026-11-22), and less with any other kernel.
+EXPONENT_GROWTH: Final = 1.5
 
 
 def grid_punch(layer: Layer, radius: float, cells: int) -> tuple[PunchSolution, PixelDisc]:
@@ -22,6 +25,11 @@ def grid_punch(layer: Layer, radius: float, cells: int) -> tuple[PunchSolution, 
     if layer.is_half_space:
         return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
     return disc.solve(ratio, layer.support, layer.poissons_ratio, None), disc
+
+
+def stiffness_exponent(ratio: float) -> float:
+    """Bound of d ln(k_N)/d ln(a) at a/h: 1 on the half-space, `LARGEST_EXPONENT` on thin incompressible layers."""
+    return min(1.0 + EXPONENT_GROWTH * ratio, LARGEST_EXPONENT)
 
 
 def contact_stiffness(layer: Layer, radius: float, cells: int) -> float:

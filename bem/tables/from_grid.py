@@ -12,16 +12,23 @@ from scipy.ndimage import maximum_filter1d
 
 from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
 from bem.kernels.layer import Support
-from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
+from bem.tables.table import ERROR_FLOOR, LEAST_ROWS, STIFFNESS_FLOOR, FlatPunchTable, chebyshev_radii
 from contact import InvalidInput, Layer
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 
 SMALLEST_RATIO: Final = 1e-3
 LARGEST_RATIO: Final = 1e3
-ERROR_FLOOR: Final = 5e-7  # conjugate gradients stop at 1e-7 of the displacement; q may be off by a few times that
+# Shares of the differences to grids of half and of a quarter as many cells that count as errors. Second order would
+# make them 1/3 and 1/15; the finer one counts in full, and the coarser one, where those two agree by chance, by what
+# first order makes of it.
+HALF_SHARE: Final = 1.0
+QUARTER_SHARE: Final = 0.25
+# Limits of the share of the difference to every other row and column. Cubic splines gain 2^4 from half the spacing as
+# soon as that is small against one in ln(a/h), on which all functions vary: so the share is the spacing squared.
+LEAST_ROW_SHARE: Final = 1.0 / 64.0
+LARGEST_ROW_SHARE: Final = 1.0 / 4.0
 LEAST_HALVED: Final = 2 * LEAST_ROWS - 1  # rows and columns that a table needs so that every other one is a table
-GAIN: Final = 4.0  # of reading on half the spacing; measured on 20 to 60 rows at least 3.2 with the grid's own error
 BEYOND: Final = 6  # rows beyond the ratio asked for: splines end less well than they run, felt over so many rows
 SPREAD: Final = 1.5  # factor in a/h either way over which the error's largest value counts: differences cross zero
 
@@ -78,10 +85,14 @@ class FftTable(Record):
 @lru_cache(maxsize=32)
 def _build(settings: FftTable, support: Support, poissons_ratio: float, rows: int) -> FlatPunchTable:
     ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
-    fine = _on_grid(settings.cells, ratios, settings.radii, support, poissons_ratio)
-    coarse = _on_grid(settings.cells // 2, ratios, settings.radii, support, poissons_ratio)
+    fine, half, quarter = (
+        _on_grid(settings.cells // times, ratios, settings.radii, support, poissons_ratio) for times in (1, 2, 4)
+    )
+    row_share = float(np.clip(np.log(ratios[1] / ratios[0]) ** 2, LEAST_ROW_SHARE, LARGEST_ROW_SHARE))
     return dataclasses.replace(
-        _with_errors(fine, coarse, settings.cells), provenance=_provenance(settings, support, poissons_ratio)
+        _with_errors(fine, half, settings.cells, row_share),
+        provenance=_provenance(settings, support, poissons_ratio),
+        variants=((HALF_SHARE, half), (QUARTER_SHARE, quarter), (row_share, _every_other(fine))),
     )
 
 
@@ -113,7 +124,7 @@ def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: f
     return punches
 
 
-def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int) -> FlatPunchTable:
+def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int, row_share: float) -> FlatPunchTable:
     """The fine table with bounds of its errors: of k_bar or c_bar, of q, and of integrals of q.
 
     Each is the difference to the coarse table and what reading between rows and columns adds. Where the edge layer, as
@@ -125,10 +136,10 @@ def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int) -> Fl
     c = np.abs(coarse.normalized_spring_stiffness(xi) / fine.normalized_spring_stiffness(xi) - 1.0)
     q, difference = root * fine.pressure, root * np.abs(coarse.pressure - fine.pressure)
     times = np.where(xi > cells / 4, 2.0, 1.0)
-    read_stiffness, read_pressure = _reading_errors(fine)
+    read_stiffness, read_pressure = _reading_errors(fine, row_share)
     return dataclasses.replace(
         fine,
-        error=ERROR_FLOOR + times * _largest_nearby(np.maximum(k, c), xi) + _largest_nearby(read_stiffness, xi),
+        error=STIFFNESS_FLOOR + times * _largest_nearby(np.maximum(k, c), xi) + _largest_nearby(read_stiffness, xi),
         pressure_error=ERROR_FLOOR
         + times * _largest_nearby(_worst(difference, q), xi)
         + _largest_nearby(_worst(read_pressure, q), xi),
@@ -149,40 +160,34 @@ def _outwards(difference: FloatArray, q: FloatArray) -> FloatArray:
     return np.asarray(error / integral)
 
 
-def _reading_errors(table: FlatPunchTable) -> tuple[FloatArray, FloatArray]:
+def _reading_errors(table: FlatPunchTable, share: float) -> tuple[FloatArray, FloatArray]:
     """What reading between rows adds to the errors of k_bar and c_bar, and between rows and columns to that of q.
 
-    Measured where every other row and column was left out; `GAIN` is what the full table is better by.
+    Args:
+        table: The table.
+        share: Part of the difference to the table without every other row and column that counts.
     """
-    thin, left_out = _every_other(table), table.ratios[1:-1:2]
-    k = thin.normalized_contact_stiffness(left_out) / table.stiffness[1:-1:2] - 1.0
-    c = thin.normalized_spring_stiffness(left_out) / table.normalized_spring_stiffness(left_out) - 1.0
-    q = thin.smooth_pressure(table.radii, left_out[:, None]) - table.pressure[1:-1:2] * np.sqrt(1.0 - table.radii**2)
-    stiffness, rows = np.maximum(np.abs(k), np.abs(c)), len(table.ratios)
-    return _for_all_rows(stiffness, rows), _for_all_rows(np.abs(q), rows)
-
-
-def _for_all_rows(error: FloatArray, rows: int) -> FloatArray:
-    """From errors of rows 1, 3, 5, ... left out those of the full table: the nearest, and at the end no gain.
-
-    Splines end less well than they run, and of an even number of rows the last was never left out: there twice.
-    """
-    full = error[np.minimum(np.arange(rows) // 2, len(error) - 1)] / GAIN
-    full[-2:] *= 2.0 * GAIN
-    return np.asarray(full)
+    thin, xi = _every_other(table), table.ratios
+    k = thin.normalized_contact_stiffness(xi) / table.stiffness - 1.0
+    c = thin.normalized_spring_stiffness(xi) / table.normalized_spring_stiffness(xi) - 1.0
+    q = thin.smooth_pressure(table.radii, xi[:, None]) - table.pressure * np.sqrt(1.0 - table.radii**2)
+    shares = np.full(len(xi), share)
+    shares[-2:] = 2.0  # splines end less well than they run
+    return shares * np.maximum(np.abs(k), np.abs(c)), shares[:, None] * np.abs(q)
 
 
 def _every_other(table: FlatPunchTable) -> FlatPunchTable:
-    """The table without every second row and column."""
+    """The table without every second row and column; the last row stays."""
+    rows = slice((len(table.ratios) - 1) % 2, None, 2)
     return dataclasses.replace(
         table,
-        ratios=table.ratios[::2],
+        ratios=table.ratios[rows],
         radii=table.radii[::2],
-        stiffness=table.stiffness[::2],
-        pressure=table.pressure[::2, ::2],
-        error=table.error[::2],
-        pressure_error=table.pressure_error[::2],
-        mean_error=table.mean_error[::2, ::2],
+        stiffness=table.stiffness[rows],
+        pressure=table.pressure[rows, ::2],
+        error=table.error[rows],
+        pressure_error=table.pressure_error[rows],
+        mean_error=table.mean_error[rows, ::2],
     )
 
 

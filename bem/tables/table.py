@@ -22,6 +22,12 @@ from contact import InvalidInput
 from contact.records.validation import FloatArray
 
 LEAST_ROWS: Final = 6  # a quintic spline needs six
+# Added to the stated errors of q: conjugate gradients stop at 1e-10 of the displacement, and q was off by up to three
+# times that (a/h = 1e-3, 16 to 256 cells, 2026-11-22).
+ERROR_FLOOR: Final = 1e-9
+# Added to the stated errors of k_bar, which is stationary at the solution: roundings of transforms and of the kernel,
+# measured at most 3e-13 (a/h = 1e-3, 16 to 256 cells, 2026-11-22).
+STIFFNESS_FLOOR: Final = 5e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +45,8 @@ class FlatPunchTable:
         pressure_error: Bound of the error of q at any radius, relative to its largest value, shape (n,).
         mean_error: Bound of the relative error of integrals of q over arcsin(rho) from each radius to the edge, (n, m).
         provenance: Where the numbers come from, in names and plain values.
+        variants: Coarser tables of the same punches, each with the share of its difference that counts as an error of
+            this table: what is computed with all of them states an error of its own. None in a table from a file.
 
     Raises:
         InvalidInput: If shapes, order or values cannot be a table of flat punches.
@@ -54,6 +62,7 @@ class FlatPunchTable:
     pressure_error: FloatArray
     mean_error: FloatArray
     provenance: dict[str, str | int | float] = field(default_factory=dict)
+    variants: tuple[tuple[float, FlatPunchTable], ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what is not a table."""

@@ -16,6 +16,7 @@ from bem.polynomials.adaptive import NODES
 from contact.records.validation import FloatArray
 from mdr.adhesion.branch import DEPTH, FORCE, AdhesiveBranch
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.table_errors import adhesive_errors
 
 RADIUS = 2  # row behind those of DEPTH and FORCE
 _SAMPLES = 24  # of the bounds along a branch
@@ -23,6 +24,8 @@ _SAMPLES = 24  # of the bounds along a branch
 
 def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
     """Bounds of the errors of delta [m] and F [N] of equilibria with these radii, shape (2, n)."""
+    if system.variants:
+        return adhesive_errors(system, radius, depth)
     relative = system.relative_errors(radius)
     stiffness = system.contact_stiffness(radius)
     g, moment = system.mdr_profile(radius), system.profile_moment(radius)

@@ -165,7 +165,7 @@ def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[E
         breakpoints=breakpoints,
         radius=radius,
         work_of_adhesion=work_of_adhesion(scene),
-        error=system.relative_error["contact_stiffness"],
+        error=system.relative_error["spring_stiffness"],
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
@@ -11,6 +13,7 @@ from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from bem.layer_equation.thin_layers import FIRST_RATIO, PANEL_WIDTH, LargeRatioSolution
 from bem.polynomials.mapped import MappedFunction, MappedGrid, resolve
+from bem.tables.table import FlatPunchTable
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
@@ -54,19 +57,40 @@ def equivalent_system(
         else:
             max_radius = _known_radius(solution, indenter, unit, max_radius)
     g_hs = _half_space_function(solution, indenter, unit, max_radius)
-    springs = _springs_at_nodes(solution, g_hs, indenter.flat_radius / unit)
-    profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
+    profile, moment, own_error = _curves(solution, indenter, unit, g_hs)
     _refuse_rings(profile, indenter, unit, _noise(solution, max_radius / unit))
-    return EquivalentSystem(
+    system = EquivalentSystem(
         contact_modulus=contact_modulus(layer),
         length_unit=unit,
         flat_radius=indenter.flat_radius,
         max_radius=max_radius,
         flat_punch=solution,
         profile=profile,
-        moment=MappedFunction(profile.grid, 2 * springs * profile.node_values, profile.lead).integral(),  # Eq. (4)
+        moment=moment,
         profile_error=own_error,
     )
+    return _with_variants(system, indenter, g_hs)
+
+
+def _curves(
+    solution: FlatPunchSolution, indenter: Profile, unit: float, g_hs: MappedFunction
+) -> tuple[MappedFunction, MappedFunction, float]:
+    """g, its moment and its relative error, in units of `unit`."""
+    springs = _springs_at_nodes(solution, g_hs, indenter.flat_radius / unit)
+    profile, own_error = _profile(solution, indenter, unit, g_hs, springs)
+    moment = MappedFunction(profile.grid, 2 * springs * profile.node_values, profile.lead).integral()  # Eq. (4)
+    return profile, moment, own_error
+
+
+def _with_variants(system: EquivalentSystem, indenter: Profile, g_hs: MappedFunction) -> EquivalentSystem:
+    """The system with those of its table's variants, which tell its errors."""
+    if not isinstance(system.flat_punch, FlatPunchTable):
+        return system
+    variants = []
+    for share, table in system.flat_punch.variants:
+        profile, moment, _ = _curves(table, indenter, system.length_unit, g_hs)
+        variants.append((share, replace(system, flat_punch=table, profile=profile, moment=moment)))
+    return replace(system, variants=tuple(variants))
 
 
 def contact_fields(

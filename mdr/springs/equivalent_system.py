@@ -16,6 +16,7 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
+from mdr.springs import table_errors
 
 NEWTON_STEPS = 60
 NEWTON_TOLERANCE = 2e-14
@@ -39,6 +40,8 @@ class EquivalentSystem:
         profile: g over the excess x - b, both in units of length_unit.
         moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
         profile_error: Relative error of g and of the moment beyond that of the flat-punch data.
+        variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
+            error (`table_errors`); none with other flat-punch data.
     """
 
     contact_modulus: float
@@ -49,6 +52,7 @@ class EquivalentSystem:
     profile: MappedFunction
     moment: MappedFunction
     profile_error: float
+    variants: tuple[tuple[float, EquivalentSystem], ...] = ()
 
     def spring_stiffness(self, x: ArrayLike) -> FloatArray:
         """c_N(x; h) [Pa], Eq. (6)."""
@@ -116,6 +120,8 @@ class EquivalentSystem:
     def relative_errors(self, contact_radius: FloatArray) -> dict[str, FloatArray]:
         """Bounds of the relative errors of an elastic contact's quantities at each radius."""
         ratio = self._ratio(contact_radius)
+        if self.variants:
+            return table_errors.relative_errors(self, contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
         moment = self.flat_punch.moment_error(ratio, self._flat_share(contact_radius)) + ROUNDING
         depth = stiffness + np.maximum(stiffness, moment) + self.profile_error
@@ -124,6 +130,7 @@ class EquivalentSystem:
             "indentation_depth": depth,
             "normal_force": depth + stiffness,
             "contact_stiffness": stiffness,
+            "spring_stiffness": stiffness,
         }
 
     def _flat_share(self, contact_radius: FloatArray) -> FloatArray:

@@ -187,7 +187,7 @@ def test_a_wrong_slope_is_seen(monkeypatch):
     assert path.contact_radius[0] != pytest.approx(1e-3, rel=5e-3, abs=0.0)  # a^2 = R delta
 
 
-@pytest.mark.parametrize(("accuracy", "points"), [(2e-3, 128), (1e-3, 256)])
+@pytest.mark.parametrize(("accuracy", "points"), [(2e-3, 128), (2e-4, 256)])
 def test_an_accuracy_takes_as_many_points_as_state_it(accuracy, points):
     path = Bem(accuracy=accuracy).solve(Scene(layer=LAYER, indenter=PARABOLOID, loading=ContactRadii([2e-3])))
     assert max(float(path.error_estimate[name][0]) for name in path.ARRAYS) <= accuracy
@@ -277,3 +277,13 @@ def test_scenes_it_does_not_model_are_refused_with_a_reason():
         assert not method.supports(scene)
         with pytest.raises(UnsupportedSceneError):
             method.solve(scene)
+
+
+@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER])
+def test_the_stiffness_at_a_given_radius_states_the_error_of_its_own_punch(layer):
+    """The error of the search for the depth, which does not reach k_N, once stood in its place."""
+    path = solve(PARABOLOID, ContactRadii([0.5e-3]), layer)
+    exact = Mdr().solve(path.scene).contact_stiffness[0]
+    error, stated = abs(path.contact_stiffness[0] / exact - 1.0), path.error_estimate["contact_stiffness"][0]
+    assert error <= stated + 1e-12
+    assert stated <= 100.0 * error + 1e-12

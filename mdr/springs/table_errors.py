@@ -1,0 +1,159 @@
+"""Errors of what a flat-punch table gives, each quantity's own: differences to coarser tables, with their signs.
+
+A table of a coarser grid, or of fewer rows, is off in stiffness, springs and profile together; in depth and force most
+of that cancels. So the whole system is made of every coarser table, its differences are carried to each quantity to
+first order, and only then their sizes are added up, each times the share that counts (`FlatPunchTable.variants`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR
+from contact import ContactRadii, IndentationDepths, Loading
+from contact.records.validation import FloatArray
+
+# What k_N alone takes of the shares: it converges faster than the pressure, from which the profile comes. Differences
+# to half as many cells were 2 to 18 times its true error, those of the profile 0.7 to 6 times (70 scenes, a/h to 60,
+# seed 1, 64 cells, 2026-11-22).
+STIFFNESS_SHARE: Final = 0.5
+# The same for the pressure under a profile: punches of all smaller radii are superposed, whose errors partly cancel.
+# Twice this share was 3 to 29 times the true error (80 scenes, seed 3, 64 cells, 2026-11-22).
+PRESSURE_SHARE: Final = 0.3
+# Of the bound of the profile's polynomials, which adds their last orders up at the worst point of all pieces.
+PROFILE_SHARE: Final = 0.1
+# Of the pressure under a profile, whose slope magnifies what is left in it: up to 8e-8 on thick layers (seeds 1 and 3,
+# 64 cells, 60 rows, a/h below 0.1, 2026-11-22).
+PRESSURE_FLOOR: Final = 1e-7
+# Radii at which pressures are compared.
+RINGS: Final = 24
+
+if TYPE_CHECKING:
+    from mdr.springs.equivalent_system import EquivalentSystem
+
+
+@dataclass(frozen=True, eq=False)
+class TableDifferences:
+    """What changes from a table to its variants at some contact radii, times the share that counts.
+
+    Attributes:
+        stiffness: Of k_N [N/m], shape (m, n).
+        springs: Of c_N [Pa], likewise.
+        profile: Of g [m].
+        moment: Of the profile's moment [N].
+    """
+
+    stiffness: FloatArray
+    springs: FloatArray
+    profile: FloatArray
+    moment: FloatArray
+
+    @classmethod
+    def at(cls, system: EquivalentSystem, radius: FloatArray) -> TableDifferences:
+        """At contact radii [m], shape (n,); the last two rows are what no coarser table shows, of k and of q."""
+        k, c, g, moment = (np.atleast_1d(values) for values in _values(system, radius))
+        rows = [
+            [share * (other - value) for other, value in zip(_values(variant, radius), (k, c, g, moment), strict=True)]
+            for share, variant in system.variants
+        ]
+        by_stiffness = STIFFNESS_FLOOR + _below_table(system, radius)
+        by_profile = ERROR_FLOOR + PROFILE_SHARE * system.profile_error
+        rows += [
+            [by_stiffness * k, by_stiffness * c, 0 * g, 0 * moment],
+            [0 * k, 0 * c, by_profile * g, by_profile * moment],
+        ]
+        return cls(*(np.array(column) for column in zip(*rows, strict=True)))
+
+
+def _values(system: EquivalentSystem, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
+    return (
+        system.contact_stiffness(radius),
+        system.spring_stiffness(radius),
+        system.mdr_profile(radius),
+        system.profile_moment(radius),
+    )
+
+
+def _below_table(system: EquivalentSystem, radius: FloatArray) -> FloatArray:
+    """What the law between the half-space and the first row leaves out: third order, of coefficients near one."""
+    ratio, first = radius / system.length_unit, system.flat_punch.ratios[0]
+    return np.where(ratio < first, ratio * first**2, 0.0)
+
+
+def size(changes: FloatArray) -> FloatArray:
+    """The sizes of all changes of one quantity added up, shape (n,)."""
+    return np.asarray(np.sum(np.abs(changes), axis=0))
+
+
+def elastic_errors(
+    system: EquivalentSystem, loading: Loading, radius: FloatArray, depth: FloatArray, *, is_punch: bool
+) -> dict[str, FloatArray]:
+    """Absolute errors of an elastic contact's four quantities, zero for what is prescribed [m, m, N, N/m].
+
+    With F = k g - M at equilibrium, and dF = k d(delta) at a fixed radius.
+    """
+    change, k = TableDifferences.at(system, radius), system.contact_stiffness(radius)
+    at_depth = change.stiffness * depth - change.moment
+    none = np.zeros_like(change.stiffness)
+    if isinstance(loading, ContactRadii):
+        a, delta, force = none, change.profile, at_depth + k * change.profile
+    elif isinstance(loading, IndentationDepths):
+        a, delta, force = -change.profile, none, at_depth
+    else:
+        a, delta, force = -change.profile - at_depth / k, -at_depth / k, none
+    if is_punch:
+        a, delta, force = none, STIFFNESS_SHARE * delta, STIFFNESS_SHARE * force
+    elif not isinstance(loading, ContactRadii):
+        a = a / np.abs(system.mdr_profile_slope(radius))
+    own = STIFFNESS_SHARE if is_punch or isinstance(loading, ContactRadii) else 1.0
+    stiffness = own * change.stiffness + 2.0 * system.spring_stiffness(radius) * a  # d(k_N)/da = 2 c_N
+    names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+    return {name: size(values) for name, values in zip(names, (a, delta, force, stiffness), strict=True)}
+
+
+def adhesive_errors(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
+    """Absolute errors of delta [m] and F [N] of adhering equilibria with these radii, shape (2, n).
+
+    The edge hangs by g - delta, which goes with c_N^(-1/2), Eq. (40).
+    """
+    change, k = TableDifferences.at(system, radius), system.contact_stiffness(radius)
+    hanging = system.mdr_profile(radius) - depth
+    delta = change.profile + 0.5 * hanging * change.springs / system.spring_stiffness(radius)
+    return np.stack([size(delta), size(change.stiffness * depth + k * delta - change.moment)])
+
+
+def pressure_errors(system: EquivalentSystem, radius: FloatArray, *, is_punch: bool) -> FloatArray:
+    """Of the pressure under a contact: the largest of q under a punch, else its mean and that of the profile."""
+    table, ratio = system.flat_punch, radius / system.length_unit
+    rho = np.sin((np.arange(RINGS) + 0.5) * (np.pi / (2 * RINGS)))
+    q = table.smooth_pressure(rho, ratio[:, None])
+    changes = [share * (other.flat_punch.smooth_pressure(rho, ratio[:, None]) - q) for share, other in system.variants]
+    error, largest = size(np.array(changes)) + ERROR_FLOOR, np.max(q, axis=1)
+    if is_punch:
+        return np.asarray(np.max(error, axis=1) / largest)
+    return np.asarray(
+        np.sqrt(np.mean(error**2, axis=1)) / largest + relative_errors(system, radius)["indentation_depth"]
+    )
+
+
+def relative_errors(system: EquivalentSystem, radius: FloatArray) -> dict[str, FloatArray]:
+    """As `EquivalentSystem.relative_errors`."""
+    change, k = TableDifferences.at(system, radius), system.contact_stiffness(radius)
+    c, g, moment = system.spring_stiffness(radius), system.mdr_profile(radius), system.profile_moment(radius)
+    stiffness, springs = size(change.stiffness) / k, size(change.springs) / c
+    profile, force = (_over(size(values), by) for values, by in ((change.profile, g), (change.moment, moment)))
+    return {
+        "contact_radius": profile,
+        "indentation_depth": profile,
+        "normal_force": stiffness + np.maximum(profile, force),
+        "contact_stiffness": stiffness,
+        "spring_stiffness": springs,
+    }
+
+
+def _over(error: FloatArray, value: FloatArray) -> FloatArray:
+    """Relative errors; zero of what is zero: under a flat end nothing is pressed in."""
+    return np.asarray(np.divide(error, value, out=np.zeros_like(error), where=value > 0.0))
