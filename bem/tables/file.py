@@ -181,13 +181,10 @@ def _table(
         stiffness=stiffness,
         pressure=pressure,
         provenance=provenance,
-        **(_unknown_errors(pressure) | errors),
+        error=errors.get("error", np.zeros(len(pressure))),
+        pressure_error=errors.get("pressure_error", np.zeros(len(pressure))),
+        mean_error=errors.get("mean_error", 0.0 * pressure),
     )
-
-
-def _unknown_errors(pressure: FloatArray) -> dict[str, FloatArray]:
-    """No errors yet, of the shapes that a table needs."""
-    return {"error": np.zeros(len(pressure)), "pressure_error": np.zeros(len(pressure)), "mean_error": 0.0 * pressure}
 
 
 def _check_normalisation(path: str | Path, table: FlatPunchTable) -> float:

@@ -8,11 +8,11 @@ first order, and only then their sizes are added up, each times the share that c
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Final, cast
 
 import numpy as np
 
-from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR
+from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR, FlatPunchTable
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
 
@@ -79,7 +79,7 @@ def _values(system: EquivalentSystem, radius: FloatArray) -> tuple[FloatArray, F
 
 def _below_table(system: EquivalentSystem, radius: FloatArray) -> FloatArray:
     """What the law between the half-space and the first row leaves out: third order, of coefficients near one."""
-    ratio, first = radius / system.length_unit, system.flat_punch.ratios[0]
+    ratio, first = radius / system.length_unit, cast(FlatPunchTable, system.flat_punch).ratios[0]
     return np.where(ratio < first, ratio * first**2, 0.0)
 
 
