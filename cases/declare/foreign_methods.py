@@ -8,7 +8,7 @@ nothing, a claim asks what it asks of its least exact method.
 from collections.abc import Iterator
 from dataclasses import replace
 from numbers import Real
-from typing import Final
+from typing import Any, Final
 
 from cases.claims.agreement import Agreement
 from cases.claims.declared import DeclaredClaim, PerMethod
@@ -43,7 +43,7 @@ def claimed_accuracy(name: str) -> float:
     return check_claim(name, getattr(load(name), "claimed_accuracy", 0.0))
 
 
-def check_claim(name: str, claimed: object) -> float:
+def check_claim(name: str, claimed: Any) -> float:
     """The accuracy that a method claims, as a number.
 
     Raises:
