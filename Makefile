@@ -44,7 +44,7 @@ $(READY): pyproject.toml constraints.txt tools/system_libraries.sh
 	@$(PYTHON) -c 'import ensurepip, venv' || \
 		{ echo "Python's venv module is missing; on Debian or Ubuntu: apt-get install python3-venv"; exit 1; }
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --editable '.[dev]'
+	$(BIN)/python -m pip install --quiet --editable '.[dev,test]'
 	sh tools/system_libraries.sh $(BIN)/python
 	@touch $@
 
@@ -54,7 +54,7 @@ format: $(READY)  ## Reformat the sources
 
 constraints:  ## Renew constraints.txt from the newest releases that pyproject.toml admits
 	rm -rf build/constraints && $(PYTHON) -m venv build/constraints
-	PIP_CONSTRAINT= build/constraints/bin/python -m pip install --quiet --upgrade '.[dev,cluster]' setuptools
+	PIP_CONSTRAINT= build/constraints/bin/python -m pip install --quiet --upgrade '.[dev,test]' setuptools
 	{ echo "# Exact versions of every direct and transitive dependency: the same answer on every machine."; \
 	  echo "# Renewed by: make constraints"; \
 	  build/constraints/bin/python -m pip freeze --all --exclude pip --exclude contact-verification | sort -f; } > constraints.txt

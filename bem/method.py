@@ -32,6 +32,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -120,6 +121,7 @@ class Bem(Record):
             return dataclasses.replace(self, accuracy=max(self.accuracy / BEST_GAIN, FINEST_ACCURACY))
         return dataclasses.replace(self, points=2 * self.points)
 
+    @one_thread
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria of the scene.
 

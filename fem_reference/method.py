@@ -28,6 +28,7 @@ from contact import (
     UnsupportedSceneError,
     Viscoelasticity,
 )
+from contact.answer.one_thread import one_thread
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
@@ -102,6 +103,7 @@ class Fem:
         listed = f" with {', '.join(type(effect).__name__ for effect in scene.effects)}"
         return Unsupported(f"fem does not model loading {type(scene.loading).__name__}{listed}")
 
+    @one_thread
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
         """The answer with its error estimates.
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, NormalForces, Scene
+from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
 from mdr.springs.shared_tables import power_law, reference
@@ -59,6 +60,7 @@ class Equilibria:
     contact_stiffness: FloatArray
 
 
+@one_thread
 def impacts(
     scenes: Sequence[Scene],
     flat_punch: FlatPunchSource,
@@ -72,6 +74,7 @@ def impacts(
     return impact_batch(scenes, flat_punch, accuracy=accuracy, progress=progress)
 
 
+@one_thread
 def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> PullOffs:
     """Pull-off of many adhering indenters, power laws together and others one by one.
 
@@ -100,6 +103,7 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
     return PullOffs(contact_radius=found[0], depth=found[1], force=found[2])
 
 
+@one_thread
 def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> Equilibria:
     """Elastic contacts at one prescribed radius, depth or force each, power laws together and others one by one.
 

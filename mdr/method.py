@@ -10,6 +10,7 @@ from pydantic import Field
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import Scene, Solution, Supported, Unsupported, UnsupportedSceneError
+from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import in_range
@@ -35,6 +36,7 @@ class Mdr(Record):
         solver = solver_of(scene)
         return solver if isinstance(solver, Unsupported) else Supported()
 
+    @one_thread
     def solve(self, scene: Scene) -> Solution:
         """The answer to the scene: a contact path, a detachment path, an impact or a history.
 

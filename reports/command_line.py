@@ -12,8 +12,8 @@ from typing import Annotated, Any, Literal
 import typer
 
 EPILOG = (
-    "Exit codes: 0 all checks passed; 1 a check failed; 2 interrupted; 3 internal error; 4 wrong usage, scene or file; "
-    "5 nothing ran."
+    "Exit codes: 0 all checks passed; 1 a check failed; 2 interrupted; 3 internal error, or one inside a registered "
+    "method; 4 wrong usage, scene or file; 5 nothing ran."
 )
 INTERRUPTED, INTERNAL_ERROR, USAGE = 2, 3, 4
 USAGE_ERROR: Any = typer.BadParameter.__base__  # every complaint of the option parser
@@ -400,6 +400,9 @@ def report(
 
 def main() -> None:
     """Entry point of the console command; every way to end has its exit code."""
+    from reports.terminal.encoding import show_in_any_encoding  # noqa: PLC0415
+
+    show_in_any_encoding()
     sys.exit(run(sys.argv[1:]))
 
 
@@ -417,18 +420,29 @@ def run(arguments: list[str]) -> int:
 
 
 def _ended_by(error: Exception) -> int:
-    from contact import InvalidInput, NotConvergedError, UnsupportedSceneError  # noqa: PLC0415
+    from contact import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError  # noqa: PLC0415
 
     if isinstance(error, InvalidInput | UnsupportedSceneError):
         return _complain(str(error), USAGE)
     if isinstance(error, NotConvergedError):
         return _complain(f"no answer: {error}", 1)
+    if isinstance(error, ContactError):
+        return _complain(str(error), INTERNAL_ERROR)
     if isinstance(error, OSError) and error.strerror:
         return _complain(f"{error.filename or 'a file'}: {error.strerror}; name another place, or make room", USAGE)
-    traceback.print_exc()
+    typer.echo(_plain(traceback.format_exc()), err=True)
     return _complain(f"internal error ({type(error).__name__}); please report the lines above", INTERNAL_ERROR)
 
 
 def _complain(message: str, code: int) -> int:
-    typer.secho(f"contact-verify: {message}", err=True, fg=typer.colors.RED)
+    typer.secho(f"contact-verify: {_plain(message)}", err=True, fg=typer.colors.RED)
     return code
+
+
+def _plain(message: str) -> str:
+    """The message without characters that a terminal obeys."""
+    if message.isprintable():
+        return message
+    from contact.records.plain_text import printable  # noqa: PLC0415
+
+    return printable(message, keep="\n")

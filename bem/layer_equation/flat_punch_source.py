@@ -14,6 +14,7 @@ from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
 from contact import InvalidInput, Layer
+from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import positive
 
@@ -33,6 +34,7 @@ class IntegralEquation(Record):
     nodes: int = Field(default=24, ge=4, le=64)
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
 
+    @one_thread
     def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution | LargeRatioSolution:
         """The flat punch on this layer up to at least a/h = max_ratio, cached.
 

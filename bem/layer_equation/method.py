@@ -30,6 +30,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
 
@@ -72,6 +73,7 @@ class IntegralEquationMethod(Record):
         """Panels half as wide."""
         return self.replace(panel_width=self.panel_width / 2)
 
+    @one_thread
     def solve(self, scene: Scene) -> ContactPath:
         """Equilibria under prescribed radii, depths or forces, each radius solved by itself.
 

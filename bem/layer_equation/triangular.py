@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from contact import NotConvergedError
+from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
 
 
@@ -31,7 +32,8 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
     kernel *= -root
     kernel[np.diag_indices_from(kernel)] += 1
     try:
-        lower: FloatArray = cholesky(kernel, lower=True, overwrite_a=True, check_finite=False)
+        with one_thread:
+            lower: FloatArray = cholesky(kernel, lower=True, overwrite_a=True, check_finite=False)
     except np.linalg.LinAlgError:
         message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
         raise NotConvergedError(message) from None
@@ -43,5 +45,6 @@ def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = Fals
     from scipy.linalg import solve_triangular  # noqa: PLC0415  # see the module's docstring
 
     trans: Literal[0, 1] = 1 if transposed else 0
-    solution: FloatArray = solve_triangular(lower, right, lower=True, trans=trans, check_finite=False)
+    with one_thread:
+        solution: FloatArray = solve_triangular(lower, right, lower=True, trans=trans, check_finite=False)
     return solution

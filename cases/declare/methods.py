@@ -5,14 +5,19 @@ class (a frozen record of settings that follows ``contact.Method``).  Nothing is
 """
 
 import importlib
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint, entry_points
-from typing import Any
+from typing import Any, Final
 
 from contact import InvalidInput, Method
+from contact.records.record import shown
 
 ENTRY_POINT_GROUP = "contact_verification.methods"
+
+# Names of methods become names of files and stand in pages, tables and commands.
+NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9_.-]{0,59}")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,14 +63,28 @@ def registered() -> dict[str, EntryPoint]:
     """Return the methods of installed packages by name.
 
     Raises:
-        InvalidInput: if two packages, or a package and this project, use one name.
+        InvalidInput: if two packages, or a package and this project, use one name, or if a name could not name a file.
     """
     found: dict[str, EntryPoint] = {}
     for entry in entry_points(group=ENTRY_POINT_GROUP):
+        check_name(entry.name, entry.value)
         if entry.name in BUILT_IN or entry.name in found:
             raise InvalidInput(f"two methods are called {entry.name!r}; rename the entry point of {entry.value}")
         found[entry.name] = entry
     return found
+
+
+def check_name(name: str, place: str) -> None:
+    """Refuse a name of a method that could not name a file or would not stand as it is in a page.
+
+    Raises:
+        InvalidInput: with the entry point's `place`.
+    """
+    if not NAME.fullmatch(name):
+        raise InvalidInput(
+            f"a package calls its method {shown(name)}: a name has at most 60 letters, digits, dots, dashes "
+            f"and underscores, a letter first; rename the entry point of {shown(place)}"
+        )
 
 
 def method_names() -> tuple[str, ...]:
@@ -119,5 +138,5 @@ def load(name: str) -> Any:  # a class from another package: its type is not kno
     module, attribute = location(name)
     try:
         return getattr(importlib.import_module(module), attribute)
-    except (ImportError, AttributeError) as error:
+    except Exception as error:  # a package may raise anything when it is imported
         raise InvalidInput(f"method {name!r} cannot be imported from {module}: {error}; install it again") from error

@@ -228,6 +228,7 @@ class Claim:
         derived_from: how the tolerance was chosen.
         shared_inputs: what the compared answers share; agreement says nothing about those.
         message: what was seen, one sentence.
+        relaxed: whose own claim of accuracy has widened the tolerance, and from what; empty when nobody's has.
     """
 
     name: str
@@ -249,6 +250,7 @@ class Claim:
     derived_from: str
     shared_inputs: tuple[str, ...] = ()
     message: str
+    relaxed: str = ""
 
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)

@@ -14,6 +14,7 @@ from cases.run.recording import cost_record, curves, quantities, stage_records
 from cases.run.time_limit import TimeLimitReached, time_limited
 from cases.run.timing import timed_warm
 from contact import NotConvergedError, Solution, UnsupportedSceneError
+from contact.records.plain_text import printable
 
 
 def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
@@ -79,6 +80,6 @@ def _without_numbers(task: Task, key: str, status: Status, reason: str) -> Scene
         method=task.method,
         settings={},
         status=status,
-        reason=" ".join(reason.split()) or status.value,
+        reason=printable(" ".join(reason.split())) or status.value,
         cost=None,
     )

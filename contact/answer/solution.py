@@ -9,6 +9,7 @@ from typing import ClassVar, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contact.answer.one_thread import one_thread
 from contact.answer.stages import Cost, StageRecord
 from contact.records.errors import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
@@ -141,6 +142,7 @@ class ContactPath(Solution):
         """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
         return self._field("surface_displacement", radius, step)
 
+    @one_thread
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:
         if self.fields is None:
             raise InvalidInput(f"{self.method} gave no surface fields; ask a method that does")

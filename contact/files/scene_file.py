@@ -12,15 +12,15 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from contact.files.scene_text import scene_text
 from contact.records.errors import InvalidInput
+from contact.records.plain_text import printable
 from contact.records.record import Record, shown
 from contact.scene.effects import EFFECTS, Effect
 from contact.scene.layer import Layer
 from contact.scene.loading import LOADINGS, Loading
 from contact.scene.profiles import PROFILES, Profile
 from contact.scene.scene import Scene
-
-MAX_BYTES = 32_000_000  # a scene file beyond this size is not a scene
 
 R = TypeVar("R", bound=Record)
 
@@ -34,21 +34,10 @@ def load_scene(path: str | Path) -> Scene:
     """Read a scene from a TOML file.
 
     Raises:
-        InvalidInput: If the file is missing, empty, too large, not TOML, or not a scene.
+        InvalidInput: If the file is missing, silent, empty, too large, not TOML, or not a scene.
     """
     file = Path(path)
-    try:
-        with file.open("rb") as stream:
-            content = stream.read(MAX_BYTES + 1)  # a device has no size and no end
-        if len(content) > MAX_BYTES:
-            raise InvalidInput(f"{file}: more than a scene can have ({MAX_BYTES} bytes)")
-        text = content.decode("utf-8")
-    except OSError as error:
-        raise InvalidInput(f"{file}: cannot be read ({error.strerror}); check the path") from None
-    except UnicodeDecodeError as error:
-        raise InvalidInput(f"{file}: not a text file (byte {error.start}); a scene is written in TOML") from None
-    if not text.strip():
-        raise InvalidInput(f"{file}: the file is empty; a scene needs [layer], [indenter] and [loading]")
+    text = scene_text(file)
     try:
         mapping = tomllib.loads(text)
     except ValueError as error:  # of the syntax, or of an integer of more digits than Python reads
@@ -104,7 +93,7 @@ def scene_to_mapping(scene: Scene) -> dict[str, Any]:
 
 
 def _key(key: object) -> str:
-    return key[:80] if isinstance(key, str) else shown(key)
+    return printable(key[:80]) if isinstance(key, str) else shown(key)
 
 
 def _table(mapping: Mapping[str, Any], name: str) -> Mapping[str, Any]:

@@ -11,6 +11,7 @@ import pydantic
 import pydantic.dataclasses
 
 from contact.records.errors import InvalidInput
+from contact.records.plain_text import printable
 
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True)
 _SHOWN = 80  # characters of an offending value that an error shows
@@ -83,7 +84,8 @@ def _place(path: tuple[str | int, ...], cls: type[Any]) -> str:
     """The path of a field; an argument that came by position is called by its field's name."""
     names = [field.name for field in dataclasses.fields(cls)]
     steps = [
-        names[s] if isinstance(s, int) and s < len(names) and i == 0 else str(s)[:_SHOWN] for i, s in enumerate(path)
+        names[s] if isinstance(s, int) and s < len(names) and i == 0 else printable(str(s)[:_SHOWN])
+        for i, s in enumerate(path)
     ]
     return ".".join([cls.__name__, *steps])
 

@@ -163,7 +163,9 @@ def _pull_off(branch: AdhesiveBranch, radius: Array, control: Control, critical:
         lost.insert(0, _point(branch, float(radius[0]), control, "pull-off"))
     if not lost:
         raise NotConvergedError(
-            f"the branch down to a = {radius[-1]:g} m stays stable under {control} control", {"radius": radius[-1]}
+            f"the indenter holds on from a = {radius[0]:g} m down to a = {radius[-1]:g} m under {control} control, and "
+            "no smaller radii were solved; prescribe a smaller initial_contact_radius",
+            {"radius_over_first": radius[-1] / radius[0]},
         )
     return min(lost, key=lambda p: p.indentation_depth if control == "displacement" else p.normal_force)
 

@@ -29,7 +29,12 @@ Array = NDArray[np.float64]
 
 NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
 INTERPOLATED = 0.5  # of the accuracy
-SPANS = (12.0, 100.0)  # half-spaces let go a paraboloid at 1/6 of the first radius, a cone at 1/40
+
+# First over last radius of a branch, tried in turn until it becomes unstable.  From the radius where height and
+# elongation are equal, half-spaces let go a paraboloid at 1/6 of it and a cone at 1/40; a prescribed first radius may
+# be larger than that by any factor.
+SPANS = (12.0, 100.0, 1e4)
+
 LARGEST_RATIO = 6.0  # of the radii that end one piece
 SAMPLES = 241
 

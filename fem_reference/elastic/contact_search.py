@@ -52,6 +52,18 @@ class FoundContact:
         return bool(self.state.active[: self.active_vertices].all())
 
     @property
+    def missing_contact(self) -> str:
+        """Where a contact that is not one circle around the axis has no pressure, in words."""
+        if not self.active_vertices:
+            return "nothing of the surface is in contact; press more"
+        place = self.radius * float(self.strip.radii[int(np.argmin(self.state.active))])
+        end = self.radius * float(self.strip.radii[np.flatnonzero(self.state.active)[-1]])
+        return (
+            f"the contact up to r = {end:g} m is not one circle around the axis: on {STRIP_CELLS} cells it has no "
+            f"pressure at r = {place:g} m; this method models single circles only"
+        )
+
+    @property
     def contact_radius(self) -> float:
         """a / radius."""
         return edge_radius(self.strip.radii, self.state.pressure)
@@ -157,7 +169,5 @@ def _first_radius(scene: Scene, target: float, by_depth: bool) -> float:
 
 def _one_circle(found: FoundContact) -> FoundContact:
     if found.active_vertices == 0 or not found.is_disc:
-        raise InvalidInput(
-            "the contact is not one circle around the axis (its active set has a gap); this profile makes ring contact"
-        )
+        raise InvalidInput(found.missing_contact)
     return found

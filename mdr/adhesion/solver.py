@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.moduli import contact_modulus
+from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     Adhesion,
@@ -32,11 +33,16 @@ from mdr.adhesion.withdrawal import CONTROLS, Route
 from mdr.elastic import PathFields, solve_elastic
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.reach import FIRST_RATIO
 from mdr.springs.shared_tables import bisected, growing_radii, power_law, upper
 
 POINTS = 200  # states of a detachment path
 _PINNED = POINTS // 5  # of them with the front at a punch's edge
 _FIRST_WAY = 2.0  # beyond the flat end, in units of the way to where height and elongation are equal
+
+# a/h beyond which the half-space's radius is no guide to the layer's: the largest that one factorisation covers.
+_THIN = LARGEST_FACTORISED_RATIO
+
 _CONFINED = 0.45  # Poisson's ratio from which a punch's pressure may have a second maximum in its centre
 _THINNEST = 50.0  # a/h beyond which the pressure inside no longer changes its shape
 _INSIDE = 0.1  # of the contact radius: where the pressure is compared with its value in the centre
@@ -173,12 +179,27 @@ def _reaching(
     scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[AdhesiveBranch], bool]
 ) -> tuple[EquivalentSystem, AdhesiveBranch]:
     """A branch that is long enough, or ends at the indenter's rim."""
-    flat, balance = scene.indenter.flat_radius, balance_radius(scene)
-    for radius in growing_radii(scene.indenter, flat + _FIRST_WAY * (balance - flat)):
-        system, branch = _branch(scene, radius, flat_punch)
+    for radius in growing_radii(scene.indenter, _first_radius(scene)):
+        try:
+            system, branch = _branch(scene, radius, flat_punch)
+        except InvalidInput as refusal:
+            raise InvalidInput(
+                f"the adhering contact is sought up to a = {radius:g} m, where the flat-punch data end ({refusal}); "
+                "a Detachment may begin at a smaller initial_contact_radius"
+            ) from None
         if enough(branch):
             break
     return system, branch
+
+
+def _first_radius(scene: Scene) -> float:
+    """Where the search for a branch that is long enough begins [m]: the half-space's radius, unless the layer is thin.
+
+    On a layer much thinner than that radius the elongation is far shorter than on the half-space.
+    """
+    flat, thickness = scene.indenter.flat_radius, scene.layer.thickness
+    first = flat + _FIRST_WAY * (balance_radius(scene) - flat)
+    return first if first <= _THIN * thickness else max(FIRST_RATIO * thickness, 2.0 * flat)
 
 
 def balance_radius(scene: Scene) -> float:

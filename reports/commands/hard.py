@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from cases.declare.methods import build
+from cases.declare.guarded_method import build_guarded
 from cases.measurements.advice import advise as advice_on
 from cases.results.records import CaseResult
 from contact import InvalidInput, load_scene
@@ -16,7 +16,7 @@ FAILED = 1
 
 def advise(scene_file: Path, accuracy: float, method: str) -> None:
     """Print what a scene needs at an accuracy, from solving it with and without."""
-    for line in advice_on(build(method, {}), load_scene(scene_file), accuracy).lines:
+    for line in advice_on(build_guarded(method, {}), load_scene(scene_file), accuracy).lines:
         console().print(line, markup=False, highlight=False)
 
 
@@ -113,7 +113,7 @@ def campaign(method: str, family: str, count: int, seed: int) -> int:
 
     if family not in FAMILIES:
         raise InvalidInput(f"family = {family!r}: must be one of {', '.join(FAMILIES)}")
-    found, out = run_campaign(build(method, {}), seed=seed, count=count, family=family), console()
+    found, out = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=family), console()
     out.print(", ".join(f"{end}: {number}" for end, number in found.counts.items()), markup=False)
     for quantity, coverage in found.coverage().items():
         sharp = "" if coverage.sharpness is None else f", stated over true error {coverage.sharpness:.3g} in the median"

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from cases.declare.methods import build, load
+from cases.declare.guarded_method import build_guarded
+from cases.declare.methods import load
 from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
@@ -75,7 +76,7 @@ def _solver(name: str, accuracy: float | None) -> Method:
     if accuracy is not None and not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"--accuracy {accuracy:g}: a relative accuracy lies between 0 and 1")
     settable = "accuracy" in inspect.signature(load(name)).parameters
-    return build(name, {"accuracy": accuracy} if settable and accuracy is not None else {})
+    return build_guarded(name, {"accuracy": accuracy} if settable and accuracy is not None else {})
 
 
 def _refuse_less(solution: Solution, accuracy: float) -> None:

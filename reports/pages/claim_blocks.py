@@ -25,7 +25,7 @@ class ClaimRow:
         methods: in words.
         shared: what the compared answers share, empty for independent ones.
         cell: the worst of the scenes.
-        within: "within 5 %" where the tolerance is wide; empty otherwise.
+        within: "within 5 %" where the tolerance is wide, and whose claim of accuracy has widened it; empty otherwise.
         scene: the worst one.
         observed: what was measured there.
         tolerance: largest permitted error.
@@ -89,6 +89,12 @@ def _block(case: str, claims: Sequence[Claim]) -> ClaimBlock:
     )
 
 
+def _within(claim: Claim) -> str:
+    """What stands beside the verdict: a wide tolerance, and a method's own claim that has widened it."""
+    wide = f"within {100 * claim.tolerance:.2g} %" if is_wide(claim) else ""
+    return ", ".join(part for part in (wide, claim.relaxed) if part)
+
+
 def _row(case: str, name: str, same: Sequence[Claim]) -> ClaimRow:
     outcomes = {id(claim): claim_outcome(case, claim) for claim in same}
     ran = [claim for claim in same if claim.status is not Status.SKIP] or same
@@ -99,7 +105,7 @@ def _row(case: str, name: str, same: Sequence[Claim]) -> ClaimRow:
         methods=" – ".join(map(display_name, worst.methods)),
         shared=", ".join(worst.shared_inputs),
         cell=cell_of(outcomes.values()),
-        within=f"within {100 * worst.tolerance:.2g} %" if is_wide(worst) else "",
+        within=_within(worst),
         scene=worst.scene,
         observed=seen.message if worst.status is Status.SKIP else seen.observed,
         tolerance=seen.tolerance,

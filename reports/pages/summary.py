@@ -1,14 +1,20 @@
 """summary.md for the summary page of a CI job: verdict, counts, then every check, failing rows first."""
 
+import html
+import re
 from collections.abc import Iterable, Sequence
 
 from cases.results.records import RunResult
+from contact.records.plain_text import printable
 from reports.pages.report import baseline_sentence
 from reports.words.numbers import duration
 from reports.words.outcomes import Outcome, counts, headline, outcomes
 
 LARGEST = 900 * 1024
 """Bytes; GitHub refuses a job summary above 1 MiB."""
+
+# What Markdown would take for a cell's end, code, a link, an address, a person, or emphasis at a word's edge.
+MARKDOWN = re.compile(r"[`*~\\@]|\](?=[(\[:])|:(?=//)|(?<!\w)_|_(?!\w)")
 
 HEAD = (
     "| verdict | case | check | method | error / tolerance | measured | tolerance | what was seen |\n"
@@ -23,7 +29,7 @@ def summary_text(run: RunResult, *, largest: int = LARGEST) -> str:
     tally = ", ".join(f"{number} {status}" for status, number in counts(rows))
     suite = f"Suite {run.suite}" if run.suite else "Chosen cases"
     taken = f"{suite}, revision {run.stamp.revision[:12]}, {duration(run.stamp.wall_seconds)}."
-    top = f"# {words}\n\n{tally}. {taken} {baseline_sentence(run)}\n\n"
+    top = f"# {_escaped(words)}\n\n{tally}. {_escaped(taken)} {_escaped(baseline_sentence(run))}\n\n"
     return top + _table(rows, largest - len(top.encode()))
 
 
@@ -47,11 +53,12 @@ def _fitting(lines: Iterable[str], room: int) -> int:
 
 
 def _line(row: Outcome) -> str:
-    word = f"**{row.word}**" if row.tone == "bad" else row.word
-    cells = (word, row.case, row.place, row.who, row.fraction_text, row.observed, row.tolerance, row.message)
-    return "| " + " | ".join(_escaped(cell) for cell in cells) + " |\n"
+    cells = (row.word, row.case, row.place, row.who, row.fraction_text, row.observed, row.tolerance, row.message)
+    word, *others = map(_escaped, cells)
+    return "| " + " | ".join([f"**{word}**" if row.tone == "bad" else word, *others]) + " |\n"
 
 
 def _escaped(text: str) -> str:
-    """Text that cannot end a table cell."""
-    return " ".join(text.split()).replace("|", "\\|")
+    """Text that shows as it stands: it ends no table cell and is neither HTML nor Markdown."""
+    plain = html.escape(printable(" ".join(text.split())), quote=False)
+    return MARKDOWN.sub(lambda found: f"&#{ord(found[0])};", plain).replace("|", "\\|")

@@ -3,22 +3,41 @@
 import os
 import sys
 from collections.abc import Iterable
+from typing import Any
 
 from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text
 
+from contact.records.plain_text import printable
 from reports.tables.table import Table
 
 WIDTH_WITHOUT_TERMINAL = 160
 STYLES = {"bad": "bold white on red", "warn": "black on yellow", "skip": "dim", "good": "green"}
 
 
-def console(*, stderr: bool = False) -> Console:
+class Terminal(Console):
+    """A console that shows characters which would steer it as escapes."""
+
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print; a text that holds such a character loses its styles."""
+        super().print(*(_plain(item) for item in objects), **options)
+
+
+def _plain(item: Any) -> Any:
+    """A text without control characters; anything else as it is."""
+    text = item.plain if isinstance(item, Text) else item
+    if not isinstance(text, str):
+        return item
+    plain = printable(text, keep="\n")
+    return item if plain == text else Text(plain)
+
+
+def console(*, stderr: bool = False) -> Terminal:
     """The terminal; a pipe or a log file gets wide plain lines that nothing wraps in the middle of a number."""
     stream = sys.stderr if stderr else sys.stdout
     width = None if stream.isatty() or "COLUMNS" in os.environ else WIDTH_WITHOUT_TERMINAL
-    return Console(stderr=stderr, width=width, highlight=False, markup=False)
+    return Terminal(stderr=stderr, width=width, highlight=False, markup=False)
 
 
 def show_table(table: Table, *, on: Console) -> None:
@@ -26,9 +45,9 @@ def show_table(table: Table, *, on: Console) -> None:
     rich = RichTable(box=None)
     for place, head in enumerate(table.heads):
         number = place >= table.words
-        rich.add_column(Text(head), justify="right" if number else "left", no_wrap=number, overflow="fold")
+        rich.add_column(Text(printable(head)), justify="right" if number else "left", no_wrap=number, overflow="fold")
     for row in table.rows:
-        rich.add_row(*(Text(cell) for cell in row))
+        rich.add_row(*(Text(printable(cell, keep="\n")) for cell in row))
     for part in (Text(table.title, style="bold"), rich, Text(table.note, style="dim")):
         if part:
             on.print(part)

@@ -147,7 +147,7 @@ def claim_outcome(case: str, claim: Claim) -> Outcome:
         observed=observed_text(claim),
         tolerance=f"{small(claim.tolerance)}{_unit(claim.unit)}",
         origin=f"{claim.origin}: {claim.source}",
-        message=worded(claim.message),
+        message=worded(f"{claim.message} ({claim.relaxed})" if claim.relaxed else claim.message),
         because=claim.because,
         seconds=0.0,
     )

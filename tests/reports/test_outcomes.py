@@ -1,14 +1,18 @@
 """Every output sees the same rows, worst first, and a failure can hide in none of them."""
 
 import dataclasses
+import html
+import re
 import xml.etree.ElementTree as ET
 
 import pytest
 
 from cases.results.records import RunResult
 from cases.results.status import Status
+from contact.records.plain_text import printable
 from reports.pages.annotations import MOST, annotation_lines
 from reports.pages.junit import junit_text
+from reports.pages.report import write_report
 from reports.pages.summary import summary_text
 from reports.words.outcomes import WORST_FIRST, counts, headline, outcomes
 from tests.cases.example_run import example_run, failing_case, passing_case
@@ -76,6 +80,28 @@ def test_summary_cells_cannot_break_the_table():
     claim = dataclasses.replace(failing_case().claims[0], message="a | b\nc")
     text = summary_text(only(dataclasses.replace(failing_case(), claims=(claim,), runs=())))
     assert "a \\| b c" in text
+
+
+HOSTILE = (
+    "<script>alert(1)</script>", "<img src=x onerror=alert(1)>", "a & b &lt;", "[click](javascript:alert(1))",
+    "![](//host/x.png)", "https://host/x", "`code`", "*stars* __bold__ ~gone~", "a | b\nc", "@somebody", "\x1b[2J",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("text", HOSTILE)
+@pytest.mark.parametrize("place", ["name", "scene", "methods", "message"])
+def test_summary_shows_text_as_it_stands_and_the_page_says_the_same(text, place, tmp_path):
+    """What a reader of Markdown makes of a cell is the text itself: no tag, link, code, emphasis or person."""
+    claim = dataclasses.replace(failing_case().claims[0], **{place: (text,) if place == "methods" else text})
+    run = only(dataclasses.replace(failing_case(), claims=(claim,), runs=()))
+    markdown = summary_text(run)
+    assert not re.search(r"<[a-z]|\]\(|://|`|@|~|\x1b|(?<!\*)\*(?!\*)|(?<!\w)_", markdown.split("|---|")[1])
+    cells = re.split(r"(?<!\\)\|", markdown.splitlines()[-1])[1:-1]
+    assert len(cells) == 8
+    shown = html.unescape(" ".join(cells)).replace("\\|", "|")
+    assert printable(" ".join(text.split())) in shown
+    if place != "methods":  # the page has names of its own for methods
+        assert html.escape(text.split()[0]) in write_report(run, tmp_path).read_text(encoding="utf-8")
 
 
 def test_junit_has_one_testcase_per_claim_and_solution_and_agrees_with_the_statuses():

@@ -48,6 +48,7 @@ class DeclaredClaim(ABC):
         reason: why it should hold, and where its numbers come from.
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
+        relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
     """
 
     kind: ClassVar[Kind]
@@ -58,6 +59,7 @@ class DeclaredClaim(ABC):
     reason: Reason
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
+    relaxed: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a claim without a reason, and a tolerance of the wrong sign."""
@@ -135,6 +137,7 @@ class DeclaredClaim(ABC):
             derived_from=self.reason.derived_from,
             shared_inputs=shared,
             message=message,
+            relaxed="; ".join(self.relaxed[label] for label in methods if label in self.relaxed),
         )
 
     def _declared(self, judgement: Judgement) -> tuple[Status, str]:

@@ -11,27 +11,36 @@ Every trial damages something that was valid and hands it to the reader. It ends
 
 from __future__ import annotations
 
+import codecs
 import datetime
+import html
 import json
 import math
+import os
 import tempfile
 import warnings
 from collections.abc import Callable, Mapping
+from contextlib import ExitStack
 from dataclasses import dataclass
 from decimal import Decimal
 from pathlib import Path
 from typing import Any, Literal, TypeAlias, get_args
+from unittest.mock import patch
 
 import numpy as np
 
+from cases.declare.foreign_methods import check_claim
+from cases.declare.methods import check_name
 from cases.measurements.campaigns.random_scenes import FAMILIES, random_scene
 from cases.results.files import from_json
 from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, StageRecord
+from contact.files import scene_text
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
 from contact.files.storage import load_solution, read_tree, save_solution, write_tree
+from contact.records.plain_text import printable
 
 End: TypeAlias = Literal["refused", "accepted", "altered", "crashed"]
-Kind: TypeAlias = Literal["mapping", "toml", "hdf5", "json", "writing"]
+Kind: TypeAlias = Literal["mapping", "toml", "hdf5", "json", "writing", "file", "method"]
 KINDS: tuple[Kind, ...] = get_args(Kind)
 
 HUGE_INTEGER = "9" * 5000
@@ -65,11 +74,19 @@ def hostile_trial(kind: Kind, seed: int, number: int) -> HostileTrial:
             warnings.simplefilter("error")
             end, message = _TRIALS[kind](draw)
     except InvalidInput as error:
-        long = len(str(error)) > LONGEST_MESSAGE
-        end, message = ("crashed", f"message of {len(str(error))} characters") if long else ("refused", str(error))
+        end, message = _judged(str(error))
     except Exception as error:  # any other exception is what this trial looks for
         end, message = "crashed", f"{type(error).__name__}: {error!s:.200}"
     return HostileTrial(kind=kind, number=number, end=end, message=message)
+
+
+def _judged(message: str) -> tuple[End, str]:
+    """A refusal is for a person at a terminal: short, and without characters that the terminal obeys."""
+    if len(message) > LONGEST_MESSAGE:
+        return "crashed", f"message of {len(message)} characters"
+    if printable(message, keep="\n") != message:
+        return "crashed", f"message with control characters: {message!r:.200}"
+    return "refused", message
 
 
 def hostile_trials(seed: int, count: int) -> list[HostileTrial]:
@@ -78,6 +95,10 @@ def hostile_trials(seed: int, count: int) -> list[HostileTrial]:
 
 
 # -- values that have broken programs --------------------------------------------------------------------------------
+
+
+# Texts that a terminal would obey: colours, bells, erased lines, reversed reading, faked lines.
+_STEERING = ("\x1b[31m", "\x07", "\x9b2J", "\u202e", "a\rPASSED", "a\nPASSED: all checks", "\u2028", "\x7f")
 
 
 class _Liar(list[float]):
@@ -89,7 +110,7 @@ class _Liar(list[float]):
 
 def _hostile_values() -> tuple[Any, ...]:
     plain = (None, True, math.nan, math.inf, -math.inf, -1.0, 0.0, 5e-324, 1.7e308, -1e-300, 10**400, 10**5000)
-    texts = ("", "1e-3", "nan", "x" * 100_000, "\x00", b"1", "é̀", "{}")
+    texts = ("", "1e-3", "nan", "x" * 100_000, "\x00", b"1", "é̀", "{}", *_STEERING)
     lists: tuple[Any, ...] = (
         [],
         [math.nan],
@@ -144,7 +165,7 @@ _JSON_VALUES: tuple[Any, ...] = (
     [[1.0]],
     {"a": {}},
 )
-_KEYS = ("kind", "", "thickness", "x" * 100_000, "__class__", "values", "half_space", 1, None, ("a",))
+_KEYS = ("kind", "", "thickness", "x" * 100_000, "__class__", "values", "half_space", 1, None, ("a",), *_STEERING)
 
 
 def _scene(draw: Draw) -> Scene:
@@ -327,10 +348,48 @@ def _writing_trial(draw: Draw) -> tuple[End, str]:
         return ("accepted", "") if isinstance(read_tree(file), dict) else ("altered", "")
 
 
+def _file_trial(draw: Draw) -> tuple[End, str]:
+    """A scene under a path or with a beginning that has stopped readers: pipes, devices, marks, endless keys."""
+    text = to_toml(scene_to_mapping(_scene(draw))).encode()
+    chain = b".".join([(b"a", b'"a"', b"'a'")[draw.integers(3)]] * int(draw.integers(10, 50_000)))
+    deed = draw.integers(7)
+    with ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        file = Path(folder) / f"scene{_STEERING[draw.integers(len(_STEERING))]}.toml"
+        if deed == 0:
+            os.mkfifo(file)
+            stack.enter_context(patch.object(scene_text, "PIPE_PATIENCE", 0.01))
+        elif deed == 1:
+            file.mkdir()
+        elif deed == 2:
+            file.symlink_to(file if draw.random() < 0.5 else Path("/dev/zero"))
+        elif deed == 3:
+            file.write_bytes(codecs.BOM_UTF8 + text)
+        elif deed == 4:
+            file.write_bytes(text.decode().encode(("utf-16", "utf-32", "utf-16-be")[draw.integers(3)]))
+        elif deed == 5:
+            file.write_bytes(text + b"\n" + chain + b" = 1\n")
+        else:
+            file.write_bytes(b"[" + chain + b"]\n" + text)
+        return _round_trip(load_scene(file))
+
+
+def _method_trial(draw: Draw) -> tuple[End, str]:
+    """A package whose method has a name that is no name, or claims an accuracy that is none."""
+    pieces = (*_STEERING, "/", "..", "<b>", "&", '"', " ", "|", "x" * 70, "a", "Z", "-", ".", "_1")
+    name = "".join(pieces[n] for n in draw.integers(0, len(pieces), int(draw.integers(0, 4))))
+    check_name(name, "package:Method")
+    check_claim(name, _VALUES[draw.integers(len(_VALUES))])
+    safe = Path(name).name == name and html.escape(name) == name and printable(name) == name
+    return ("accepted", "") if safe else ("altered", f"{name!r} was taken for a name")
+
+
 _TRIALS: dict[Kind, Callable[[Draw], tuple[End, str]]] = {
     "mapping": _mapping_trial,
     "toml": _toml_trial,
     "hdf5": _hdf5_trial,
     "json": _json_trial,
     "writing": _writing_trial,
+    "file": _file_trial,
+    "method": _method_trial,
 }

@@ -1,0 +1,125 @@
+"""Methods of installed packages, asked with care: whatever goes wrong inside one is told under its name."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final, Self, TypeVar
+
+import numpy as np
+
+from cases.declare.methods import BUILT_IN, build
+from contact import (
+    ContactError,
+    ContactRadii,
+    Cost,
+    IndentationDepths,
+    InvalidInput,
+    Method,
+    NormalForces,
+    NotConvergedError,
+    Scene,
+    Solution,
+    Supported,
+    Unsupported,
+    UnsupportedSceneError,
+)
+from contact.records.record import shown
+
+# Relative difference of a prescribed quantity beyond which an answer is one to another question.
+ANOTHER_QUESTION: Final = 1e-2
+
+PRESCRIBED: Final = {
+    ContactRadii: "contact_radius",
+    IndentationDepths: "indentation_depth",
+    NormalForces: "normal_force",
+}
+
+
+class BrokenMethodError(ContactError):
+    """A method of an installed package crashed, or what it answered is no answer; the message names the method."""
+
+
+# A class of errors that another package derives from one of these may want other arguments.
+KINDS: Final = (BrokenMethodError, InvalidInput, UnsupportedSceneError, NotConvergedError, ContactError)
+
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class GuardedMethod:
+    """A method of another package under the name it is registered with: asked whether it supports what it solves.
+
+    Raises:
+        BrokenMethodError: if the method crashes or answers nonsense.
+        ContactError: as the method raises it, under its name.
+    """
+
+    name: str
+    method: Method
+
+    def supports(self, scene: Scene) -> Supported | Unsupported:
+        """Whether the method models the scene."""
+        support = _blamed(self.name, "supports", lambda: self.method.supports(scene))
+        if support:
+            return Supported()
+        return Unsupported(str(getattr(support, "reason", "it gives no reason")))
+
+    def solve(self, scene: Scene) -> Solution:
+        """The method's answer, if it is one to this scene."""
+        support = self.supports(scene)
+        if isinstance(support, Unsupported):
+            raise UnsupportedSceneError(f"method {self.name!r} does not model this scene: {support.reason}")
+        answer = _blamed(self.name, "solve", lambda: self.method.solve(scene))
+        fault = _blamed(self.name, "its answer", lambda: "".join(_faults(answer, scene)[:1]))
+        if fault:
+            raise BrokenMethodError(f"method {self.name!r} gives no answer: {fault}; tell the authors of its package")
+        return answer
+
+    def refined(self) -> Self:
+        """A copy with half the discretisation length."""
+        return type(self)(self.name, _blamed(self.name, "refined", self.method.refined))
+
+
+def build_guarded(name: str, settings: dict[str, Any]) -> Method:
+    """The method of this name; one of another package is guarded.
+
+    Raises:
+        InvalidInput: if there is none, or if what is registered is no method.
+        BrokenMethodError: if it cannot be built.
+    """
+    if name in BUILT_IN:
+        return build(name, settings)
+    guarded: Method = GuardedMethod(name, _blamed(name, "its constructor", lambda: build(name, settings)))  # type: ignore[assignment]  # its name is a field
+    return guarded
+
+
+def _blamed(name: str, place: str, call: Callable[[], T]) -> T:
+    """What a call into another package returns; its errors carry the method's name."""
+    try:
+        return call()
+    except ContactError as error:
+        told = str(error)
+        kind = next(kind for kind in KINDS if isinstance(error, kind))
+        raise kind(told if repr(name) in told else f"method {name!r}: {told}") from None
+    except (Exception, SystemExit) as error:
+        message = f"method {name!r} crashed in {place}: {type(error).__name__}: {error!s:.300}"
+        raise BrokenMethodError(f"{message}; tell the authors of its package") from error
+
+
+def _faults(answer: object, scene: Scene) -> list[str]:
+    """What makes an answer none to this scene."""
+    if not isinstance(answer, Solution):
+        return [f"{shown(answer)} is no Solution"]
+    prescribed = PRESCRIBED.get(type(scene.loading), "")
+    wanted = getattr(scene.loading, "values", np.empty(0))
+    given = np.asarray(getattr(answer, prescribed, wanted), dtype=np.float64)
+    faults = {
+        "it belongs to another scene": answer.scene != scene,
+        "its cost is no Cost": not isinstance(answer.cost, Cost),
+        f"{len(wanted)} values are prescribed, it has {given.size}": prescribed and given.shape != wanted.shape,
+    }
+    found = [fault for fault, there in faults.items() if there]
+    if not found and prescribed and not np.allclose(given, wanted, rtol=ANOTHER_QUESTION, atol=0.0):
+        found.append(f"its {prescribed} is {shown(given)}, prescribed is {shown(wanted)}")
+    found += [f"it states a negative error of {name}" for name, e in answer.error_estimate.items() if np.min(e) < 0]
+    radius = getattr(answer, "contact_radius", np.zeros(1))
+    return found + ["a contact radius is negative"] * bool(np.min(radius) < 0)

@@ -1,0 +1,59 @@
+"""One BLAS thread while a method computes: the digits of an answer then do not depend on the number of threads.
+
+A matrix product that is shared by several threads is summed in another order than on one thread.
+"""
+
+from __future__ import annotations
+
+import sys
+from contextlib import ContextDecorator
+from functools import cache
+from threading import Lock
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from types import TracebackType
+
+
+class OneThread(ContextDecorator):
+    """Context and decorator: every loaded BLAS computes on one thread, and as before when the last one has left.
+
+    Threads of Python may be inside at once, each as deeply nested as it likes.  A BLAS that is loaded inside (SciPy's,
+    at the first factorisation) is held by the next context that is entered.
+    """
+
+    def __init__(self) -> None:
+        self._lock = Lock()
+        self._inside = 0
+        self._threads_before: dict[str, tuple[Any, int]] = {}
+
+    def __enter__(self) -> None:
+        """Hold every loaded BLAS that is not held yet."""
+        with self._lock:
+            self._inside += 1
+            for library in _loaded_libraries("scipy.linalg" in sys.modules):
+                if library.filepath not in self._threads_before:
+                    self._threads_before[library.filepath] = library, library.get_num_threads()
+                    library.set_num_threads(1)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Give each BLAS its former number of threads back if nobody else is inside."""
+        with self._lock:
+            self._inside -= 1
+            if self._inside == 0:
+                for library, threads in self._threads_before.values():
+                    library.set_num_threads(threads)
+                self._threads_before.clear()
+
+
+@cache
+def _loaded_libraries(with_scipy: bool) -> tuple[Any, ...]:
+    """The BLAS libraries of this process, looked up once before and once after SciPy has loaded its own."""
+    from threadpoolctl import ThreadpoolController  # type: ignore[import-untyped]  # noqa: PLC0415 - ships no types
+
+    return tuple(ThreadpoolController().select(user_api="blas").lib_controllers)
+
+
+one_thread = OneThread()

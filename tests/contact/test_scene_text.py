@@ -1,0 +1,146 @@
+"""Scene files that once moved the cursor, hung, or were refused with a riddle."""
+
+from __future__ import annotations
+
+import codecs
+import os
+import threading
+import time
+
+import pytest
+
+from contact import InvalidInput, Layer, NotConvergedError, load_scene, scene_from_mapping
+from contact.files import scene_text as reader
+from contact.files.scene_text import MAX_KEY_PARTS
+from contact.records.plain_text import printable
+from tests.contact.test_scene_file import GOOD, SCENE
+
+ESCAPES = ("\x1b[31m", "\x07", "\x9b2J", "\u202e", "\r", "\x7f", "\u2028")
+
+
+def written(tmp_path, content):
+    file = tmp_path / "scene.toml"
+    file.write_bytes(content if isinstance(content, bytes) else content.encode())
+    return file
+
+
+def obeyed(message):
+    """Characters of a message that a terminal obeys."""
+    return {c for c in message if c != "\n" and not c.isprintable()}
+
+
+@pytest.mark.parametrize("escape", ESCAPES)
+def test_no_message_holds_a_character_that_a_terminal_obeys(escape):
+    layer = {"half_space": True, "youngs_modulus": 1.0, "poissons_ratio": 0.3}
+    mappings = [
+        {f"a{escape}b": 1},
+        {"layer": layer | {f"a{escape}b": 1.0}, "indenter": {"kind": "cone", "slope": 1.0}, "loading": {}},
+        {"layer": layer, "indenter": {"kind": f"cone{escape}"}, "loading": {}},
+        {"layer": layer, "indenter": {"kind": "cone", f"sl{escape}ope": 1.0}, "loading": {}},
+    ]
+    for mapping in mappings:
+        with pytest.raises(InvalidInput) as caught:
+            scene_from_mapping(mapping)
+        assert obeyed(str(caught.value)) == set()
+        assert escape.encode("unicode_escape").decode() in str(caught.value)
+
+
+def test_an_unknown_key_cannot_end_a_line():
+    with pytest.raises(InvalidInput) as caught:
+        Layer(**{"a\nPASSED: all checks": 1.0, "thickness": 1.0, "youngs_modulus": 1.0, "poissons_ratio": 0.3})
+    assert r"a\nPASSED" in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_every_error_of_the_project_is_plain_whatever_it_is_given():
+    assert str(InvalidInput("file \x1b[2J.toml\nsecond line")) == "file \\x1b[2J.toml\nsecond line"
+    assert str(InvalidInput("\udc80")) == "\\udc80"
+    assert str(NotConvergedError("\x07", {"a": 1.0})) == "\\x07 (a = 1.000e+00)"
+
+
+def test_letters_of_all_languages_and_thin_spaces_stay():
+    assert printable("µm, 1\u202f000 ± 2 \u00b7 é 漢") == "µm, 1\u202f000 ± 2 \u00b7 é 漢"
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        ".".join(["a"] * 200_000) + " = 1",
+        "[" + ".".join(["a"] * 200_000) + "]",
+        "x = {" + " . ".join(['"a"'] * 200_000) + " = 1}",
+        "x = [{" + ".".join(["'a'"] * 200_000) + " = 1}]",
+    ],
+    ids=["key", "table", "inline", "in a list"],
+)
+def test_a_key_of_endless_parts_is_refused_before_it_is_parsed(tmp_path, monkeypatch, text):
+    monkeypatch.setattr("contact.files.scene_file.tomllib", None)
+    with pytest.raises(InvalidInput, match=f"more than {MAX_KEY_PARTS} parts"):
+        load_scene(written(tmp_path, GOOD + text))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "# " + "a.b." * 50,
+        "# don't\n# see \"" + "a.b." * 50,
+        "#:schema ../../../../../../../../../scene.schema.json",
+    ],
+)
+def test_dots_in_comments_are_no_keys(tmp_path, text):
+    assert load_scene(written(tmp_path, f"{text}\n{GOOD}")) == SCENE
+
+
+@pytest.mark.parametrize("piece", ['"\\', "'", '"""', "'''", '"\\"', "a.", "a .", '"a', "#", "'''\\", "a\n.", "\\"])
+def test_the_search_for_long_keys_takes_a_time_that_grows_with_the_text_only(piece):
+    """Steps, not seconds: twice the text takes at most three times as long, measured by the processor."""
+
+    def seconds(count):
+        start = time.process_time()
+        list(reader._CHAINS.finditer(piece * count))
+        return time.process_time() - start
+
+    assert seconds(100_000) < 1.0 + 3.0 * seconds(50_000)
+
+
+def test_a_pipe_that_nobody_writes_into_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(reader, "PIPE_PATIENCE", 0.05)
+    pipe = tmp_path / "scene.toml"
+    os.mkfifo(pipe)
+    with pytest.raises(InvalidInput, match="nobody has written"):
+        load_scene(pipe)
+
+
+def test_a_pipe_that_never_closes_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(reader, "PIPE_PATIENCE", 0.05)
+    pipe = tmp_path / "scene.toml"
+    os.mkfifo(pipe)
+    both_ends = os.open(pipe, os.O_RDWR)
+    os.write(both_ends, GOOD.encode())
+    with pytest.raises(InvalidInput, match="nobody has written all of a scene"):
+        load_scene(pipe)
+    os.close(both_ends)
+
+
+def test_a_scene_comes_through_a_pipe(tmp_path):
+    pipe = tmp_path / "scene.toml"
+    os.mkfifo(pipe)
+    writer = threading.Thread(target=lambda: pipe.write_text(GOOD))
+    writer.start()
+    assert load_scene(pipe) == SCENE
+    writer.join()
+
+
+def test_a_byte_order_mark_is_accepted(tmp_path):
+    assert load_scene(written(tmp_path, codecs.BOM_UTF8 + GOOD.encode())) == SCENE
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be"])
+def test_another_encoding_is_named(tmp_path, encoding):
+    mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
+    with pytest.raises(InvalidInput, match="UTF-16; save the scene as TOML in UTF-8"):
+        load_scene(written(tmp_path, mark + GOOD.encode(encoding)))
+
+
+def test_a_path_that_no_file_can_have_is_refused():
+    with pytest.raises(InvalidInput, match="cannot be read"):
+        load_scene("scene\x00.toml")

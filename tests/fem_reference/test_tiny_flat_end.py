@@ -1,0 +1,65 @@
+"""Truncated cones whose flat end is a hundred thousandth of the thickness: one circle, as every cone has."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contact import (
+    Adhesion,
+    Cone,
+    Detachment,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Scene,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
+from fem_reference import Fem
+from mdr import Mdr
+
+LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
+
+
+@pytest.mark.parametrize("loading", [IndentationDepths(values=[1e-5]), NormalForces(values=[1e-2])], ids=str)
+@pytest.mark.parametrize("flat_radius", [1e-9, 1e-8, 1e-7])
+def test_a_tiny_flat_end_is_no_ring(flat_radius, loading):
+    scene = Scene(layer=LAYER, indenter=TruncatedCone(flat_radius=flat_radius, slope=0.1), loading=loading)
+    fem, mdr = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
+    for name in fem.ARRAYS:
+        assert np.all(
+            np.abs(getattr(fem, name) - getattr(mdr, name)) <= fem.uncertainty(name) + 1e-12 * abs(getattr(mdr, name))
+        )
+
+
+def test_a_worn_paraboloid_with_a_tiny_flat_end_is_no_ring():
+    indenter = TruncatedParaboloid(flat_radius=1e-7, radius_of_curvature=0.1)
+    scene = Scene(layer=LAYER, indenter=indenter, loading=IndentationDepths(values=[1e-5]))
+    fem, mdr = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
+    assert np.abs(fem.normal_force - mdr.normal_force) <= fem.uncertainty("normal_force")
+
+
+def test_a_ring_is_told_by_its_place():
+    radii = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0]) * 1e-3
+    ring = Tabulated(radii=radii, heights=np.array([0.0, 6, 8, 3, 2, 8, 30, 80]) * 1e-6)
+    scene = Scene(layer=LAYER, indenter=ring, loading=IndentationDepths(values=[6e-6]))
+    with pytest.raises(
+        InvalidInput, match=r"not one circle around the axis: on 120 cells it has no pressure at r = 0.000"
+    ):
+        Fem(accuracy=1e-2).solve(scene)
+
+
+@pytest.mark.slow
+def test_a_cone_is_followed_from_any_first_radius_to_its_pull_off():
+    scene = Scene(
+        layer=LAYER,
+        indenter=Cone(slope=0.1),
+        loading=Detachment(control="displacement", initial_contact_radius=1e-3),
+        effects=(Adhesion(work_of_adhesion=0.01),),
+    )
+    fem, mdr = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
+    for name in fem.SCALARS:
+        assert abs(getattr(fem, name) - getattr(mdr, name)) <= np.max(fem.uncertainty(name))
