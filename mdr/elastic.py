@@ -11,13 +11,14 @@ from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import contact_fields, density_error
+from mdr.springs.assembly import contact_fields, pressure_error
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors, pressure_errors
 
-PRESSURE_SHARE = 4.0  # of the depth's error; measured against refined data at most 1/2, with tables 1.6
+# Least stated error of a pressure: forty roundings of the quadrature over the profile's slope.
+PRESSURE_ROUNDING = 40 * float(np.finfo(float).eps)
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -31,7 +32,8 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("mdr_profile"):
         system = covering_system(scene, LoggedSource(flat_punch, log))
     with log.stage("force"):
-        radius, depth = _radius_and_depth(system, scene)
+        excess, depth = _excess_and_depth(system, scene)
+        radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
     return ContactPath(
@@ -45,7 +47,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         error_estimate=_errors(system, scene, radius, depth, force),
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
-        fields=PathFields(scene, system.flat_punch, radius, depth),
+        fields=PathFields(scene, system.flat_punch, excess, depth),
     )
 
 
@@ -74,14 +76,14 @@ class PathFields:
     Attributes:
         scene: The problem.
         flat_punch: The solution the path was made of.
-        contact_radius: a [m], shape (n,).
+        excess: a - b [m] over the radius of the flat end, shape (n,).
         indentation_depth: delta [m], shape (n,).
         singular_edge: Whether the pressure may be singular at the edge; by default only under a flat punch.
     """
 
     scene: Scene
     flat_punch: FlatPunchSolution
-    contact_radius: FloatArray
+    excess: FloatArray
     indentation_depth: FloatArray
     singular_edge: bool | None = None
     _contacts: dict[int, ContactFields] = field(default_factory=dict)
@@ -102,24 +104,25 @@ class PathFields:
                 self.scene.layer,
                 self.scene.indenter,
                 self.flat_punch,
-                contact_radius=float(self.contact_radius[step]),
+                excess=float(self.excess[step]),
                 depth=float(self.indentation_depth[step]),
                 edge=is_punch if self.singular_edge is None else self.singular_edge,
             )
         return self._contacts[step]
 
 
-def _radius_and_depth(system: EquivalentSystem, scene: Scene) -> tuple[FloatArray, FloatArray]:
-    """The two unknowns, Eq. (3); a flat punch keeps its radius."""
+def _excess_and_depth(system: EquivalentSystem, scene: Scene) -> tuple[FloatArray, FloatArray]:
+    """a - b and the depth, Eq. (3); a flat punch keeps its radius."""
     values = getattr(scene.loading, "values", np.empty(0))
-    punch = np.full_like(values, scene.indenter.radius) if isinstance(scene.indenter, FlatPunch) else None
+    excess = np.zeros_like(values)
     if isinstance(scene.loading, ContactRadii):
-        return values, system.mdr_profile(values)
+        excess = values - system.flat_radius
+        return excess, system.profile_beyond(excess)
     by_depth = isinstance(scene.loading, IndentationDepths)
-    if punch is not None:
-        return punch, values if by_depth else values / system.contact_stiffness(punch)
+    if isinstance(scene.indenter, FlatPunch):
+        return excess, values if by_depth else values / system.contact_stiffness(excess + scene.indenter.radius)
     excess = system.excess_at_depth(values) if by_depth else system.excess_at_force(values)
-    return system.flat_radius + excess, values if by_depth else system.profile_beyond(excess)
+    return excess, values if by_depth else system.profile_beyond(excess)
 
 
 def _errors(
@@ -130,13 +133,13 @@ def _errors(
         return _table_errors(system, scene, radius, depth, force)
     errors = system.relative_errors(radius)
     stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
-    density = density_error(system.flat_punch, radius / system.length_unit)
+    ratio = radius / system.length_unit
     exact = np.zeros_like(radius)
     if isinstance(scene.indenter, FlatPunch):
         linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         depth_given = given == "IndentationDepths"
         return linear | {
-            "pressure": PRESSURE_SHARE * (stiffness + density),
+            "pressure": pressure_error(system.flat_punch, ratio, stiffness) + PRESSURE_ROUNDING,
             "indentation_depth": exact if depth_given else stiffness,
             "normal_force": stiffness if depth_given else exact,
         }
@@ -152,7 +155,7 @@ def _errors(
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
         "normal_force": exact if given == "NormalForces" else errors["normal_force"] * spread,
         "contact_stiffness": stiffness + growth * moved,
-        "pressure": PRESSURE_SHARE * (errors["indentation_depth"] + density),
+        "pressure": pressure_error(system.flat_punch, ratio, errors["indentation_depth"]) + moved + PRESSURE_ROUNDING,
     }
 
 

@@ -344,7 +344,7 @@ def calibrate(
 @app.command()
 def campaign(
     family: Annotated[
-        str, typer.Argument(help="elastic, adhesive, impact, history (of depth) or creep (under a force).")
+        str, typer.Argument(help="elastic, pressure, adhesive, impact, history (of depth) or creep (force).")
     ] = "elastic",
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
     count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,

@@ -116,9 +116,10 @@ class FlatPunchFields:
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """p(r) [Pa]; at the edge itself, where it is infinite, the value half a cell inside stands."""
-        rho = np.minimum(radius / self.radius, 1.0 - 0.5 * self.grid.cell_size / self.radius)
-        q = np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, self.shape)
-        return np.where(radius <= self.radius, self.pressure_scale * q / np.sqrt(1.0 - rho**2), 0.0)
+        r = np.where(radius < self.radius, radius, self.radius - 0.5 * self.grid.cell_size)
+        q = np.polynomial.chebyshev.chebval(2.0 * (r / self.radius) ** 2 - 1.0, self.shape)
+        root = np.sqrt((self.radius - r) * (self.radius + r)) / self.radius
+        return np.where(radius <= self.radius, self.pressure_scale * q / root, 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
         """w(r) [m]: the depth under the punch, direct summation outside."""
@@ -144,9 +145,10 @@ class AdheringFields:
         a = self.contact_radius
         if a == 0.0:
             return np.zeros(radius.shape)
-        r = np.minimum(radius, a - 0.5 * self._disc.grid.cell_size)
-        unit = contact_modulus(self.scene.layer) / np.pi
-        return np.where(radius <= a, unit * self._density(r) / np.sqrt(a**2 - r**2), 0.0)
+        last = a - 0.5 * self._disc.grid.cell_size
+        r = np.where(radius < a, radius, last)
+        density = contact_modulus(self.scene.layer) / np.pi * self._density(np.minimum(r, last))
+        return np.where(radius <= a, density / np.sqrt((a - r) * (a + r)), 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
         """w(r) [m]: delta - f under the indenter, direct summation outside; without contact none."""

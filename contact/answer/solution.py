@@ -92,8 +92,11 @@ class Solution:
         return len(getattr(self, self.ARRAYS[0]))
 
     def scale(self, quantity: str) -> FloatArray:
-        """What a relative error of this quantity refers to; along a path that crosses zero, its largest magnitude."""
-        values = np.abs(np.atleast_1d(np.asarray(getattr(self, quantity), dtype=np.float64)))
+        """What a relative error of this quantity refers to; along a path that crosses zero, its largest magnitude.
+
+        A residual that a method publishes among its errors, and that is no quantity of the answer, refers to one.
+        """
+        values = np.abs(np.atleast_1d(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64)))
         return np.full(values.shape, values.max(initial=0.0))
 
     def uncertainty(self, quantity: str) -> FloatArray:
@@ -129,10 +132,23 @@ class ContactPath(Solution):
     fields: Fields | None = None
 
     def scale(self, quantity: str) -> FloatArray:
-        """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path."""
-        if self.scene.effects:
+        """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
+
+        That of the pressure is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of a flat
+        punch at the same depth.
+        """
+        if quantity == "pressure":
+            return self._mean_pressure()
+        if self.scene.effects or not hasattr(self, quantity):
             return super().scale(quantity)
         return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))
+
+    def _mean_pressure(self) -> FloatArray:
+        force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
+        if self.scene.effects:
+            force = np.maximum(force, self.contact_stiffness * np.abs(self.indentation_depth))
+        pressure = np.divide(force, area, out=np.zeros_like(force), where=area > 0)
+        return np.full(force.shape, pressure.max(initial=0.0)) if self.scene.effects else pressure
 
     def pressure(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact."""

@@ -129,7 +129,7 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         indentation_depth=depth,
         normal_force=force,
         contact_stiffness=stiffness,
-        fields=PathFields(scene, system.flat_punch, radius, depth, singular_edge=True),
+        fields=PathFields(scene, system.flat_punch, radius - system.flat_radius, depth, singular_edge=True),
     )
 
 

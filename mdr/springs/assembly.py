@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
+from bem.kernels.profile_slope import profile_slope
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
@@ -30,6 +31,12 @@ RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half
 SHARE = 0.01  # of the flat punch's error, below which a profile on coarse panels is resolved no further
 _FLATTEST = 16.0  # exponent at first touch; u^4n leaves double precision beyond 30, and errs by 1e-11 from 23 on
 _CLOSE = (1e-9, 1e-4, 1e-1)  # to first touch, relative
+# Error of a pressure over that of the depth where the profile is fitted: measured against refined data at most 0.5
+# beyond a/h = 160 and 1.6 with tables; the rest is a margin.
+FITTED_SHARE = 4.0
+# What multiplies the truncation of the layer's density: the constant of the interpolation bound on an ellipse on which
+# the density stays below its values in the contact.
+SLOPE_SHARE = 1.0
 GAP = 1e-12  # relative distance below which two piece ends are one
 
 
@@ -56,8 +63,9 @@ def equivalent_system(
             solution = solution.wide_alone
         else:
             max_radius = _known_radius(solution, indenter, unit, max_radius)
-    g_hs = _half_space_function(solution, indenter, unit, max_radius)
+    g_hs = _half_space_function(solution, indenter, unit, max_radius - indenter.flat_radius)
     profile, moment, own_error = _curves(solution, indenter, unit, g_hs)
+    own_error += _rounding_near_equator(indenter, max_radius)
     _refuse_rings(profile, indenter, unit, _noise(solution, max_radius / unit))
     system = EquivalentSystem(
         contact_modulus=contact_modulus(layer),
@@ -94,26 +102,27 @@ def _with_variants(system: EquivalentSystem, indenter: Profile, g_hs: MappedFunc
 
 
 def contact_fields(
-    layer: Layer, indenter: Profile, flat_punch: FlatPunchSolution, *, contact_radius: float, depth: float, edge: bool
+    layer: Layer, indenter: Profile, flat_punch: FlatPunchSolution, *, excess: float, depth: float, edge: bool
 ) -> ContactFields:
-    """Pressure and displacement of one contact of radius a [m] under a depth delta [m].
+    """Pressure and displacement of one contact under a depth.
 
     Args:
         layer: Layer or half-space.
         indenter: Profile of revolution.
         flat_punch: The solution that the equivalent system was made of.
-        contact_radius: a [m].
+        excess: a - b [m] over the radius b of the flat end, which says more than the rounded a close to it.
         depth: delta [m].
         edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
     """
+    contact_radius = indenter.flat_radius + excess
     unit = contact_radius if layer.is_half_space else layer.thickness
     density, table, ratio, delta = None, None, contact_radius / unit, depth / unit
     if isinstance(flat_punch, LargeRatioSolution):
         flat_punch = flat_punch.one_contact(ratio)
     if isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution):
-        profile = _half_space_function(flat_punch, indenter, unit, contact_radius)
+        profile = _half_space_function(flat_punch, indenter, unit, excess)
     else:
-        g_hs, table = _half_space_function(flat_punch, indenter, unit, contact_radius), flat_punch
+        g_hs, table = _half_space_function(flat_punch, indenter, unit, excess), flat_punch
         springs = _springs_at_nodes(flat_punch, g_hs, indenter.flat_radius / unit)
         profile, _ = _profile(flat_punch, indenter, unit, g_hs, springs)
     if isinstance(flat_punch, IntegralEquationSolution):
@@ -126,6 +135,8 @@ def contact_fields(
         contact_modulus=contact_modulus(layer),
         unit=unit,
         contact_radius=ratio,
+        excess=excess / unit,
+        room=(indenter.max_radius - indenter.flat_radius - excess) / unit,
         indentation_depth=delta,
         profile=profile,
         density=density,
@@ -134,11 +145,31 @@ def contact_fields(
     )
 
 
-def density_error(flat_punch: FlatPunchSolution, ratio: FloatArray) -> FloatArray:
-    """What solving for a contact's pressure adds to the relative error of its depth."""
+def pressure_error(flat_punch: FlatPunchSolution, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+    """Relative error of a contact's pressure, from that of its depth and of the density that is solved for.
+
+    The half-space's pressure needs neither. The layer's share psi of the density is even and varies over a thickness:
+    for small ratios a/h its slope, which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all.
+    A table's pressures are superposed with weights as uncertain as the depth.
+    """
+    if isinstance(flat_punch, HalfSpaceFlatPunch):
+        return np.zeros_like(ratio)
     if isinstance(flat_punch, LargeRatioSolution):
-        return flat_punch.density_error(ratio)
-    return np.zeros_like(ratio)
+        return np.asarray(FITTED_SHARE * (depth_error + flat_punch.density_error(ratio)))
+    if not isinstance(flat_punch, IntegralEquationSolution):
+        return FITTED_SHARE * depth_error
+    share = (1 - 1 / flat_punch.normalized_contact_stiffness(ratio)) * ratio**2 / (1 + ratio**2)
+    return np.asarray(share * (depth_error + _slope_truncation(flat_punch)))
+
+
+def _slope_truncation(flat_punch: IntegralEquationSolution) -> float:
+    """What m Gauss nodes on panels of H thicknesses leave of the slope of psi, which is analytic for |Im t| < 2.
+
+    Interpolation leaves rho^-m on the ellipse of Bernstein through 2i, its derivative m times as much.
+    """
+    distance = 4 / flat_punch.factor.panel_width
+    m = flat_punch.factor.count
+    return float(SLOPE_SHARE * m * (distance + np.hypot(1, distance)) ** -m)
 
 
 def _edge_density(profile: MappedFunction, density: ContactDensity | None, delta: float) -> float:
@@ -188,15 +219,23 @@ def _profile(
     return profile, profile.relative_error() + seen
 
 
-def _half_space_function(
-    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float
-) -> MappedFunction:
-    """g_hs in units of `unit`, on pieces that also suit the flat-punch data."""
+def _rounding_near_equator(indenter: Profile, max_radius: float) -> float:
+    """What one rounding of the positions does to a profile that is upright at its end: eps d(ln g_hs)/d(ln x)."""
+    if indenter.max_radius in indenter.breakpoints or not max_radius < indenter.max_radius < np.inf:
+        return 0.0
+    edge, room = np.full(1, max_radius), np.full(1, indenter.max_radius - max_radius)
+    slope = profile_slope(indenter, edge, room)
+    height = half_space_profile(indenter, edge)
+    return 0.0 if slope is None else float(np.finfo(float).eps * max_radius * slope[0] / height[0])
+
+
+def _half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float) -> MappedFunction:
+    """g_hs in units of `unit` up to an excess [m] over the flat radius, on pieces that suit the flat-punch data too."""
     count = _nodes_for(solution)
     if isinstance(indenter, FlatPunch):  # zero wherever it is asked
         rest = MappedGrid(np.zeros(1), np.full(1, np.finfo(float).tiny), np.ones(1), count)
         return MappedFunction(rest, np.zeros((1, count)), 0.0)
-    grid, lead = _initial_grid(solution, indenter, unit, max_radius, count)
+    grid, lead = _initial_grid(solution, indenter, unit, excess, count)
     scale = np.inf if isinstance(solution, HalfSpaceFlatPunch) else 1.0
     far = (indenter.max_radius - indenter.flat_radius) / unit
     tolerance = max(RESOLVED, SHARE * _panel_error(solution))
@@ -230,10 +269,10 @@ def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:
 
 
 def _initial_grid(
-    solution: FlatPunchSolution, indenter: Profile, unit: float, max_radius: float, count: int
+    solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float, count: int
 ) -> tuple[MappedGrid, float]:
     """Pieces between panel ends and breakpoints, and the exponent of u with which g_hs begins in the first."""
-    flat, end = indenter.flat_radius / unit, (max_radius - indenter.flat_radius) / unit
+    flat, end = indenter.flat_radius / unit, excess / unit
     breakpoints = np.array([k - indenter.flat_radius for k in indenter.breakpoints]) / unit
     panels = _panel_ends(solution, flat + end) - flat
     inner = _separate(breakpoints, end)

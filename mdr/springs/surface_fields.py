@@ -2,13 +2,9 @@
 
     p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt],    phi = delta - g_hs + psi
 
-psi, the layer's share, is smooth (`bem.layer_equation.contact_density`). What a profile's kinks make of g_hs is
-integrated here with
-
-    t = hi + (hi - lo) sinh^2(eta),    dt / sqrt((t - hi)(t - lo)) = 2 d(eta),
-
-hi and lo being the two neighbouring singularities: the radius r itself and the kink (or -r, where there is none). The
-logarithm of the pressure at a kink is then the length of the range of eta, and no digit is lost on either side of it.
+psi, the layer's share, is smooth (`bem.layer_equation.contact_density`). g_hs' has a closed form for most profiles
+(`bem.kernels.profile_slope`), and what kinks and a sphere's equator make of it is integrated by
+`bem.polynomials.abel_integral`.
 """
 
 from __future__ import annotations
@@ -20,15 +16,16 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.kernels.profile_slope import profile_slope
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.protocol import FlatPunchSolution
+from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
 NODES = 24
-NEAREST = 1e-20  # relative distance that stands for zero: the centre, where radius and mirror image coincide
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +37,8 @@ class ContactFields:
         contact_modulus: E* [Pa].
         unit: Length unit [m] of all that follows.
         contact_radius: a.
+        excess: a - b over the radius b of the flat end, with all its digits.
+        room: What is left from a to the end of the profile, with all its digits.
         indentation_depth: delta.
         profile: g_hs over the excess x - b up to a; with a table, the layer's own MDR profile g.
         density: Layer's share psi of the density; None on the half-space and with a table.
@@ -51,6 +50,8 @@ class ContactFields:
     contact_modulus: float
     unit: float
     contact_radius: float
+    excess: float
+    room: float
     indentation_depth: float
     profile: MappedFunction
     density: ContactDensity | None
@@ -63,11 +64,11 @@ class ContactFields:
         Raises:
             InvalidInput: Where the pressure is infinite: at a sharp rim, at a cone's tip, at the edge of a flat punch.
         """
-        r = radius / self.unit
-        inside = r < self.contact_radius
-        self._refuse_infinite(radius, inside | ((r == self.contact_radius) & (self.edge_density != 0)))
-        pressure = np.zeros_like(r)
-        pressure[inside] = self._pressure_inside(r[inside])
+        offset = (radius - self.indenter.flat_radius) / self.unit
+        inside = offset < self.excess
+        self._refuse_infinite(radius, inside | ((offset == self.excess) & (self.edge_density != 0)))
+        pressure = np.zeros_like(radius)
+        pressure[inside] = self._pressure_inside(radius[inside] / self.unit, offset[inside])
         return pressure
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
@@ -83,41 +84,40 @@ class ContactFields:
     def _flat(self) -> float:
         return self.indenter.flat_radius / self.unit
 
-    def _pressure_inside(self, r: FloatArray) -> FloatArray:
-        a = self.contact_radius
-        bracket = self._profile_integral(r)
+    def _pressure_inside(self, r: FloatArray, offset: FloatArray) -> FloatArray:
+        """p(r) at radii given with their offsets r - b."""
+        bracket = self._profile_integral(r, offset)
         if self.edge_density != 0:
-            bracket += self._weight(r, a) * self.edge_density / np.sqrt((a - r) * (a + r))
+            to_edge = (self.excess - offset) * (self.contact_radius + r)
+            bracket += self._weight(r, self.contact_radius) * self.edge_density / np.sqrt(to_edge)
         if self.density is not None:
             bracket -= self.density.abel_integral(r)
         return self.contact_modulus / np.pi * bracket  # Eq. (9)
 
-    def _profile_integral(self, r: FloatArray) -> FloatArray:
+    def _profile_integral(self, r: FloatArray, offset: FloatArray) -> FloatArray:
         """int_r^a g_hs'(t)/sqrt(t^2 - r^2) dt, between one breakpoint of the profile and the next."""
-        inner = [k / self.unit for k in self.indenter.breakpoints if self._flat < k / self.unit < self.contact_radius]
-        starts = [self._flat, *inner]
         total = np.zeros_like(r)
-        for start, stop in zip(starts, [*inner, self.contact_radius], strict=True):
-            total += self._stretch(r, start, stop) if stop > start else 0.0
+        for stretch in self._stretches:
+            total += abel_integral(self._slope, stretch, r, offset)
         return total
 
-    def _stretch(self, r: FloatArray, start: float, stop: float) -> FloatArray:
-        """The integral over one stretch [max(r, start), stop]; zero for radii beyond it."""
-        nodes, weights = gauss_nodes(NODES)
-        high = np.minimum(np.maximum(r, start), stop)
-        low = np.minimum(r, start) if start > 0 else -r
-        gap = np.maximum(high - low, NEAREST * stop)
-        reach = np.arcsinh(np.sqrt((stop - high) / gap))
-        panels = int(np.ceil(np.max(reach, initial=1.0)))
-        eta = ((np.arange(panels)[:, None] + nodes) / panels).ravel() * reach[:, None]
-        beyond = gap[:, None] * np.sinh(eta) ** 2  # t - hi
-        t = high[:, None] + beyond
-        piece, u = self.profile.grid.locate(np.minimum((high - self._flat)[:, None] + beyond, self._reach))
-        from_start = (high - start)[:, None] + beyond  # not t - start, which would cancel beside a kink
-        rest = np.sqrt(from_start / (t + r[:, None])) if start > 0 else 1.0
-        values = 2 * self.profile.derivative_at(piece, u) * rest * self._weight(r[:, None], t)
-        integral: FloatArray = reach / panels * (values @ np.tile(weights, panels))
-        return np.where(r < stop, integral, 0.0)
+    @cached_property
+    def _stretches(self) -> list[Stretch]:
+        """Between the breakpoints of the profile, whose slope has a pole where it ends upright."""
+        indenter, unit = self.indenter, self.unit
+        breaks = [(k - indenter.flat_radius) / unit for k in indenter.breakpoints]
+        ends = [0.0, *(k for k in breaks if 0 < k < self.excess), self.excess]
+        room = np.inf if indenter.max_radius in indenter.breakpoints else self.room
+        rooms = [*np.full(len(ends) - 2, np.inf), room]
+        stretches = zip(ends[:-1], ends[1:], rooms, strict=True)
+        return [Stretch(self._flat, start, stop, room) for start, stop, room in stretches if stop > start]
+
+    def _slope(self, nodes: AbelNodes) -> FloatArray:
+        """g_hs', or with a table g' and the pressure of the punch whose edge is at t."""
+        closed = profile_slope(self.indenter, self.unit * nodes.offset, self.unit * nodes.room)
+        if closed is None or self.table is not None:
+            closed = self.profile.derivative(np.minimum(nodes.offset, self._reach))
+        return closed * self._weight(nodes.radius, nodes.position)
 
     def _weight(self, r: FloatArray, x: FloatArray | float) -> FloatArray | float:
         """Pressure of a flat punch of radius x relative to the half-space's: 1, or 2 k_bar q of a table, Eq. (12)."""
@@ -145,8 +145,8 @@ class ContactFields:
 
     @cached_property
     def _reach(self) -> float:
-        """Largest excess."""
-        return self.contact_radius - self._flat
+        """Largest excess that the profile knows."""
+        return self.profile.grid.end
 
     def _refuse_infinite(self, radius: FloatArray, asked: NDArray[np.bool_]) -> None:
         singular = [0.0] if float(self.indenter.slope_at(0.0)) > 0 else []

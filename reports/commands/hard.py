@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from typing import cast
 
 from cases.declare.guarded_method import build_guarded
 from cases.measurements.advice import advise as advice_on
@@ -109,12 +110,19 @@ def calibrate(out: Path, seed: int) -> None:
 def campaign(method: str, family: str, count: int, seed: int) -> int:
     """Solve random scenes and check each answer; return 1 if one is wrong without a word."""
     from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
-    from cases.measurements.campaigns.random_scenes import FAMILIES  # noqa: PLC0415
+    from cases.measurements.campaigns.pressures import pressure_campaign  # noqa: PLC0415
+    from cases.measurements.campaigns.random_scenes import FAMILIES, Family  # noqa: PLC0415
 
-    if family not in FAMILIES:
-        raise InvalidInput(f"family = {family!r}: must be one of {', '.join(FAMILIES)}")
-    found, out = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=family), console()
+    if family not in (*FAMILIES, "pressure"):
+        raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, 'pressure'))}")
+    if family == "pressure":
+        found = pressure_campaign(build_guarded(method, {}), seed=seed, count=count)
+    else:
+        found = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=cast("Family", family))
+    out = console()
     out.print(", ".join(f"{end}: {number}" for end, number in found.counts.items()), markup=False)
+    for reason, number in found.refusals.items():
+        out.print(f"refused {number} times: {reason}", markup=False)
     for quantity, coverage in found.coverage().items():
         sharp = "" if coverage.sharpness is None else f", stated over true error {coverage.sharpness:.3g} in the median"
         out.print(f"{quantity}: {100 * coverage.covered:.2f} % of {coverage.count} covered{sharp}", markup=False)

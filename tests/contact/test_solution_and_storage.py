@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -141,6 +143,15 @@ def test_unequal_lengths_bad_steps_and_bad_radii_are_refused():
         path().pressure([-1.0])
     with pytest.raises(InvalidInput, match="gave no surface fields"):
         path(fields=None).pressure(0.0)
+
+
+def test_every_stated_error_has_an_uncertainty():
+    """Pressures are fields and residuals are no quantities: both once raised a TypeError or AttributeError."""
+    estimate = {"pressure": np.array([0.1, 0.2, 0.4]), "energy_defect": np.array([1e-9, 2e-9, 3e-9])}
+    solution = dataclasses.replace(path(), error_estimate=estimate)
+    mean = solution.normal_force / (np.pi * solution.contact_radius**2)
+    np.testing.assert_allclose(solution.uncertainty("pressure"), estimate["pressure"] * mean, rtol=1e-15)
+    np.testing.assert_array_equal(solution.uncertainty("energy_defect"), estimate["energy_defect"])
 
 
 def test_uncertainty_is_relative_error_times_scale():

@@ -53,6 +53,20 @@ def test_radius_depth_and_force_invert_each_other(layer, indenter):
 
 @pytest.mark.parametrize("layer", LAYERS, ids=["bonded", "unbonded", "half-space"])
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
+def test_a_radius_is_found_to_rounding_when_it_is_sought_alone(layer, indenter):
+    """In a list the slowest radius decides when the search ends; alone each needs its own last step."""
+    system = system_of(layer, indenter)
+    radii = indenter.flat_radius + (7e-3 - indenter.flat_radius) * np.random.default_rng(9).uniform(0.01, 1.0, 40)
+    for forward, backward, rounding in (
+        (system.mdr_profile, system.excess_at_depth, 1e-13),
+        (system.elastic_force, system.excess_at_force, 2e-13),
+    ):
+        alone = [float(backward(forward(radius))) for radius in radii]
+        np.testing.assert_allclose(np.add(system.flat_radius, alone), radii, rtol=rounding)
+
+
+@pytest.mark.parametrize("layer", LAYERS, ids=["bonded", "unbonded", "half-space"])
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
 def test_contact_stiffness_is_the_derivative_of_force_by_depth(layer, indenter):
     """Eq. (5), by central differences of relative step 1e-4: their error is about 1e-8 of the value."""
     system = system_of(layer, indenter)

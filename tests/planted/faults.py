@@ -185,11 +185,18 @@ MDR = [
         cone(HALF_SPACE, "half-space b/a=0.5", "mdr"),
     ),
     Fault(
+        "Newton's search for the radius accepts 1e9 times its tolerance",
+        "mdr",
+        set_to("mdr.springs.equivalent_system:NEWTON_TOLERANCE", 2e-5),
+        Test(
+            "mdr.test_equivalent_system:test_a_radius_is_found_to_rounding_when_it_is_sought_alone",
+            (lambda: _mdr_layer("half-space"), lambda: _mdr_indenter(1)),
+        ),
+    ),
+    Fault(
         "pressure of Eq. (9) twice too large",
         "mdr",
-        override(
-            "mdr.springs.surface_fields:ContactFields", "_pressure_inside", lambda f: lambda self, r: 2 * f(self, r)
-        ),
+        override("mdr.springs.surface_fields:ContactFields", "_pressure_inside", lambda f: lambda *a: 2 * f(*a)),
         Test("mdr.test_method:test_the_pressure_carries_the_force", ("bonded", lambda: _mdr_indenter(0))),
     ),
     Fault(
@@ -206,6 +213,12 @@ def _mdr_indenter(number):
     from tests.mdr.test_method import INDENTERS
 
     return INDENTERS[number]
+
+
+def _mdr_layer(name):
+    from tests.mdr.test_method import LAYERS
+
+    return LAYERS[name]
 
 
 # -- transforms and the boundary elements ----------------------------------------------------------------------------

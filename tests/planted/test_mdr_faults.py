@@ -60,14 +60,14 @@ def test_youngs_modulus_for_contact_modulus_is_seen(monkeypatch):
 def test_lost_circumference_is_seen(monkeypatch):
     """A pressure that lacks 1/(2 pi r) no longer adds up to the force."""
     whole = ContactFields._pressure_inside
-    monkeypatch.setattr(ContactFields, "_pressure_inside", lambda self, r: 2 * np.pi * r * whole(self, r))
+    monkeypatch.setattr(ContactFields, "_pressure_inside", lambda self, r, d: 2 * np.pi * r * whole(self, r, d))
     with pytest.raises(AssertionError):
         test_method.test_the_pressure_carries_the_force("bonded", test_method.INDENTERS[0])
 
 
 def test_a_wrong_sign_of_the_layers_share_is_seen(monkeypatch):
-    def flipped(self, r):
-        bracket = self._profile_integral(r) + self.density.abel_integral(r)
+    def flipped(self, r, offset):
+        bracket = self._profile_integral(r, offset) + self.density.abel_integral(r)
         return self.contact_modulus / np.pi * bracket
 
     monkeypatch.setattr(ContactFields, "_pressure_inside", flipped)

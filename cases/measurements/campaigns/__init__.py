@@ -4,5 +4,6 @@
 - ``random_scenes``: seeded scenes over the whole range of every parameter
 - ``referee``, ``referee_profiles``: an answer to elastic scenes that shares no code with any method
 - ``campaign``: random scenes against their referee, coverage and sharpness of stated errors
+- ``pressures``, ``pressure_referee``: pressure fields against their own referee, their integral and single radii
 - ``hostile``: seeded input that nobody should trust
 """

@@ -1,14 +1,16 @@
 """Random scenes by the thousand: every answer within its stated error of an independent one, or a named refusal.
 
-The referee of elastic scenes is `second_opinion` as far as it reaches; beyond a/h = 100, where it is costly, the method
+The referee of elastic scenes is `referee` as far as it reaches; beyond a/h = 100, where it is costly, the method
 with half the discretisation length checks every eighth scene. For other loadings it checks every scene, or another
 method does. Every solved scene is also solved in other units, where it must give the same answer.
 """
 
 from __future__ import annotations
 
+import re
 import time
 import warnings
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
@@ -83,7 +85,7 @@ class Trial:
     """
 
     number: int
-    family: Family
+    family: Family | Literal["pressure"]
     method: str
     end: End
     message: str
@@ -114,6 +116,12 @@ class CampaignResult:
     def defects(self) -> tuple[Trial, ...]:
         """Trials that gave a wrong number without a word, or crashed."""
         return tuple(trial for trial in self.trials if trial.end in ("beyond", "crashed"))
+
+    @property
+    def refusals(self) -> dict[str, int]:
+        """How often each reason was given, numbers left out."""
+        reasons = [re.sub(r"[-+.\d]+(e[-+]?\d+)?", "..", t.message) for t in self.trials if t.end == "refused"]
+        return dict(Counter(reasons).most_common())
 
     def coverage(self) -> dict[str, Coverage]:
         """By quantity, how well stated errors cover true ones."""

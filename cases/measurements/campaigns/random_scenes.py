@@ -87,7 +87,7 @@ def _contact_ratio(draw: Draw, low: float, high: float) -> float:
 # -- layers ----------------------------------------------------------------------------------------------------------
 
 
-def _poissons_ratio(draw: Draw) -> float:
+def poissons_ratio(draw: Draw) -> float:
     """Uniform, exactly incompressible, close to it, or zero."""
     kind = draw.choice(4, p=[0.6, 0.2, 0.15, 0.05])
     close = 0.5 - log_uniform(draw, 1e-9, 1e-2)
@@ -110,7 +110,7 @@ def _flat_part(draw: Draw) -> float:
     return float((draw.uniform(0.01, 0.99), small, 1.0 - 0.9 * small)[draw.integers(3)])
 
 
-def _tabulated(draw: Draw, a: float, slope: float) -> Tabulated:
+def tabulated(draw: Draw, a: float, slope: float) -> Tabulated:
     """A measured profile: convex on the whole, with a little noise in its increments."""
     size = int(draw.integers(4, 40))
     radii = a * np.concatenate([[0.0], np.cumsum(draw.uniform(0.2, 1.0, size))])
@@ -130,7 +130,7 @@ _INDENTERS: dict[type[Profile], Callable[[Draw, float, float], Profile]] = {
     PowerLaw: lambda draw, a, slope: PowerLaw(
         exponent=log_uniform(draw, 1.0, 12.0), reference_radius=a, reference_height=slope * a
     ),
-    Tabulated: _tabulated,
+    Tabulated: tabulated,
 }
 
 
@@ -154,7 +154,7 @@ def _typical_depth(indenter: Profile, a: float) -> float:
 
 def _stage(draw: Draw, ratio: tuple[float, float]) -> tuple[Layer, Profile, float]:
     a = _contact_ratio(draw, *ratio)
-    return _layer(draw, _poissons_ratio(draw)), _indenter(draw, a), a
+    return _layer(draw, poissons_ratio(draw)), _indenter(draw, a), a
 
 
 def _elastic(draw: Draw, ratio: tuple[float, float]) -> Scene:
@@ -208,7 +208,7 @@ def _moving_stage(draw: Draw, ratio: tuple[float, float]) -> tuple[Layer, Profil
     """An incompressible layer that may relax, and an indenter; the typical duration is one."""
     a = _contact_ratio(draw, *ratio)
     viscous = draw.random() < 0.7
-    layer = _layer(draw, 0.5 if viscous else _poissons_ratio(draw))
+    layer = _layer(draw, 0.5 if viscous else poissons_ratio(draw))
     effects = (_viscoelasticity(draw, layer.shear_modulus, 1.0),) if viscous else ()
     indenter = _indenter(draw, a)
     return layer, indenter, _typical_depth(indenter, a), effects, a

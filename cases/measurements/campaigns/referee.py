@@ -16,12 +16,22 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
 from cases.measurements.campaigns.referee_profiles import equivalent_profile
-from contact import Adhesion, ContactPath, ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene
+from contact import (
+    Adhesion,
+    ContactPath,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Profile,
+    Scene,
+)
 from contact.records.validation import FloatArray
 
 LARGEST_RATIO: Final = 100.0  # a/h; beyond, one radius takes ten seconds and hundreds of megabytes
@@ -132,12 +142,15 @@ def _state(scene: Scene, a: float) -> _State:
 
 
 def _rounding(scene: Scene, a: float) -> float:
-    """Rounding errors grow with the inverse of the smallest eigenvalue, chi(h/a), and with 1/(1 - b/a)."""
-    layer = scene.layer
-    k = np.array([1.0 if layer.is_half_space else min(1.0, layer.thickness / a)])
-    smallest = 1.0 if layer.is_half_space else 1.0 - float(_complement(layer, k)[0])
+    """Rounding errors grow with the inverse of the smallest eigenvalue and with 1/(1 - b/a)."""
     flat = 0.0 if isinstance(scene.indenter, FlatPunch) else scene.indenter.flat_radius
-    return _EPS * (200 / smallest + 4 / max(1 - flat / a, _EPS))
+    return _EPS * (200 / smallest_eigenvalue(scene.layer, a) + 4 / max(1 - flat / a, _EPS))
+
+
+def smallest_eigenvalue(layer: Layer, a: float) -> float:
+    """chi(h/a), about the smallest eigenvalue of the equation under a contact of radius a [m]."""
+    k = np.array([1.0 if layer.is_half_space else min(1.0, layer.thickness / a)])
+    return 1.0 if layer.is_half_space else 1.0 - float(_complement(layer, k)[0])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,15 +175,72 @@ def _solve(layer: Layer, t: FloatArray, v: FloatArray, loads: FloatArray) -> lis
         return [_Density(edge=float(w), integral=float(v @ W)) for w, W in zip(at_edge, loads, strict=True)]
     if a > LARGEST_RATIO:
         raise InvalidInput(f"a/h = {a:g}: the second opinion covers ratios up to {LARGEST_RATIO:g}")
+    k, amplitudes, psi, (_, w) = _waves(layer, t, v, loads)
+    edges = at_edge + amplitudes.T @ np.cos(k * a)
+    integrals = loads @ v + w @ psi
+    return [_Density(edge=float(e), integral=float(i)) for e, i in zip(edges, integrals, strict=True)]
+
+
+def _waves(
+    layer: Layer, t: FloatArray, v: FloatArray, loads: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, tuple[FloatArray, FloatArray]]:
+    """Wavenumbers k and amplitudes A, shape (k, loads), of psi = sum A cos(kx), psi on panels, and these panels."""
+    a = float(v.sum())
     k, c = _wavenumbers(a)
     c = 2 / math.pi * c * _complement(layer, k)
     x, w = _equal_panels(a, math.ceil(a), _NODES)
     waves = np.cos(np.outer(x, k))
     moments = np.cos(np.outer(k, t)) @ (v * loads).T  # int cos(kt) W dt
-    psi = np.linalg.solve(np.eye(x.size) - (waves * c) @ waves.T * w, waves @ (c[:, None] * moments))
-    edges = at_edge + (np.cos(k * a) * c) @ (moments + waves.T @ (w[:, None] * psi))
-    integrals = loads @ v + w @ psi
-    return [_Density(edge=float(e), integral=float(i)) for e, i in zip(edges, integrals, strict=True)]
+    psi = np.asarray(
+        np.linalg.solve(np.eye(x.size) - (waves * c) @ waves.T * w, waves @ (c[:, None] * moments)), dtype=np.float64
+    )
+    amplitudes: FloatArray = c[:, None] * (moments + waves.T @ (w[:, None] * psi))
+    return k, amplitudes, psi, (x, w)
+
+
+@dataclass(frozen=True, kw_only=True)
+class LayerShare:
+    """psi = sum A cos(kx), the layer's share of the density under a contact of radius a; lengths in thicknesses.
+
+    Attributes:
+        wavenumbers: k, shape (n,).
+        punch: A under a flat punch pressed in by one unit, shape (n,).
+        risen: A of the profile's g_hs, shape (n,).
+        edge: g_hs(a).
+        ratio: a.
+        unit: The thickness [m].
+    """
+
+    wavenumbers: FloatArray
+    punch: FloatArray
+    risen: FloatArray
+    edge: float
+    ratio: float
+    unit: float
+
+    def amplitudes(self, depth: float | None) -> FloatArray:
+        """A under a depth [m]; without one, under that where the density vanishes at the edge."""
+        at_edge = np.cos(self.wavenumbers * self.ratio)
+        smooth = (self.edge + self.risen @ at_edge) / (1 + self.punch @ at_edge)
+        delta = smooth if depth is None else depth / self.unit
+        amplitudes: FloatArray = delta * self.punch - self.risen
+        return amplitudes
+
+
+def layer_share(layer: Layer, indenter: Profile, a: float, profile_at_edge: float) -> LayerShare:
+    """The layer's share under a contact of radius a [m]; g_hs(a) [m] is given with all its digits."""
+    h = layer.thickness
+    t, v = _pieces(a / h, tuple(b / h for b in indenter.breakpoints if b < a), indenter.max_radius / h)
+    profile = equivalent_profile(indenter, t * h) / h
+    k, amplitudes, _, _ = _waves(layer, t, v, np.array([np.ones_like(t), profile]))
+    return LayerShare(
+        wavenumbers=k,
+        punch=amplitudes[:, 0],
+        risen=amplitudes[:, 1],
+        edge=profile_at_edge / h,
+        ratio=a / h,
+        unit=h,
+    )
 
 
 def _complement(layer: Layer, k: FloatArray) -> FloatArray:
@@ -231,5 +301,20 @@ def _gauss(count: int, lower: float, upper: float) -> tuple[FloatArray, FloatArr
 
 @lru_cache(maxsize=256)
 def _legendre(count: int) -> tuple[FloatArray, FloatArray]:
-    nodes, weights = np.polynomial.legendre.leggauss(count)
-    return nodes, weights
+    """Gauss nodes and weights, which numpy leaves off by 7e-13 at forty nodes: one Newton step in long double."""
+    x = np.polynomial.legendre.leggauss(count)[0].astype(np.longdouble)
+    for _ in range(2):
+        value, before = _legendre_polynomials(count, x)
+        slope = count * (before - x * value) / (1 - x**2)
+        x -= value / slope
+    value, before = _legendre_polynomials(count, x)
+    slope = count * (before - x * value) / (1 - x**2)
+    return x.astype(np.float64), (2 / ((1 - x**2) * slope**2)).astype(np.float64)
+
+
+def _legendre_polynomials(count: int, x: Any) -> tuple[Any, Any]:
+    """P_n and P_(n-1) at x by their recurrence."""
+    before, value = np.ones_like(x), x
+    for n in range(1, count):
+        before, value = value, ((2 * n + 1) * x * value - n * before) / (n + 1)
+    return value, before

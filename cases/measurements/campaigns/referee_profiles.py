@@ -93,6 +93,71 @@ def _(indenter: Tabulated, x: FloatArray) -> FloatArray:
     return np.asarray(extended * integral, dtype=np.float64)
 
 
+def equivalent_excess(indenter: Profile, excess: float) -> float:
+    """g(b + excess) [m], with all its digits close to the rim of a flat end."""
+    b = indenter.flat_radius
+    leg = math.sqrt(excess * (excess + 2 * b))
+    if isinstance(indenter, TruncatedCone):
+        return indenter.slope * (b + excess) * math.atan2(leg, b)
+    if isinstance(indenter, TruncatedParaboloid):
+        return (b + excess) * leg / indenter.radius_of_curvature
+    return float(equivalent_profile(indenter, np.array([b + excess]))[0])
+
+
+@singledispatch
+def equivalent_slope(indenter: Profile, excess: FloatArray, room: FloatArray) -> FloatArray:
+    """g'(x) at x = b + excess, `room` [m] before the end of the profile.
+
+    Raises:
+        InvalidInput: For a profile of which no closed form is known here.
+    """
+    raise InvalidInput(f"{type(indenter).__name__}: no closed form of its half-space profile stands here; add it")
+
+
+@equivalent_slope.register
+def _(indenter: Paraboloid, excess: FloatArray, room: FloatArray) -> FloatArray:
+    return 2 * excess / indenter.radius_of_curvature
+
+
+@equivalent_slope.register
+def _(indenter: Sphere, excess: FloatArray, room: FloatArray) -> FloatArray:
+    R = indenter.radius
+    return 0.5 * np.log1p(2 * excess / room) + 0.5 * (R / room - R / (R + excess))
+
+
+@equivalent_slope.register
+def _(indenter: Cone, excess: FloatArray, room: FloatArray) -> FloatArray:
+    return np.full_like(excess, 0.5 * math.pi * indenter.slope)
+
+
+@equivalent_slope.register
+def _(indenter: PowerLaw, excess: FloatArray, room: FloatArray) -> FloatArray:
+    return indenter.exponent * equivalent_profile(indenter, excess) / excess
+
+
+@equivalent_slope.register
+def _(indenter: TruncatedCone, excess: FloatArray, room: FloatArray) -> FloatArray:
+    root = np.sqrt(excess * (excess + 2 * indenter.flat_radius))
+    return indenter.slope * (np.arctan(root / indenter.flat_radius) + indenter.flat_radius / root)
+
+
+@equivalent_slope.register
+def _(indenter: TruncatedParaboloid, excess: FloatArray, room: FloatArray) -> FloatArray:
+    root = np.sqrt(excess * (excess + 2 * indenter.flat_radius))
+    return np.asarray((root + (indenter.flat_radius + excess) ** 2 / root) / indenter.radius_of_curvature)
+
+
+@equivalent_slope.register
+def _(indenter: Tabulated, excess: FloatArray, room: FloatArray) -> FloatArray:
+    """g' = int (f' + r f'')/sqrt(x^2 - r^2) dr, in which f' + r f'' is a quadratic on each piece, as f' is."""
+    curve = PchipInterpolator(indenter.radii, indenter.heights)
+    extended = np.asarray(excess, dtype=np.longdouble)
+    slope = np.zeros_like(extended)
+    for (start, end), (c0, c1, c2, _) in zip(pairwise(indenter.radii.astype(np.longdouble)), curve.c.T, strict=True):
+        slope += _piece(extended, start, end, np.array([3 * c0, 2 * c1 + 3 * c0 * start, c2 + 2 * c1 * start, 0]))
+    return np.asarray(slope, dtype=np.float64)
+
+
 def _piece(x: Extended, start: np.longdouble, end: np.longdouble, cubic: FloatArray) -> Extended:
     """int f'(r)/sqrt(x^2 - r^2) dr over [start, end] below x, f = c0 s^3 + c1 s^2 + c2 s + c3 with s = r - start."""
     first, last = np.minimum(start, x), np.minimum(end, x)
