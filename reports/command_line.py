@@ -388,14 +388,14 @@ def schema(
 def report(
     run: Annotated[Path, typer.Argument(help="Folder of a finished or interrupted run.")],
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
-) -> None:
-    """Build the pages of a run again without computing; with two runs, compare the second with the first."""
+) -> int:
+    """Build the pages of a run again without computing; with two runs, compare the second with the first.
+
+    A run that was changed after it was written is refused by its seal.
+    """
     from reports.commands.report import compare_runs, rebuild  # noqa: PLC0415
 
-    if other is None:
-        rebuild(run)
-    else:
-        compare_runs(run, other)
+    return rebuild(run) if other is None else compare_runs(run, other)
 
 
 def main() -> None:

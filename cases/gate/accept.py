@@ -75,8 +75,8 @@ def _loosenings(proposal: Proposal) -> Iterator[str]:
     for change in proposal.changes:
         if change.loosens:
             yield f"{_loosening(change)}; find out why, then say --loosen"
-    for name in proposal.lost_counters:
-        yield f"the counter {name} would no longer be watched; say --loosen if that is meant"
+    for name in proposal.lost:
+        yield f"the {name} would no longer be watched; say --loosen if that is meant"
 
 
 def _loosening(change: Change) -> str:
@@ -106,8 +106,8 @@ def _entries(proposal: Proposal, now: Circumstances) -> Iterator[Acceptance]:
         if new:
             yield replace(blank, method=baseline.method, quantity=f"{new} new records")
         yield from (_changed(blank, change) for change in changes if change.old is not None)
-    for name in proposal.lost_counters:
-        yield replace(blank, method=name.rpartition(" by ")[2], quantity=f"counter {name} withdrawn")
+    for name in proposal.lost:
+        yield replace(blank, method=name.rpartition(" by ")[2], quantity=f"{name} withdrawn")
 
 
 def _changed(blank: Acceptance, change: Change) -> Acceptance:

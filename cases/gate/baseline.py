@@ -1,10 +1,8 @@
 """What was accepted: one file a case and method, ``baselines/<case>/<method>.json``, every float with all its digits.
 
-A file is written by ``accept`` alone.  Its digest covers every record, so that a tolerance edited by hand is refused.
+A file is written by ``accept`` alone.  It is sealed, so that a tolerance edited by hand is refused.
 """
 
-import hashlib
-import json
 import math
 from pathlib import Path
 from typing import Any, Self
@@ -14,11 +12,13 @@ from pydantic.dataclasses import dataclass
 
 from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.files import write_whole
-from cases.results.records import Finite, Mapping, NotNegative, Positive, Vector
+from cases.results.records import Finite, Kind, Mapping, NotNegative, Positive, Vector
+from cases.results.sealed import read_sealed, sealed_text
 from contact import InvalidInput
 
 BASELINE_VERSION = 1
 REMEDY = "restore it from the repository, or accept the case anew"
+_ENTRY = "baseline"
 
 _RECORD = ConfigDict(extra="forbid")
 
@@ -68,16 +68,53 @@ class AcceptedQuantity:
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
 class AcceptedCounters:
-    """What a solution costs in counts that repeat: unknowns, factorisations, iterations, transforms, steps."""
+    """What a solution costs in counts that repeat: unknowns, factorisations, iterations, transforms, steps.
+
+    Attributes:
+        scene: name of the scene within its case.
+        specification: hash of scene and settings.
+        counters: by name.
+        curves: relative uncertainty that the method states of a field or history, by its name; None where the case was
+            accepted before these were watched.
+    """
 
     scene: str
     specification: str
     counters: dict[str, int]
+    curves: dict[str, NotNegative] | None = None
+
+
+@dataclass(frozen=True, kw_only=True, config=_RECORD)
+class AcceptedClaim:
+    """A claim that was judged when its case was accepted.
+
+    Attributes:
+        name: of the claim.
+        kind: what it compares with.
+        quantity: what is compared.
+        methods: the method, or the two methods compared.
+        judged: on how many scenes, or groups of them.
+    """
+
+    name: str
+    kind: Kind
+    quantity: str
+    methods: tuple[str, ...]
+    judged: int
+
+    @property
+    def identity(self) -> tuple[str, Kind, str, tuple[str, ...]]:
+        """Everything but the count."""
+        return self.name, self.kind, self.quantity, self.methods
 
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
 class Baseline:
-    """All that was accepted of one method on one case; ``suites`` are the runs that must contain it."""
+    """All that was accepted of one method on one case.
+
+    ``suites`` are the runs that must contain it; ``claims`` speak of the method, alone or beside another one, and are
+    None where the case was accepted before claims were watched.
+    """
 
     version: int = BASELINE_VERSION
     case: str
@@ -85,6 +122,7 @@ class Baseline:
     suites: tuple[str, ...]
     records: tuple[AcceptedQuantity, ...]
     counters: tuple[AcceptedCounters, ...]
+    claims: tuple[AcceptedClaim, ...] | None = None
 
 
 _BASELINE: TypeAdapter[Baseline] = TypeAdapter(Baseline)
@@ -99,8 +137,7 @@ def write_baseline(folder: Path, baseline: Baseline) -> None:
     """Write the file of ``baseline``, whole or not at all; only ``accept`` calls this."""
     path = baseline_path(folder, baseline.case, baseline.method)
     path.parent.mkdir(parents=True, exist_ok=True)
-    tree = _BASELINE.dump_python(baseline, mode="json")
-    write_whole(path, _text({"digest": digest_of(tree), "baseline": tree}))
+    write_whole(path, sealed_text({_ENTRY: _BASELINE.dump_python(baseline, mode="json")}, covered=_ENTRY))
 
 
 def read_baselines(folder: Path) -> tuple[Baseline, ...]:
@@ -113,16 +150,10 @@ def read_baselines(folder: Path) -> tuple[Baseline, ...]:
 
 
 def _read(path: Path) -> Baseline:
-    try:
-        stored = json.loads(path.read_text(encoding="utf-8"), parse_constant=_refuse_constant)
-        tree, digest = stored["baseline"], stored["digest"]
-        version = tree["version"]
-    except (ValueError, KeyError, TypeError) as error:
-        raise InvalidInput(f"{path} is no baseline ({error}); {REMEDY}") from error
+    tree = read_sealed(path, remedy=REMEDY, covered=_ENTRY)[_ENTRY]
+    version = tree.get("version") if isinstance(tree, dict) else None
     if version != BASELINE_VERSION:
         raise InvalidInput(f"{path} has version {version!r}, this program reads {BASELINE_VERSION}; accept it anew")
-    if digest != digest_of(tree):
-        raise InvalidInput(f"{path} was changed by something else than accept; {REMEDY}")
     return _validated(tree, path)
 
 
@@ -135,16 +166,3 @@ def _validated(tree: dict[str, Any], path: Path) -> Baseline:
     if path.parts[-2:] != (baseline.case, f"{baseline.method}.json"):
         raise InvalidInput(f"{path} holds {baseline.method} on {baseline.case}; move it to where it belongs")
     return baseline
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"non-finite number {name}")
-
-
-def _text(tree: dict[str, Any]) -> str:
-    return json.dumps(tree, sort_keys=True, indent=1, allow_nan=False) + "\n"
-
-
-def digest_of(tree: dict[str, Any]) -> str:
-    """Return the digest that tells whether a file was edited by hand."""
-    return hashlib.sha256(_text(tree).encode()).hexdigest()[:32]

@@ -1,11 +1,13 @@
-"""A run against what was accepted: every number, every counter, nothing missing and nothing extra."""
+"""A run against what was accepted: every number, error bar, counter and claim, nothing missing and nothing extra."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from cases.gate.baseline import Baseline
+from cases.gate.claims import missing_claims
 from cases.gate.counts import count_checks
 from cases.gate.ladders import ladder_claims
+from cases.gate.uncertainties import uncertainty_checks
 from cases.gate.values import value_checks
 from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult, SceneRun
 
@@ -20,6 +22,8 @@ def gate(
     watched: Watched = lambda case, row: True,
 ) -> RunResult:
     """Return ``run`` with a regression claim for every quantity and counter that was accepted or is new.
+
+    The stated uncertainty that moved most is another one for each solution, as is each accepted claim that is missing.
 
     Args:
         run: a run whose own claims are judged.
@@ -59,7 +63,8 @@ def _gated(case: CaseResult, baselines: list[Baseline], ladders: tuple[Ladder, .
     """Return ``case`` with its regression claims; those of an earlier gate are replaced."""
     own = (claim for claim in case.claims if claim.kind is not Kind.REGRESSION)
     seen = replace(case, runs=tuple(row for row in case.runs if watched(case.name, row)))
-    return replace(case, claims=(*own, *_regression_claims(seen, baselines), *ladder_claims(case, ladders)))
+    found = *_regression_claims(seen, baselines), *missing_claims(case, baselines), *ladder_claims(case, ladders)
+    return replace(case, claims=(*own, *found))
 
 
 def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[Claim]:
@@ -71,4 +76,6 @@ def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[
         for check in value_checks(case, rows, {record.place: record for record in records}):
             yield check.claim(case.name, method)
         for check in count_checks(rows, {record.scene: record for record in counters}):
+            yield check.claim(case.name, method)
+        for check in uncertainty_checks(case, rows, records, counters):
             yield check.claim(case.name, method)

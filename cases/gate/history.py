@@ -6,7 +6,9 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
+from cases.results.files import write_whole
 from cases.results.records import Acceptance
+from cases.results.sealed import parsed
 from contact import InvalidInput
 
 _ACCEPTANCE: TypeAdapter[Acceptance] = TypeAdapter(Acceptance)
@@ -24,22 +26,25 @@ def read_history(folder: Path) -> tuple[Acceptance, ...]:
         InvalidInput: if a line is no acceptance.
     """
     path = history_path(folder)
-    lines = path.read_text(encoding="utf-8").splitlines() if path.is_file() else []
+    lines = path.read_bytes().splitlines() if path.is_file() else []
     return tuple(_entry(line, f"{path}, line {number}") for number, line in enumerate(lines, start=1))
 
 
 def append_history(folder: Path, entries: Iterable[Acceptance]) -> None:
-    """Append ``entries``; what stands there already is not touched."""
+    """Append ``entries``, all or none; what stands there already is not touched."""
     folder.mkdir(parents=True, exist_ok=True)
-    with history_path(folder).open("a", encoding="utf-8") as stream:
-        stream.writelines(_line(entry) for entry in entries)
+    path = history_path(folder)
+    before = path.read_text(encoding="utf-8") if path.is_file() else ""
+    write_whole(path, before + "".join(_line(entry) for entry in entries))
 
 
-def _entry(line: str, place: str) -> Acceptance:
+def _entry(line: bytes, place: str) -> Acceptance:
     try:
-        return _ACCEPTANCE.validate_json(line)
+        return _ACCEPTANCE.validate_python(parsed(line))
     except ValidationError as error:
         raise InvalidInput(f"{place} is no acceptance: {error.errors()[0]['msg']}; restore the file") from error
+    except (ValueError, RecursionError) as error:
+        raise InvalidInput(f"{place} is not readable ({error!s:.160}); restore the file") from None
 
 
 def _line(entry: Acceptance) -> str:

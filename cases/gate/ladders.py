@@ -3,19 +3,19 @@
 One file a method, ``baselines/ladders-<method>.json``, written by ``accept`` alone; a digest covers it.
 """
 
-import json
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
-from cases.gate.baseline import REMEDY, digest_of
+from cases.gate.baseline import REMEDY
 from cases.gate.history import append_history
 from cases.gate.write_permission import Circumstances
 from cases.measurements.ladders.ladders import worsened
 from cases.results.files import write_whole
 from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, Origin, Verdict
+from cases.results.sealed import read_sealed, sealed_text
 from cases.results.status import Status
 from contact import InvalidInput
 
@@ -34,14 +34,9 @@ def read_ladders(folder: Path) -> tuple[Ladder, ...]:
 
 def _read(path: Path) -> tuple[Ladder, ...]:
     try:
-        stored = json.loads(path.read_text(encoding="utf-8"))
-        tree, digest = stored["ladders"], stored["digest"]
-        found = _LADDERS.validate_python(tree)
-    except (ValueError, KeyError, TypeError, ValidationError) as error:
-        raise InvalidInput(f"{path} holds no ladders ({error!s:.160}); {REMEDY}") from error
-    if digest != digest_of({"ladders": tree}):
-        raise InvalidInput(f"{path} was changed by something else than accept; {REMEDY}")
-    return found
+        return _LADDERS.validate_python(read_sealed(path, remedy=REMEDY).get("ladders"))
+    except ValidationError as error:
+        raise InvalidInput(f"{path} holds no ladders ({error.errors()[0]['msg']:.160}); {REMEDY}") from error
 
 
 def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Claim]:
@@ -108,8 +103,7 @@ def accept_ladders(
 def _write(path: Path, ladders: list[Ladder]) -> None:
     tree = _LADDERS.dump_python(tuple(sorted(ladders, key=lambda ladder: ladder.name)), mode="json")
     path.parent.mkdir(parents=True, exist_ok=True)
-    digest = digest_of({"ladders": tree})
-    write_whole(path, json.dumps({"digest": digest, "ladders": tree}, sort_keys=True, indent=1, allow_nan=False) + "\n")
+    write_whole(path, sealed_text({"ladders": tree}))
 
 
 def _entry(now: Circumstances, method: str, quantity: str, reason: str) -> Acceptance:

@@ -4,9 +4,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from cases.gate.baseline import AcceptedCounters, AcceptedQuantity, Baseline
+from cases.gate.claims import claims_of
 from cases.gate.counts import counters_of
 from cases.gate.specification import specification
 from cases.gate.spread import Spreads
+from cases.gate.uncertainties import curve_uncertainties
 from cases.judgement.rules.tolerance import permitted_difference, relative_tolerance
 from cases.results.records import CaseResult, Quantity, SceneRun
 from contact import InvalidInput
@@ -76,13 +78,13 @@ class Change:
 
 @dataclass(frozen=True, kw_only=True)
 class Proposal:
-    """The baselines a case would have, every change this makes, and counters that would no longer be watched."""
+    """The baselines a case would have, every change this makes, and counters and claims no longer watched."""
 
     case: str
     reason: str
     baselines: tuple[Baseline, ...]
     changes: tuple[Change, ...]
-    lost_counters: tuple[str, ...]
+    lost: tuple[str, ...]
 
 
 def propose(
@@ -109,6 +111,7 @@ def propose(
             suites=suites,
             records=tuple(evidence.records(method, before.get(method))),
             counters=tuple(evidence.counters(method)),
+            claims=claims_of(case, method),
         )
         for method in dict.fromkeys([*before, *(run.method for run in case.runs if run.solved)])
     }
@@ -117,7 +120,7 @@ def propose(
         reason=reason,
         baselines=tuple(after.values()),
         changes=tuple(change for method in after for change in _changes(before.get(method), after[method])),
-        lost_counters=tuple(name for method in before for name in _lost_counters(before[method], after[method])),
+        lost=tuple(name for method in before for name in _lost(before[method], after[method])),
     )
 
 
@@ -140,7 +143,12 @@ class _Evidence:
         """One record for each scene the method solved."""
         for run in self._solved(method):
             specified = specification(self.case, run)
-            yield AcceptedCounters(scene=run.scene, specification=specified, counters=counters_of(run))
+            yield AcceptedCounters(
+                scene=run.scene,
+                specification=specified,
+                counters=counters_of(run),
+                curves=curve_uncertainties(run),
+            )
 
     def _solved(self, method: str) -> list[SceneRun]:
         return [run for run in self.case.runs if run.method == method and run.solved]
@@ -178,11 +186,15 @@ def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
     yield from (change for change in changes if not change.is_nothing)
 
 
-def _lost_counters(before: Baseline, after: Baseline) -> Iterator[str]:
+def _lost(before: Baseline, after: Baseline) -> Iterator[str]:
     new = {record.scene: record.counters for record in after.counters}
     for record in before.counters:
         lost = record.counters.keys() - new.get(record.scene, {}).keys()
-        yield from (f"{name} of {record.scene} by {before.method}" for name in sorted(lost))
+        yield from (f"counter {name} of {record.scene} by {before.method}" for name in sorted(lost))
+    judged = {claim.identity: claim.judged for claim in after.claims or ()}
+    for claim in before.claims or ():
+        if judged.get(claim.identity, 0) < claim.judged:
+            yield f"claim {claim.name!r} about {claim.quantity} by {before.method}"
 
 
 def _value(record: AcceptedQuantity | None, step: int) -> float | None:

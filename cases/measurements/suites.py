@@ -8,7 +8,7 @@ from pathlib import Path
 
 from cases.results.files import write_run
 from cases.results.records import CaseResult, RunResult
-from cases.run.executors import ExecutorFactory
+from cases.run.executors import ClusterLost, ExecutorFactory
 from cases.run.stamp import stamp
 
 QUICK_LADDERS = ("vanishing flat end", "stability reverses", "damping ratio")
@@ -24,13 +24,16 @@ def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
 
 
 def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int) -> RunResult:
-    """Add the studies of its suite to a finished run and write it again; an interrupt leaves it incomplete."""
+    """Add the studies of its suite to a finished run and write it again.
+
+    An interrupt or a lost cluster leaves it incomplete.
+    """
     clock = time.perf_counter()
     try:
         with executor(jobs) as pool:
             futures = [pool.submit(study) for study in (NIGHTLY if run.suite == "nightly" else QUICK)]
             studies = tuple(future.result() for future in futures)
-    except KeyboardInterrupt:
+    except (KeyboardInterrupt, ClusterLost):
         run, studies = replace(run, complete=False), ()
     seconds = run.stamp.wall_seconds + time.perf_counter() - clock
     whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))

@@ -1,6 +1,9 @@
-"""A run on disk: ``results.json`` is the whole run without loss; ``results.h5`` holds its arrays for other programs."""
+"""A run on disk: ``results.json`` is the whole run without loss; ``results.h5`` holds its arrays for other programs.
 
-import json
+``results.json`` is sealed: what it says of verdicts and numbers is believed because nothing but a run can have written
+it.
+"""
+
 import os
 from pathlib import Path
 from typing import Any
@@ -9,52 +12,55 @@ import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
 from cases.results.records import SCHEMA_VERSION, CaseResult, RunResult
+from cases.results.sealed import read_sealed, sealed_text, unsealed
 from contact import InvalidInput
 from contact.files.storage import write_tree
 from contact.records.record import shown
 
 _RUN: TypeAdapter[RunResult] = TypeAdapter(RunResult)
+_NAME = "results.json"
+_REMEDY = "run the cases again (with --resume finished solutions are kept)"
 
 
 def to_json(run: RunResult) -> str:
-    """Return ``run`` as JSON text with sorted keys; every float keeps all its digits, none can be non-finite."""
-    return json.dumps(_RUN.dump_python(run, mode="json"), sort_keys=True, indent=1, allow_nan=False) + "\n"
+    """Return ``run`` as sealed JSON text; every float keeps all its digits, none can be non-finite."""
+    return sealed_text(_RUN.dump_python(run, mode="json"))
 
 
 def from_json(text: str) -> RunResult:
     """Return the run stored in ``text``.
 
     Raises:
-        InvalidInput: if the text is no such JSON; names schema version or field.
+        InvalidInput: if the text is no such JSON, or was changed after it was written.
     """
-    try:
-        tree = json.loads(text, parse_constant=_refuse_constant)
-    except ValueError as error:
-        raise InvalidInput(f"results.json is not readable: {error!s:.200}; run the cases again") from error
-    version = tree.get("schema_version") if isinstance(tree, dict) else None
+    return _validated(unsealed(text.encode("utf-8", "surrogatepass"), place=_NAME, remedy=_REMEDY), _NAME)
+
+
+def _validated(tree: dict[str, Any], place: str) -> RunResult:
+    version = tree.get("schema_version")
     if version != SCHEMA_VERSION:
-        raise InvalidInput(f"results.json has schema version {shown(version)}, this program reads {SCHEMA_VERSION}")
+        raise InvalidInput(f"{place} has schema version {shown(version)}, this program reads {SCHEMA_VERSION}")
     try:
         return _RUN.validate_python(tree)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
-        raise InvalidInput(f"results.json: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}") from error
+        raise InvalidInput(f"{place}: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}") from error
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of results.json."""
-    return _RUN.json_schema()
-
-
-def _refuse_constant(name: str) -> float:
-    raise ValueError(f"non-finite number {name}")
+    """Return the JSON Schema of results.json: a run with the digest that seals it."""
+    schema = _RUN.json_schema()
+    digest = {"type": "string", "title": "Digest", "description": "Seal over all other entries."}
+    schema["properties"] = {**schema["properties"], "digest": digest}
+    schema["required"] = [*schema["required"], "digest"]
+    return schema
 
 
 def write_run(run: RunResult, directory: Path) -> None:
     """Write ``results.json`` and ``results.h5`` into ``directory``; each file is whole or absent, never torn."""
     directory.mkdir(parents=True, exist_ok=True)
-    write_whole(directory / "results.json", to_json(run))
+    write_whole(directory / _NAME, to_json(run))
     write_tree(directory / "results.h5", arrays(run))
 
 
@@ -62,22 +68,54 @@ def read_run(directory: Path) -> RunResult:
     """Return the run stored in ``directory``.
 
     Raises:
-        InvalidInput: if there is none or it cannot be read.
+        InvalidInput: in one line, if there is none, it cannot be read, or it was changed after it was written.
     """
-    path = directory / "results.json"
+    path = require_run(directory)
+    return _validated(read_sealed(path, remedy=_REMEDY), str(path))
+
+
+def require_run(directory: Path) -> Path:
+    """Return where the run in ``directory`` is stored.
+
+    Raises:
+        InvalidInput: if there is none.
+    """
+    path = directory / _NAME
     if not path.is_file():
-        raise InvalidInput(f"no results.json in {directory}; give the directory of a finished run")
-    return from_json(path.read_text(encoding="utf-8"))
+        raise InvalidInput(f"no {_NAME} in {directory}; give the directory of a finished run")
+    return path
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Write ``text`` so that a reader finds the old file or the new one, never a part (fsync, rename)."""
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Write a text or bytes so that a reader finds the old file or the new one, never a part (fsync, rename).
+
+    A link stays a link; a device or pipe is written to as it stands.
+
+    Raises:
+        InvalidInput: if the disk is full or does not let the file be written; nothing is left of it then.
+    """
+    data = content.encode("utf-8") if isinstance(content, str) else content
+    target = path.resolve()
+    special = target.exists() and not target.is_file()
+    try:
+        if special:
+            target.write_bytes(data)
+        else:
+            _replace(target, data)
+    except OSError as error:
+        raise InvalidInput(f"{path}: cannot be written ({error.strerror}); make room, or name another place") from None
+
+
+def _replace(path: Path, data: bytes) -> None:
     unfinished = path.with_name(f".{path.name}.{os.getpid()}.partial")
-    with unfinished.open("w", encoding="utf-8") as stream:
-        stream.write(text)
-        stream.flush()
-        os.fsync(stream.fileno())
-    unfinished.replace(path)
+    try:
+        with unfinished.open("wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
+        unfinished.replace(path)
+    finally:
+        unfinished.unlink(missing_ok=True)
 
 
 def arrays(run: RunResult) -> dict[str, Any]:

@@ -1,11 +1,12 @@
 """Where tasks run, behind ``concurrent.futures.Executor``: in this process, in a pool of processes, on a cluster."""
 
+import logging
 import multiprocessing
 import os
 import signal
 import threading
 from collections.abc import Callable
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
 from typing import Any, ParamSpec, TypeVar
 
 from contact import InvalidInput
@@ -55,13 +56,33 @@ def fresh_processes(jobs: int) -> Executor:
     return ProcessPoolExecutor(jobs, mp_context=context, initializer=_follow_parent, max_tasks_per_child=1)
 
 
+class ClusterLost(Exception):
+    """The scheduler of a cluster does not answer any more: what it had not finished is unsolved."""
+
+
+# Seconds that a scheduler may take to answer: at first, and again after its connection broke.
+PATIENCE = 10.0
+
+
 class DaskExecutor(Executor):
-    """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one."""
+    """Runs each call on a Dask cluster; a call whose worker dies is repeated on another one.
+
+    Raises:
+        InvalidInput: if Dask is not installed or no scheduler answers at the address.
+    """
 
     def __init__(self, address: str) -> None:
-        from distributed import Client  # noqa: PLC0415 - an optional extra
-
-        self._client = Client(address, set_as_default=False)
+        try:
+            from distributed import Client, KilledWorker  # noqa: PLC0415 - an optional extra
+        except ImportError:
+            raise InvalidInput(f"{address}: Dask is not installed; install dask[distributed]") from None
+        # What breaks is said once, by this class.
+        logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
+        self._address, self._killed = address, KilledWorker
+        try:
+            self._client = Client(address, set_as_default=False, timeout=PATIENCE)
+        except (OSError, ValueError) as error:
+            raise InvalidInput(f"no Dask scheduler answers at {address} ({error!s:.120}); start one there") from None
 
     def submit(self, fn: Callable[P, T], /, *args: P.args, **kwargs: P.kwargs) -> Future[T]:
         """Send ``fn`` to the cluster and return its future."""
@@ -71,11 +92,29 @@ class DaskExecutor(Executor):
             try:
                 future.set_result(remote.result())
             except Exception as error:  # a future carries its error
-                future.set_exception(error)
+                future.set_exception(self._named(error))
 
+        if self._is_lost:
+            raise self._lost()
         remote = self._client.submit(fn, *args, pure=False, retries=2, **kwargs)
         remote.add_done_callback(deliver)
         return future
+
+    @property
+    def _is_lost(self) -> bool:
+        return bool(self._client.status != "running")
+
+    def _lost(self) -> ClusterLost:
+        return ClusterLost(f"the Dask scheduler at {self._address} does not answer any more")
+
+    def _named(self, error: Exception) -> Exception:
+        """The error in the words of this program: a lost scheduler, workers that died of a call, or itself.
+
+        What a call raises beside that is no ``OSError``: `cases.solve` turns every error into a row.
+        """
+        if isinstance(error, CancelledError | OSError) or self._is_lost:
+            return self._lost()
+        return BrokenExecutor(f"{error!s:.200}") if isinstance(error, self._killed) else error
 
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Leave the cluster; it stays up for others."""

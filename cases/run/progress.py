@@ -12,15 +12,16 @@ class Event:
     """One thing that happened.
 
     Attributes:
-        kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case.
+        kind: "planned" once, then "finished" or "reused" for each task, "judged" for each case; "refused" before
+            "finished" for a task whose stored answer is damaged; "stopped" when the cluster that solves is lost.
         label: the task or case in words.
         done: tasks behind.
         total: tasks in all.
-        status: how the task or case ended; None for "planned".
-        reason: of a status other than PASS.
+        status: how the task or case ended; None for "planned", "refused" and "stopped".
+        reason: of a status other than PASS, or why a stored answer was refused or the run stopped.
     """
 
-    kind: Literal["planned", "finished", "reused", "judged"]
+    kind: Literal["planned", "finished", "reused", "judged", "refused", "stopped"]
     label: str
     done: int
     total: int

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -19,12 +19,14 @@ from cases.judgement.judge import case_result
 from cases.results.files import write_run
 from cases.results.records import CaseResult, RunResult, SceneRun
 from cases.results.status import Status
-from cases.run.executors import ExecutorFactory, fresh_processes, process_pool, serial
+from cases.run.executors import ClusterLost, ExecutorFactory, fresh_processes, process_pool, serial
 from cases.run.keys import content_key, key_parts
+from cases.run.lock import locked
 from cases.run.progress import Event, Progress, silent
 from cases.run.solve_task import solve
 from cases.run.stamp import stamp
 from cases.run.store import TaskStore
+from contact import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -74,7 +76,7 @@ class _Run:
     def tell(self, kind: str, label: str, status: Status | None = None, reason: str = "") -> None:
         """Report an event."""
         event = Event(
-            kind=kind,  # type: ignore[arg-type]  # one of the four words, by its callers
+            kind=kind,  # type: ignore[arg-type]  # one of the words, by its callers
             label=label,
             done=len(self.rows),
             total=self.total,
@@ -96,8 +98,16 @@ class _Planned:
 def run_cases(cases: Sequence[Case], options: RunOptions) -> RunResult:
     """Run ``cases`` and return the result, which also lies in ``options.out`` as results.json and results.h5.
 
-    An interrupt (Ctrl-C) ends the run early with ``complete`` False; every finished task is kept.
+    An interrupt (Ctrl-C) and a lost cluster end the run early with ``complete`` False; every finished task is kept.
+
+    Raises:
+        InvalidInput: if another run works in the folder, or its disk is full.
     """
+    with locked(options.out):
+        return _run(cases, options)
+
+
+def _run(cases: Sequence[Case], options: RunOptions) -> RunResult:
     started, clock = datetime.now(UTC), time.perf_counter()
     planned = plan(cases, timing=options.timing, only_costs=options.only_costs)
     run = _Run(options, TaskStore(options.out / "tasks"), total=len(planned))
@@ -107,6 +117,9 @@ def run_cases(cases: Sequence[Case], options: RunOptions) -> RunResult:
         _carry_out(run, planned)
     except KeyboardInterrupt:
         complete = False
+    except ClusterLost as error:
+        complete = False
+        run.tell("stopped", "run", reason=f"{error}; finished solutions are kept, go on with --resume")
     answers = Answers(run.rows)
     results = tuple(_judged(run, case, answers, complete=complete) for case in cases)
     result = RunResult(
@@ -149,11 +162,21 @@ def _carry_out(run: _Run, planned: list[_Planned]) -> None:
 
 
 def _reused(run: _Run, planned: _Planned) -> bool:
-    row = run.store.get(planned.key) if run.options.resume else None
+    row = _stored(run, planned) if run.options.resume else None
     if row is None or row.status in (Status.TIMEOUT, Status.INVALID):
         return False
-    run.finish(planned, row, reused=True)
+    # Another case may have stored the same scene and settings under names of its own.
+    run.finish(planned, replace(row, scene=planned.task.scene, method=planned.task.method), reused=True)
     return True
+
+
+def _stored(run: _Run, planned: _Planned) -> SceneRun | None:
+    """Return the finished task; one whose file is damaged or changed is refused in words and solved again."""
+    try:
+        return run.store.get(planned.key)
+    except InvalidInput as error:
+        run.tell("refused", planned.task.label, reason=str(error))
+        return None
 
 
 def _solve_in(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> None:

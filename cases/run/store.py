@@ -1,6 +1,5 @@
-"""Finished tasks on disk, one whole file each, so that a killed run can go on where it stopped."""
+"""Finished tasks on disk, one whole sealed file each, so that a killed run can go on where it stopped."""
 
-import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -9,10 +8,13 @@ from pydantic import TypeAdapter, ValidationError
 
 from cases.results.files import write_whole
 from cases.results.records import SceneRun
-from cases.run.keys import differences
+from cases.results.sealed import read_sealed, sealed_text
+from cases.run.keys import content_key, differences
 from contact import InvalidInput
+from contact.records.record import shown
 
 _RUN: TypeAdapter[SceneRun] = TypeAdapter(SceneRun)
+_REMEDY = "delete it; the task is then solved again"
 
 
 class TaskStore:
@@ -25,33 +27,38 @@ class TaskStore:
     def put(self, key: str, parts: Mapping[str, Any], run: SceneRun) -> None:
         """Store a finished task with everything its key was made of."""
         tree = {"parts": parts, "run": _RUN.dump_python(run, mode="json")}
-        write_whole(self._path(key), json.dumps(tree, sort_keys=True, allow_nan=False))
+        write_whole(self._path(key), sealed_text(tree))
 
     def get(self, key: str) -> SceneRun | None:
-        """Return the stored row of ``key``; None when there is none or its file is damaged."""
-        try:
-            return _RUN.validate_python(self._tree(key)["run"])
-        except (InvalidInput, ValidationError, KeyError):
+        """Return the stored row of ``key``; None when there is none.
+
+        Raises:
+            InvalidInput: if its file is damaged, was changed, or holds the answer to another question.
+        """
+        if not self._path(key).exists():
             return None
+        tree = self._tree(key)
+        try:
+            run = _RUN.validate_python(tree["run"])
+            same = content_key(tree["parts"]) == run.key == key
+        except (ValidationError, KeyError) as error:
+            raise InvalidInput(f"{self._path(key)} is no finished task ({type(error).__name__}); {_REMEDY}") from None
+        if not same:
+            raise InvalidInput(f"{self._path(key)} holds the answer to another question; {_REMEDY}")
+        return run
 
     def explain(self, key: str, parts: Mapping[str, Any]) -> list[str]:
         """Return what changed between the stored task ``key`` and ``parts``, one line each.
 
         Raises:
-            InvalidInput: if no such task is stored.
+            InvalidInput: if no such task is stored, or its file is damaged.
         """
-        return differences(self._tree(key)["parts"], parts)
+        return differences(self._tree(key).get("parts"), parts)
 
     def _path(self, key: str) -> Path:
         return self._directory / f"{key}.json"
 
     def _tree(self, key: str) -> dict[str, Any]:
-        try:
-            tree = json.loads(self._path(key).read_text(encoding="utf-8"))
-        except FileNotFoundError:
-            raise InvalidInput(f"no finished task {key} in {self._directory}") from None
-        except ValueError as error:
-            raise InvalidInput(f"{self._path(key)} is damaged: {error}; delete it") from None
-        if not isinstance(tree, dict):
-            raise InvalidInput(f"{self._path(key)} is no finished task; delete it")
-        return tree
+        if not self._path(key).exists():
+            raise InvalidInput(f"no finished task {shown(key)} in {self._directory}")
+        return read_sealed(self._path(key), remedy=_REMEDY)

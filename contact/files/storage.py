@@ -9,7 +9,7 @@ import os
 import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
-from io import BufferedRandom, BufferedReader
+from io import BufferedReader
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -45,34 +45,37 @@ def write_tree(path: str | Path, tree: Tree) -> None:
     refused before one number is read from it.
 
     Raises:
-        InvalidInput: If the folder cannot be written or an entry is of another type.
+        InvalidInput: If the folder cannot be written, the disk is full, or an entry is of another type.
     """
     file = Path(path)
+    data = _sealed(tree)
     try:
         handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=f".{file.name}.")
     except OSError as error:
         raise InvalidInput(f"{file}: cannot be written ({error.strerror}); check that the folder exists") from None
-    os.close(handle)
     try:
-        with h5py.File(temporary, "w", track_order=True, userblock_size=_BLOCK) as root:
-            _write(root, tree, depth=0)
-        _seal(temporary)
+        with open(handle, "wb") as stream:
+            stream.write(data)
+            stream.flush()
+            os.fsync(stream.fileno())
         os.replace(temporary, file)
+    except OSError as error:
+        raise InvalidInput(f"{file}: cannot be written ({error.strerror}); make room, or name another place") from None
     finally:
         Path(temporary).unlink(missing_ok=True)
 
 
-def _seal(path: str) -> None:
-    """Write the digest of what follows it, and wait until the disk has all."""
-    with open(path, "r+b") as stream:
-        digest = _digest(stream)
-        stream.seek(0)
-        stream.write(digest)
-        stream.flush()
-        os.fsync(stream.fileno())
+def _sealed(tree: Tree) -> bytes:
+    """The bytes of a whole file. They are made in memory: HDF5 itself crashes when a disk fills up under it."""
+    in_memory = {"driver": "core", "backing_store": False}
+    with h5py.File("tree", "w", track_order=True, userblock_size=_BLOCK, **in_memory) as root:
+        _write(root, tree, depth=0)
+        root.flush()
+        content = bytes(root.id.get_file_image())
+    return (SEAL + hashlib.sha256(content).hexdigest().encode()).ljust(_BLOCK, b"\0") + content
 
 
-def _digest(stream: BufferedReader | BufferedRandom) -> bytes:
+def _digest(stream: BufferedReader) -> bytes:
     """What the first bytes of a whole file say."""
     stream.seek(_BLOCK)
     return SEAL + hashlib.file_digest(stream, "sha256").hexdigest().encode()

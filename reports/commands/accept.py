@@ -105,9 +105,13 @@ def _accept_ladders(study: CaseResult, result: RunResult, wish: Wish) -> None:
 
 
 def _watched(case: Case, result: RunResult) -> CaseResult:
-    """The case as it ran, without what only the nightly suite solves: accepted numbers are those of the suite ci."""
+    """The case as it ran, without what only the nightly suite solves: what is accepted is that of the suite ci."""
     ran, unwatched = result.case(case.name), nightly_only(case)
-    return replace(ran, runs=tuple(row for row in ran.runs if (row.scene, row.method) not in unwatched))
+    return replace(
+        ran,
+        runs=tuple(row for row in ran.runs if (row.scene, row.method) not in unwatched),
+        claims=tuple(c for c in ran.claims if not any((c.scene, method) in unwatched for method in c.methods)),
+    )
 
 
 def change_table(proposal: Proposal) -> Table:

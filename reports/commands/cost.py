@@ -4,6 +4,7 @@ from dataclasses import replace
 
 from cases.declare.registry import load_cases, select
 from cases.results.status import Status
+from cases.run.lock import locked
 from cases.run.runner import RunOptions, run_cases
 from reports.commands.report import write_pages
 from reports.tables.cost_tables import shortest_times, speed_ups
@@ -18,9 +19,10 @@ def cost(names: list[str], options: RunOptions, *, quiet: bool) -> int:
     chosen = select(load_cases(), names=names, suite=options.suite)
     timed = [case for case in chosen if case.work]
     terminal = console()
-    with RunDisplay(terminal, quiet=quiet) as display:
-        result = run_cases(timed, replace(options, only_costs=True, progress=display))
-    write_pages(result, options.out)
+    with locked(options.out):
+        with RunDisplay(terminal, quiet=quiet) as display:
+            result = run_cases(timed, replace(options, only_costs=True, progress=display))
+        write_pages(result, options.out)
     for table in (shortest_times(result), speed_ups(result)):
         if table is not None:
             show_table(table, on=terminal)

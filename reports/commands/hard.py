@@ -79,14 +79,16 @@ def error_maps(names: list[str], out: Path | None) -> int:
 def published(study: Callable[[], CaseResult], out: Path | None) -> int:
     """Carry out a study, write it as a run of its own if asked, and return 1 if it failed."""
     from cases.measurements.suites import run_of  # noqa: PLC0415
+    from cases.run.lock import locked  # noqa: PLC0415
     from reports.commands.report import write_pages  # noqa: PLC0415
 
     if out is None:
         return FAILED if study().status.is_failure else 0
     if out.exists() and not out.is_dir():  # said before the study, not after
         raise InvalidInput(f"--out {out}: a file is in the way; name a folder")
-    run = run_of((make() for make in [study]), out)
-    write_pages(run, out)
+    with locked(out):
+        run = run_of((make() for make in [study]), out)
+        write_pages(run, out)
     _say(f"report: {out / 'report.html'}")
     return FAILED if any(status.is_failure for status in run.statuses) else 0
 

@@ -3,8 +3,10 @@
 from pathlib import Path
 
 from cases.results.compare_runs import compare
-from cases.results.files import read_run, write_whole
+from cases.results.files import read_run, require_run, write_whole
 from cases.results.records import RunResult
+from cases.results.status import ExitCode
+from cases.run.lock import locked
 from reports.pages.comparison import claim_table, headline, number_table, write_comparison
 from reports.pages.junit import junit_text
 from reports.pages.report import write_report
@@ -13,13 +15,20 @@ from reports.terminal.terminal import STYLES, console, show_table
 from reports.words import outcomes
 
 
-def rebuild(directory: Path) -> None:
-    """Write the pages of the run in `directory` again."""
-    run = read_run(directory)
-    write_pages(run, directory)
+def rebuild(directory: Path) -> int:
+    """Write the pages of the run in `directory` again; return 5 if nothing ran in it, else 0."""
+    require_run(directory)
+    with locked(directory):
+        run = read_run(directory)
+        write_pages(run, directory)
     words, tone = outcomes.headline(run, outcomes.outcomes(run))
     console().print(words, style=STYLES[tone])
     console().print(f"report: {directory / 'report.html'}")
+    return _code(run)
+
+
+def _code(*runs: RunResult) -> ExitCode:
+    return ExitCode.NOTHING_RAN if any(outcomes.nothing_ran(run) for run in runs) else ExitCode.PASSED
 
 
 DRAWERS = 2
@@ -36,8 +45,8 @@ def write_pages(run: RunResult, directory: Path) -> None:
 ROWS_IN_TERMINAL = 20
 
 
-def compare_runs(first: Path, second: Path) -> None:
-    """Compare the run in `second` with that in `first`; the page lands beside the second."""
+def compare_runs(first: Path, second: Path) -> int:
+    """Compare the run in `second` with that in `first`; the page lands beside the second; 5 if nothing ran in one."""
     runs = read_run(first), read_run(second)
     comparison = compare(*runs)
     page = second / "comparison.html"
@@ -49,3 +58,4 @@ def compare_runs(first: Path, second: Path) -> None:
         if table is not None and table.rows:
             show_table(table, on=terminal)
     terminal.print(f"comparison: {page}")
+    return _code(*runs)

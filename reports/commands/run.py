@@ -6,12 +6,14 @@ from pathlib import Path
 
 from rich.text import Text
 
+from cases.declare.case import Case
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import only_methods
 from cases.measurements.suites import with_studies
 from cases.results.records import RunResult
 from cases.results.status import ExitCode, exit_code
 from cases.run.executors import by_name
+from cases.run.lock import locked
 from cases.run.runner import RunOptions, run_cases
 from reports.commands.report import write_pages
 from reports.pages.annotations import annotation_lines
@@ -36,16 +38,23 @@ def run(
     """Run cases and return the exit code."""
     chosen = select(load_cases(), names=names, suite=options.suite)
     cases = [only_methods(case, methods) for case in chosen]
-    terminal = console()
-    with RunDisplay(terminal, quiet=quiet) as display:
-        result = run_cases(cases, dataclasses.replace(options, executor=by_name(executor), progress=display))
-    if options.suite and not names and not methods and result.complete:
-        result = with_studies(result, options.out, by_name(executor), options.jobs)
-    write_pages(result, options.out)
+    studied = bool(options.suite) and not names and not methods
+    with locked(options.out):
+        result = _carried_out(cases, dataclasses.replace(options, executor=by_name(executor)), studied, quiet=quiet)
+        write_pages(result, options.out)
     show_verdict(result, options.out, quiet=quiet)
     if not result.complete:
         return ExitCode.INTERRUPTED
     return exit_code(result.statuses, strict=strict)
+
+
+def _carried_out(cases: list[Case], options: RunOptions, studied: bool, *, quiet: bool) -> RunResult:
+    """Run cases and, if this is a whole suite, its studies."""
+    with RunDisplay(console(), quiet=quiet) as display:
+        result = run_cases(cases, dataclasses.replace(options, progress=display))
+    if studied and result.complete:
+        return with_studies(result, options.out, options.executor, options.jobs)
+    return result
 
 
 def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
+from cases.results.files import write_whole
 from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
@@ -101,7 +102,7 @@ def _check_ending(path: Path) -> None:
 
 def _write(solution: Solution, path: Path) -> None:
     if path.suffix == ".csv":
-        path.write_text(solution_csv(solution), encoding="utf-8")
+        write_whole(path, solution_csv(solution))
     elif path.suffix == ".h5":
         from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
 
@@ -110,4 +111,4 @@ def _write(solution: Solution, path: Path) -> None:
         from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
-        path.write_text(figure_svg(solution_figure(solution)), encoding="utf-8")
+        write_whole(path, figure_svg(solution_figure(solution)))

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from matplotlib.figure import Figure as Drawing
 
+from cases.results.files import write_whole
 from reports.figures.style import figure_style, png_bytes, svg_text
 
 Cell = str | float | int | bool | None
@@ -50,9 +51,9 @@ def write_plate(plate: Plate, directory: Path) -> str:
         drawing = plate.paint()
         _lay_out(drawing)
         svg = svg_text(drawing, key=plate.name)
-        directory.joinpath(f"{plate.name}.png").write_bytes(png_bytes(drawing))
-    directory.joinpath(f"{plate.name}.svg").write_text(svg, encoding="utf-8")
-    directory.joinpath(f"{plate.name}.csv").write_text(plate.csv_text(), encoding="utf-8")
+        write_whole(directory / f"{plate.name}.png", png_bytes(drawing))
+    write_whole(directory / f"{plate.name}.svg", svg)
+    write_whole(directory / f"{plate.name}.csv", plate.csv_text())
     return svg
 
 

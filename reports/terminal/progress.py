@@ -47,7 +47,11 @@ class RunDisplay:
     def __call__(self, event: Event) -> None:
         """Take note of an event."""
         self._bar.update(self._task, completed=event.done, total=event.total)
-        if event.status is None:
+        if event.kind == "refused":
+            self._console.print(Text(f"solved again: {event.reason}", style=STYLES["warn"]))
+        elif event.kind == "stopped":
+            self._console.print(Text(f"stopped: {event.reason}", style=STYLES["bad"]))
+        elif event.status is None:
             self._say(f"{event.total} solutions in {event.label}")
         elif event.kind == "judged":
             self._judged(event.label, event.status)

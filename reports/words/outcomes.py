@@ -118,12 +118,8 @@ def headline(run: RunResult, rows: Iterable[Outcome]) -> tuple[str, str]:
     tally = Counter(row.tone for row in rows)
     checks = sum(tally.values()) - tally["skip"]
     if checks == 0:
-        measured = sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
-        return (
-            (f"MEASURED: {measured} case{'s'[: measured != 1]}, no claims", "good")
-            if measured
-            else ("Nothing ran", "bad")
-        )
+        found = _measured(run)
+        return (f"MEASURED: {found} case{'s'[: found != 1]}, no claims", "good") if found else ("Nothing ran", "bad")
     if tally["bad"]:
         return f"FAILED: {tally['bad']} of {checks} checks", "bad"
     if not run.complete:
@@ -131,6 +127,15 @@ def headline(run: RunResult, rows: Iterable[Outcome]) -> tuple[str, str]:
     if tally["warn"]:
         return f"PASSED: {checks} checks, {tally['warn']} to look at", "warn"
     return f"PASSED: all {checks} checks", "good"
+
+
+def nothing_ran(run: RunResult) -> bool:
+    """Whether a run has neither a check that was carried out nor a measurement."""
+    return all(row.tone == "skip" for row in outcomes(run)) and not _measured(run)
+
+
+def _measured(run: RunResult) -> int:
+    return sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
 
 
 def claim_outcome(case: str, claim: Claim) -> Outcome:

@@ -1,13 +1,23 @@
 """The same run on a real Dask scheduler with two workers over TCP, one of which is killed on the way."""
 
+import json
 import os
 import signal
+import subprocess
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+from cases.results.files import read_run
 from cases.results.status import Status
 from cases.run.executors import by_name, serial
 from cases.run.runner import RunOptions, run_cases
+from cases.run.store import TaskStore
+from contact import InvalidInput
+from reports import command_line
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 from tests.cases.test_runner import strip_times
 
@@ -57,3 +67,81 @@ def test_both_workers_take_part(cluster, tmp_path):
         assert len(client.scheduler_info()["workers"]) == 2
     finally:
         client.close()
+
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def scheduler(tmp_path):
+    """The address of a scheduler in a process of its own with one worker, and that process."""
+    file = tmp_path / "scheduler.json"
+    begin = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--host", "127.0.0.1", "--port", "0"]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": ROOT}
+    with subprocess.Popen([*begin, "--no-dashboard", "--scheduler-file", str(file)], **quiet) as process:
+        while not file.exists():
+            time.sleep(0.1)
+        address = json.loads(file.read_text(encoding="utf-8"))["address"]
+        options = ["--nthreads", "1", "--no-nanny", "--no-dashboard"]
+        with subprocess.Popen(
+            [sys.executable, "-m", "distributed.cli.dask_worker", address, *options], **quiet
+        ) as worker:
+            yield address, process
+            worker.kill()
+            process.kill()
+
+
+def killing(process, after):
+    """Kills a process when some tasks are finished, and keeps the events."""
+
+    def listen(event):
+        listen.events.append(event)
+        if event.kind == "finished" and event.done == after:
+            process.kill()
+
+    listen.events = []
+    return listen
+
+
+def test_a_killed_scheduler_is_one_line_and_a_run_that_can_go_on(scheduler, tmp_path):
+    address, process = scheduler
+    listen = killing(process, after=3)
+    options = RunOptions(out=tmp_path / "out", executor=by_name(address), progress=listen)
+    stopped = run_cases([fake_case()], options)
+    assert not stopped.complete
+    assert read_run(tmp_path / "out") == stopped
+    (line,) = (event.reason for event in listen.events if event.kind == "stopped")
+    assert (
+        line
+        == f"the Dask scheduler at {address} does not answer any more; finished solutions are kept, go on with --resume"
+    )
+    again = []
+    whole = run_cases([fake_case()], replace(options, executor=serial, resume=True, progress=again.append))
+    assert whole.complete
+    assert [event.kind for event in again].count("reused") >= 3
+    alone = run_cases([fake_case()], RunOptions(out=tmp_path / "alone", executor=serial))
+    assert strip_times(alone, whole).cases == alone.cases
+
+
+def test_the_command_ends_as_interrupted_without_a_traceback(scheduler, tmp_path, monkeypatch, capfd):
+    address, process = scheduler
+    case = fake_case()
+    monkeypatch.setattr("reports.commands.run.load_cases", lambda: {case.name: case})
+    put = TaskStore.put
+
+    def put_and_kill(*arguments):
+        put(*arguments)
+        process.kill()
+
+    monkeypatch.setattr(TaskStore, "put", put_and_kill)
+    assert command_line.run(["run", "--executor", address, "--out", str(tmp_path / "out")]) == 2
+    printed = "".join(capfd.readouterr())
+    assert "Traceback" not in printed
+    assert " ".join(printed.split()).count("does not answer any more; finished solutions are kept") == 1
+
+
+def test_no_scheduler_at_an_address_is_one_line(tmp_path, monkeypatch):
+    monkeypatch.setattr("cases.run.executors.PATIENCE", 0.5)
+    with pytest.raises(InvalidInput, match=r"no Dask scheduler answers at tcp://127\.0\.0\.1:9") as error:
+        run_cases([fake_case()], RunOptions(out=tmp_path, executor=by_name("tcp://127.0.0.1:9")))
+    assert str(error.value).isprintable()

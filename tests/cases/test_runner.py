@@ -142,6 +142,38 @@ def test_a_damaged_task_file_is_solved_again(tmp_path):
     assert [e.kind for e in events].count("finished") == 1
 
 
+def test_a_task_file_changed_by_hand_is_refused_in_words_and_solved_again(tmp_path):
+    first = run(fake_case(), tmp_path)
+    changed = sorted((tmp_path / "tasks").glob("*.json"))[0]
+    changed.write_text(changed.read_text(encoding="utf-8").replace("0.001", "0.002"), encoding="utf-8")
+    events = []
+    second = run(fake_case(), tmp_path, resume=True, progress=events.append)
+    (refused,) = (e for e in events if e.kind == "refused")
+    assert "changed after it was written" in refused.reason
+    assert [e.kind for e in events].count("finished") == 1
+    assert strip_times(first, second).cases == first.cases
+
+
+def test_the_answer_to_another_question_is_not_used(tmp_path):
+    run(fake_case(), tmp_path)
+    first, second, *_ = sorted((tmp_path / "tasks").glob("*.json"))
+    second.write_bytes(first.read_bytes())
+    events = []
+    run(fake_case(), tmp_path, resume=True, progress=events.append)
+    (refused,) = (e for e in events if e.kind == "refused")
+    assert "another question" in refused.reason
+
+
+def test_equal_scenes_of_two_cases_keep_their_own_names_when_they_are_used_again(tmp_path):
+    case = fake_case(name="other_names")
+    scenes = tuple(dataclasses.replace(scene, name=f"other {scene.name}") for scene in case.scenes)
+    cases = [fake_case(), dataclasses.replace(case, scenes=scenes)]
+    options = RunOptions(out=tmp_path, executor=serial)
+    names = [[row.scene for row in case.runs] for case in run_cases(cases, options).cases]
+    again = run_cases(cases, dataclasses.replace(options, resume=True)).cases
+    assert [[row.scene for row in case.runs] for case in again] == names
+
+
 def test_no_torn_or_temporary_file_is_left(tmp_path):
     run(fake_case(), tmp_path)
     for path in (tmp_path / "tasks").iterdir():

@@ -16,6 +16,8 @@ from reports.command_line import run
 from reports.commands import solve as solve_command
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 from tests.cases.fake_method import FakeHertz
+from tests.cases.gate.example_baselines import accepted
+from tests.cases.test_run_lock import other_process
 
 COMMANDS = (
     "list",
@@ -306,3 +308,60 @@ def test_commands_compute_on_one_thread_unless_told_otherwise():
             [sys.executable, "-c", code], env=free | asked, capture_output=True, text=True, check=True
         )
         assert int(done.stdout) == threads
+
+
+@pytest.mark.usefixtures("library")
+@pytest.mark.parametrize("command", [["report"], ["gate"], ["run", "--executor", "serial", "--out"]])
+def test_a_folder_in_which_another_run_works_is_refused_in_one_line(command, tmp_path, capsys, monkeypatch):
+    assert run_here(tmp_path) == 0
+    before = (tmp_path / "out" / "results.json").read_bytes()
+    accepted(tmp_path / "baselines")
+    monkeypatch.chdir(tmp_path)
+    capsys.readouterr()
+    with other_process(tmp_path / "out"):
+        assert run([*command, str(tmp_path / "out")]) == 4
+    lines = capsys.readouterr().err.strip().splitlines()
+    assert len(lines) == 1
+    assert "another run works in" in lines[0]
+    assert (tmp_path / "out" / "results.json").read_bytes() == before
+
+
+def test_the_report_of_a_run_without_cases_is_exit_code_5(library, tmp_path, capsys):
+    library()
+    assert run_here(tmp_path) == 5
+    assert run(["report", str(tmp_path / "out")]) == 5
+    assert "Nothing ran" in capsys.readouterr().out
+    library(fake_case())
+    run(["run", "--executor", "serial", "--quiet", "--out", str(tmp_path / "other")])
+    assert run(["report", str(tmp_path / "other")]) == 0
+    assert run(["report", str(tmp_path / "out"), str(tmp_path / "other")]) == 5
+
+
+@pytest.mark.usefixtures("library")
+def test_the_report_of_a_changed_run_is_refused_in_one_line(tmp_path, capsys):
+    assert run_here(tmp_path) == 0
+    results = tmp_path / "out" / "results.json"
+    text = results.read_text(encoding="utf-8")
+    results.write_text(re.sub(r'"observed": (\S+),', '"observed": 1e6,', text), encoding="utf-8")
+    for command in (["report"], ["gate"], ["explain", "abc", "--out"]):
+        capsys.readouterr()
+        assert run([*command, str(tmp_path / "out")]) == 4
+        captured = capsys.readouterr()
+        assert "PASSED" not in captured.out
+        assert len(captured.err.strip().splitlines()) == 1
+
+
+@pytest.mark.usefixtures("library")
+def test_a_changed_task_file_is_refused_in_words_and_solved_again(tmp_path, capsys):
+    assert run_here(tmp_path) == 0
+    before = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    for path in (tmp_path / "out" / "tasks").iterdir():
+        path.write_text(path.read_text(encoding="utf-8").replace("0.001", "0.002"), encoding="utf-8")
+    capsys.readouterr()
+    assert run_here(tmp_path, "--resume") == 0
+    assert "solved again: " in capsys.readouterr().out
+    after = json.loads((tmp_path / "out" / "results.json").read_text(encoding="utf-8"))
+    values = [
+        [q["values"] for case in t["cases"] for r in case["runs"] for q in r["quantities"]] for t in (before, after)
+    ]
+    assert values[0] == values[1]

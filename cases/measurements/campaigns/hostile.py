@@ -33,6 +33,7 @@ from cases.declare.foreign_methods import check_claim
 from cases.declare.methods import check_name
 from cases.measurements.campaigns.random_scenes import FAMILIES, random_scene
 from cases.results.files import from_json
+from cases.results.sealed import sealed_text
 from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, StageRecord
 from contact.files import scene_text
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
@@ -325,11 +326,19 @@ _MACHINE = {"platform": "x", "processor": "x", "cores": 1, "threads": {}, "versi
 
 def _json_trial(draw: Draw) -> tuple[End, str]:
     tree = damaged_tree(draw, json.loads(json.dumps(_RUN | {"stamp": _STAMP | _MACHINE})), _JSON_VALUES)
-    text = json.dumps(tree, skipkeys=True)
+    text = _sealed(tree)
     if draw.random() < 0.5:
         text = damaged_bytes(draw, text.encode()).decode("utf-8", "replace")
     from_json(text)
     return "accepted", ""
+
+
+def _sealed(tree: Any) -> str:
+    """Under a right seal where there can be one, so that the reader looks at the content."""
+    try:
+        return sealed_text(tree)
+    except (TypeError, ValueError):
+        return json.dumps(tree, skipkeys=True)
 
 
 def _writing_trial(draw: Draw) -> tuple[End, str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import statistics
 from functools import cache
 from importlib.resources import files
@@ -13,10 +12,12 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
 from pydantic.dataclasses import dataclass
 
 from cases.results.files import write_whole
+from cases.results.sealed import read_sealed, sealed_text, unsealed
 from contact import InvalidInput
 from contact.records.record import shown
 
 _RECORD = ConfigDict(extra="forbid")
+_REMEDY = "measure it anew with contact-verify calibrate"
 _Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
 
 
@@ -95,38 +96,29 @@ _ADAPTER: TypeAdapter[Evidence] = TypeAdapter(Evidence)
 @cache
 def shipped() -> Evidence:
     """The evidence that comes with the package."""
-    return _parsed(
-        files("cases.measurements.evidence").joinpath("measured.json").read_text(encoding="utf-8"), "measured.json"
-    )
+    data = files("cases.measurements.evidence").joinpath("measured.json").read_bytes()
+    return _validated(unsealed(data, place="measured.json", remedy=_REMEDY), "measured.json")
 
 
 def read(path: Path) -> Evidence:
     """Evidence from a file that `write` wrote.
 
     Raises:
-        InvalidInput: If the file is none.
+        InvalidInput: In one line, if the file is none, or was changed after it was written.
     """
-    try:
-        return _parsed(path.read_text(encoding="utf-8"), str(path))
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInput(
-            f"{path}: cannot be read ({error!s:.160}); measure it with contact-verify calibrate"
-        ) from None
+    return _validated(read_sealed(path, remedy=_REMEDY), str(path))
 
 
 def write(path: Path, evidence: Evidence) -> None:
-    """Write evidence as JSON, whole or not at all."""
-    write_whole(path, json.dumps(_ADAPTER.dump_python(evidence, mode="json"), indent=1, sort_keys=True) + "\n")
+    """Write evidence as sealed JSON, whole or not at all."""
+    write_whole(path, sealed_text(_ADAPTER.dump_python(evidence, mode="json")))
 
 
-def _parsed(text: str, place: str) -> Evidence:
+def _validated(tree: dict[str, Any], place: str) -> Evidence:
     try:
-        tree: Any = json.loads(text)
         return _ADAPTER.validate_python(tree)
     except ValidationError as error:
         first = error.errors()[0]
         where = ".".join(str(part) for part in first["loc"])
         wrong = f"{place}: {where:.200}: {first['msg']}, got {shown(first['input'])}"
-        raise InvalidInput(f"{wrong}; measure it anew with contact-verify calibrate") from None
-    except ValueError as error:
-        raise InvalidInput(f"{place}: not readable as JSON ({error!s:.160})") from None
+        raise InvalidInput(f"{wrong}; {_REMEDY}") from None

@@ -225,3 +225,13 @@ def repository(folder):
     git(folder, "init", "--quiet")
     git(folder, "add", "tracked.py")
     git(folder, "-c", "user.name=t", "-c", "user.email=t@t", "commit", "--quiet", "-m", "first")
+
+
+def test_a_claim_is_withdrawn_only_when_told_so(tmp_path):
+    case = passing_case()
+    less = clean_run(dataclasses.replace(case, claims=()))
+    accepted(tmp_path)
+    with pytest.raises(InvalidInput, match="claim 'force agrees' about normal_force by mdr would no longer be"):
+        accepted(tmp_path, less)
+    accepted(tmp_path, less, loosen=True)
+    assert any(entry.quantity.endswith("withdrawn") for entry in read_history(tmp_path))

@@ -7,6 +7,7 @@ import pytest
 from cases.gate.baseline import baseline_path, read_baselines
 from cases.gate.history import append_history, history_path, read_history
 from cases.gate.specification import specification_hash
+from cases.results.sealed import sealed_text
 from contact import InvalidInput
 from tests.cases.example_run import acceptance
 from tests.cases.gate.example_baselines import CASE, accepted
@@ -27,11 +28,12 @@ def edited(file, old, new):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
-        ('"tolerance": 1e-09', '"tolerance": 1e-03', "changed by something else than accept"),
-        ("1.5\n", "1.6\n", "changed by something else than accept"),
+        ('"tolerance": 1e-09', '"tolerance": 1e-08', "changed after it was written"),
+        ("1.5\n", "1.6\n", "changed after it was written"),
+        ("1.5\n", "1.50\n", "changed after it was written"),
         ("1.5\n", "NaN\n", "non-finite number NaN"),
-        ('"version": 1', '"version": 2', "version 2"),
-        ('"baseline"', '"something"', "is no baseline"),
+        ('"baseline"', '"something"', "other entries than 'baseline'"),
+        ('"digest"', '"seal"', "has no seal"),
     ],
 )
 def test_a_file_edited_by_hand_is_refused(file, old, new, message):
@@ -39,14 +41,21 @@ def test_a_file_edited_by_hand_is_refused(file, old, new, message):
         read_baselines(edited(file, old, new))
 
 
-def test_a_wide_tolerance_is_refused_even_with_a_right_digest(file):
-    from cases.gate import baseline
-
+def resealed(file, **changes):
     tree = json.loads(file.read_text(encoding="utf-8"))["baseline"]
-    tree["records"][0]["tolerance"] = 1e-3
-    file.write_text(json.dumps({"digest": baseline.digest_of(tree), "baseline": tree}), encoding="utf-8")
+    tree["records"][0] |= changes.pop("record", {})
+    file.write_text(sealed_text({"baseline": tree | changes}, covered="baseline"), encoding="utf-8")
+    return file.parent.parent
+
+
+def test_a_wide_tolerance_is_refused_even_with_a_right_digest(file):
     with pytest.raises(InvalidInput, match="is not max"):
-        read_baselines(file.parent.parent)
+        read_baselines(resealed(file, record={"tolerance": 1e-3}))
+
+
+def test_another_version_is_refused_by_number(file):
+    with pytest.raises(InvalidInput, match="version 2"):
+        read_baselines(resealed(file, version=2))
 
 
 def test_a_file_in_the_wrong_place_is_refused(file):

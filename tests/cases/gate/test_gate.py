@@ -7,7 +7,7 @@ import pytest
 from cases.results.records import Kind
 from cases.results.status import ExitCode, Status, exit_code
 from reports.pages.annotations import MOST, annotation_lines
-from tests.cases.example_run import SCENE, fast_run, passing_case
+from tests.cases.example_run import OTHER_SCENE, SCENE, fast_run, passing_case
 from tests.cases.gate.example_baselines import accepted, clean_run, gated, regressions, scaled, with_force, with_rows
 
 
@@ -22,7 +22,7 @@ def failures(run, folder):
 
 def test_the_accepted_run_passes(folder):
     claims = regressions(gated(clean_run(), folder))
-    assert len(claims) == 4 * (2 + 2)  # solutions times two quantities, unknowns and one counter
+    assert len(claims) == 4 * (2 + 2 + 1)  # solutions times two quantities, unknowns and one counter, error bars
     assert {claim.status for claim in claims} == {Status.PASS}
     assert exit_code(gated(clean_run(), folder).statuses) is ExitCode.PASSED
 
@@ -169,3 +169,99 @@ def test_sixteen_failures_make_at_most_nine_annotations(tmp_path):
 def test_an_empty_run_ran_nothing(folder):
     empty = dataclasses.replace(clean_run(), cases=(), suite="")
     assert exit_code(gated(empty, folder).statuses) is ExitCode.NOTHING_RAN
+
+
+def stated(factor):
+    """Every stated uncertainty of every solution, curves included, times `factor`."""
+
+    def changed(row):
+        quantities = [
+            dataclasses.replace(q, uncertainty=tuple(factor * u for u in q.uncertainty)) for q in row.quantities
+        ]
+        curves = [
+            c
+            if c.relative_uncertainty is None
+            else dataclasses.replace(c, relative_uncertainty=factor * c.relative_uncertainty)
+            for c in row.curves
+        ]
+        return dataclasses.replace(row, quantities=tuple(quantities), curves=tuple(curves))
+
+    return with_rows(changed)
+
+
+@pytest.mark.parametrize(
+    ("factor", "methods"),
+    [(1e6, {"mdr", "fem"}), (50.0, {"mdr", "fem"}), (1 / 50, {"fem"}), (1e-6, {"fem"})],  # mdr states roundings
+)
+def test_error_bars_that_grow_or_shrink_fail_by_name(folder, factor, methods):
+    found = failures(stated(factor), folder)
+    assert {(claim.scene, *claim.methods) for claim in found} == {
+        (scene, method) for scene in (SCENE, OTHER_SCENE) for method in methods
+    }
+    assert all(claim.name.startswith("accepted uncertainty of ") for claim in found)
+    assert {claim.status for claim in found} == {Status.DIFF}
+
+
+@pytest.mark.parametrize("factor", [5.0, 1.0, 1 / 5])
+def test_error_bars_that_hardly_move_pass(folder, factor):
+    assert not failures(stated(factor), folder)
+
+
+@pytest.mark.parametrize("quantity", ["normal_force", "indentation_depth"])
+def test_the_error_bar_of_a_single_quantity_fails_under_its_name(folder, quantity):
+    def grown(row):
+        changed = [
+            dataclasses.replace(q, uncertainty=tuple(1e6 * u for u in q.uncertainty)) if q.name == quantity else q
+            for q in row.quantities
+        ]
+        return dataclasses.replace(row, quantities=tuple(changed)) if row.method == "fem" else row
+
+    found = failures(with_rows(grown), folder)
+    assert {claim.name for claim in found} == {f"accepted uncertainty of {quantity}"}
+
+
+def test_the_error_bar_of_a_field_fails_under_its_name(folder):
+    def grown(row):
+        return dataclasses.replace(
+            row, curves=tuple(dataclasses.replace(c, relative_uncertainty=1e6 * 1e-3) for c in row.curves)
+        )
+
+    with_bars = with_rows(
+        lambda row: dataclasses.replace(
+            row, curves=tuple(dataclasses.replace(c, relative_uncertainty=1e-3) for c in row.curves)
+        )
+    )
+    where = accepted(folder / "of fields", with_bars)
+    assert not failures(with_bars, where)
+    assert {claim.name for claim in failures(with_rows(grown), where)} == {"accepted uncertainty of pressure curve"}
+
+
+def test_an_error_bar_that_is_no_longer_stated_fails_by_name(folder):
+    silent = with_force("fem", lambda q: dataclasses.replace(q, uncertainty=()))
+    found = failures(silent, folder)
+    assert {claim.name for claim in found} == {"accepted uncertainty of normal_force"}
+    assert all("missing: " in claim.message for claim in found)
+
+
+def test_claims_removed_from_a_case_fail_by_their_names(folder):
+    case = passing_case()
+    names = {claim.name for claim in case.claims if claim.kind is not Kind.REGRESSION}
+    found = failures(clean_run(dataclasses.replace(case, claims=())), folder)
+    assert {claim.name for claim in found} == {f"accepted claim {name!r}" for name in names} != set()
+    assert {claim.status for claim in found} == {Status.INCOMPARABLE}
+
+
+def test_a_single_claim_or_one_of_its_scenes_removed_fails_by_its_name(folder):
+    case = passing_case()
+    own = [claim for claim in case.claims if claim.kind is not Kind.REGRESSION]
+    for lost in own:
+        kept = tuple(claim for claim in case.claims if claim is not lost)
+        (found,) = failures(clean_run(dataclasses.replace(case, claims=kept)), folder)
+        assert found.name == f"accepted claim {lost.name!r}"
+        assert "this run judges it on 0" in found.message
+
+
+def test_a_new_claim_is_welcome(folder):
+    case = passing_case()
+    new = dataclasses.replace(case.claims[0], name="a new claim")
+    assert not failures(clean_run(dataclasses.replace(case, claims=(*case.claims, new))), folder)

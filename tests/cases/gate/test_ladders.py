@@ -87,5 +87,5 @@ def test_other_ladders_of_the_method_stay_as_they_were(folder):
 def test_a_file_edited_by_hand_is_refused(folder):
     path = folder / "ladders-mdr.json"
     path.write_text(path.read_text(encoding="utf-8").replace("12.0", "2.0"), encoding="utf-8")
-    with pytest.raises(InvalidInput, match="something else than accept"):
+    with pytest.raises(InvalidInput, match="changed after it was written"):
         read_ladders(folder)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import json
-
 import numpy as np
 import pytest
 
@@ -15,6 +13,7 @@ from cases.measurements.evidence.calibrate import Candidate, CoarseReference, ca
 from cases.measurements.evidence.choice import choices
 from cases.measurements.evidence.kinds import BANDS, band_of, kind_of, rough_radius
 from cases.measurements.evidence.records import read, write
+from cases.results.sealed import sealed_text
 from contact import (
     Adhesion,
     ContactRadii,
@@ -253,7 +252,7 @@ def test_a_scene_that_the_finest_settings_do_not_solve_measures_nothing(monkeypa
 def test_measurements_that_keep_only_the_worst_are_refused_with_the_remedy(tmp_path):
     row = {"kind": "radii", "band": 1.0, "method": "mdr", "settings": {}, "bound": 1e-6, "seconds": 1.0, "scenes": 8}
     tree = {"machine": "x", "revision": "x", "seed": 0, "measurements": [row]}
-    (tmp_path / "measured.json").write_text(json.dumps(tree))
+    (tmp_path / "measured.json").write_text(sealed_text(tree))
     with pytest.raises(InvalidInput, match=r"bounds: .*; measure it anew with contact-verify calibrate$"):
         read(tmp_path / "measured.json")
 

@@ -1,0 +1,108 @@
+"""A full disk names the file that did not fit and leaves no part of it, nor harms the one that was there."""
+
+import errno
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cases.gate.history import append_history, read_history
+from cases.results.files import write_run, write_whole
+from contact import InvalidInput
+from contact.files.storage import read_tree, write_tree
+from tests.cases.example_run import acceptance, example_run
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture
+def full_disk(monkeypatch):
+    """What is written does not reach the disk any more."""
+
+    def refuse(descriptor):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", refuse)
+
+
+@pytest.mark.usefixtures("full_disk")
+@pytest.mark.parametrize(
+    ("name", "write"),
+    [
+        ("page.html", lambda folder: write_whole(folder / "page.html", "x" * 1000)),
+        ("picture.png", lambda folder: write_whole(folder / "picture.png", b"x" * 1000)),
+        ("tree.h5", lambda folder: write_tree(folder / "tree.h5", {"a": np.zeros(100)})),
+        ("results.json", lambda folder: write_run(example_run(), folder)),
+        ("history.jsonl", lambda folder: append_history(folder, [acceptance()])),
+    ],
+)
+def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, tmp_path):
+    with pytest.raises(InvalidInput) as error:
+        write(tmp_path)
+    assert str(error.value).startswith(f"{tmp_path / name}: cannot be written (")
+    assert "No space left on device" in str(error.value)
+    assert str(error.value).isprintable()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_old_file_survives_a_full_disk(tmp_path, monkeypatch):
+    write_tree(tmp_path / "tree.h5", {"a": 1.0})
+    append_history(tmp_path, [acceptance()])
+    before = sorted(tmp_path.iterdir())
+
+    def refuse(descriptor):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(os, "fsync", refuse)
+    with pytest.raises(InvalidInput):
+        write_tree(tmp_path / "tree.h5", {"a": 2.0})
+    with pytest.raises(InvalidInput):
+        append_history(tmp_path, [acceptance()])
+    assert sorted(tmp_path.iterdir()) == before
+    assert read_tree(tmp_path / "tree.h5") == {"a": 1.0}
+    assert read_history(tmp_path) == (acceptance(),)
+
+
+LIMITED = """
+import resource, signal, sys
+from pathlib import Path
+import numpy as np
+from cases.results.files import write_whole
+from contact import InvalidInput
+from contact.files.storage import write_tree
+signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+folder = Path(sys.argv[1])
+for write in (
+    lambda: write_whole(folder / "a.json", "x" * 1_000_000),
+    lambda: write_tree(folder / "b.h5", {str(n): np.random.default_rng(n).random(1000) for n in range(100)}),
+):
+    try:
+        write()
+    except InvalidInput as error:
+        print(error)
+"""
+
+
+def test_where_the_system_itself_refuses_bytes_nothing_is_left(tmp_path):
+    command = [sys.executable, "-c", LIMITED, str(tmp_path)]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
+    first, second = done.stdout.splitlines()
+    assert first.startswith(f"{tmp_path / 'a.json'}: cannot be written (File too large)")
+    assert second.startswith(f"{tmp_path / 'b.h5'}: cannot be written (")
+    assert done.stderr == ""
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_link_stays_a_link_and_a_device_a_device(tmp_path):
+    (tmp_path / "link").symlink_to(tmp_path / "file")
+    write_whole(tmp_path / "link", "new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "file").read_text(encoding="utf-8") == "new"
+    (tmp_path / "full").symlink_to("/dev/full")
+    with pytest.raises(InvalidInput, match="No space left on device"):
+        write_whole(tmp_path / "full", "x")
+    assert Path("/dev/full").is_char_device()
