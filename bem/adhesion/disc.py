@@ -75,7 +75,8 @@ class AdheringDisc:
             return cls(layer, disc, grid, flat, risen, np.zeros(flat.shape), 0.0)
         half_space = half_space_operator(cells)
         measured = solve_on_contact(half_space, disc.contact, height / grid.cell_size, tolerance=TOLERANCE).pressure
-        return cls(layer, disc, grid, flat, risen, measured, float(half_space_load(indenter, np.array([radius]))[0]))
+        load = float(half_space_load(indenter, np.array([radius - indenter.flat_radius]))[0])
+        return cls(layer, disc, grid, flat, risen, measured, load)
 
     @property
     def contact_radius(self) -> float:

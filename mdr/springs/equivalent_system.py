@@ -16,7 +16,6 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.springs import table_errors
 
 NEWTON_STEPS = 60
 NEWTON_TOLERANCE = 2e-14
@@ -115,12 +114,14 @@ class EquivalentSystem:
     @property
     def relative_error(self) -> Mapping[str, float]:
         """Bounds at `max_radius`, where they are largest; see `relative_errors`."""
-        return {name: float(values) for name, values in self.relative_errors(np.asarray(self.max_radius)).items()}
+        return {name: float(values[0]) for name, values in self.relative_errors(np.array([self.max_radius])).items()}
 
     def relative_errors(self, contact_radius: FloatArray) -> dict[str, FloatArray]:
         """Bounds of the relative errors of an elastic contact's quantities at each radius."""
         ratio = self._ratio(contact_radius)
         if self.variants:
+            from mdr.springs import table_errors  # noqa: PLC0415 - other flat-punch data do not need it
+
             return table_errors.relative_errors(self, contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
         moment = self.flat_punch.moment_error(ratio, self._flat_share(contact_radius)) + ROUNDING

@@ -8,13 +8,14 @@ first order, and only then their sizes are added up, each times the share that c
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final, cast
+from typing import Final, cast
 
 import numpy as np
 
 from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR, FlatPunchTable
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
+from mdr.springs.equivalent_system import EquivalentSystem
 
 # What k_N alone takes of the shares: it converges faster than the pressure, from which the profile comes. Differences
 # to half as many cells were 2 to 18 times its true error, those of the profile 0.7 to 6 times (70 scenes, a/h to 60,
@@ -30,9 +31,6 @@ PROFILE_SHARE: Final = 0.1
 PRESSURE_FLOOR: Final = 1e-7
 # Radii at which pressures are compared.
 RINGS: Final = 24
-
-if TYPE_CHECKING:
-    from mdr.springs.equivalent_system import EquivalentSystem
 
 
 @dataclass(frozen=True, eq=False)

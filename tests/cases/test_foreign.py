@@ -5,11 +5,11 @@ from importlib.metadata import EntryPoint
 
 import numpy as np
 import pytest
-from cases.run.judge import case_result
 
 from cases.declare import methods
 from cases.declare.foreign_methods import LARGEST_CLAIM, claimed_accuracy, with_newcomer, with_registered
 from cases.declare.guarded_method import BrokenMethodError, GuardedMethod, build_guarded
+from cases.judgement.judge import case_result
 from cases.results.status import Status
 from contact import (
     Cone,

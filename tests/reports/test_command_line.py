@@ -225,7 +225,7 @@ def test_solve_prints_numbers_with_error_bars_and_writes_files(hertz, tmp_path, 
 
 def test_solve_refuses_an_answer_less_accurate_than_asked(hertz, capsys, monkeypatch):
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "1e-3"]) == 0
-    monkeypatch.setattr(solve_command, "build", lambda *_: FakeHertz(stated=1e-2))
+    monkeypatch.setattr(solve_command, "build_guarded", lambda *_: FakeHertz(stated=1e-2))
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "1e-3"]) == 1
     assert "asked for 1.0e-03" in capsys.readouterr().err
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "-1"]) == 4
