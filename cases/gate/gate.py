@@ -4,11 +4,11 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 
 from cases.gate.baseline import Baseline
-from cases.gate.claims import missing_claims
-from cases.gate.counts import count_checks
+from cases.gate.checks.claims import missing_claims
+from cases.gate.checks.counts import count_checks
+from cases.gate.checks.uncertainties import uncertainty_checks
+from cases.gate.checks.values import value_checks
 from cases.gate.ladders import ladder_claims
-from cases.gate.uncertainties import uncertainty_checks
-from cases.gate.values import value_checks
 from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult, SceneRun
 
 Watched = Callable[[str, SceneRun], bool]

@@ -4,11 +4,11 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 
 from cases.gate.baseline import AcceptedCounters, AcceptedQuantity, Baseline
-from cases.gate.claims import claims_of
-from cases.gate.counts import counters_of
+from cases.gate.checks.claims import claims_of
+from cases.gate.checks.counts import counters_of
+from cases.gate.checks.uncertainties import curve_uncertainties
 from cases.gate.specification import specification
 from cases.gate.spread import Spreads
-from cases.gate.uncertainties import curve_uncertainties
 from cases.judgement.rules.tolerance import permitted_difference, relative_tolerance
 from cases.results.records import CaseResult, Quantity, SceneRun
 from contact import InvalidInput

@@ -637,13 +637,13 @@ BASELINES = [
     Fault(
         "missing records pass",
         "baselines",
-        swap("cases.gate.check:missing", passes),
+        swap("cases.gate.checks.check:missing", passes),
         Test("cases.gate.test_gate:test_a_missing_quantity_fails_by_its_name", (accepted_folder,)),
     ),
     Fault(
         "extra records pass",
         "baselines",
-        swap("cases.gate.check:extra", passes),
+        swap("cases.gate.checks.check:extra", passes),
         Test("cases.gate.test_gate:test_what_nobody_accepted_fails_by_its_name", (accepted_folder,)),
     ),
     Fault(

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters
-from cases.gate.check import Check, extra, missing
+from cases.gate.checks.check import Check, extra, missing
 from cases.judgement.rules.regression import judge_counter, permitted_count_change
 from cases.results.records import SceneRun
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedQuantity
-from cases.gate.check import Check, extra, missing
+from cases.gate.checks.check import Check, extra, missing
 from cases.gate.specification import specification
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
 from cases.judgement.rules.regression import judge_regression

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from cases.gate.baseline import AcceptedClaim, Baseline
-from cases.gate.check import Check
+from cases.gate.checks.check import Check
 from cases.judgement.rules.judgement import nothing_compared
 from cases.results.records import CaseResult, Claim, Kind
 from cases.results.status import Status

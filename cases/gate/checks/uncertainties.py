@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters, AcceptedQuantity
-from cases.gate.check import Check
+from cases.gate.checks.check import Check
 from cases.gate.specification import specification
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
 from cases.judgement.rules.tolerance import SMALLEST_RELATIVE, permitted_difference
