@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, assert_type
 import numpy as np
 
 from bem import Bem, IntegralEquationMethod
+from cases import solve
 from contact import (
     Adhesion,
     ContactPath,
@@ -69,6 +70,9 @@ if TYPE_CHECKING:
     assert_type(Bem().solve(RADII), ContactPath)
     assert_type(Bem().solve(PULLED), DetachmentPath)
     assert_type(IntegralEquationMethod().solve(RADII), ContactPath)
+
+    assert_type(solve(HIT, accuracy=1e-4).answer, ImpactHistory)
+    assert_type(solve(FORCES, accuracy=1e-4, within=1.0).answer, ContactPath)
 
     # A scene from a file may have any loading.
     assert_type(load_scene("scene.toml").loading, Loading)
