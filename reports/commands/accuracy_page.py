@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cases.measurements.evidence import shipped
-from cases.measurements.evidence.accepted import accuracy_figures
+from cases.gate.accuracy_figures import accuracy_figures
 from cases.gate.baseline import read_baselines
+from cases.measurements.evidence import shipped
 from cases.results.files import write_whole
 from contact import InvalidInput
 from reports.pages.accuracy import accuracy_page

@@ -6,13 +6,14 @@ from collections.abc import Iterable, Sequence
 from itertools import groupby
 from operator import attrgetter
 
-from cases.measurements.evidence.accepted import AccuracyFigure, median_and_largest
+from cases.gate.accuracy_figures import AccuracyFigure, median_and_largest
 from cases.measurements.evidence.records import Evidence, Measurement
 
 HEAD = """\
 # Accuracy
 
-Written by `contact-verify accuracy-page` from `baselines/` and `cases/measurements/evidence/measured.json`; do not edit.
+Written by `contact-verify accuracy-page` from the accepted numbers in `baselines/` and the measurements behind
+`contact-verify solve --accuracy`; do not edit.
 All errors are relative; "median, largest" are over the states of all accepted scenes of a case. Prescribed quantities
 have no error and no row. `mdr` is compared with `fem`, which shares no code with it; every other method with `mdr`.
 "Within both" counts the states where the difference is no larger than the two stated errors together (differences

@@ -4,7 +4,6 @@
 - ``records``: what was measured, and the file it is kept in
 - ``calibrate``: measure again on this machine
 - ``choice``: measured settings in the order worth trying for an accuracy, and the first answer that achieves it
-- ``accepted``: stated errors and agreement of the accepted numbers
 - ``audit``: random scenes solved to random accuracies: is it met, and in about the shortest time?
 """
 
