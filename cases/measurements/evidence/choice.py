@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final, Generic, overload
+from typing import Any, Final, Generic, overload
 
 import numpy as np
 from typing_extensions import TypeVar
@@ -147,7 +147,9 @@ def solve(
 def solve(
     scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
 ) -> Outcome: ...
-def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None) -> Outcome:
+def solve(
+    scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome[Any]:
     """The first answer that states no larger error than wanted, settings tried in the order of `choices`.
 
     Args:
