@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from math import log2
-from typing import ClassVar, Final, Literal, Self
+from typing import ClassVar, Final, Literal, Self, overload
 
 import numpy as np
 from pydantic import Field
@@ -21,6 +21,7 @@ from contact import (
     ContactRadii,
     Detachment,
     DetachmentPath,
+    EquilibriumLoading,
     FlatPunch,
     IndentationDepths,
     InvalidInput,
@@ -121,6 +122,12 @@ class Bem(Record):
             return dataclasses.replace(self, accuracy=max(self.accuracy / BEST_GAIN, FINEST_ACCURACY))
         return dataclasses.replace(self, points=2 * self.points)
 
+    @overload
+    def solve(self, scene: Scene[EquilibriumLoading]) -> ContactPath: ...
+    @overload
+    def solve(self, scene: Scene[Detachment]) -> DetachmentPath: ...
+    @overload
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath: ...
     @one_thread
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria of the scene.

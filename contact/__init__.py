@@ -17,6 +17,7 @@ from contact.answer.solution import (
 from contact.answer.stages import Cost, StageLog, StageRecord
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
 from contact.records.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
+from contact.records.validation import Numbers
 from contact.scene.coated_pair import CoatedPair
 from contact.scene.effects import Adhesion, Effect, KelvinVoigt, PronySeries, Relaxation, StandardSolid, Viscoelasticity
 from contact.scene.layer import Layer
@@ -24,7 +25,9 @@ from contact.scene.loading import (
     ContactRadii,
     DepthHistory,
     Detachment,
+    EquilibriumLoading,
     ForceHistory,
+    HistoryLoading,
     Impact,
     IndentationDepths,
     Loading,
@@ -57,9 +60,11 @@ __all__ = [
     "Detachment",
     "DetachmentPath",
     "Effect",
+    "EquilibriumLoading",
     "Fields",
     "FlatPunch",
     "ForceHistory",
+    "HistoryLoading",
     "HistoryPath",
     "Impact",
     "ImpactHistory",
@@ -71,6 +76,7 @@ __all__ = [
     "Method",
     "NormalForces",
     "NotConvergedError",
+    "Numbers",
     "Paraboloid",
     "PowerLaw",
     "Profile",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import ClassVar, Self
+from typing import ClassVar, Self, overload
 
 from contact import (
     Adhesion,
@@ -13,8 +13,10 @@ from contact import (
     DepthHistory,
     Detachment,
     DetachmentPath,
+    EquilibriumLoading,
     FlatPunch,
     ForceHistory,
+    HistoryLoading,
     HistoryPath,
     Impact,
     ImpactHistory,
@@ -103,6 +105,16 @@ class Fem:
         listed = f" with {', '.join(type(effect).__name__ for effect in scene.effects)}"
         return Unsupported(f"fem does not model loading {type(scene.loading).__name__}{listed}")
 
+    @overload
+    def solve(self, scene: Scene[EquilibriumLoading]) -> ContactPath: ...
+    @overload
+    def solve(self, scene: Scene[Detachment]) -> DetachmentPath: ...
+    @overload
+    def solve(self, scene: Scene[Impact]) -> ImpactHistory: ...
+    @overload
+    def solve(self, scene: Scene[HistoryLoading]) -> HistoryPath: ...
+    @overload
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath: ...
     @one_thread
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
         """The answer with its error estimates.

@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 import dataclasses
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, ClassVar, Self, overload
 
 from pydantic import Field
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import Scene, Solution, Supported, Unsupported, UnsupportedSceneError
+from contact import (
+    ContactPath,
+    Detachment,
+    DetachmentPath,
+    EquilibriumLoading,
+    HistoryLoading,
+    HistoryPath,
+    Impact,
+    ImpactHistory,
+    Scene,
+    Solution,
+    Supported,
+    Unsupported,
+    UnsupportedSceneError,
+)
 from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
@@ -36,6 +50,16 @@ class Mdr(Record):
         solver = solver_of(scene)
         return solver if isinstance(solver, Unsupported) else Supported()
 
+    @overload
+    def solve(self, scene: Scene[EquilibriumLoading]) -> ContactPath: ...
+    @overload
+    def solve(self, scene: Scene[Detachment]) -> DetachmentPath: ...
+    @overload
+    def solve(self, scene: Scene[Impact]) -> ImpactHistory: ...
+    @overload
+    def solve(self, scene: Scene[HistoryLoading]) -> HistoryPath: ...
+    @overload
+    def solve(self, scene: Scene) -> Solution: ...
     @one_thread
     def solve(self, scene: Scene) -> Solution:
         """The answer to the scene: a contact path, a detachment path, an impact or a history.

@@ -79,6 +79,23 @@ def _seconds(text: str) -> float:
         raise typer.BadParameter(f"{text!r} is no time; write 0.1, 0.1s or 100ms") from None
 
 
+def _print_version(wanted: bool) -> None:
+    if wanted:
+        from importlib.metadata import version  # noqa: PLC0415
+
+        typer.echo(f"contact-verify {version('contact-verification')}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_print_version, help="Print the version and stop.")
+    ] = False,
+) -> None:
+    pass
+
+
 EXAMPLE = typer.Option("--example", is_eager=True, callback=_print_example, help="Print an example scene and stop.")
 
 
@@ -305,6 +322,17 @@ def accuracy(
     from reports.commands.hard import accuracy as run_command  # noqa: PLC0415
 
     return run_command(count, seed, evidence, out)
+
+
+@app.command("accuracy-page")
+def accuracy_page(
+    out: Annotated[Path, typer.Argument(help="File for the page, Markdown.")] = Path("docs/accuracy.md"),
+    baseline: Baselines = Path("baselines"),
+) -> None:
+    """Write the page of stated errors and observed agreement per case, method and quantity, from stored numbers."""
+    from reports.commands.accuracy_page import write_page  # noqa: PLC0415
+
+    write_page(baseline, out)
 
 
 @app.command()

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contact.answer.one_thread import one_thread
 from contact.answer.stages import Cost, StageRecord
+from contact.answer.summary import quantity_line, scene_line
 from contact.records.errors import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
 from contact.scene.scene import Scene
@@ -50,7 +51,7 @@ class Fields(Protocol):
         """w(r) [m], positive into the layer."""
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Solution:
     """What every answer carries.
 
@@ -66,6 +67,8 @@ class Solution:
 
     ARRAYS: ClassVar[tuple[str, ...]] = ()
     SCALARS: ClassVar[tuple[str, ...]] = ()
+    OFFERS: ClassVar[tuple[str, ...]] = ()
+    """What else the answer has to show, as `repr` lists it."""
 
     scene: Scene
     method: str
@@ -91,6 +94,26 @@ class Solution:
         """Number of states."""
         return len(getattr(self, self.ARRAYS[0]))
 
+    def __repr__(self) -> str:
+        """A few lines: method, scene, first and last values with units and stated errors, what to look at next."""
+        offers = (*self.OFFERS, "uncertainty(quantity)", "error_estimate", "settings", "stages", "cost")
+        lines = [f"{type(self).__name__} by {self.method}, {len(self)} {'state' if len(self) == 1 else 'states'}"]
+        lines += [f"  scene: {scene_line(self.scene)}"]
+        lines += [f"  {self._line(name)}" for name in self._quantities()]
+        lines += [f"  note: {note}" for note in self.notes]
+        return "\n".join([*lines, f"  next: {', '.join(f'.{offer}' for offer in offers)}"])
+
+    def _quantities(self) -> list[str]:
+        """Arrays, scalars, and numbers derived from them whose errors are stated."""
+        names = [*self.ARRAYS, *self.SCALARS]
+        derived = [name for name in self.error_estimate if isinstance(getattr(self, name, None), float)]
+        return [*names, *(name for name in derived if name not in names)]
+
+    def _line(self, name: str) -> str:
+        values = np.atleast_1d(getattr(self, name))
+        stated = self.uncertainty(name) if name in self.error_estimate else None
+        return quantity_line(name, values, UNITS.get(name, ""), stated)
+
     def scale(self, quantity: str) -> FloatArray:
         """What a relative error of this quantity refers to; along a path that crosses zero, its largest magnitude.
 
@@ -111,7 +134,7 @@ class Solution:
         return self.error_estimate[quantity] * self.scale(quantity)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ContactPath(Solution):
     """Equilibria at the prescribed radii, depths or forces, in their order.
 
@@ -124,6 +147,7 @@ class ContactPath(Solution):
     """
 
     ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+    OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "surface_displacement(radius, step)")
 
     contact_radius: FloatArray
     indentation_depth: FloatArray
@@ -190,7 +214,7 @@ class CriticalPoint:
     normal_force: float
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class DetachmentPath(Solution):
     """The equilibrium branch of an adhering indenter, in order of decreasing contact radius.
 
@@ -208,6 +232,7 @@ class DetachmentPath(Solution):
 
     ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force")
     SCALARS: ClassVar[tuple[str, ...]] = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+    OFFERS: ClassVar[tuple[str, ...]] = ("critical_points", "stable_displacement_control", "stable_force_control")
 
     contact_radius: FloatArray
     indentation_depth: FloatArray
@@ -220,7 +245,7 @@ class DetachmentPath(Solution):
     critical_points: tuple[CriticalPoint, ...] = ()
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class HistoryPath(Solution):
     """Response to a prescribed depth or force history.
 
@@ -239,7 +264,7 @@ class HistoryPath(Solution):
     contact_radius: FloatArray
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ImpactHistory(Solution):
     """An impact from first touch (first sample) to the loss of contact (last sample).
 
@@ -269,6 +294,7 @@ class ImpactHistory(Solution):
         "dissipated_energy",
     )
     SCALARS: ClassVar[tuple[str, ...]] = ("peak_force", "peak_depth", "peak_contact_radius")
+    OFFERS: ClassVar[tuple[str, ...]] = ("energy_residual",)
 
     time: FloatArray
     indentation_depth: FloatArray

@@ -40,7 +40,7 @@ class Record:
 R = TypeVar("R", bound=Record)
 
 
-@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field,))
+@dataclass_transform(frozen_default=True, kw_only_default=True, field_specifiers=(dataclasses.field, pydantic.Field))
 def record(cls: type[R]) -> type[R]:
     """Make a `Record` subclass a frozen, keyword-only dataclass that validates its fields.
 

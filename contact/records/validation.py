@@ -5,13 +5,30 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from numbers import Real
-from typing import Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, Self, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import PlainValidator, WithJsonSchema
 
 FloatArray: TypeAlias = NDArray[np.float64]
+Numbers: TypeAlias = Sequence[float] | Sequence[np.floating[Any]] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
+"""What a vector may be given as: a list, tuple or range of numbers, or an array of shape (n,)."""
+
+if TYPE_CHECKING:
+
+    class Vector:
+        """A field given as `Numbers` and read as a read-only float64 array, shape (n,)."""
+
+        @overload
+        def __get__(self, owner: None, kind: object) -> Self: ...
+        @overload
+        def __get__(self, owner: object, kind: object) -> FloatArray: ...
+        def __get__(self, owner: object | None, kind: object) -> FloatArray | Self: ...
+        def __set__(self, owner: object, value: Numbers) -> None: ...
+else:
+    # At run time the validators below convert, and the field is the array itself.
+    Vector = FloatArray
 
 SMALLEST, LARGEST = 1e-75, 1e75  # of magnitudes in any units: products of four fit into double precision
 MAX_ENTRIES = 1_000_000  # a longer list in a scene is a mistake or an attack, never a measurement

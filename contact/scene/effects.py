@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import FloatArray, bounded_vector, in_range, positive
+from contact.records.validation import FloatArray, Vector, bounded_vector, in_range, positive
 
 _MODULUS = "give the shear modulus in pascals"
 _VISCOSITY = "give the viscosity in pascal seconds"
@@ -114,10 +114,8 @@ class PronySeries(Viscoelasticity):
     """
 
     long_term_shear_modulus: Annotated[float, *in_range(0.0, math.inf, _MODULUS)]
-    shear_moduli: Annotated[FloatArray, *bounded_vector("give the shear moduli in pascals", least=0.0)]
-    relaxation_times: Annotated[
-        FloatArray, *bounded_vector("give the relaxation times in seconds", least=0.0, strict=True)
-    ]
+    shear_moduli: Annotated[Vector, *bounded_vector("give the shear moduli in pascals", least=0.0)]
+    relaxation_times: Annotated[Vector, *bounded_vector("give the relaxation times in seconds", least=0.0, strict=True)]
 
     @model_validator(mode="after")
     def _check(self) -> PronySeries:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import FloatArray, PositiveLength, finite_vector, increasing_vector, positive
+from contact.records.validation import FloatArray, PositiveLength, Vector, finite_vector, increasing_vector, positive
 
 
 class Loading(Record):
@@ -22,7 +22,7 @@ class ContactRadii(Loading):
         values: a [m], positive and increasing, shape (n,).
     """
 
-    values: Annotated[FloatArray, *increasing_vector("give contact radii in metres that increase", above=0.0)] = Field(
+    values: Annotated[Vector, *increasing_vector("give contact radii in metres that increase", above=0.0)] = Field(
         kw_only=False
     )
 
@@ -39,7 +39,7 @@ class IndentationDepths(Loading):
         values: delta [m], shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[FloatArray, *finite_vector("give indentation depths in metres")] = Field(kw_only=False)
+    values: Annotated[Vector, *finite_vector("give indentation depths in metres")] = Field(kw_only=False)
 
 
 @record
@@ -50,7 +50,7 @@ class NormalForces(Loading):
         values: F_N [N], pressing positive, shape (n,); negative only with adhesion.
     """
 
-    values: Annotated[FloatArray, *finite_vector("give normal forces in newtons")] = Field(kw_only=False)
+    values: Annotated[Vector, *finite_vector("give normal forces in newtons")] = Field(kw_only=False)
 
 
 @record
@@ -89,8 +89,8 @@ class DepthHistory(Loading):
         depth: delta [m] at these instants, shape (n,).
     """
 
-    time: Annotated[FloatArray, *increasing_vector("give instants in seconds that increase")]
-    depth: Annotated[FloatArray, *finite_vector("give one depth in metres for each instant")]
+    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
+    depth: Annotated[Vector, *finite_vector("give one depth in metres for each instant")]
 
     @model_validator(mode="after")
     def _check(self) -> DepthHistory:
@@ -107,8 +107,8 @@ class ForceHistory(Loading):
         force: F_N [N] at these instants, shape (n,).
     """
 
-    time: Annotated[FloatArray, *increasing_vector("give instants in seconds that increase")]
-    force: Annotated[FloatArray, *finite_vector("give one force in newtons for each instant")]
+    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
+    force: Annotated[Vector, *finite_vector("give one force in newtons for each instant")]
 
     @model_validator(mode="after")
     def _check(self) -> ForceHistory:
@@ -121,6 +121,12 @@ def _check_lengths(time: FloatArray, values: FloatArray, name: str) -> None:
         sizes = f"got {time.size} instants and {values.size} values"
         raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")
 
+
+EquilibriumLoading: TypeAlias = ContactRadii | IndentationDepths | NormalForces
+"""Loadings that a `ContactPath` answers."""
+
+HistoryLoading: TypeAlias = DepthHistory | ForceHistory
+"""Loadings that a `HistoryPath` answers."""
 
 LOADINGS: tuple[type[Loading], ...] = (
     ContactRadii,

@@ -16,7 +16,15 @@ from numpy.typing import ArrayLike
 from pydantic import model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import FloatArray, PositiveLength, finite_vector, in_range, increasing_vector, positive
+from contact.records.validation import (
+    FloatArray,
+    PositiveLength,
+    Vector,
+    finite_vector,
+    in_range,
+    increasing_vector,
+    positive,
+)
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
@@ -231,8 +239,8 @@ class Tabulated(Pointed):
         heights: f [m] at these radii, starting at zero, shape (n,).
     """
 
-    radii: Annotated[FloatArray, *increasing_vector("give radii in metres that start at 0 and increase", least=0.0)]
-    heights: Annotated[FloatArray, *finite_vector("give heights in metres, one for each radius")]
+    radii: Annotated[Vector, *increasing_vector("give radii in metres that start at 0 and increase", least=0.0)]
+    heights: Annotated[Vector, *finite_vector("give heights in metres, one for each radius")]
 
     @model_validator(mode="after")
     def _check(self) -> Tabulated:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
 import numpy as np
 from pydantic import model_validator
+from typing_extensions import TypeVar
 
 from contact.records.record import Record, record
 from contact.scene.effects import Adhesion, Effect, Viscoelasticity
@@ -17,10 +18,14 @@ from contact.scene.profiles import FlatPunch, Profile
 _MODULUS_AGREEMENT = 1e-9  # relative; a user's rounding of E = 2 (1 + nu) G is far above it only by mistake
 
 E = TypeVar("E", bound=Effect)
+L = TypeVar("L", bound=Loading)
+
+# Type checkers know the loading of a scene, and so which kind of answer `solve` gives; `Scene` alone is any loading.
+LoadingT_co = TypeVar("LoadingT_co", bound=Loading, default=Loading, covariant=True)
 
 
 @record
-class Scene(Record):
+class Scene(Record, Generic[LoadingT_co]):
     """One contact problem.
 
     Attributes:
@@ -32,15 +37,24 @@ class Scene(Record):
 
     layer: Layer
     indenter: Profile
-    loading: Loading
+    loading: LoadingT_co
     effects: tuple[Effect, ...] = ()
 
     def effect(self, kind: type[E]) -> E | None:
         """The listed effect of this kind, or None."""
         return next((effect for effect in self.effects if isinstance(effect, kind)), None)
 
+    if TYPE_CHECKING:  # at run time `Record.replace` does it
+
+        @overload
+        def replace(self, *, loading: L, **changes: Any) -> Scene[L]: ...
+        @overload
+        def replace(self, **changes: Any) -> Self: ...
+        def replace(self, **changes: Any) -> Any:
+            """A copy with some fields changed, validated like a new one."""
+
     @model_validator(mode="after")
-    def _check(self) -> Scene:
+    def _check(self) -> Self:
         _check_effects(self)
         _check_radii(self)
         _check_signs(self)

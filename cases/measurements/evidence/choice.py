@@ -5,15 +5,31 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import Final
+from typing import Any, Final, Generic, overload
 
 import numpy as np
+from typing_extensions import TypeVar
 
 from cases.declare.methods import build, method_names
 from cases.measurements.evidence.calibrate import largest_stated_error
 from cases.measurements.evidence.kinds import band_of, kind_of
 from cases.measurements.evidence.records import Evidence, Measurement, shipped
-from contact import InvalidInput, NotConvergedError, Scene, Solution
+from contact import (
+    ContactPath,
+    Detachment,
+    DetachmentPath,
+    EquilibriumLoading,
+    HistoryLoading,
+    HistoryPath,
+    Impact,
+    ImpactHistory,
+    InvalidInput,
+    NotConvergedError,
+    Scene,
+    Solution,
+)
+
+AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
 
 SAFETY: Final = 2.0  # a scene at hand is another than the sample's
 
@@ -40,7 +56,7 @@ class Choice:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class Outcome(Generic[AnswerT]):
     """An answer with what was expected and what was achieved.
 
     Attributes:
@@ -51,7 +67,7 @@ class Outcome:
     """
 
     choice: Choice
-    answer: Solution
+    answer: AnswerT
     stated_error: float
     seconds: float
 
@@ -111,7 +127,29 @@ def _ever_finer(measurements: Iterable[Measurement]) -> Iterable[Measurement]:
             yield m
 
 
-def solve(scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None) -> Outcome:
+@overload
+def solve(
+    scene: Scene[EquilibriumLoading], *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome[ContactPath]: ...
+@overload
+def solve(
+    scene: Scene[Detachment], *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome[DetachmentPath]: ...
+@overload
+def solve(
+    scene: Scene[Impact], *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome[ImpactHistory]: ...
+@overload
+def solve(
+    scene: Scene[HistoryLoading], *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome[HistoryPath]: ...
+@overload
+def solve(
+    scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome: ...
+def solve(
+    scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+) -> Outcome[Any]:
     """The first answer that states no larger error than wanted, settings tried in the order of `choices`.
 
     Args:
