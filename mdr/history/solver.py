@@ -339,5 +339,5 @@ def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) ->
             f"at t = {time:g} s the contact opens inside while it holds outside: the method needs one circle; "
             "end the history earlier, or let the layer recover before reloading"
         )
-    forces = law.force(state.surface, state.branches, speed)[touching]
+    forces = law.force(state.surface, state.strains, speed)[touching]
     return bool(np.any(np.diff(forces) > _BEND * np.abs(forces).max()))
