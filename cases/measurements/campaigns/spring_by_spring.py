@@ -24,7 +24,8 @@ from mdr.springs.assembly import equivalent_system
 SPRINGS: Final = (607, 389)
 STEPS: Final = (200, 100)
 
-# Steps grow with this power of their number, because a layer relaxes fastest after a change of speed.
+# Steps grow and shrink with this power of their number: a layer relaxes fastest after a change of speed, and what has
+# been touched just before the end of an interval is still unrelaxed there.
 _GRADING: Final = 4
 
 # The uncertainty is this many times the change from the coarse to the fine run: the place of the contact edge among
@@ -132,7 +133,8 @@ def stepped(springs: Springs, relaxation: Relaxation, loading: DepthHistory, ste
     u = np.maximum(loading.depth[0] - springs.gap, 0.0)
     strain = np.repeat(u[None], weights.size, axis=0)
     forces = [springs.stiffness @ u]
-    shares = (np.arange(steps + 1) / steps) ** _GRADING
+    part = np.arange(steps + 1) / steps
+    shares = part**_GRADING / (part**_GRADING + (1.0 - part) ** _GRADING)
     for k, (duration, rise) in enumerate(zip(np.diff(loading.time), np.diff(loading.depth), strict=True)):
         for share, dt in zip(shares[1:], duration * np.diff(shares), strict=True):
             kept = np.exp(-dt / times) * strain
