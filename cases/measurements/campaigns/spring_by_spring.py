@@ -92,7 +92,7 @@ def _of_the_edge(springs: Springs, relaxation: Relaxation, loading: DepthHistory
 
 def springs_of(scene: Scene, radius: float, count: int) -> Springs:
     """Springs out to where the deepest indenter does not reach, the flat end in one."""
-    indenter, deepest = scene.indenter, float(np.max(scene.loading.depth))  # type: ignore[union-attr]
+    indenter, deepest = scene.indenter, float(np.max(scene.loading.depth))  # type: ignore[attr-defined]
     flat, rim = indenter.flat_radius, indenter.max_radius
     if isinstance(indenter, FlatPunch):
         return Springs(_stiffness(scene, np.array([indenter.radius])), np.zeros(1))
