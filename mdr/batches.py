@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, NormalForces, Scene
+from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, NormalForces, NotConvergedError, Scene
 from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
@@ -85,13 +85,14 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
 
     Raises:
         InvalidInput: If a scene is no detachment.
+        NotConvergedError: If an answer is not finite.
     """
     from mdr.adhesion.batch import pull_off_groups  # noqa: PLC0415  # loaded only when asked for
 
     for number, scene in enumerate(scenes):
         if not isinstance(scene.loading, Detachment):
             raise InvalidInput(f"scenes[{number}].loading = {type(scene.loading).__name__}: give a Detachment")
-    found = np.empty((3, len(scenes)))
+    found = np.full((3, len(scenes)), np.nan)
     done = 0
     for members, solve in pull_off_groups(scenes, flat_punch):
         for start in range(0, len(members), _CHUNK):
@@ -100,6 +101,7 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
             done += len(chunk)
             if progress is not None:
                 progress(done, len(scenes))
+    _refuse_unknown(found)
     return PullOffs(contact_radius=found[0], depth=found[1], force=found[2])
 
 
@@ -109,8 +111,9 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
 
     Raises:
         InvalidInput: If a scene lists effects or prescribes more than one value.
+        NotConvergedError: If an answer is not finite.
     """
-    found = np.empty((4, len(scenes)))
+    found = np.full((4, len(scenes)), np.nan)
     groups: dict[Hashable, list[int]] = defaultdict(list)
     for number, scene in enumerate(scenes):
         _refuse(number, scene)
@@ -121,9 +124,17 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
         done += len(members)
         if progress is not None:
             progress(done, len(scenes))
+    _refuse_unknown(found)
     return Equilibria(
         contact_radius=found[0], indentation_depth=found[1], normal_force=found[2], contact_stiffness=found[3]
     )
+
+
+def _refuse_unknown(found: FloatArray) -> None:
+    """A scene that was never computed must not pass for an answer."""
+    unknown = np.flatnonzero(~np.isfinite(found).all(axis=0))
+    if unknown.size:
+        raise NotConvergedError(f"scenes[{unknown[0]}]: no finite answer, nor of {unknown.size - 1} others")
 
 
 def _refuse(number: int, scene: Scene) -> None:

@@ -146,7 +146,7 @@ def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[fl
     """Force [N] and front coordinate, which is negative where nothing touches."""
     if not state.touching.any():
         return 0.0, -1.0
-    forces = law.force(state.surface, state.branches, speed)
+    forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:  # a flat punch has no flank
         return bed.core * float(forces[0]), 0.0
     if law.viscosity == 0.0 or speed <= 0.0:

@@ -301,8 +301,10 @@ def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, subs
         bent |= _check_circle(law, state, speed, float(instant))
         records.append((state.depth, *carried(law, bed, state, speed)))
     depth, force, y = np.array(records).T
-    force = force if isinstance(loading, DepthHistory) else loading.force
-    y = np.where(force > _ROUNDING * force.max(), y, -1.0)  # what is held by a rounding error is no contact
+    # What is held by a rounding error is no contact and carries nothing; a prescribed force is repeated as it was given.
+    own = force if isinstance(loading, DepthHistory) else loading.force
+    held = own > _ROUNDING * own.max()
+    force, y = np.where(held, own, 0.0) if own is force else own, np.where(held, y, -1.0)
     return _Track(depth, force, y, bent)
 
 
@@ -339,5 +341,5 @@ def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) ->
             f"at t = {time:g} s the contact opens inside while it holds outside: the method needs one circle; "
             "end the history earlier, or let the layer recover before reloading"
         )
-    forces = law.force(state.surface, state.branches, speed)[touching]
+    forces = law.force(state.surface, state.strains, speed)[touching]
     return bool(np.any(np.diff(forces) > _BEND * np.abs(forces).max()))

@@ -49,18 +49,24 @@ class ScaledImpacts:
 
 
 def relaxation_of(scene: Scene) -> Relaxation:
-    """The scene's shear relaxation; an elastic layer has a constant one."""
+    """The scene's shear relaxation, constant for an elastic layer.
+
+    Branches stand in the order of their relaxation times and each time stands once, so the order in which a user lists
+    them makes no difference.
+    """
     model = scene.effect(Viscoelasticity)
     if model is None:
         return Relaxation(
             long_term_modulus=shear_modulus(scene.layer), moduli=np.empty(0), times=np.empty(0), viscosity=0.0
         )
     relaxation = model.relaxation
-    present = relaxation.moduli > 0.0
+    order = np.lexsort((relaxation.moduli, relaxation.times))
+    order = order[relaxation.moduli[order] > 0.0]
+    times, first = np.unique(relaxation.times[order], return_index=True)
     return Relaxation(
         long_term_modulus=relaxation.long_term_modulus,
-        moduli=relaxation.moduli[present],
-        times=relaxation.times[present],
+        moduli=np.add.reduceat(relaxation.moduli[order], first) if first.size else np.empty(0),
+        times=times,
         viscosity=relaxation.viscosity,
     )
 

@@ -22,6 +22,11 @@ from mdr.springs.table import SpringTable, spring_table
 
 _KEPT = 64  # tables
 _NEAR_RIM = 0.7  # of the rim's radius: beyond, trial radii no longer double
+
+# First trial radius [m] of a pointed profile, from which radii double until they are large enough. A profile with a
+# flat end starts there instead: its trial radii, and so its springs, do not depend on the unit of length.
+_SMALL = 1e-9
+
 _UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)  # of the rim's radius that trial radii stay away from it
 
 
@@ -102,7 +107,7 @@ def upper(excess: Callable[[float], float], indenter: Profile) -> float:
     """A radius beyond the root, or the rim."""
     if math.isfinite(indenter.max_radius):
         return indenter.max_radius
-    high = max(indenter.flat_radius, 1e-9)
+    high = indenter.flat_radius or _SMALL
     while excess(high) < 0.0:
         high *= 2.0
     return high

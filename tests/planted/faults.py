@@ -423,7 +423,65 @@ def half_the_loss(dissipation):
     return lambda *a: dissipation(*a) / 2
 
 
+def creeping_too_fast(modes):
+    """Free springs creep back one per cent too fast."""
+
+    def wrong(*spectrum):
+        right = modes(*spectrum)
+        return dataclasses.replace(right, rates=1.01 * right.rates)
+
+    return wrong
+
+
+def seen_at_the_end(patch):
+    """A touch or release that is over before the end of a step goes unseen."""
+    from mdr.history import springs_in_time
+
+    patch.setattr(springs_in_time, "_SHARES", np.array([0.0, 1.0]))
+    patch.setattr(springs_in_time, "_MULTIPLES", np.array([]))
+
+
+def without_the_last_of_a_full_chunk(groups):
+    """The last scene of 512 is whatever the memory held."""
+
+    def uncomputed(solve):
+        def wrong(chunk):
+            found = solve(chunk)
+            return np.hstack([found[:, :-1], np.ones((3, 1))]) if len(chunk) == 512 else found
+
+        return wrong
+
+    return lambda *arguments: [(members, uncomputed(solve)) for members, solve in groups(*arguments)]
+
+
 TIME_STEPPING = [
+    Fault(
+        "free springs recover one per cent too fast",
+        "time stepping",
+        swap("mdr.history.recovery:modes", creeping_too_fast),
+        Test(
+            "verification.test_reloading_histories:test_reloading_on_a_recovering_surface_is_what_each_spring_says",
+            ("touched again", 0.1),
+        ),
+    ),
+    Fault(
+        "touches within a step unseen",
+        "time stepping",
+        seen_at_the_end,
+        Test("mdr.test_recovery:test_a_spring_that_is_touched_and_released_within_one_step"),
+    ),
+    Fault(
+        "no floor under the stated error of an impact",
+        "time stepping",
+        set_to("mdr.impact.results:_CHANCE", 0.0),
+        Test("verification.test_impact_errors:test_two_runs_that_agree_by_chance_still_state_an_error", (11, 1e-6)),
+    ),
+    Fault(
+        "last scene of each full chunk of pull-offs left out",
+        "mdr",
+        swap("mdr.adhesion.batch:pull_off_groups", without_the_last_of_a_full_chunk),
+        Test("mdr.test_batch_sizes:test_pull_offs_of_every_size", (513,)),
+    ),
     Fault(
         "quadrature of first order at a step's end",
         "time stepping",

@@ -39,7 +39,7 @@ from contact import (
     TruncatedParaboloid,
 )
 
-Family: TypeAlias = Literal["elastic", "adhesive", "impact", "history", "creep"]
+Family: TypeAlias = Literal["elastic", "adhesive", "impact", "history", "creep", "reloading"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 
 RATIO = (1e-3, 1e3)  # contact radius over layer thickness
@@ -55,7 +55,8 @@ def random_scenes(seed: int, count: int, family: Family = "elastic", ratio: tupl
     Args:
         seed: Any integer.
         count: How many.
-        family: "elastic", "adhesive" (detachment), "impact", "history" or "creep" (prescribed depth or force in time).
+        family: "elastic", "adhesive" (detachment), "impact", "history" or "creep" (prescribed depth or force in time),
+            or "reloading" (depth histories of several strokes on layers with extreme relaxation spectra).
         ratio: Range of contact radius over thickness.
     """
     return [random_scene(draw, family, ratio) for draw in _streams(seed, count)]
@@ -241,10 +242,39 @@ def _creep(draw: Draw, ratio: tuple[float, float]) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
 
 
+def _spectrum(draw: Draw, shear_modulus: float) -> Effect:
+    """Up to ten branches, relaxation times over twelve decades, weights over six; a third without long-term modulus."""
+    kind = draw.choice(4, p=[1 / 3, 0.5, 0.1, 1 / 15])
+    long_term = (0.0, log_uniform(draw, 1e-8, 0.9), 1.0, log_uniform(draw, 1e-2, 0.9))[kind] * shear_modulus
+    if kind == 2:
+        return KelvinVoigt(shear_modulus=shear_modulus, viscosity=shear_modulus * log_uniform(draw, 1e-3, 1e3))
+    size = 1 if kind == 3 else int(draw.integers(1, 11))
+    weights = np.exp(draw.uniform(np.log(1e-6), 0.0, size))
+    moduli = (shear_modulus - long_term) * weights / weights.sum()
+    times = np.exp(draw.uniform(np.log(1e-6), np.log(1e6), size))
+    return PronySeries(long_term_shear_modulus=long_term, shear_moduli=moduli, relaxation_times=times)
+
+
+def _reloading(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """Pressed, let go, pressed again, some rests between; depths are often met a second time to the last digit."""
+    a = _contact_ratio(draw, *ratio)
+    layer, indenter = _layer(draw, 0.5), _indenter(draw, a)
+    strokes = [0.0, 1.0, draw.uniform(-0.5, 0.9), draw.uniform(0.3, 1.0), *draw.uniform(-0.3, 1.0, draw.integers(0, 4))]
+    depths = [depth for stroke in strokes for depth in [stroke] * int(draw.integers(1, 3))]
+    if draw.random() < 0.5:
+        depths = [round(8.0 * depth) / 8.0 for depth in depths]
+    durations = np.exp(draw.uniform(np.log(1e-2), np.log(10.0), len(depths) - 1))
+    loading = DepthHistory(
+        time=np.concatenate([[0.0], np.cumsum(durations)]), depth=0.5 * _typical_depth(indenter, a) * np.array(depths)
+    )
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=(_spectrum(draw, layer.shear_modulus),))
+
+
 _MAKERS: dict[Family, Callable[[Draw, tuple[float, float]], Scene]] = {
     "elastic": _elastic,
     "adhesive": _adhesive,
     "impact": _impact,
     "history": _history,
     "creep": _creep,
+    "reloading": _reloading,
 }

@@ -1,0 +1,104 @@
+"""A batch is its scenes one by one, whatever the number of scenes: below, at and beyond what is computed at a time."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from contact import (
+    Adhesion,
+    Detachment,
+    Impact,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    NotConvergedError,
+    Paraboloid,
+    Scene,
+    StandardSolid,
+)
+from mdr import Mdr, batches
+from mdr.adhesion.batch import pull_off_groups
+from mdr.batches import equilibria, impacts, pull_offs
+from mdr.impact import solver as impact_solver
+
+PUNCH = IntegralEquation()
+LAYER = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
+VISCOUS = StandardSolid(long_term_shear_modulus=2e5, maxwell_shear_modulus=8e5, viscosity=8e2)
+# Prime, so that chunks end with different scenes, and so close together that all share one table and one chunk.
+DIFFERENT = 7
+CURVATURES = 5e-3 * 1.005 ** np.arange(DIFFERENT)
+
+
+def scenes(loading, effects=(), count=DIFFERENT):
+    own = [
+        Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=R), loading=loading, effects=effects)
+        for R in CURVATURES
+    ]
+    return [own[i % DIFFERENT] for i in range(count)]
+
+
+def around(chunk):
+    return (1, chunk - 1, chunk, chunk + 1, 2 * chunk, 2 * chunk + 1)
+
+
+def assert_repeated(together, alone, count):
+    """Each array of the batch is the single answers again and again."""
+    for name, expected in alone.items():
+        np.testing.assert_allclose(
+            getattr(together, name), np.resize(expected, count), rtol=1e-9, atol=0.0, err_msg=name
+        )
+
+
+@pytest.mark.parametrize("size", around(batches._CHUNK))
+def test_pull_offs_of_every_size(size):
+    effects = (Adhesion(work_of_adhesion=0.05),)
+    paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(Detachment(), effects)]
+    alone = {
+        "contact_radius": [p.pull_off_contact_radius for p in paths],
+        "depth": [p.pull_off_depth for p in paths],
+        "force": [p.pull_off_force for p in paths],
+    }
+    assert len(pull_off_groups(scenes(Detachment(), effects), PUNCH)) == 1
+    assert_repeated(pull_offs(scenes(Detachment(), effects, size), PUNCH), alone, size)
+
+
+@pytest.mark.parametrize("size", around(impact_solver._CHUNK)[:4])
+def test_impacts_of_every_size(size):
+    loading = Impact(mass=0.02, velocity=0.1)
+    histories = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(loading, (VISCOUS,))]
+    names = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
+    alone = {name: [getattr(history, name) for history in histories] for name in names}
+    assert_repeated(impacts(scenes(loading, (VISCOUS,), size), PUNCH), alone, size)
+
+
+@pytest.mark.parametrize("loading", [NormalForces([0.1]), IndentationDepths([2e-5])])
+@pytest.mark.parametrize("size", [1, 2, 6, 511, 512, 513])
+def test_equilibria_of_every_size(size, loading):
+    paths = [Mdr(flat_punch=PUNCH).solve(scene) for scene in scenes(loading)]
+    names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+    alone = {name: [getattr(path, name)[0] for path in paths] for name in names}
+    assert_repeated(equilibria(scenes(loading, count=size), PUNCH), alone, size)
+
+
+def test_a_scene_without_an_answer_is_refused(monkeypatch):
+    """At first an uncomputed scene of a batch was whatever the memory held."""
+    from mdr.adhesion import batch
+
+    def last_one_forgotten(*arguments):
+        def forgetful(solve):
+            return lambda chunk: np.where(np.arange(len(chunk)) < len(chunk) - 1, solve(chunk), np.nan)
+
+        return [(members, forgetful(solve)) for members, solve in pull_off_groups(*arguments)]
+
+    monkeypatch.setattr(batch, "pull_off_groups", last_one_forgotten)
+    with pytest.raises(NotConvergedError, match=r"scenes\[6\]: no finite answer"):
+        pull_offs(scenes(Detachment(), (Adhesion(work_of_adhesion=0.05),)), PUNCH)
+
+
+def test_the_results_of_impacts_have_one_entry_a_scene():
+    found = impacts(scenes(Impact(mass=0.02, velocity=0.1), (VISCOUS,), 3), PUNCH)
+    assert {np.shape(getattr(found, field.name))[-1] for field in dataclasses.fields(found)} == {3}
