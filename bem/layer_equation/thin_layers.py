@@ -110,14 +110,20 @@ class LargeRatioSolution:
         return np.where(ratio <= self.near.max_ratio, 0.0, self._lost(ratio))
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar."""
+        """Bound of the relative error of k_bar."""
         ratio = self._covered(ratio)
         within = self.near.relative_error(np.minimum(ratio, self.near.max_ratio))
         return np.where(ratio <= self.near.max_ratio, within, self.error)
 
-    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """As that of the stiffnesses."""
-        return self.relative_error(ratio)
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of c_bar."""
+        ratio = self._covered(ratio)
+        within = self.near.spring_error(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, self.error)
+
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """As that of the springs; what the fits of the moment add is stated with the profile."""
+        return self.spring_error(ratio)
 
     @cached_property
     def near(self) -> IntegralEquationSolution:
@@ -196,8 +202,12 @@ class WideSolution(IntegralEquationSolution):
     lost: Callable[[FloatArray], FloatArray]
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar."""
+        """Bound of the relative error of k_bar."""
         return super().relative_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of c_bar."""
+        return super().spring_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
 
 
 def _wide_punches(
