@@ -6,7 +6,7 @@ import numpy as np
 from contact.validation import FloatArray
 
 # Bounds of the factor by which coefficients are taken to fall from order to order. A function analytic on a panel's
-# neighbourhood that is resolved at all falls faster than by 0.8; one that has reached rounding shows no rate below 0.05.
+# neighbourhood that is resolved at all falls faster than by 0.8; what has reached rounding shows no rate below 0.05.
 SLOWEST, FASTEST = 0.8, 0.05
 _LAST = 4
 _TINY = float(np.finfo(float).tiny)

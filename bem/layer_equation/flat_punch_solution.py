@@ -28,8 +28,8 @@ OWN_PANEL = 0.25
 ROUNDED = 8.0
 # Rounding of the factor moves k_bar by <phi, dA phi>/<1, phi> of itself, |dA| about one rounding, and
 # |phi|^2/<1, phi> is 1 to 1.5 k_bar for the densities of discs, beds and films. The standard deviation over five
-# discretisations is 0.18 k_bar roundings, of c_bar 0.3, on five layers from a/h = 5 to 80 (measured 2026-11-22); against
-# extended precision k_bar is within 0.6 of them up to a/h = 100.
+# discretisations is 0.18 k_bar roundings, of c_bar 0.3, on five layers from a/h = 5 to 80 (measured 2026-11-22);
+# against extended precision k_bar is within 0.6 of them up to a/h = 100.
 STIFFNESS_GROWTH = 0.8
 SPRING_GROWTH = 1.0
 

@@ -44,8 +44,8 @@ class FlatPunchSolution(Protocol):
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """Bound of the relative error of an MDR profile that comes from these data.
 
-        Where it is an integral of q, Eqs. (11) and (12), that runs from rho = `start`, b/a under a flat end of radius b,
-        to the edge.
+        Where it is an integral of q, Eqs. (11) and (12), that runs from rho = `start` to the edge; under a flat end of
+        radius b `start` is b/a.
         """
 
 

@@ -146,7 +146,7 @@ class MappedFunction:
     def relative_error(self, d: FloatArray) -> FloatArray:
         """What the orders left out and rounding make of the values at points d, relative to them.
 
-        Values at the nodes are taken as right: what a load's polynomials leave out is orthogonal to those of the kernel.
+        Values at the nodes are taken as right: what a load's polynomials leave out is orthogonal to the kernel's.
         """
         piece, u = self.grid.locate(d)
         values = np.abs(self.at(piece, u))

@@ -76,6 +76,7 @@ def equivalent_system(
         profile=profile,
         moment=moment,
         profile_error=own_error,
+        fitted_from=solution.near.max_ratio if isinstance(solution, LargeRatioSolution) else np.inf,
     )
     return _with_variants(system, indenter, g_hs)
 

@@ -41,7 +41,8 @@ class EquivalentSystem:
         flat_punch: Normalised stiffness of layer and springs, Eq. (10).
         profile: g over the excess x - b, both in units of length_unit.
         moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
-        profile_error: Relative error of g and of the moment beyond that of the flat-punch data and of the grid.
+        profile_error: Relative error of g and of the moment beyond that of the flat-punch data and of the grid,
+        fitted_from: at radii above this, in units of length_unit.
         variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
             error (`table_errors`); none with other flat-punch data.
     """
@@ -53,7 +54,8 @@ class EquivalentSystem:
     flat_punch: FlatPunchSolution
     profile: MappedFunction
     moment: MappedFunction
-    profile_error: float
+    profile_error: float = 0.0
+    fitted_from: float = np.inf
     variants: tuple[tuple[float, EquivalentSystem], ...] = ()
 
     def spring_stiffness(self, x: ArrayLike) -> FloatArray:
@@ -134,7 +136,7 @@ class EquivalentSystem:
         springs = self.flat_punch.spring_error(ratio) + ROUNDING
         data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + ROUNDING
         own = self.profile.relative_error(self._beyond(contact_radius - self.flat_radius))
-        depth = data + self.profile_error + own
+        depth = data + np.where(ratio > self.fitted_from, self.profile_error, 0.0) + own
         return {
             "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
             "indentation_depth": depth,
