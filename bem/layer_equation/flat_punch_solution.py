@@ -21,7 +21,7 @@ EPS = float(np.finfo(float).eps)
 # These multiply what the decay of coefficients lets expect of the orders left out. Over 5 layers, 20 pairs of nodes and
 # panel width and 3 001 radii the products are below the true errors at one radius in a hundred, and 4 to 10 times them
 # in the median (measured 2026-11-22 against 32 nodes on half the panels).
-STIFFNESS_SAFETY, SPRING_SAFETY = 1.0, 1.5
+STIFFNESS_SAFETY, SPRING_SAFETY, PROFILE_SAFETY = 1.0, 2.5, 1.5
 # Share of a panel over which an error of c_bar adds up in its integral: it changes sign as P_m does.
 OWN_PANEL = 0.25
 # Roundings of values that are of order one: of nodes, sums of exponentials and polynomials.
@@ -110,13 +110,15 @@ class IntegralEquationSolution:
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Error of c_bar, relative, made likewise."""
-        ratio = self._covered(ratio)
-        k = self.normalized_contact_stiffness(ratio)
-        return SPRING_SAFETY * self._spring_truncation(ratio) + EPS * (2 * ROUNDED + SPRING_GROWTH * k)
+        return self._edge_error(self._covered(ratio), SPRING_SAFETY)
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """As that of the springs: in g = yg/y1 each edge value has half the relative error of c_bar = y1^2."""
-        return self.spring_error(ratio)
+        """In g = yg/y1 each edge value has half the relative error of c_bar = y1^2, mostly of the same sign."""
+        return self._edge_error(self._covered(ratio), PROFILE_SAFETY)
+
+    def _edge_error(self, ratio: FloatArray, safety: float) -> FloatArray:
+        rounded = 2 * ROUNDED + SPRING_GROWTH * self.normalized_contact_stiffness(ratio)
+        return safety * self._spring_truncation(ratio) + EPS * rounded
 
     def _spring_truncation(self, ratio: FloatArray) -> FloatArray:
         """Of c_bar = y1^2, relative: orders of y1 left out, and of the kernel that gives its values at the nodes."""

@@ -122,8 +122,10 @@ class LargeRatioSolution:
         return np.where(ratio <= self.near.max_ratio, within, self.error[1])
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """As that of the springs; what the fits of the moment add is stated with the profile."""
-        return self.spring_error(ratio)
+        """As that of the springs beyond; what the fits of the moment add is stated with the profile."""
+        ratio = self._covered(ratio)
+        within = self.near.profile_error(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, self.error[1])
 
     @cached_property
     def near(self) -> IntegralEquationSolution:
@@ -157,9 +159,10 @@ class LargeRatioSolution:
     def error(self) -> tuple[float, float]:
         """Relative errors of k_bar and c_bar: what the first ratios of the overlap, fit and Ritz values show.
 
-        What the Ritz values lack falls with the ratio, at least as its inverse, and the narrow panels' rounding grows: so
-        the two are compared at the first ratios, where the difference bounds what is left beyond. An error of k_bar that goes with
-        a power of the ratio counts in c_bar = k_bar (1 + d ln k_bar/d ln ratio) likewise, one of the fit by its slope.
+        What the Ritz values lack falls with the ratio, at least as its inverse, and the narrow panels' rounding grows:
+        so the two are compared at the first ratios, where the difference bounds what is left beyond. An error of k_bar
+        that goes with a power of the ratio counts in c_bar = k_bar (1 + d ln k_bar/d ln ratio) likewise, one of the fit
+        by its slope.
         """
         first = np.linspace(*COMPARED)
         seen = np.abs(self._stiffness(first) / self.near.normalized_contact_stiffness(first) - 1)
@@ -212,6 +215,10 @@ class WideSolution(IntegralEquationSolution):
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of c_bar."""
         return super().spring_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Bound of the relative error of g."""
+        return super().profile_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
 
 
 def _wide_punches(
