@@ -23,8 +23,8 @@ from scipy.fft import dctn
 from scipy.interpolate import CubicSpline
 from scipy.special import itj0y0, j0
 
-from bem.gauss import legendre_rule
 from bem.kernels.layer import Support, one_minus_kernel
+from bem.polynomials.gauss import legendre_rule
 
 FloatArray = npt.NDArray[np.float64]
 

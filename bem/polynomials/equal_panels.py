@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bem.polynomials.gauss_panels import chebyshev_from_nodes
-from bem.truncation import between_nodes, orders_beyond
+from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
 FEW_POINTS = 400

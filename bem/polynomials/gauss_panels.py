@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bem.gauss import legendre_rule
+from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
 
 _TINY = float(np.finfo(float).tiny)

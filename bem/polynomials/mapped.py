@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bem.polynomials.equal_panels import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
-from bem.truncation import between_nodes, orders_beyond
+from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
 MAX_SPLITS = 60

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
-from bem.gauss import legendre_rule
 from bem.polynomials.chebyshev import powers
+from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
 
 Lanes: TypeAlias = NDArray[np.intp]

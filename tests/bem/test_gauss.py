@@ -3,9 +3,9 @@
 import mpmath
 import numpy as np
 import pytest
-from bem.integral_equation import IntegralEquation
 
-from bem.gauss import legendre_rule
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.polynomials.gauss import legendre_rule
 from contact import Layer
 from tests.bem.extended_precision import contact_stiffness
 

@@ -6,17 +6,20 @@ import pytest
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
+    ContactRadii,
     FlatPunch,
     InvalidInput,
     Layer,
     Paraboloid,
     PowerLaw,
+    Scene,
     Sphere,
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
+from mdr import Mdr
 from mdr.springs.assembly import equivalent_system
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.5)

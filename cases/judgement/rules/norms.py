@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.gauss import legendre_rule
+from bem.polynomials.gauss import legendre_rule
 from contact import InvalidInput
 
 Array = NDArray[np.float64]

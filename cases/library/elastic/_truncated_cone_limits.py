@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.gauss import legendre_rule
+from bem.polynomials.gauss import legendre_rule
 from cases.library._layers import layer
 from cases.results.records import Series
 from contact import TruncatedCone

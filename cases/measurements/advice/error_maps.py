@@ -9,7 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from bem.gauss import legendre_rule
+from bem.polynomials.gauss import legendre_rule
 from cases.declare.methods import build
 from cases.results.records import CaseResult, ErrorMap
 from contact import ContactError, ContactPath, ContactRadii, Layer, Method, Paraboloid, Scene

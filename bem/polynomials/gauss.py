@@ -5,8 +5,9 @@ from __future__ import annotations
 from functools import cache
 
 import numpy as np
-from contact.validation import FloatArray
 from numpy.polynomial import legendre
+
+from contact.records.validation import FloatArray
 
 # Newton steps from nodes that are known to about 1e-15: the first leaves 1e-19, the second shows in no digit.
 _STEPS = 2

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from contact.validation import FloatArray
+
+from contact.records.validation import FloatArray
 
 # Bounds of the factor by which coefficients are taken to fall from order to order. A function analytic on a panel's
 # neighbourhood that is resolved at all falls faster than by 0.8; what has reached rounding shows no rate below 0.05.
