@@ -98,8 +98,9 @@ def fine_and_change(
 ) -> tuple[FloatArray, FloatArray]:
     """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
 
-    Two numbers may agree by chance, so an error is never stated far below what their steps were chosen for. Where relaxation is fast or a tip is not
-    smooth, times converge slower: they also get a share of what stays open within the steps.
+    Two numbers may agree by chance, so an error is never stated far below what their steps were chosen for. Where
+    relaxation is fast or a tip is not smooth, times converge slower: they also get a share of what stays open within
+    the steps.
 
     Args:
         both: Restitution, contact time, peaks of force, depth and radius, shape (5, 2 n).

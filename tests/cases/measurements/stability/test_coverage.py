@@ -106,7 +106,7 @@ class TooModest(TooSure):
 
 def test_a_hundred_times_the_stated_errors_fail_by_name(monkeypatch):
     own = coverage.build
-    planted = dataclasses.replace(PLAN, settings={"nodes": 12, "panel_width": 2.0})
+    planted = dataclasses.replace(PLAN, settings={"nodes": 12, "panel_width": 2.0}, count=24)
     modest = TooModest(12)
     modest.own = own("mdr", planted.settings)
     monkeypatch.setattr(coverage, "build", lambda name, s: modest if s == planted.settings else own(name, s))
