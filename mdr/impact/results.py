@@ -24,9 +24,9 @@ _SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
 # 87 to 94 % of these errors, with these shares 97 to 99 %.
 _CHANCE = np.array([[0.02], [0.01], [0.01], [0.005], [0.003]])
 # Share of the largest change of a peak that counts in the contact time, by the way left and the speed.
-_LEAVING = 0.5
+_LEAVING = 0.25
 # Share of the errors within steps that counts in times: half of 70 errors are below 0.0006 of them.
-_OPEN = 0.001
+_OPEN = 0.0005
 _REST = 1e-10  # of the approach speed
 _TIME = 1  # row of the contact time
 _NODES = 14  # of the force on each step
