@@ -166,7 +166,9 @@ class LargeRatioSolution:
         """
         first = np.linspace(*COMPARED)
         seen = np.abs(self._stiffness(first) / self.near.normalized_contact_stiffness(first) - 1)
-        common = float(np.median(seen)) * FIRST_RATIO / self.near.max_ratio + self._punches[2]
+        ratios, stiffness, left_out, _ = self._punches
+        missed = np.abs(self.log_stiffness(np.log(ratios)) - np.log(stiffness))
+        common = float(seen.max()) * FIRST_RATIO / self.near.max_ratio + left_out + float(missed.max())
         value, slope = self._fit_error
         return common + value, 2 * common + value + slope
 
