@@ -159,9 +159,9 @@ class LargeRatioSolution:
     def error(self) -> tuple[float, float]:
         """Relative errors of k_bar and c_bar: what the first ratios of the overlap, fit and Ritz values show.
 
-        What the Ritz values lack falls with the ratio, and the narrow panels' rounding grows: so the two are compared at the first ratios, where the difference bounds what is left beyond. An error of k_bar
-        that goes with a power of the ratio counts in c_bar = k_bar (1 + d ln k_bar/d ln ratio) likewise, one of the fit
-        by its slope.
+        What the Ritz values lack falls with the ratio, and the narrow panels' rounding grows: so the two are compared
+        at the first ratios, where the difference bounds what is left beyond. An error of k_bar that goes with a power
+        of the ratio counts in c_bar = k_bar (1 + d ln k_bar/d ln ratio) likewise, one of the fit by its slope.
         """
         first = np.linspace(*COMPARED)
         seen = np.abs(self._stiffness(first) / self.near.normalized_contact_stiffness(first) - 1)

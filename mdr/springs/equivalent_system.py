@@ -41,8 +41,8 @@ class EquivalentSystem:
         flat_punch: Normalised stiffness of layer and springs, Eq. (10).
         profile: g over the excess x - b, both in units of length_unit.
         moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
-        profile_error: Relative error of g and of the moment beyond that of the flat-punch data and of the grid,
-        fitted_from: at radii above this, in units of length_unit.
+        profile_error: Relative error of g and of the moment at fitted radii, beyond those of flat-punch data and grid.
+        fitted_from: Radius above which g is fitted, in units of length_unit.
         variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
             error (`table_errors`); none with other flat-punch data.
     """
@@ -135,7 +135,7 @@ class EquivalentSystem:
         stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
         springs = self.flat_punch.spring_error(ratio) + ROUNDING
         data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + ROUNDING
-        own = self.profile.relative_error(self._beyond(contact_radius - self.flat_radius))
+        own = self.profile_truncation(contact_radius)
         depth = data + np.where(ratio > self.fitted_from, self.profile_error, 0.0) + own
         return {
             "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
@@ -144,6 +144,10 @@ class EquivalentSystem:
             "contact_stiffness": stiffness,
             "spring_stiffness": springs,
         }
+
+    def profile_truncation(self, contact_radius: FloatArray) -> FloatArray:
+        """What the polynomials of g leave out at each radius, relative to it."""
+        return self.profile.relative_error(self._beyond(contact_radius - self.flat_radius))
 
     def _flat_share(self, contact_radius: FloatArray) -> FloatArray:
         """b/a: beside the flat end, only flat-punch pressures near the edge count."""
