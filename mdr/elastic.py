@@ -143,8 +143,9 @@ def _errors(
             "indentation_depth": exact if depth_given else stiffness,
             "normal_force": stiffness if depth_given else exact,
         }
-    # F = k_N delta - moment: the errors of both terms count against their difference
+    # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = system.contact_stiffness(radius) * depth / force
+    of_force = stiffness + errors["indentation_depth"] * spread
     moved, growth = exact, exact
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
         searched = errors["normal_force" if given == "NormalForces" else "contact_radius"]
@@ -153,7 +154,7 @@ def _errors(
     return {
         "contact_radius": moved,
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
-        "normal_force": exact if given == "NormalForces" else errors["normal_force"] * spread,
+        "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
         "pressure": pressure_error(system.flat_punch, ratio, errors["indentation_depth"]) + moved + PRESSURE_ROUNDING,
     }

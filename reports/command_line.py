@@ -301,7 +301,7 @@ def coverage(
     method: Annotated[list[str] | None, typer.Option(help="Only this method. Repeatable.")] = None,
     *,
     family: Annotated[list[str] | None, typer.Option(help="Only this kind of scenes. Repeatable.")] = None,
-    seed: Annotated[int, typer.Option(help="Of the random scenes.")] = 1,
+    seed: Annotated[int | None, typer.Option(help="Of the random scenes; by default one that tuned nothing.")] = None,
     out: Annotated[Path | None, typer.Option(help="Folder for a report with the figure.")] = None,
 ) -> int:
     """Compare stated with true errors over hundreds of random scenes: how often they hold, how much they give away."""

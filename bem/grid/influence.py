@@ -24,6 +24,7 @@ from scipy.interpolate import CubicSpline
 from scipy.special import itj0y0, j0
 
 from bem.kernels.layer import Support, one_minus_kernel
+from bem.polynomials.gauss import legendre_rule
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -81,7 +82,7 @@ def _cell_average(
 ) -> FloatArray:
     """Gauss quadrature of V(r/h)/(pi h) over the unit cell at (i, j); more points as the cell outgrows h."""
     smooth = correction_function(support, poissons_ratio)
-    points, weights = np.polynomial.legendre.leggauss(2 + ceil(4.0 / thickness))
+    points, weights = legendre_rule(2 + ceil(4.0 / thickness))
     total = np.zeros(i.shape)
     for x, wx in zip(points / 2.0, weights / 2.0, strict=True):
         for y, wy in zip(points / 2.0, weights / 2.0, strict=True):
@@ -93,7 +94,7 @@ def _cell_average(
 @lru_cache(maxsize=32)
 def correction_function(support: Support, poissons_ratio: float) -> CubicSpline:
     """V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq on [0, REACH], Gauss-Legendre with 8 nodes a period of J0."""
-    points, weights = np.polynomial.legendre.leggauss(32)
+    points, weights = legendre_rule(32)
     panels = ceil(LARGEST_Q * REACH / (8.0 * np.pi))
     half = LARGEST_Q / (2 * panels)
     q = (half * (2.0 * np.arange(panels)[:, None] + 1.0 + points)).ravel()

@@ -33,6 +33,10 @@ class HalfSpaceFlatPunch:
         """Exact."""
         return np.zeros(np.shape(ratio))
 
-    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """Exact."""
+        return np.zeros(np.shape(ratio))
+
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """Exact."""
         return np.zeros(np.shape(ratio))

@@ -28,8 +28,12 @@ import numpy as np
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.triangular import equation_factor, solve_lower
-from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix, partial_panel_interpolation
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix, partial_panel_interpolation
+from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
+
+# The kernel's half of the strip around the real axis where it is analytic: it is a transform of exp(-2k) times powers.
+STRIP = 2.0
 
 
 @dataclass(frozen=True)
@@ -119,6 +123,19 @@ class VolterraFactor:
         share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
         values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, share), rows)
         return values
+
+    @cached_property
+    def truncation(self) -> FloatArray:
+        """Error of the edge values at each panel's nodes, relative, from the orders that K~ has there; shape (P,).
+
+        K~(x, t) is interpolated in both variables. Each leaves out a_m P_m, which the integral over part of the panel
+        reduces to a_m int P_m. The kernel is analytic within two thicknesses of the real axis.
+        """
+        to_orders = chebyshev_from_nodes(self.count)
+        orders = np.abs(to_orders @ self.schur @ to_orders.T).max(axis=1)
+        beyond = orders_beyond(orders, rate_of_decay(2 * STRIP / self.panel_width))
+        left_out: FloatArray = 2 * self.panel_width * integrated(self.count) * beyond
+        return left_out
 
     @cached_property
     def _edge_matrix(self) -> FloatArray:

@@ -36,12 +36,16 @@ class FlatPunchSolution(Protocol):
         """
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar."""
+        """Bound of the relative error of k_bar."""
 
-    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """Bound of the relative error of integrals of q over arcsin(rho), as Eqs. (11) and (12) take them.
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of c_bar."""
 
-        They run from rho = `start`, b/a under a flat end of radius b, to the edge.
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Bound of the relative error of an MDR profile that comes from these data.
+
+        Where it is an integral of q, Eqs. (11) and (12), that runs from rho = `start` to the edge; under a flat end of
+        radius b `start` is b/a.
         """
 
 

@@ -30,7 +30,7 @@ from contact.records.validation import FloatArray
 LARGEST_RATIO = 1000.0
 ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above it
 FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
-OVERLAP = 120.0  # compared with the narrow panels' from here on, and used where those end
+COMPARED = (FIRST_RATIO, 90.0, 4)  # ratios from, to, and number, where they are compared with the narrow panels'
 PANEL_WIDTH = 8.0
 PANEL_NODES = 36
 DENSITY_TRUNCATION = 3e-8  # 1.618^-36: densities are analytic within 2 of panels that are 8 wide
@@ -47,7 +47,7 @@ class LargeRatioSolution:
     Attributes:
         support: "bonded" or "unbonded".
         poissons_ratio: nu.
-        make_near: Gives the solution for smaller ratios, which must reach beyond `OVERLAP`.
+        make_near: Gives the solution for smaller ratios, which must reach beyond those of `COMPARED`.
     """
 
     support: Support
@@ -110,14 +110,22 @@ class LargeRatioSolution:
         return np.where(ratio <= self.near.max_ratio, 0.0, self._lost(ratio))
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar."""
+        """Bound of the relative error of k_bar."""
         ratio = self._covered(ratio)
         within = self.near.relative_error(np.minimum(ratio, self.near.max_ratio))
-        return np.where(ratio <= self.near.max_ratio, within, self.error)
+        return np.where(ratio <= self.near.max_ratio, within, self.error[0])
 
-    def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """As that of the stiffnesses."""
-        return self.relative_error(ratio)
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of c_bar."""
+        ratio = self._covered(ratio)
+        within = self.near.spring_error(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, self.error[1])
+
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """As that of the springs beyond; what the fits of the moment add is stated with the profile."""
+        ratio = self._covered(ratio)
+        within = self.near.profile_error(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, self.error[1])
 
     @cached_property
     def near(self) -> IntegralEquationSolution:
@@ -148,21 +156,27 @@ class LargeRatioSolution:
         return self._fitted(DEGREE)
 
     @cached_property
-    def error(self) -> float:
-        """Bound of the relative error of both stiffnesses: twice what overlap, fit and Ritz values show."""
-        overlap = np.linspace(OVERLAP, self.near.max_ratio, 9)
-        k = self._stiffness(overlap)
-        c = self.wide_spring_stiffness(overlap)
-        k_error = np.abs(k / self.near.normalized_contact_stiffness(overlap) - 1)
-        c_error = np.abs(c / self.near.normalized_spring_stiffness(overlap) - 1)
-        return 2 * (float(np.max(np.maximum(k_error, c_error))) + self._fit_error + self._punches[2])
+    def error(self) -> tuple[float, float]:
+        """Relative errors of k_bar and c_bar: what the first ratios of the overlap, fit and Ritz values show.
+
+        What the Ritz values lack falls with the ratio, and the narrow panels' rounding grows: so the two are compared
+        at the first ratios, where the difference bounds what is left beyond. An error of k_bar that goes with a power
+        of the ratio counts in c_bar = k_bar (1 + d ln k_bar/d ln ratio) likewise, one of the fit by its slope.
+        """
+        first = np.linspace(*COMPARED)
+        seen = np.abs(self._stiffness(first) / self.near.normalized_contact_stiffness(first) - 1)
+        ratios, stiffness, left_out, _ = self._punches
+        missed = np.abs(self.log_stiffness(np.log(ratios)) - np.log(stiffness))
+        common = float(seen.max()) + left_out + float(missed.max())
+        value, slope = self._fit_error
+        return common + value, 2 * common + value + slope
 
     @property
-    def _fit_error(self) -> float:
-        """What the last terms of the fit make of ln k_bar and of its slope, which is largest at the end."""
-        log_ratio = np.linspace(np.log(OVERLAP), np.log(LARGEST_RATIO), 4 * DEGREE)
+    def _fit_error(self) -> tuple[float, float]:
+        """What the last terms of the fit make of ln k_bar and of its slope beyond the narrow panels' end."""
+        log_ratio = np.linspace(np.log(self.near.max_ratio), np.log(LARGEST_RATIO), 4 * DEGREE)
         last = self.log_stiffness - self._fitted(DEGREE - LAST_TERMS)
-        return float(np.max(np.abs(last(log_ratio))) + np.max(np.abs(last.deriv()(log_ratio))))
+        return float(np.max(np.abs(last(log_ratio)))), float(np.max(np.abs(last.deriv()(log_ratio))))
 
     def _fitted(self, degree: int) -> Chebyshev:
         ratios, stiffness, *_ = self._punches
@@ -196,8 +210,16 @@ class WideSolution(IntegralEquationSolution):
     lost: Callable[[FloatArray], FloatArray]
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of k_bar and c_bar."""
+        """Bound of the relative error of k_bar."""
         return super().relative_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """Bound of the relative error of c_bar."""
+        return super().spring_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Bound of the relative error of g."""
+        return super().profile_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
 
 
 def _wide_punches(

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bem.polynomials.gauss_panels import chebyshev_from_nodes
+from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
 FEW_POINTS = 400
@@ -42,11 +44,15 @@ class EqualPanels:
         panels = np.minimum(np.maximum(panels, 0), len(self.coefficients) - 1)
         return panels, x / self.panel_width - panels
 
-    def truncation(self) -> FloatArray:
-        """Size of the last coefficients of each panel relative to its largest, shape (P,)."""
-        size = np.abs(self.coefficients)
-        tail: FloatArray = size[:, -2:].max(axis=1) / size.max(axis=1)
-        return tail
+    def truncation(self, x: FloatArray) -> FloatArray:
+        """Size of what the polynomials leave out at points x, as the decay of their coefficients tells."""
+        panels, s = self.locate(x)
+        beyond: FloatArray = self._beyond[panels] * between_nodes(self.coefficients.shape[1], 2 * s - 1)
+        return beyond
+
+    @cached_property
+    def _beyond(self) -> FloatArray:
+        return orders_beyond(self.coefficients)
 
 
 def chebyshev_sum(coefficients: FloatArray, s: FloatArray) -> FloatArray:

@@ -6,8 +6,9 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-from numpy.polynomial import chebyshev, legendre
+from numpy.polynomial import chebyshev
 
+from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
 
 _TINY = float(np.finfo(float).tiny)
@@ -16,7 +17,7 @@ _TINY = float(np.finfo(float).tiny)
 @cache
 def gauss_nodes(count: int) -> tuple[FloatArray, FloatArray]:
     """Gauss-Legendre nodes and weights on [0, 1], each of shape (count,), read-only."""
-    nodes, weights = legendre.leggauss(count)
+    nodes, weights = legendre_rule(count)
     return _frozen((1 + nodes) / 2), _frozen(weights / 2)
 
 

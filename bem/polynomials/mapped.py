@@ -16,10 +16,13 @@ from numpy.typing import NDArray
 
 from bem.polynomials.equal_panels import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
+from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
 MAX_SPLITS = 60
 EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+# Roundings of the largest coefficient that a sum of polynomials adds up to.
+ROUNDINGS = 4.0
 
 
 @dataclass(frozen=True)
@@ -140,21 +143,28 @@ class MappedFunction:
         tail: FloatArray = size[:, -2:].max(axis=1) / np.maximum(size.max(axis=1), TINY)
         return tail
 
-    def relative_error(self) -> float:
-        """What the orders left out and rounding may add up to, relative to the smallest value on each piece: the worst.
+    def relative_error(self, d: FloatArray) -> FloatArray:
+        """What the orders left out and rounding make of the values at points d, relative to them.
 
-        Values count without u^lead. The ends of a piece lie beyond its outermost node, where interpolation magnifies
-        what the orders leave out by up to the Lebesgue constant.
+        Values at the nodes are taken as right: what a load's polynomials leave out is orthogonal to the kernel's.
         """
-        size, smallest = np.abs(self.coefficients), np.minimum(np.abs(self._regular).min(axis=1), self._at_start)
-        error = _magnification(self.grid.count) * size[:, -2:].max(axis=1) + 4 * EPS * size.max(axis=1)
-        return float(np.max(error / np.maximum(smallest, TINY)))
+        piece, u = self.grid.locate(d)
+        values = np.abs(self.at(piece, u))
+        own = self._beyond[piece] * between_nodes(self.grid.count, 2 * u - 1) + self._rounding[piece]
+        relative: FloatArray = np.divide(
+            own * self._factor(piece, u), values, out=np.zeros_like(values), where=values > 0
+        )
+        return relative
 
-    @property
-    def _at_start(self) -> FloatArray:
-        """Size of the value at the left end of each piece, without u^lead."""
-        signs = (-1.0) ** np.arange(self.grid.count)
-        return np.asarray(np.abs(self.coefficients @ signs))
+    @cached_property
+    def _beyond(self) -> FloatArray:
+        """Coefficients left out; the rate is that of the upper half, since kinks beside a piece slow it down late."""
+        half = max(0, min(self.grid.count // 2, self.grid.count - 4))
+        return orders_beyond(self.coefficients[:, half:])
+
+    @cached_property
+    def _rounding(self) -> FloatArray:
+        return np.asarray(ROUNDINGS * EPS * np.abs(self.coefficients).max(axis=1))
 
     def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         return np.where(piece == 0, u**self.lead, 1.0)
@@ -174,13 +184,6 @@ class MappedFunction:
     @cached_property
     def _slope_coefficients(self) -> FloatArray:
         return np.asarray(self.coefficients @ _slope_of_chebyshev(self.grid.count).T)
-
-
-@cache
-def _magnification(count: int) -> float:
-    """1 + the Lebesgue constant of the Gauss nodes, which they take at the ends: 1 + sum |l_j(1)|."""
-    ends = np.polynomial.chebyshev.chebvander(1.0, count - 1)
-    return float(1.0 + np.abs(ends @ chebyshev_from_nodes(count)).sum())
 
 
 @cache

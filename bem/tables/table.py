@@ -112,6 +112,16 @@ class FlatPunchTable:
         """Bound of the error of q at any radius, relative to its largest value."""
         return self._larger_neighbour(self.pressure_error, ratio)
 
+    def spring_error(self, ratio: ArrayLike) -> FloatArray:
+        """As that of the stiffness, which has the springs' error in it."""
+        return self.relative_error(ratio)
+
+    def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
+        """Of g = (1/c_bar) dM/dx: of the springs, and of M and its slope."""
+        springs = self.relative_error(ratio)
+        profile: FloatArray = springs + np.maximum(springs, self.moment_error(ratio, start))
+        return profile
+
     def moment_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """Bound of the relative error of integrals of q over arcsin(rho) from rho = `start` to the edge."""
         xi, rho = np.broadcast_arrays(self._checked(ratio), np.asarray(start, dtype=np.float64))

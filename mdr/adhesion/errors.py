@@ -29,9 +29,11 @@ def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatA
     relative = system.relative_errors(radius)
     stiffness = system.contact_stiffness(radius)
     g, moment = system.mdr_profile(radius), system.profile_moment(radius)
-    by_depth = relative["indentation_depth"] * g + 0.5 * relative["contact_stiffness"] * np.abs(g - depth)  # Eq. (41)
-    by_force = stiffness * (relative["contact_stiffness"] * np.abs(depth) + by_depth)  # Eq. (4)
-    return np.stack([by_depth, by_force + relative["normal_force"] * moment])
+    elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - moment)
+    by_depth = relative["indentation_depth"] * g + 0.5 * relative["spring_stiffness"] * elongation  # Eq. (41)
+    by_force = stiffness * by_depth + relative["indentation_depth"] * moment  # Eq. (4), int k_N dg being elastic
+    by_force += relative["contact_stiffness"] * (elastic + stiffness * elongation)
+    return np.stack([by_depth, by_force])
 
 
 @dataclass(frozen=True)

@@ -16,6 +16,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from bem.polynomials.chebyshev import powers
+from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
 
 Lanes: TypeAlias = NDArray[np.intp]
@@ -33,7 +34,7 @@ _LEAST, _MOST = 0.5, 1.5  # a sweep may change a length by
 _DIFFERENCE = 1e-7  # of a state: to differentiate its slopes
 _NUMBERS = np.arange(1.0, STAGES + 1.0)[:, None]
 
-POINTS, _GAUSS_WEIGHTS = legendre.leggauss(STAGES)
+POINTS, _GAUSS_WEIGHTS = legendre_rule(STAGES)
 _ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
 _INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ _ANALYSIS
 TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS  # from slopes to states, for a unit step

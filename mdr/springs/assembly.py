@@ -28,7 +28,7 @@ NODES = 24  # on each piece, where the flat-punch data do not prescribe their ow
 TABLE_NODES = 12  # with a table, whose functions are no smoother than its splines
 FIRST_OCTAVE = -5  # below a/h = 1/32 a table's functions are linear to its accuracy
 RESOLVED = 1e-13  # relative size of the last Chebyshev coefficients of the half-space profile
-SHARE = 0.01  # of the flat punch's error, below which a profile on coarse panels is resolved no further
+SHARE = 0.1  # of the flat punch's error, below which a profile on coarse panels is resolved no further
 _FLATTEST = 16.0  # exponent at first touch; u^4n leaves double precision beyond 30, and errs by 1e-11 from 23 on
 _CLOSE = (1e-9, 1e-4, 1e-1)  # to first touch, relative
 # Error of a pressure over that of the depth where the profile is fitted: measured against refined data at most 0.5
@@ -76,6 +76,7 @@ def equivalent_system(
         profile=profile,
         moment=moment,
         profile_error=own_error,
+        fitted_from=solution.near.max_ratio if isinstance(solution, LargeRatioSolution) else np.inf,
     )
     return _with_variants(system, indenter, g_hs)
 
@@ -194,7 +195,7 @@ class SeveralContacts(UnsupportedSceneError):
 def _profile(
     solution: FlatPunchSolution, indenter: Profile, unit: float, g_hs: MappedFunction, springs: FloatArray
 ) -> tuple[MappedFunction, float]:
-    """g in units of `unit`, and its relative error beyond that of the flat-punch data.
+    """g in units of `unit`, and its relative error beyond that of the flat-punch data and of the grid.
 
     Args:
         solution: The flat punch.
@@ -216,7 +217,7 @@ def _profile(
             profile, seen = wide_profile(solution, g_hs, flat)
         case _:
             profile = published_profile(solution, indenter, unit, g_hs)
-    return profile, profile.relative_error() + seen
+    return profile, seen
 
 
 def _rounding_near_equator(indenter: Profile, max_radius: float) -> float:
@@ -245,10 +246,11 @@ def _half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: f
 
 
 def _panel_error(solution: FlatPunchSolution) -> float:
-    """What the nodes of a panel leave of the flat punch's stiffness; other data have no panels."""
+    """What the nodes of a panel leave of the springs, where they leave most; other data have no panels."""
     if not isinstance(solution, IntegralEquationSolution):
         return 0.0
-    return float(solution.relative_error(solution.max_ratio))
+    ratios = solution.max_ratio * np.arange(1.0, 2 * solution.factor.panels + 1) / (2 * solution.factor.panels)
+    return float(solution.spring_error(ratios).max())
 
 
 def _known_radius(solution: LargeRatioSolution, indenter: Profile, unit: float, max_radius: float) -> float:
@@ -348,7 +350,7 @@ def _springs_at_nodes(solution: FlatPunchSolution, g_hs: MappedFunction, flat: f
 
 def _noise(solution: FlatPunchSolution, ratio: float) -> float:
     """How far a profile may fall, relative to its height, for no other reason than a table's noise."""
-    if isinstance(solution, HalfSpaceFlatPunch | IntegralEquationSolution | LargeRatioSolution):
+    if not isinstance(solution, FlatPunchTable):
         return 0.0
     return float(solution.relative_error(ratio) + solution.moment_error(ratio))
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +22,8 @@ NEWTON_STEPS = 60
 NEWTON_TOLERANCE = 2e-14
 NOISE_TOLERANCE = 1e-11  # accepted after all steps, where rounding in the curve hides its root
 ROUNDING = 16 * np.finfo(float).eps
+# Radii, beside the profile's nodes, at which the largest error is looked for: errors change from panel to panel.
+_SAMPLES = 96
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,7 +41,8 @@ class EquivalentSystem:
         flat_punch: Normalised stiffness of layer and springs, Eq. (10).
         profile: g over the excess x - b, both in units of length_unit.
         moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
-        profile_error: Relative error of g and of the moment beyond that of the flat-punch data.
+        profile_error: Relative error of g and of the moment at fitted radii, beyond those of flat-punch data and grid.
+        fitted_from: Radius above which g is fitted, in units of length_unit.
         variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
             error (`table_errors`); none with other flat-punch data.
     """
@@ -50,7 +54,8 @@ class EquivalentSystem:
     flat_punch: FlatPunchSolution
     profile: MappedFunction
     moment: MappedFunction
-    profile_error: float
+    profile_error: float = 0.0
+    fitted_from: float = np.inf
     variants: tuple[tuple[float, EquivalentSystem], ...] = ()
 
     def spring_stiffness(self, x: ArrayLike) -> FloatArray:
@@ -111,28 +116,38 @@ class EquivalentSystem:
         lead = self.profile.lead + (0.0 if self.flat_radius else float(self.profile.grid.power[0]))
         return self._invert(force, _Curve(self._force_at, self._force_slope_at, lead), "normal_force", self._force_unit)
 
-    @property
+    @cached_property
     def relative_error(self) -> Mapping[str, float]:
-        """Bounds at `max_radius`, where they are largest; see `relative_errors`."""
-        return {name: float(values[0]) for name, values in self.relative_errors(np.array([self.max_radius])).items()}
+        """The largest of `relative_errors` at all radii up to `max_radius`."""
+        beyond = self.flat_radius + self.length_unit * self.profile.grid.nodes.ravel()
+        radii = np.append(
+            self.max_radius * np.arange(1.0, _SAMPLES + 1.0) / _SAMPLES, np.minimum(beyond, self.max_radius)
+        )
+        return {name: float(values.max()) for name, values in self.relative_errors(radii).items()}
 
     def relative_errors(self, contact_radius: FloatArray) -> dict[str, FloatArray]:
-        """Bounds of the relative errors of an elastic contact's quantities at each radius."""
+        """Bounds of the relative errors of an elastic contact's quantities, and of c_N, at each radius."""
         ratio = self._ratio(contact_radius)
         if self.variants:
             from mdr.springs import table_errors  # noqa: PLC0415 - other flat-punch data do not need it
 
             return table_errors.relative_errors(self, contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
-        moment = self.flat_punch.moment_error(ratio, self._flat_share(contact_radius)) + ROUNDING
-        depth = stiffness + np.maximum(stiffness, moment) + self.profile_error
+        springs = self.flat_punch.spring_error(ratio) + ROUNDING
+        data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + ROUNDING
+        own = self.profile_truncation(contact_radius)
+        depth = data + np.where(ratio > self.fitted_from, self.profile_error, 0.0) + own
         return {
             "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
             "indentation_depth": depth,
             "normal_force": depth + stiffness,
             "contact_stiffness": stiffness,
-            "spring_stiffness": stiffness,
+            "spring_stiffness": springs,
         }
+
+    def profile_truncation(self, contact_radius: FloatArray) -> FloatArray:
+        """What the polynomials of g leave out at each radius, relative to it."""
+        return self.profile.relative_error(self._beyond(contact_radius - self.flat_radius))
 
     def _flat_share(self, contact_radius: FloatArray) -> FloatArray:
         """b/a: beside the flat end, only flat-punch pressures near the edge count."""

@@ -24,8 +24,6 @@ STIFFNESS_SHARE: Final = 0.5
 # The same for the pressure under a profile: punches of all smaller radii are superposed, whose errors partly cancel.
 # Twice this share was 3 to 29 times the true error (80 scenes, seed 3, 64 cells, 2026-11-22).
 PRESSURE_SHARE: Final = 0.3
-# Of the bound of the profile's polynomials, which adds their last orders up at the worst point of all pieces.
-PROFILE_SHARE: Final = 0.1
 # Of the pressure under a profile, whose slope magnifies what is left in it: up to 8e-8 on thick layers (seeds 1 and 3,
 # 64 cells, 60 rows, a/h below 0.1, 2026-11-22).
 PRESSURE_FLOOR: Final = 1e-7
@@ -58,7 +56,7 @@ class TableDifferences:
             for share, variant in system.variants
         ]
         by_stiffness = STIFFNESS_FLOOR + _below_table(system, radius)
-        by_profile = ERROR_FLOOR + PROFILE_SHARE * system.profile_error
+        by_profile = ERROR_FLOOR + system.profile_truncation(radius)
         rows += [
             [by_stiffness * k, by_stiffness * c, 0 * g, 0 * moment],
             [0 * k, 0 * c, by_profile * g, by_profile * moment],

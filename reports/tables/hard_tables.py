@@ -1,6 +1,7 @@
 """Tables of hard cases: where ladders break and with how many digits, and how well stated errors hold."""
 
 from cases.measurements.advice.error_maps import UNBONDED, good_range
+from cases.measurements.campaigns.coverage import at_90
 from cases.measurements.ladders.ladders import breakdown, fewest_digits
 from cases.results.records import CaseResult, CoverageRecord, ErrorMap, Ladder
 from cases.results.status import Status
@@ -68,7 +69,8 @@ def coverage(case: CaseResult) -> Table | None:
     return Table(
         title="Coverage and sharpness",
         note="Covered: share of answers whose true error lies within the stated one (with the referee's own "
-        "uncertainty). Sharpness: stated over true error in the median of those the referee can tell.",
+        "uncertainty). Sharpness: stated over true error, in the median and at 90 % of those above the referee's "
+        "uncertainty and a hundred roundings.",
         heads=(
             "method",
             "settings",
@@ -79,6 +81,7 @@ def coverage(case: CaseResult) -> Table | None:
             "answers",
             "covered",
             "sharpness",
+            "at 90 %",
         ),
         rows=tuple(map(_coverage_row, case.coverage)),
         words=4,
@@ -97,6 +100,7 @@ def _coverage_row(record: CoverageRecord) -> tuple[str, ...]:
         f"{record.checks}",
         f"{100 * record.covered:.1f} %",
         "" if record.sharpness is None else small(record.sharpness),
+        "" if record.sharpness is None else small(at_90(record)),
     )
 
 

@@ -5,6 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.polynomials.gauss import legendre_rule
 from cases.library._layers import layer
 from cases.results.records import Series
 from contact import TruncatedCone
@@ -13,7 +14,7 @@ from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure,
 Array = NDArray[np.float64]
 
 HALF_SPACE, THIN_LAYER = "half-space", "thin layer"
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(60)
+NODES, WEIGHTS = legendre_rule(60)
 
 
 def profile_limits(label: str, cone: TruncatedCone, a: float, x: Array) -> Iterator[Series]:

@@ -9,6 +9,7 @@ from typing import Any, Final
 
 import numpy as np
 
+from bem.polynomials.gauss import legendre_rule
 from cases.declare.methods import build
 from cases.results.records import CaseResult, ErrorMap
 from contact import ContactError, ContactPath, ContactRadii, Layer, Method, Paraboloid, Scene
@@ -62,7 +63,7 @@ def thin_layer_force(layer: Layer, radii: FloatArray) -> FloatArray:
     """F = 2 int_0^a c_N (g(a) - g) dx with the thin layer's springs and profile, Eq. (4)."""
     from mdr.closed_forms.asymptotic import thin_profile, thin_spring_stiffness  # noqa: PLC0415 - a method is imported when used
 
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
+    nodes, weights = legendre_rule(_NODES)
     x = radii[:, None] * (1 + nodes) / 2
     rise = thin_profile(layer, _indenter(layer), radii)[:, None] - thin_profile(layer, _indenter(layer), x)
     force: FloatArray = radii * ((thin_spring_stiffness(layer, x) * rise) @ weights)

@@ -57,6 +57,8 @@ _THIN_LAYERS_REFINED = 8  # one in so many
 _STATES_OF_A_BRANCH = 5
 _ALL = slice(None)
 _UNLISTED_MOST = 1e-2  # a quantity without a stated error still may not be this far off
+# Sharpness is asked for where the relative true error is above this: below, roundings decide how large an error is.
+HUNDRED_ROUNDINGS = 100 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,12 +70,15 @@ class Check:
         error: Distance from the referee.
         stated: Error that the method stated.
         allowance: The referee's own uncertainty.
+        sharpness: Stated over true error at the step where the true error is largest; None where that is within the
+            referee's uncertainty or a hundred roundings.
     """
 
     quantity: str
     error: float
     stated: float
     allowance: float
+    sharpness: float | None = None
 
     @property
     def holds(self) -> bool:
@@ -151,25 +156,27 @@ class Coverage:
     Attributes:
         count: Checks made.
         covered: Share whose stated error covers the distance from the referee.
-        decided: How many of them the referee could tell from its own uncertainty.
+        decided: How many of them are above the referee's uncertainty and a hundred roundings.
         sharpness: Median of stated over true error among the decided ones; 1 would be perfect, None without any.
+        ratios: Stated over true error of the decided ones.
     """
 
     count: int
     covered: float
     decided: int
     sharpness: float | None
+    ratios: tuple[float, ...]
 
 
 def coverage(checks: Sequence[Check]) -> Coverage:
     """Coverage and sharpness of stated errors; `checks` must not be empty."""
-    decided = [c for c in checks if c.error > c.allowance]
-    ratios = [c.stated / c.error for c in decided]
+    ratios = tuple(c.sharpness for c in checks if c.sharpness is not None)
     return Coverage(
         count=len(checks),
         covered=sum(c.holds for c in checks) / len(checks),
-        decided=len(decided),
+        decided=len(ratios),
         sharpness=float(np.median(ratios)) if ratios else None,
+        ratios=ratios,
     )
 
 
@@ -324,8 +331,19 @@ def _check(
     allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
     worst = int(np.argmax(error - stated - allowance))
     return Check(
-        quantity=quantity, error=float(error[worst]), stated=float(stated[worst]), allowance=float(allowance[worst])
+        quantity=quantity,
+        error=float(error[worst]),
+        stated=float(stated[worst]),
+        allowance=float(allowance[worst]),
+        sharpness=_sharpness(error, stated, allowance),
     )
+
+
+def _sharpness(error: FloatArray, stated: FloatArray, allowance: FloatArray) -> float | None:
+    """Stated over true error at the step with the largest true error that can be told."""
+    told = np.where(error > np.maximum(allowance, HUNDRED_ROUNDINGS), error, 0.0)
+    largest = int(np.argmax(told))
+    return float(stated[largest] / error[largest]) if told[largest] > 0.0 else None
 
 
 def _fitted(values: FloatArray, shape: tuple[int, ...]) -> FloatArray:

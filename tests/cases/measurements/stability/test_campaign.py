@@ -7,6 +7,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from cases.measurements.campaigns import campaign as campaign_module
 from cases.measurements.campaigns.campaign import Check, campaign, coverage
 from contact import NotConvergedError
 from mdr import Mdr
@@ -81,15 +82,50 @@ def test_a_refusal_is_counted_as_one():
 
 def test_coverage_and_sharpness():
     checks = [
-        Check(quantity="q", error=1e-6, stated=2e-6, allowance=1e-9),
-        Check(quantity="q", error=1e-6, stated=8e-6, allowance=1e-9),
-        Check(quantity="q", error=1e-6, stated=1e-7, allowance=1e-9),
+        Check(quantity="q", error=1e-6, stated=2e-6, allowance=1e-9, sharpness=2.0),
+        Check(quantity="q", error=1e-6, stated=8e-6, allowance=1e-9, sharpness=8.0),
+        Check(quantity="q", error=1e-6, stated=1e-7, allowance=1e-9, sharpness=0.1),
         Check(quantity="q", error=1e-10, stated=1e-12, allowance=1e-9),  # below what the referee can tell
     ]
     found = coverage(checks)
-    assert (found.count, found.covered, found.decided, found.sharpness) == (
-        4,
-        0.75,
-        3,
-        pytest.approx(2.0, rel=1e-12, abs=0.0),
+    assert (found.count, found.covered, found.decided, found.ratios) == (4, 0.75, 3, (2.0, 8.0, 0.1))
+    assert found.sharpness == pytest.approx(2.0, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize(("excess", "holds"), [(-1e-9, True), (1e-9, False), (0.5, False), (1.0, False)])
+def test_a_true_error_beyond_the_stated_one_is_never_covered(excess, holds):
+    """Also not when it is less than twice as large."""
+    stated, allowance = 1e-6, 1e-9
+    check = Check(quantity="q", error=(1 + excess) * (stated + allowance), stated=stated, allowance=allowance)
+    assert check.holds is holds
+    assert coverage([check]).covered == float(holds)
+
+
+def half_too_much(path):
+    """Stiffness is wrong by one and a half times what is stated, much more than rounding."""
+    stated = np.full_like(path.contact_stiffness, 1e-5)
+    return dataclasses.replace(
+        path,
+        contact_stiffness=path.contact_stiffness * (1 + 1.5 * stated),
+        error_estimate=path.error_estimate | {"contact_stiffness": stated},
     )
+
+
+def test_answers_half_as_wrong_again_as_they_state_are_not_covered():
+    """Seen to fail with a rule that lets true errors be twice the stated ones."""
+    found = slice_of(half_too_much)
+    assert not found.counts["within"]
+    assert found.coverage()["contact_stiffness"].covered == 0.0
+
+
+SHARPNESS = [
+    ([1e-6, 1e-8], [1e-5, 1.0], [0.0, 0.0], 10.0),  # at the step with the largest true error
+    ([1e-6, 1e-8], [1e-5, 1e-7], [1e-5, 0.0], 10.0),  # the larger one cannot be told from the referee's own error
+    ([1e-6, 2e-14], [1e-5, 1.0], [1e-5, 0.0], None),  # below a hundred roundings
+]
+
+
+@pytest.mark.parametrize(("error", "stated", "allowance", "expected"), SHARPNESS)
+def test_sharpness_is_that_of_the_largest_error_that_can_be_told(error, stated, allowance, expected):
+    found = campaign_module._sharpness(np.array(error), np.array(stated), np.array(allowance))
+    assert found == (None if expected is None else pytest.approx(expected, rel=1e-12, abs=0.0))

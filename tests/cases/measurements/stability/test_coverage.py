@@ -1,11 +1,18 @@
-"""Coverage sees stated errors that are too small, counts only what the referee can tell, and fails below 95 %."""
+"""Coverage sees stated errors that are too small or too large, and fails by name: below 95 %, or beyond 10 and 100."""
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from cases.measurements.campaigns import coverage
-from cases.measurements.campaigns.coverage import CoveragePlan, coverage_case, errors_are_covered
+from cases.measurements.campaigns.coverage import (
+    PERCENTILES,
+    CoveragePlan,
+    coverage_case,
+    errors_are_covered,
+    errors_are_sharp,
+)
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch
 from mdr import Mdr
@@ -50,9 +57,9 @@ def test_a_planted_error_beyond_the_stated_one_is_seen(monkeypatch):
         lambda name, settings: TooSure(**settings) if settings == PLAN.settings else own(name, settings),
     )
     case = coverage_case([PLAN])
-    by_quantity = {claim.quantity: claim.status for claim in case.claims}
-    assert by_quantity["normal_force"] is Status.FAIL
-    assert by_quantity["contact_stiffness"] is Status.PASS
+    by_name = {claim.name: claim.status for claim in case.claims}
+    assert by_name["stated errors hold, normal force"] is Status.FAIL
+    assert by_name["stated errors hold, contact stiffness"] is Status.PASS
 
 
 def test_a_crash_fails_the_claim():
@@ -65,6 +72,47 @@ def test_a_crash_fails_the_claim():
 def test_the_limit_is_ninety_five_percent(covered, status):
     (record, *_) = records().values()
     assert errors_are_covered(dataclasses.replace(record, covered=covered)).status is status
+
+
+RATIOS = [
+    ([2.0] * 20, Status.PASS),
+    ([9.9] * 11 + [99.0] * 9, Status.PASS),
+    ([10.2] * 20, Status.FAIL),
+    ([2.0] * 17 + [200.0] * 3, Status.FAIL),
+    ([1e4] * 9, Status.INCONCLUSIVE),
+    ([], Status.PASS),
+]
+
+
+@pytest.mark.parametrize(("ratios", "status"), RATIOS)
+def test_bars_are_sharp_within_ten_in_the_median_and_a_hundred_at_ninety_percent(ratios, status):
+    (record, *_) = records().values()
+    percentiles = tuple(np.percentile(ratios, PERCENTILES)) if ratios else ()
+    median = float(np.median(ratios)) if ratios else None
+    claim = errors_are_sharp(
+        dataclasses.replace(record, decided=len(ratios), sharpness=median, percentiles=percentiles)
+    )
+    assert claim.status is status
+    assert claim.name.startswith("stated errors are sharp, ")
+
+
+class TooModest(TooSure):
+    """The fast method with a hundred times its stated errors."""
+
+    def solve(self, scene):
+        path = self.own.solve(scene)
+        return dataclasses.replace(path, error_estimate={q: 100 * e for q, e in path.error_estimate.items()})
+
+
+def test_a_hundred_times_the_stated_errors_fail_by_name(monkeypatch):
+    own = coverage.build
+    planted = dataclasses.replace(PLAN, settings={"nodes": 12, "panel_width": 2.0}, count=24)
+    modest = TooModest(12)
+    modest.own = own("mdr", planted.settings)
+    monkeypatch.setattr(coverage, "build", lambda name, s: modest if s == planted.settings else own(name, s))
+    claims = {claim.name: claim.status for claim in coverage_case([planted]).claims}
+    assert claims["stated errors are sharp, contact stiffness"] is Status.FAIL
+    assert claims["stated errors hold, contact stiffness"] is Status.PASS
 
 
 def test_a_plan_without_search_draws_radii_and_punches_only():
