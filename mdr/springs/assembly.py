@@ -352,7 +352,7 @@ def _noise(solution: FlatPunchSolution, ratio: float) -> float:
     """How far a profile may fall, relative to its height, for no other reason than a table's noise."""
     if not isinstance(solution, FlatPunchTable):
         return 0.0
-    return float(solution.relative_error(ratio) + solution.moment_error(ratio))
+    return float(solution.profile_error(ratio))
 
 
 def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float, noise: float) -> None:
