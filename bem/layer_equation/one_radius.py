@@ -144,7 +144,8 @@ class DirectDensity:
     def _sampled_slope(self) -> StretchSlopes:
         ends = self.stretch_ends[self.stretch_ends >= 0]
         count = SLOPE_SHARE * self.panels.count
-        return StretchSlopes.of(lambda d: half_space_load(self.indenter, self.unit * d) / self.unit, ends, count)
+        origin, unit = self.panels.origin, self.unit
+        return StretchSlopes.of(lambda d: half_space_load(self.indenter, unit * d) / unit, origin, ends, count)
 
     def _smooth_integral(self, radius: FloatArray, depth: float) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt with t^2 = r^2 + s^2, where psi'/t is an even analytic function of t."""

@@ -22,10 +22,15 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
+from bem.polynomials.stretch_slopes import StretchSlopes
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
+from mdr.springs.half_space_profile import half_space_profile
 
 NODES = 24
+# Samples of g_hs on each stretch of a profile without a closed form; neighbouring breakpoints lie outside the stretch
+# by its own length or so, where the error of n samples is below 2.6^-n.
+SAMPLES = 32
 
 
 @dataclass(frozen=True, eq=False)
@@ -114,10 +119,18 @@ class ContactFields:
 
     def _slope(self, nodes: AbelNodes) -> FloatArray:
         """g_hs', or with a table g' and the pressure of the punch whose edge is at t."""
+        if self.table is not None:
+            slope = self.profile.derivative(np.minimum(nodes.offset, self._reach))
+            return slope * self._weight(nodes.radius, nodes.position)
         closed = profile_slope(self.indenter, self.unit * nodes.offset, self.unit * nodes.room)
-        if closed is None or self.table is not None:
-            closed = self.profile.derivative(np.minimum(nodes.offset, self._reach))
-        return closed * self._weight(nodes.radius, nodes.position)
+        return self._sampled_slope(nodes.offset) if closed is None else closed
+
+    @cached_property
+    def _sampled_slope(self) -> StretchSlopes:
+        """g_hs' of a profile without a closed form."""
+        ends = np.array([stretch.start for stretch in self._stretches] + [self.excess])
+        unit = self.unit
+        return StretchSlopes.of(lambda d: half_space_profile(self.indenter, unit * d) / unit, self._flat, ends, SAMPLES)
 
     def _weight(self, r: FloatArray, x: FloatArray | float) -> FloatArray | float:
         """Pressure of a flat punch of radius x relative to the half-space's: 1, or 2 k_bar q of a table, Eq. (12)."""
