@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -68,7 +69,6 @@ def equivalent_system(
             max_radius = _known_radius(solution, indenter, unit, max_radius)
     g_hs = _half_space_function(solution, indenter, unit, max_radius - indenter.flat_radius)
     profile, moment, own_error = _curves(solution, indenter, unit, g_hs)
-    own_error += _rounding_near_equator(indenter, max_radius)
     _refuse_rings(profile, indenter, unit, _noise(solution, max_radius / unit))
     system = EquivalentSystem(
         contact_modulus=contact_modulus(layer),
@@ -79,6 +79,7 @@ def equivalent_system(
         profile=profile,
         moment=moment,
         profile_error=own_error,
+        position_rounding=partial(_rounding_near_equator, indenter),
         fitted_from=solution.near.max_ratio if isinstance(solution, LargeRatioSolution) else np.inf,
     )
     return _with_variants(system, indenter, g_hs)
@@ -223,14 +224,19 @@ def _profile(
     return profile, seen
 
 
-def _rounding_near_equator(indenter: Profile, max_radius: float) -> float:
+def _rounding_near_equator(indenter: Profile, radius: FloatArray) -> FloatArray:
     """What rounded positions do to a profile that is upright at its end: eps d(ln g_hs)/d(ln x), and a margin."""
-    if indenter.max_radius in indenter.breakpoints or not max_radius < indenter.max_radius < np.inf:
-        return 0.0
-    edge, room = np.full(1, max_radius), np.full(1, indenter.max_radius - max_radius)
-    slope = profile_slope(indenter, edge, room)
-    height = half_space_profile(indenter, edge)
-    return 0.0 if slope is None else float(POSITIONS * np.finfo(float).eps * max_radius * slope[0] / height[0])
+    none = np.zeros_like(radius)
+    if indenter.max_radius in indenter.breakpoints or not np.isfinite(indenter.max_radius):
+        return none
+    near = np.ravel(radius) > indenter.flat_radius
+    edge = np.ravel(radius)[near]
+    slope = profile_slope(indenter, edge, indenter.max_radius - edge)
+    if slope is None:
+        return none
+    flat = none.ravel()
+    flat[near] = POSITIONS * np.finfo(float).eps * edge * slope / half_space_profile(indenter, edge)
+    return flat.reshape(none.shape)
 
 
 def _half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float) -> MappedFunction:

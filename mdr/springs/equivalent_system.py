@@ -41,6 +41,7 @@ class EquivalentSystem:
         flat_punch: Normalised stiffness of layer and springs, Eq. (10).
         profile: g over the excess x - b, both in units of length_unit.
         moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
+        position_rounding: Relative error of g by rounded positions, at radii [m].
         profile_error: Relative error of g and of the moment at fitted radii, beyond those of flat-punch data and grid.
         fitted_from: Radius above which g is fitted, in units of length_unit.
         variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
@@ -55,6 +56,7 @@ class EquivalentSystem:
     profile: MappedFunction
     moment: MappedFunction
     profile_error: float = 0.0
+    position_rounding: Callable[[FloatArray], FloatArray] = np.zeros_like
     fitted_from: float = np.inf
     variants: tuple[tuple[float, EquivalentSystem], ...] = ()
 
@@ -135,7 +137,7 @@ class EquivalentSystem:
         stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
         springs = self.flat_punch.spring_error(ratio) + ROUNDING
         data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + ROUNDING
-        own = self.profile_truncation(contact_radius)
+        own = self.profile_truncation(contact_radius) + self.position_rounding(np.asarray(contact_radius))
         depth = data + np.where(ratio > self.fitted_from, self.profile_error, 0.0) + own
         return {
             "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
