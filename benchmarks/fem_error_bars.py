@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
@@ -34,7 +33,6 @@ from fem_reference.elastic.error_estimate import CertifiedContact, solve_certifi
 from mdr.impact.solver import solve_impact
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
-Array = NDArray[np.float64]
 Ratios = dict[str, list[float]]
 
 PROFILES = ("punch", "paraboloid", "cone")

@@ -12,17 +12,15 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer
+from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
 from fem_reference.adhesion.detachment import slope_root
 from fem_reference.adhesion.equilibria import branch_samples
 from fem_reference.adhesion.pull_off_errors import Extremum
 from fem_reference.elastic.error_estimate import CertifiedContact
-
-Array = NDArray[np.float64]
 
 RATIOS = (0.1, 0.5, 2.4, 12.0)  # a/h at the ends of pieces: below, a layer is a half-space; beyond, a bed of springs
 NODES = 13
@@ -66,7 +64,7 @@ def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple
 def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
     here, extremum = np.array([radius]), Extremum(branch, AdhesiveBranch.elongation, radius)
 
-    def numbers(other: AdhesiveBranch) -> Array:
+    def numbers(other: AdhesiveBranch) -> FloatArray:
         return np.array([other.elongation(here)[0], extremum.shift(other)])
 
     height, between = numbers(branch)[0], branch.errors_between(here)[0, 0]

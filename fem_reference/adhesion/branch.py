@@ -17,11 +17,9 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray
 from fem_reference.elastic.error_estimate import SAFETY, CertifiedContact
-
-Array = NDArray[np.float64]
 
 QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "profile_force")
 
@@ -44,7 +42,7 @@ class BranchPiece:
     contacts: tuple[CertifiedContact, ...]
     degree: int | None = None
 
-    def parameter(self, radius: Array) -> Array:
+    def parameter(self, radius: FloatArray) -> FloatArray:
         """s of radii [m]."""
         if self.graded:
             return np.sqrt((radius - self.low) / (self.high - self.low))
@@ -55,7 +53,7 @@ class BranchPiece:
         s = chebyshev_points(len(self.contacts))
         return {name: Chebyshev.fit(s, self._values(name), len(s) - 1, domain=[0, 1]) for name in QUANTITIES}
 
-    def _values(self, name: str) -> Array:
+    def _values(self, name: str) -> FloatArray:
         """Quantity at the nodes, in SI lengths; stiffness and its slope over the power of a that half-spaces have."""
         radii = np.array([contact.indenter.contact_radius for contact in self.contacts])
         solutions = [contact.levels[self.degree or contact.settings.order] for contact in self.contacts]
@@ -63,7 +61,7 @@ class BranchPiece:
         scaled = np.log(values) if name.startswith("stiffness") else values * radii ** POWERS[name]
         return np.asarray(scaled)
 
-    def evaluate(self, name: str, radius: Array) -> Array:
+    def evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         """A quantity [powers of m, E* = 1] at radii within the piece."""
         value = self._interpolants[name](self.parameter(radius))
         return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
@@ -111,7 +109,7 @@ SAMPLES = 41  # radii at which the force's error is compared with an accuracy
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 
 
-def chebyshev_points(count: int) -> Array:
+def chebyshev_points(count: int) -> FloatArray:
     """Chebyshev points of the second kind on [0, 1], increasing."""
     return np.asarray((1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2)
 
@@ -134,7 +132,7 @@ class AdhesiveBranch:
         """The branch as elements of another degree have it."""
         return replace(self, pieces=[replace(piece, degree=degree) for piece in self.pieces])
 
-    def _evaluate(self, name: str, radius: Array) -> Array:
+    def _evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         if self.is_shifted:
             radius = np.maximum(radius * (1 - np.interp(radius, *self._edge_shifts)), self.pieces[0].low)
         values = np.full_like(radius, np.nan)  # beyond the ends nothing is known
@@ -143,23 +141,23 @@ class AdhesiveBranch:
             values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
         return values
 
-    def stiffness(self, radius: Array) -> Array:
+    def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N / E* [m]."""
         return self._evaluate("stiffness", radius)
 
-    def elongation(self, radius: Array) -> Array:
+    def elongation(self, radius: FloatArray) -> FloatArray:
         """dl = sqrt(4 pi a dgamma / k_N') [m], Eq. (40)."""
         return np.asarray(np.sqrt(4 * np.pi * radius * self.work / self._evaluate("stiffness_slope", radius)))
 
-    def depth(self, radius: Array) -> Array:
+    def depth(self, radius: FloatArray) -> FloatArray:
         """delta [m]."""
         return self._evaluate("smooth_depth", radius) - self.elongation(radius)
 
-    def force(self, radius: Array) -> Array:
+    def force(self, radius: FloatArray) -> FloatArray:
         """F / E* [m^2]."""
         return self.stiffness(radius) * self.depth(radius) + self._evaluate("profile_force", radius)
 
-    def slope(self, function: Callable[[Array], Array], radius: Array) -> Array:
+    def slope(self, function: Callable[[FloatArray], FloatArray], radius: FloatArray) -> FloatArray:
         """d function / d a by central differences inside the piece of each radius (the interpolants are smooth)."""
         slopes = np.empty_like(radius)
         for piece in self.pieces:
@@ -171,7 +169,7 @@ class AdhesiveBranch:
         return slopes
 
     @cached_property
-    def _edge_shifts(self) -> tuple[Array, Array]:
+    def _edge_shifts(self) -> tuple[FloatArray, FloatArray]:
         """Radii [m] of the contacts, and by how much each acts like a smaller one, relative."""
         shifts = {contact.indenter.contact_radius: contact.edge_shift for contact in self.contacts}
         return np.array(list(shifts)), np.array(list(shifts.values()))
@@ -199,14 +197,14 @@ class AdhesiveBranch:
         terms = np.abs(self.force(radius)) + self.stiffness(radius) * self.elongation(radius)
         return float(np.max(self.errors_between(radius, "last_coefficients")[1] / terms))
 
-    def _stated(self, kind: str, radius: Array) -> list[Array]:
+    def _stated(self, kind: str, radius: FloatArray) -> list[FloatArray]:
         """``far``, ``between`` or ``last_coefficients`` of the piece around each radius."""
         ends = [piece.high for piece in self.pieces[:-1]]
         found = np.searchsorted(ends, radius)
         names = getattr(self.pieces[0], kind)
         return [np.array([getattr(piece, kind)[name] for piece in self.pieces])[found] for name in names]
 
-    def errors_far(self, radius: Array) -> Array:
+    def errors_far(self, radius: FloatArray) -> FloatArray:
         """Of depth [m] and force / E* [m^2] by outer edge and half-space, shape (2, radius)."""
         stiffness, slope, smooth_depth, smooth_force = self._stated("far", radius)
         elongation = self.elongation(radius)
@@ -215,7 +213,7 @@ class AdhesiveBranch:
         force = np.abs(self.force(radius) + pulled) * smooth_force + pulled * (stiffness + slope / 2)
         return np.array([depth, force])
 
-    def errors_between(self, radius: Array, kind: str = "between") -> Array:
+    def errors_between(self, radius: FloatArray, kind: str = "between") -> FloatArray:
         """Of depth [m] and force / E* [m^2] between the solved radii, shape (2, radius)."""
         stiffness, slope, smooth_depth, profile_force = self._stated(kind, radius)
         elongation, pressed = self.elongation(radius), self.stiffness(radius)

@@ -17,13 +17,12 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import AdhesiveBranch
 from fem_reference.elastic.error_estimate import FASTEST_AT_LOAD, SAFETY
 
-Array = NDArray[np.float64]
-Numbers = Callable[[AdhesiveBranch], Array]
+Numbers = Callable[[AdhesiveBranch], FloatArray]
 
 # Least error of the degree along a piece of a branch, over its root mean square there: it passes zero now and then.
 LEAST = 0.7
@@ -33,7 +32,7 @@ LEAST = 0.7
 SCATTER = 1.5
 
 
-def degree_error(branch: AdhesiveBranch, numbers: Numbers) -> Array:
+def degree_error(branch: AdhesiveBranch, numbers: Numbers) -> FloatArray:
     """What the last change of the degree means for numbers; absolute."""
     contacts = branch.contacts
     values = [numbers(branch.at_degree(degree)) for degree in sorted(contacts[0].levels)]
@@ -43,15 +42,15 @@ def degree_error(branch: AdhesiveBranch, numbers: Numbers) -> Array:
     return np.asarray(SCATTER * SAFETY * rate * np.max([changes[-1], *expected], axis=0))
 
 
-def edge_error(branch: AdhesiveBranch, numbers: Numbers) -> Array:
+def edge_error(branch: AdhesiveBranch, numbers: Numbers) -> FloatArray:
     """What the edge cells mean for numbers; absolute."""
     return np.abs(numbers(replace(branch, is_shifted=True)) - numbers(branch))
 
 
-def errors_along(branch: AdhesiveBranch, radius: Array) -> Array:
+def errors_along(branch: AdhesiveBranch, radius: FloatArray) -> FloatArray:
     """Absolute errors of depth [m] and force / E* [m^2] at radii [m], shape (2, radius)."""
 
-    def loads(other: AdhesiveBranch) -> Array:
+    def loads(other: AdhesiveBranch) -> FloatArray:
         return np.array([other.depth(radius), other.force(radius)])
 
     by_degree = degree_error(branch, loads)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact import (
@@ -19,6 +18,7 @@ from contact import (
     Scene,
     StageLog,
 )
+from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import AdhesiveBranch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.adhesion.equilibria import SPANS, branch_of, branch_samples
@@ -27,7 +27,6 @@ from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
-Array = NDArray[np.float64]
 Control = Literal["displacement", "force"]
 
 CAVITATION = (
@@ -130,7 +129,7 @@ def _start(scene: Scene, branch: AdhesiveBranch) -> list[CriticalPoint]:
     return [_point(branch, scene.indenter.radius, control, "start") for control in ("displacement", "force")]
 
 
-def _turning_points(branch: AdhesiveBranch, radius: Array) -> list[CriticalPoint]:
+def _turning_points(branch: AdhesiveBranch, radius: FloatArray) -> list[CriticalPoint]:
     """Every change of sign of d(depth)/da and dF/da, in the order of decreasing radius."""
     points = []
     for control, load in (("displacement", branch.depth), ("force", branch.force)):
@@ -141,7 +140,7 @@ def _turning_points(branch: AdhesiveBranch, radius: Array) -> list[CriticalPoint
     return points
 
 
-def slope_root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: float, high: float) -> float:
+def slope_root(branch: AdhesiveBranch, load: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
     """Radius [m] between two at which the slope of a load changes its sign."""
 
     def slope(a: float) -> float:
@@ -152,7 +151,9 @@ def slope_root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: floa
     return float(brentq(slope, low, high, xtol=ROOT * high))
 
 
-def _pull_off(branch: AdhesiveBranch, radius: Array, control: Control, critical: list[CriticalPoint]) -> CriticalPoint:
+def _pull_off(
+    branch: AdhesiveBranch, radius: FloatArray, control: Control, critical: list[CriticalPoint]
+) -> CriticalPoint:
     """Where contact is lost for good: at the lowest of the first state, if that is unstable, and the turning points.
 
     A contact that jumps from a higher one comes to rest on the stable part of the branch before the lowest.

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact import (
@@ -19,13 +18,12 @@ from contact import (
     NotConvergedError,
     Scene,
 )
+from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import CertifiedContact
 from fem_reference.elastic.path import ContactSolver, Equilibrium
-
-Array = NDArray[np.float64]
 
 NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
 INTERPOLATED = 0.5  # of the accuracy
@@ -115,7 +113,7 @@ def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: boo
     return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
 
 
-def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target: float) -> float:
+def stable_radius(branch: AdhesiveBranch, load: Callable[[FloatArray], FloatArray], target: float) -> float:
     """The largest radius at which a load (that grows with the radius there) has the target value.
 
     Raises:
@@ -136,7 +134,7 @@ def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target
     return float(brentq(lambda a: load(np.array([a]))[0] - target, radii[i], radii[i - 1], xtol=1e-13 * radii[i]))
 
 
-def branch_samples(branch: AdhesiveBranch) -> Array:
+def branch_samples(branch: AdhesiveBranch) -> FloatArray:
     """Radii along the branch, increasing, the ends of all pieces among them."""
     ends = [branch.pieces[0].low, *(piece.high for piece in branch.pieces)]
     return np.unique(np.concatenate([np.geomspace(ends[0], ends[-1], SAMPLES), ends]))

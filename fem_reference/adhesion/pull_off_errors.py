@@ -11,14 +11,13 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import CriticalPoint
+from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import AdhesiveBranch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
 
-Array = NDArray[np.float64]
-Load = Callable[[AdhesiveBranch, Array], Array]
+Load = Callable[[AdhesiveBranch, FloatArray], FloatArray]
 
 # Of ln a, for second differences of the load.
 BEND = 1e-2
@@ -69,7 +68,7 @@ class Extremum:
         return 0.0 if self.is_at_end else self.branch.waves(self.radius) * error / abs(self.curvature)
 
 
-def pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, Array]:
+def pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, FloatArray]:
     """Relative errors of force, depth and place."""
     here, there = np.array([pull_off.contact_radius]), np.array([strongest.contact_radius])
     by_depth = pull_off.control == "displacement"
@@ -78,7 +77,7 @@ def pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: 
     # The strongest point is the pull-off itself or an extremum of the force.
     force_slope = extremum.slope(branch, AdhesiveBranch.force) if here[0] == there[0] else 0.0
 
-    def numbers(other: AdhesiveBranch) -> Array:
+    def numbers(other: AdhesiveBranch) -> FloatArray:
         """Depth, force and ln a of the extremum."""
         shift = extremum.shift(other)
         return np.array(

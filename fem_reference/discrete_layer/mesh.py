@@ -16,12 +16,10 @@ from threading import current_thread, main_thread
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTri
 
 from contact import NotConvergedError
-
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray, IntArray
 
 MISSING_LIBRARIES = (
     "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
@@ -173,7 +171,7 @@ def _split_where_fine(x: list[float], cells: dict[float, float]) -> list[float]:
     return sorted(stations)
 
 
-def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
+def _mesh_arrays(gmsh_mesh: Any) -> tuple[FloatArray, IntArray]:
     """Points (2, n) and triangles (3, m)."""
     tags, coordinates, _ = gmsh_mesh.getNodes()
     _, nodes = gmsh_mesh.getElementsByType(2)
@@ -183,7 +181,7 @@ def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
     return points, np.ascontiguousarray(position[nodes].reshape(-1, 3).T)
 
 
-def named_layer_mesh(points: Array, triangles: NDArray[np.int64]) -> LayerMesh:
+def named_layer_mesh(points: FloatArray, triangles: IntArray) -> LayerMesh:
     """Name the four boundaries of a rectangular section given by points (2, n) and triangles (3, m).
 
     Raises:

@@ -5,17 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Self
 
-import numpy as np
-from numpy.typing import NDArray
-
 from contact import InvalidInput, Layer
 from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
 from fem_reference.discrete_layer.outer_edge import outer_distance
-
-Array = NDArray[np.float64]
-
 
 LEAST_CELL = 1e-13  # a thousand roundings of the radius there
 

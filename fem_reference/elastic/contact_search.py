@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import IndentationDepths, InvalidInput, NotConvergedError, Scene, StageLog
+from contact.records.validation import BoolArray, FloatArray
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense, strip_mesh
-
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
 
 STRIP_CELLS = 120
 EDGE = (0.11, 1.0, 0.04)  # measured on paraboloids and cones on thick, thin and compressible layers, to 0.06 cells
@@ -69,7 +66,7 @@ class FoundContact:
         return edge_radius(self.strip.radii, self.state.pressure)
 
 
-def edge_radius(radii: Array, pressure: Array) -> float:
+def edge_radius(radii: FloatArray, pressure: FloatArray) -> float:
     """Contact radius from the last two pressures that press, to a few hundredths of a cell.
 
     Next to its edge every smooth contact is the same problem of the half-plane, p = K sqrt(a - r).  Solved on equal
@@ -101,7 +98,7 @@ class ContactSearch:
         quadrature, _ = self.strip.pressure_space.gauss(4)
         self._profile = self.strip.weighted(scene.indenter.height(quadrature * radius) / radius)
         self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
-        self._active: Mask | None = None
+        self._active: BoolArray | None = None
 
     def at_depth(self, depth: float) -> FoundContact:
         """Contact at depth [m]; starts from the last active set."""

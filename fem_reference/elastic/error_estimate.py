@@ -18,9 +18,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer, StageLog
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import LayerMesh
@@ -28,8 +28,6 @@ from fem_reference.discrete_layer.outer_edge import UNBONDED_DECAY
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, graded_points
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
-
-Array = NDArray[np.float64]
 
 QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "smooth_force")
 ESTIMATING_DEGREES = {2: (2, 3), 3: (2, 3), 4: (2, 3, 4)}  # by the degree of the answer
@@ -110,7 +108,7 @@ class CertifiedContact:
         degrees = sorted(self.levels)
         return list(pairwise(degrees))
 
-    def _change(self, lower: int, higher: int) -> Array:
+    def _change(self, lower: int, higher: int) -> FloatArray:
         coarse, fine = ([getattr(self.levels[k], name) for name in QUANTITIES] for k in (lower, higher))
         return relative_change(np.array(coarse), np.array(fine))
 
@@ -142,7 +140,7 @@ class CertifiedContact:
         change[1] = max(change[1], SLOPE_RATIO * change[0])
         return dict(zip(QUANTITIES, SAFETY * self.rate * change, strict=True))
 
-    def interpolation_error_of(self, numbers: Callable[[PrescribedContact], Array]) -> Array:
+    def interpolation_error_of(self, numbers: Callable[[PrescribedContact], FloatArray]) -> FloatArray:
         """Absolute errors of numbers that follow from one solution, from what they change with the degree.
 
         Errors that cancel in a number do so at every degree: no error of stiffness, depth or force is added up.
@@ -207,7 +205,7 @@ class CertifiedContact:
 ContactAttempt = Callable[[Discretisation], CertifiedContact]
 
 
-def relative_change(coarse: Array, fine: Array) -> Array:
+def relative_change(coarse: FloatArray, fine: FloatArray) -> FloatArray:
     """|coarse - fine| / |fine|, zero where both vanish (depth and force of a flat punch in smooth contact)."""
     return np.divide(np.abs(coarse - fine), np.abs(fine), out=np.zeros_like(fine), where=fine != 0)
 

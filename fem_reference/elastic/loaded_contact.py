@@ -10,13 +10,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray
 from fem_reference.elastic.error_estimate import CertifiedContact, pressure_difference
 from fem_reference.elastic.path import Equilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-Array = NDArray[np.float64]
 
 # Relative error of the secants' slope, by which the last correction of the radius is made.  Measured at the default
 # settings on 13 loads (random elastic scenes of seed 5, 2026-11-22): 0.002 to 0.007 of the correction.
@@ -75,13 +73,13 @@ class LoadedContact:
             return self.load
         return level.smooth_depth + (self.load - level.smooth_force) / level.stiffness
 
-    def _numbers(self, level: PrescribedContact) -> Array:
+    def _numbers(self, level: PrescribedContact) -> FloatArray:
         """Depth, force, radius and stiffness at the load, to first order, from the solution of one degree."""
         depth = self._depth(level)
         radius = 1 + (depth - level.smooth_depth) / self.contact.answer.smooth_depth_slope
         return np.array([depth, level.force(depth), radius, level.stiffness + level.stiffness_slope * (radius - 1)])
 
-    def _outer_edge_error(self, depth: float) -> Array:
+    def _outer_edge_error(self, depth: float) -> FloatArray:
         """Absolute errors of `_numbers` by the end of the mesh, which takes some of the force at each depth."""
         answer, force = self.contact.answer, self.contact.outer_edge_error_of_force(depth)
         at_load = 0.0 if self.by_depth else force / answer.stiffness
@@ -89,7 +87,7 @@ class LoadedContact:
         return np.array([at_load, force, radius, force / depth + radius * answer.stiffness_slope])
 
     @property
-    def _remainder(self) -> Array:
+    def _remainder(self) -> FloatArray:
         """What first order leaves out in `_numbers`, half the second differential of the energy: k_N' delta_0' da^2."""
         answer, square = self.contact.answer, (self.radius_factor - 1) ** 2
         force = answer.stiffness_slope * answer.smooth_depth_slope * square / 2

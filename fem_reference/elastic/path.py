@@ -6,14 +6,12 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import CertifiedContact
 from fem_reference.elastic.surface_fields import FemFields, SurfaceState
-
-Array = NDArray[np.float64]
 
 OWN_CHECKS = ("energy_defect", "patch_defect")  # residuals published beside the error estimates
 ContactSolver = Callable[[float], CertifiedContact]  # of a contact radius [m]
@@ -74,7 +72,7 @@ def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibri
     return Equilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
 
 
-def equilibria_at_radii(radii: Array, solve: ContactSolver) -> list[Equilibrium]:
+def equilibria_at_radii(radii: FloatArray, solve: ContactSolver) -> list[Equilibrium]:
     """Smooth contact at prescribed radii [m]."""
     return [smooth_equilibrium(solve(float(a))) for a in radii]
 

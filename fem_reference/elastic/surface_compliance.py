@@ -11,17 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer, StageLog
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.trace import TraceSpace
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 STRIP_ORDER = 4
 GROWTH_ONE = 120  # cells that go with a growth of one
@@ -43,17 +40,17 @@ class SurfaceCompliance:
 
     layer_mesh: LayerMesh
     pressure_space: TraceSpace
-    matrix: Array
-    resultants: Array
-    vertex_displacements: Array
+    matrix: FloatArray
+    resultants: FloatArray
+    vertex_displacements: FloatArray
     unknowns: int
 
     @property
-    def radii(self) -> Array:
+    def radii(self) -> FloatArray:
         """Candidate vertices."""
         return self.pressure_space.radii
 
-    def weighted(self, function: Array) -> Array:
+    def weighted(self, function: FloatArray) -> FloatArray:
         """``int phi_i f 2 pi r dr`` for f given at ``pressure_space.gauss(4)``."""
         return self.pressure_space.moments(function, 4)
 
@@ -104,12 +101,12 @@ def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> Surf
     )
 
 
-def strip_vertices(problem: LayerProblem) -> Index:
+def strip_vertices(problem: LayerProblem) -> IntArray:
     """Scalar displacement unknowns at the vertices of the pressures on the strip of radius one."""
     return problem.top_nodes(1.0)[::STRIDE]
 
 
-def strip_loads(problem: LayerProblem) -> Array:
+def strip_loads(problem: LayerProblem) -> FloatArray:
     """Loads of the piecewise linear pressures on the strip of radius one, shape (size, n)."""
     nodes = problem.top_nodes(1.0)
     moments = TraceSpace(problem.positions[0, nodes], problem.pair.degree).hat_moments(STRIDE)

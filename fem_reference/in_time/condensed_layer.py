@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contact.records.validation import FloatArray
 from fem_reference.in_time.surface_memory import ViscoelasticSurface
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -25,7 +21,7 @@ class Stage:
     """
 
     surface: ViscoelasticSurface
-    radii: Array
-    profile: Array
+    radii: FloatArray
+    profile: FloatArray
     radius: float
     unknowns: int

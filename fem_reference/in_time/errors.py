@@ -11,11 +11,9 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import HistoryPath, ImpactHistory
 
-Array = NDArray[np.float64]
 H = TypeVar("H", bound=HistoryPath | ImpactHistory)
 
 DERIVED = ("coefficient_of_restitution", "contact_time")

@@ -12,15 +12,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import NotConvergedError, Relaxation
 from fem_reference.elastic.active_set import solve_complementarity
 from fem_reference.elastic.contact_search import edge_radius
 from fem_reference.in_time.condensed_layer import Stage
 from fem_reference.in_time.relaxation_step import RelaxationStep, relaxation_step
-
-Array = NDArray[np.float64]
 
 MAX_STEPS = 200_000
 

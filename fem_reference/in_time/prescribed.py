@@ -5,29 +5,27 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import NotConvergedError, Relaxation
-from fem_reference.elastic.active_set import Complementary, Mask, solve_complementarity
+from contact.records.validation import BoolArray, FloatArray
+from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.contact_search import edge_radius
 from fem_reference.in_time.condensed_layer import Stage
 from fem_reference.in_time.impact import Record
 from fem_reference.in_time.relaxation_step import INSTANT, RelaxationStep, relaxation_step
-
-Array = NDArray[np.float64]
 
 SMALLEST_SEGMENT = 4  # steps in the shortest segment between two given instants
 FORCE_TOLERANCE = 1e-10
 MAX_NEWTON = 60
 
 
-def segment_steps(time: Array, steps: int) -> list[int]:
+def segment_steps(time: FloatArray, steps: int) -> list[int]:
     """How many equal steps each segment between given instants gets, about ``steps`` in all."""
     share = np.diff(time) / (time[-1] - time[0]) * steps
     return [max(SMALLEST_SEGMENT, round(float(s))) for s in share]
 
 
-def simulate_depths(stage: Stage, relaxation: Relaxation, time: Array, depth: Array, steps: int) -> Record:
+def simulate_depths(stage: Stage, relaxation: Relaxation, time: FloatArray, depth: FloatArray, steps: int) -> Record:
     """Depths linear between the given instants.
 
     Args:
@@ -40,7 +38,7 @@ def simulate_depths(stage: Stage, relaxation: Relaxation, time: Array, depth: Ar
     record = _at_rest(time[0], depth[0])
     surface = stage.surface
 
-    def advance(step: RelaxationStep, depth: float, active: Mask | None) -> Complementary:
+    def advance(step: RelaxationStep, depth: float, active: BoolArray | None) -> Complementary:
         matrix, offset = surface.begin(step)
         state = solve_complementarity(matrix, depth * surface.resultants - stage.profile - offset, active)
         surface.accept(step, state.pressure)
@@ -59,7 +57,7 @@ def simulate_depths(stage: Stage, relaxation: Relaxation, time: Array, depth: Ar
     return record
 
 
-def simulate_forces(stage: Stage, relaxation: Relaxation, time: Array, force: Array, steps: int) -> Record:
+def simulate_forces(stage: Stage, relaxation: Relaxation, time: FloatArray, force: FloatArray, steps: int) -> Record:
     """Forces linear between the given instants, in the units of the stage; see `simulate_depths`.
 
     Raises:
@@ -85,7 +83,9 @@ def simulate_forces(stage: Stage, relaxation: Relaxation, time: Array, force: Ar
     return record
 
 
-def _depth_of_force(matrix: Array, w: Array, gap: Array, force: float, depth: float) -> tuple[Complementary, float]:
+def _depth_of_force(
+    matrix: FloatArray, w: FloatArray, gap: FloatArray, force: float, depth: float
+) -> tuple[Complementary, float]:
     """Contact with a given resultant: Newton's method on the convex, piecewise linear F(delta)."""
     least = float(np.min(gap / w))  # the depth of first touch
     if force == 0:

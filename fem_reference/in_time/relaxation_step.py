@@ -16,11 +16,10 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Relaxation
+from contact.records.validation import FloatArray
 
-Array = NDArray[np.float64]
 RateRule = tuple[float, float, float, float]
 
 BACKWARD: RateRule = (1.5, -2.0, 0.5, 0.0)  # dt e'_1 = 3/2 e_1 - 2 e_0 + 1/2 e_(-1)
@@ -44,8 +43,8 @@ class RelaxationStep:
 
     duration: float
     long_term: float
-    moduli: Array
-    times: Array
+    moduli: FloatArray
+    times: FloatArray
     dashpot: float
     rule: RateRule = BACKWARD
 
@@ -60,12 +59,12 @@ class RelaxationStep:
         return replace(self, duration=INSTANT * self.duration, rule=EULER)
 
     @cached_property
-    def decay(self) -> Array:
+    def decay(self) -> FloatArray:
         """alpha_j."""
         return np.exp(-self.duration / self.times)
 
     @cached_property
-    def tangent(self) -> Array:
+    def tangent(self) -> FloatArray:
         """beta_j; evaluated without cancellation for dt << tau."""
         ratio = self.duration / self.times
         return np.asarray(-self.moduli * np.expm1(-ratio) / ratio)
@@ -75,12 +74,12 @@ class RelaxationStep:
         """Change of stress per change of strain at the end of the step, per 2."""
         return float(self.long_term + self.tangent.sum() + self.rule[0] * self.dashpot / self.duration)
 
-    def rate_memory(self, now: Array, before: Array, rate: Array) -> Array:
+    def rate_memory(self, now: FloatArray, before: FloatArray, rate: FloatArray) -> FloatArray:
         """e'_1 if e_1 were zero; e'_1 is this plus ``rule[0] e_1 / dt``."""
         _, w_now, w_before, w_rate = self.rule
         return np.asarray((w_now * now + w_before * before) / self.duration + w_rate * rate)
 
-    def dissipation(self, before: Array, change: Array, product: Any) -> float:
+    def dissipation(self, before: FloatArray, change: FloatArray, product: Any) -> float:
         """Energy lost in the branches and the dashpot during a step.
 
         Args:
@@ -89,7 +88,7 @@ class RelaxationStep:
             product: symmetric matrix of the energy product, dense or sparse, shape (n, n).
         """
 
-        def inner(a: Array, b: Array) -> float:
+        def inner(a: FloatArray, b: FloatArray) -> float:
             return float(a @ (product @ b))
 
         rate = change / self.duration

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import (
     DepthHistory,
@@ -20,6 +19,7 @@ from contact import (
     StageLog,
     Viscoelasticity,
 )
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.material import shear_modulus
 from fem_reference.discrete_layer.mesh import LayerMesh
@@ -32,8 +32,6 @@ from fem_reference.in_time.errors import KnownErrors
 from fem_reference.in_time.field_memory import CompressibleSurface
 from fem_reference.in_time.impact import Record
 from fem_reference.in_time.surface_memory import ProportionalSurface
-
-Array = NDArray[np.float64]
 
 FITTINGS = 12
 LEAST_TRUNCATION = 1e-7  # far below the errors of cells and steps, and half the mesh of 1e-12
@@ -153,7 +151,7 @@ class Theatre:
                 return contact_mesh(layer, ScaledIndenter(indenter, radius), replace(self._settings, edge_cell=1e-4))
             return strip_mesh(layer, radius, cells, indenter.kinks, self._settings)
 
-    def _profile(self, radii: Array, radius: float) -> Array:
+    def _profile(self, radii: FloatArray, radius: float) -> FloatArray:
         """Moments of the profile by the strip's radius."""
         space = TraceSpace(radii, 1)
         quadrature, _ = space.gauss(4)

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.in_time.condensed_layer import Stage
 from fem_reference.in_time.errors import with_errors
@@ -19,7 +19,6 @@ from fem_reference.in_time.impact import Body, Record, simulate_impact
 from fem_reference.in_time.prescribed import simulate_depths, simulate_forces
 from fem_reference.in_time.setup import Theatre
 
-Array = NDArray[np.float64]
 Settings = Mapping[str, bool | int | float | str | None]
 
 
@@ -87,7 +86,7 @@ def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Recor
     )
 
 
-def peak(values: Array) -> float:
+def peak(values: FloatArray) -> float:
     """Largest value of a smooth sampled function: the vertex of the parabola through the three highest samples."""
     i = int(np.argmax(values))
     if i in (0, len(values) - 1):
