@@ -29,7 +29,7 @@ from contact import (
 from fem_reference import Fem
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.error_estimate import CertifiedContact, solve_certified_contact
+from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from mdr.impact.solver import solve_impact
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
@@ -40,7 +40,7 @@ SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_dep
 CHANNELS = ("indentation_depth", "velocity", "normal_force", "contact_radius", "kinetic_energy")
 
 
-def random_contact(rng: np.random.Generator) -> tuple[CertifiedContact, dict[str, float]]:
+def random_contact(rng: np.random.Generator) -> tuple[ContactWithErrors, dict[str, float]]:
     """A prescribed contact and its true relative errors."""
     a = float(np.exp(rng.uniform(np.log(0.05), np.log(20))))
     nu = float(rng.choice([0, 0.2, 0.3, 0.45, 0.49, 0.5]))
@@ -58,7 +58,7 @@ def random_contact(rng: np.random.Generator) -> tuple[CertifiedContact, dict[str
         (TruncatedCone(flat_radius=b, slope=1.0), solve_contact(a, support, nu, truncated_cone(b), b)),
     ][rng.integers(3)]
     layer = Layer(thickness=1.0, youngs_modulus=1 - nu**2, poissons_ratio=nu, support=support)
-    contact = solve_certified_contact(layer, ScaledIndenter(profile, a), settings, "superlu", StageLog())
+    contact = solve_contact_with_errors(layer, ScaledIndenter(profile, a), settings, "superlu", StageLog())
     answer = contact.answer
     errors = {
         "stiffness": answer.stiffness * a / exact.stiffness - 1,

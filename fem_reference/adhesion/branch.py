@@ -19,9 +19,11 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 
 from contact.records.validation import FloatArray
-from fem_reference.elastic.error_estimate import SAFETY, CertifiedContact
+from fem_reference.elastic.error_estimate import ContactWithErrors
+from fem_reference.error_model import FIXED_RADIUS, ON_BRANCH
 
-QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "profile_force")
+# What is interpolated along the branch, with the power of the contact radius that turns it into SI lengths.
+POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class BranchPiece:
     low: float
     high: float
     graded: bool
-    contacts: tuple[CertifiedContact, ...]
+    contacts: tuple[ContactWithErrors, ...]
     degree: int | None = None
 
     def parameter(self, radius: FloatArray) -> FloatArray:
@@ -51,7 +53,7 @@ class BranchPiece:
     @cached_property
     def _interpolants(self) -> dict[str, Chebyshev]:
         s = chebyshev_points(len(self.contacts))
-        return {name: Chebyshev.fit(s, self._values(name), len(s) - 1, domain=[0, 1]) for name in QUANTITIES}
+        return {name: Chebyshev.fit(s, self._values(name), len(s) - 1, domain=[0, 1]) for name in POWERS}
 
     def _values(self, name: str) -> FloatArray:
         """Quantity at the nodes, in SI lengths; stiffness and its slope over the power of a that half-spaces have."""
@@ -78,7 +80,7 @@ class BranchPiece:
 
         Those of a profile that is not analytic fall like a power of their number: more is left than the last two.
         """
-        left = ROUGH if self._is_rough else 1.0
+        left = ON_BRANCH.rough_profile if self._is_rough else 1.0
         return {name: left * float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
 
     @cached_property
@@ -89,9 +91,9 @@ class BranchPiece:
         """
         degrees = sorted(self.contacts[0].levels)[-2:]
         low, high = (replace(self, degree=degree)._interpolants for degree in degrees)
-        share = SAFETY * float(np.mean([contact.rate for contact in self.contacts]))
-        meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in QUANTITIES}
-        more = ROUGH_BETWEEN if self._is_rough else 1.0
+        share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
+        meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in POWERS}
+        more = ON_BRANCH.rough_profile_stated if self._is_rough else 1.0
         return {name: max(0.0, more * size - meshes[name]) for name, size in self.last_coefficients.items()}
 
     @property
@@ -101,21 +103,13 @@ class BranchPiece:
         return any(r * indenter.contact_radius > self.low * (1 + 1e-9) for r in indenter.breakpoints)
 
 
-ROUGH = 3.0
-# On `ROUGH`, where the error is stated.  Measured on two tabulated profiles (detachments of seeds 1 and 3, 2026-11-22):
-# the error between the solved radii is up to 1.25 times that of `ROUGH`.
-ROUGH_BETWEEN = 1.5
-SAMPLES = 41  # radii at which the force's error is compared with an accuracy
-POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
-
-
 def chebyshev_points(count: int) -> FloatArray:
     """Chebyshev points of the second kind on [0, 1], increasing."""
     return np.asarray((1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2)
 
 
 @dataclass(frozen=True)
-class AdhesiveBranch:
+class InterpolatedBranch:
     """States in adhesive equilibrium.
 
     Attributes:
@@ -128,14 +122,15 @@ class AdhesiveBranch:
     work: float
     is_shifted: bool = False
 
-    def at_degree(self, degree: int) -> AdhesiveBranch:
+    def at_degree(self, degree: int) -> InterpolatedBranch:
         """The branch as elements of another degree have it."""
         return replace(self, pieces=[replace(piece, degree=degree) for piece in self.pieces])
 
     def _evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         if self.is_shifted:
             radius = np.maximum(radius * (1 - np.interp(radius, *self._edge_shifts)), self.pieces[0].low)
-        values = np.full_like(radius, np.nan)  # beyond the ends nothing is known
+        # Beyond the ends nothing is known.
+        values = np.full_like(radius, np.nan)
         for piece in self.pieces:
             inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
             values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
@@ -175,7 +170,7 @@ class AdhesiveBranch:
         return np.array(list(shifts)), np.array(list(shifts.values()))
 
     @property
-    def contacts(self) -> list[CertifiedContact]:
+    def contacts(self) -> list[ContactWithErrors]:
         """All solved contacts."""
         return [contact for piece in self.pieces for contact in piece.contacts]
 
@@ -193,7 +188,7 @@ class AdhesiveBranch:
     @property
     def force_interpolation_error(self) -> float:
         """Of the force between the solved radii, relative to the terms whose difference it is there."""
-        radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, SAMPLES)
+        radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, 41)
         terms = np.abs(self.force(radius)) + self.stiffness(radius) * self.elongation(radius)
         return float(np.max(self.errors_between(radius, "last_coefficients")[1] / terms))
 
@@ -230,9 +225,9 @@ def solve_branch(
     breaks: Sequence[float],
     kinks: Sequence[float],
     work: float,
-    solve: Callable[[float], CertifiedContact],
+    solve: Callable[[float], ContactWithErrors],
     nodes: int,
-) -> AdhesiveBranch:
+) -> InterpolatedBranch:
     """Solve the branch on [breaks[0], breaks[-1]], in pieces that end at ``breaks``.
 
     Args:
@@ -249,4 +244,4 @@ def solve_branch(
         radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
         radii[0], radii[-1] = low, high
         pieces.append(BranchPiece(low, high, graded, tuple(solve(float(a)) for a in radii)))
-    return AdhesiveBranch(tuple(pieces), work)
+    return InterpolatedBranch(tuple(pieces), work)

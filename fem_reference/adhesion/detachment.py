@@ -19,7 +19,7 @@ from contact import (
     StageLog,
 )
 from contact.records.validation import FloatArray
-from fem_reference.adhesion.branch import AdhesiveBranch
+from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.adhesion.equilibria import SPANS, branch_of, branch_samples
 from fem_reference.adhesion.pull_off_errors import ROOT, pull_off_errors
@@ -99,7 +99,7 @@ def detachment_path(
 
 def _branch_to_pull_off(
     scene: Scene, loading: Detachment, solve: ContactSolver, accuracy: float | None
-) -> AdhesiveBranch:
+) -> InterpolatedBranch:
     """A branch long enough to become unstable, or the longest."""
     for span in SPANS:
         branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy, span)
@@ -115,21 +115,21 @@ def presses_most_in_the_centre(contact: PrescribedContact) -> bool:
     return bool(centre > beside)
 
 
-def _point(branch: AdhesiveBranch, radius: float, control: str, kind: str) -> CriticalPoint:
+def _point(branch: InterpolatedBranch, radius: float, control: str, kind: str) -> CriticalPoint:
     """A critical point with its force still in units of E*."""
     a = np.array([radius])
     depth, force = float(branch.depth(a)[0]), float(branch.force(a)[0])
     return CriticalPoint(control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force)
 
 
-def _start(scene: Scene, branch: AdhesiveBranch) -> list[CriticalPoint]:
+def _start(scene: Scene, branch: InterpolatedBranch) -> list[CriticalPoint]:
     """A flat punch holds its radius until detachment begins at its rim."""
     if not isinstance(scene.indenter, FlatPunch):
         return []
     return [_point(branch, scene.indenter.radius, control, "start") for control in ("displacement", "force")]
 
 
-def _turning_points(branch: AdhesiveBranch, radius: FloatArray) -> list[CriticalPoint]:
+def _turning_points(branch: InterpolatedBranch, radius: FloatArray) -> list[CriticalPoint]:
     """Every change of sign of d(depth)/da and dF/da, in the order of decreasing radius."""
     points = []
     for control, load in (("displacement", branch.depth), ("force", branch.force)):
@@ -140,19 +140,20 @@ def _turning_points(branch: AdhesiveBranch, radius: FloatArray) -> list[Critical
     return points
 
 
-def slope_root(branch: AdhesiveBranch, load: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
+def slope_root(branch: InterpolatedBranch, load: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
     """Radius [m] between two at which the slope of a load changes its sign."""
 
     def slope(a: float) -> float:
         return float(branch.slope(load, np.array([a]))[0])
 
-    if slope(low) * slope(high) >= 0:  # the slope jumps at a kink
+    # The slope jumps at a kink.
+    if slope(low) * slope(high) >= 0:
         return high
     return float(brentq(slope, low, high, xtol=ROOT * high))
 
 
 def _pull_off(
-    branch: AdhesiveBranch, radius: FloatArray, control: Control, critical: list[CriticalPoint]
+    branch: InterpolatedBranch, radius: FloatArray, control: Control, critical: list[CriticalPoint]
 ) -> CriticalPoint:
     """Where contact is lost for good: at the lowest of the first state, if that is unstable, and the turning points.
 

@@ -21,6 +21,7 @@ from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import Moduli
 
+# Takes the mean of the normal strains (rr, zz, hoop) off a strain (rr, zz, hoop, sqrt(2) rz).
 DEVIATOR = np.eye(4)
 DEVIATOR[:3, :3] -= 1 / 3
 

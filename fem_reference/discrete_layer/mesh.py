@@ -27,8 +27,11 @@ MISSING_LIBRARIES = (
 )
 
 
-LONGEST_LINE = 1e10  # over its smallest cell
-RESOLVED = 3e-8  # smallest cell that gmsh meshes well, over its distance from the origin
+# Longest line over its smallest cell; gmsh takes minutes for longer ones.
+LONGEST_LINE = 1e10
+# Smallest cell over its distance from gmsh's origin: gmsh squares coordinates, so cells below the root of a rounding,
+# 1.5e-8, degenerate; this is twice that.
+RESOLVED = 3e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,8 +98,10 @@ def _gmsh() -> Any:
         raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
     handler = getsignal(SIGPIPE)
     gmsh.initialize([], interruptible=False)
-    if current_thread() is main_thread():  # the only one that may set signals
-        signal(SIGPIPE, handler)  # gmsh lets a broken pipe end the process: a pool would die with any of its workers
+    # gmsh lets a broken pipe end the process: a pool would die with any of its workers.  Only the main thread may set
+    # signals.
+    if current_thread() is main_thread():
+        signal(SIGPIPE, handler)
     for option, value in {
         "General.Terminal": 0,
         "General.NumThreads": 1,

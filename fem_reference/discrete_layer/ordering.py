@@ -23,7 +23,8 @@ def nested_dissection(space: Space) -> IntArray:
     highest = np.zeros(space.size, dtype=np.int64)
     np.minimum.at(lowest, space.element_unknowns.ravel(), part)
     np.maximum.at(highest, space.element_unknowns.ravel(), part)
-    level = bit_length(lowest ^ highest)  # the number of halvings undone until one part holds all triangles
+    # The number of halvings that are undone until one part holds all triangles of an unknown.
+    level = bit_length(lowest ^ highest)
     last_part = ((lowest >> level) + 1) << level
     is_pressure = np.arange(space.size) >= space.displacement_count
     return np.lexsort((is_pressure, level, last_part)).astype(np.int64)
@@ -56,5 +57,6 @@ def _upper_half(along: FloatArray, code: IntArray, parts: int) -> IntArray:
 
 def bit_length(numbers: IntArray) -> IntArray:
     """Number of binary digits of each non-negative number."""
-    _, exponent = np.frexp(numbers.astype(np.float64))  # exact below 2^53
+    # The conversion is exact below 2^53.
+    _, exponent = np.frexp(numbers.astype(np.float64))
     return exponent.astype(np.int64)

@@ -119,7 +119,8 @@ class RestrictedSolver:
         self.problem = problem
         self.held = held
         self._free = order[is_free[order]]
-        rows = problem.matrix.T[self._free]  # symmetric: the transpose is the same matrix, stored by rows
+        # The transpose is the same symmetric matrix, stored by rows.
+        rows = problem.matrix.T[self._free]
         self._coupling = rows[:, held]
         self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend)
 

@@ -19,8 +19,8 @@ from scipy.optimize import nnls
 from contact import NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
 
+# Largest violation of a contact condition that is accepted, relative to the largest pressure or overlap.  VIOLATION
 TOLERANCE = 1e-9
-MAX_ITERATIONS = 60
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def solve_complementarity(
     diagonal = compliance.diagonal()
     active = approach > 0 if start is None else start
     seen: set[bytes] = set()
-    for iteration in range(1, MAX_ITERATIONS + 1):
+    for iteration in range(1, 61):
         pressure, gap = _equality(compliance, approach, active)
         following = diagonal * pressure > gap
         if np.array_equal(following, active):
@@ -84,14 +84,16 @@ def _non_negative_least_squares(compliance: FloatArray, approach: FloatArray) ->
     lower = cholesky(compliance, lower=True)
     pressure, _ = nnls(lower.T, solve_triangular(lower, approach, lower=True), maxiter=30 * len(approach))
     active = pressure > 0
-    return _equality(compliance, approach, active)[0]  # the same set, solved without the squared condition number
+    # The same set is solved again without the squared condition number.
+    return _equality(compliance, approach, active)[0]
 
 
 def _checked(
     compliance: FloatArray, approach: FloatArray, pressure: FloatArray, active: BoolArray, iterations: int
 ) -> Complementary:
     gap = compliance @ pressure - approach
-    tiny = np.finfo(float).tiny  # a flat punch that touches without pressing has neither overlap nor pressure
+    # A flat punch that touches without pressing has neither overlap nor pressure.
+    tiny = np.finfo(float).tiny
     overlap = max(np.abs(approach).max(), tiny)
     violations = {
         "tensile_pressure": -pressure.min() / max(np.abs(pressure).max(), tiny),

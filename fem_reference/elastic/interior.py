@@ -15,8 +15,6 @@ from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space, tabulate
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
-CORNERS_AND_MIDPOINTS = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])  # nodes of a quadratic triangle
-
 
 @dataclass(frozen=True)
 class Section:
@@ -84,9 +82,8 @@ class Section:
         displacement = np.einsum("nbi,bn->ni", nodal, basis.value)
         corners = mesh.p[0, mesh.t[:, triangles]]
         radius = corners[0] + (corners[1] - corners[0]) * local[0] + (corners[2] - corners[0]) * local[1]
-        hoop = np.divide(
-            displacement[:, 0], radius, out=gradient[:, 0, 0].copy(), where=radius > 0
-        )  # u_r,r on the axis
+        # On the axis the hoop strain is u_r,r.
+        hoop = np.divide(displacement[:, 0], radius, out=gradient[:, 0, 0].copy(), where=radius > 0)
         volume = gradient[:, 0, 0] + gradient[:, 1, 1] + hoop
         if self.contact.pair.pressure is None:
             pressure = -moduli.bulk * volume
@@ -111,7 +108,7 @@ class Section:
             raise InvalidInput(f"{file.name}: the ending must be .vtu or .xdmf")
         count = self.contact.layer_mesh.mesh.t.shape[1]
         triangles = np.repeat(np.arange(count), 6)
-        local = np.tile(CORNERS_AND_MIDPOINTS, count)
+        local = np.tile([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]], count)
         displacement, stress = self._evaluate(triangles, local)
         mesh = self.contact.layer_mesh.mesh
         corner = mesh.p[:, mesh.t[0, triangles]]

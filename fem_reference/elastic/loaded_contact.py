@@ -12,19 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.records.validation import FloatArray
-from fem_reference.elastic.error_estimate import CertifiedContact, pressure_difference
-from fem_reference.elastic.path import Equilibrium
+from fem_reference.elastic.error_estimate import ContactWithErrors, pressure_difference
+from fem_reference.elastic.path import FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-# Relative error of the secants' slope, by which the last correction of the radius is made.  Measured at the default
-# settings on 13 loads (random elastic scenes of seed 5, 2026-11-22): 0.002 to 0.007 of the correction.
-UNCERTAIN_SLOPE = 0.01
-# On the errors of the radius by interpolation and edge cell.  Measured on 91 loads (random elastic scenes of seed 3 at
-# accuracy 1e-2 and seed 1 at 1e-4, 2026-11-22): without it, two were off by 1.1 and 1.4 times what was stated, because
-# the error of the radius changes its sign with the degree.
-RADIUS_SAFETY = 1.5
-# Roundings of the radius, whatever its slope.
-ROUNDING = 1e-15
+from fem_reference.error_model import AT_LOAD
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,13 +29,13 @@ class LoadedContact:
         radius_factor: the radius that carries the load.
     """
 
-    contact: CertifiedContact
+    contact: ContactWithErrors
     load: float
     by_depth: bool
     radius_factor: float
 
     @property
-    def equilibrium(self) -> Equilibrium:
+    def equilibrium(self) -> FemEquilibrium:
         """The state at the load, with the relative error of each number."""
         contact, answer = self.contact, self.contact.answer
         depth = self._depth(answer)
@@ -54,9 +45,10 @@ class LoadedContact:
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
-        uncertain = UNCERTAIN_SLOPE * abs(self.radius_factor - 1)
+        uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - 1)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
-        radius_error = RADIUS_SAFETY * (radius_error + contact.edge_shift) + correction + ROUNDING
+        # The last term is the rounding of the radius, whatever its slope.
+        radius_error = AT_LOAD.radius_safety * (radius_error + contact.edge_shift) + correction + 1e-15
         # The field is that of the solved radius: at the load it has a little of the singular pressure of a flat punch.
         singular = pressure_difference(answer, answer.smooth_depth, answer, depth)
         reported = {
@@ -66,7 +58,9 @@ class LoadedContact:
             "contact_stiffness": stiffness_error + correction * answer.stiffness_slope / answer.stiffness,
             "pressure": contact.pressure_error + radius_error + singular,
         }
-        return Equilibrium(contact=contact, depth=depth, force=force, error=reported, radius_factor=self.radius_factor)
+        return FemEquilibrium(
+            contact=contact, depth=depth, force=force, error=reported, radius_factor=self.radius_factor
+        )
 
     def _depth(self, level: PrescribedContact) -> float:
         if self.by_depth:

@@ -20,9 +20,12 @@ from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.trace import TraceSpace
 
+# Degree of the displacements, so that the mesh errs less than the contact set, which is found to a cell.
 STRIP_ORDER = 4
-GROWTH_ONE = 120  # cells that go with a growth of one
-STRIDE = 2  # displacement nodes from one pressure vertex to the next
+# Displacement nodes from one pressure vertex to the next.
+STRIDE = 2
+# Cells of the strip on which a contact is searched; a strip of so many goes with a growth of one away from it.
+STRIP_CELLS = 120
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ def strip_mesh(
     cell = STRIP_ORDER / STRIDE / cells
     outer = 1 + thickness * settings.distance(layer)
     points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
-    growth = (GROWTH_ONE / cells) ** (1 / 3)
+    growth = (STRIP_CELLS / cells) ** (1 / 3)
     grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))
     return layer_mesh(thickness, outer, grading)
 

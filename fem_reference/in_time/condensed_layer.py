@@ -1,4 +1,4 @@
-"""A layer at rest with the indenter before it, condensed to the contact: what histories play on."""
+"""Surface compliance, node radii and profile moments on the contact strip, at the beginning of a history."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from fem_reference.in_time.surface_memory import ViscoelasticSurface
 
 
 @dataclass(frozen=True)
-class Stage:
-    """Lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0, times in seconds.
+class CondensedLayer:
+    """A layer at rest and its indenter, condensed to the contact strip.
+
+    Units: lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0, times in seconds.
 
     Attributes:
-        surface: the layer; it has a memory, so a stage serves one history.
+        surface: the layer; it has a memory, so a condensed layer serves one history.
         radii: vertices of the pressures, shape (n,); one entry for a flat punch.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
         radius: L [m].

@@ -65,7 +65,8 @@ class CompressibleSurface:
     def __init__(self, layer: Layer, mesh: LayerMesh, branches: int, backend: str) -> None:
         self._layer, self._mesh, self._backend = layer, mesh, backend
         nu = layer.poissons_ratio
-        self._bulk = 2 * (1 + nu) / (3 * (1 - 2 * nu))  # K in units of the instantaneous shear modulus
+        # K in units of the instantaneous shear modulus.
+        self._bulk = 2 * (1 + nu) / (3 * (1 - 2 * nu))
         problem = self._problem(nu)
         space = problem.space
         self._displacements = space.displacement_count
