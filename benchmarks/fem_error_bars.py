@@ -11,9 +11,9 @@ from collections.abc import Mapping
 from itertools import chain
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
+from benchmarks.fem_impacts import SCALARS, largest_difference
 from contact import (
     Cone,
     FlatPunch,
@@ -35,8 +35,6 @@ from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
 Ratios = dict[str, list[float]]
 
-PROFILES = ("punch", "paraboloid", "cone")
-SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 CHANNELS = ("indentation_depth", "velocity", "normal_force", "contact_radius", "kinetic_energy")
 
 
@@ -124,12 +122,7 @@ def impacts(count: int, seed: int) -> Ratios:
 def _history_errors(history: ImpactHistory, exact: ImpactHistory) -> dict[str, float]:
     """Relative errors, of channels by their largest value; their last hundredth, where radii end steeply, left out."""
     errors = {name: abs(getattr(history, name) / getattr(exact, name) - 1) for name in SCALARS}
-    time, first = np.unique(exact.time, return_index=True)
-    some = history.time <= 0.99 * exact.time[-1]
-    for name in CHANNELS:
-        truth = getattr(exact, name)
-        there = CubicSpline(time, truth[first])(history.time[some])
-        errors[name] = np.abs(getattr(history, name)[some] - there).max() / np.abs(truth).max()
+    errors |= {name: largest_difference(name, history, exact, until=0.99) for name in CHANNELS}
     return {name: max(float(error), 1e-15) for name, error in errors.items()}
 
 

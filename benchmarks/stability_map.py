@@ -23,7 +23,10 @@ from fem_reference.adhesion.equilibria import branch_samples
 from fem_reference.adhesion.pull_off_errors import Extremum
 from fem_reference.elastic.error_estimate import ContactWithErrors
 
-RATIOS = (0.1, 0.5, 2.4, 12.0)  # a/h at the ends of pieces: below, a layer is a half-space; beyond, a bed of springs
+# a/h at the ends of the branch's pieces: below the first the layer is a half-space, beyond the last a row of
+# independent springs.
+RATIOS = (0.1, 0.5, 2.4, 12.0)
+# Chebyshev points of a piece.
 NODES = 13
 
 

@@ -215,7 +215,7 @@ class InterpolatedBranch:
         force = pressed * smooth_depth + profile_force + pressed * elongation * (stiffness + slope / 2)
         return np.array([smooth_depth + elongation * slope / 2, force])
 
-    def waves(self, radius: float) -> float:
+    def tilt_of_last_polynomial(self, radius: float) -> float:
         """Slope per ln a of the last Chebyshev polynomial around a radius: an error of interpolation tilts so much."""
         piece = next((piece for piece in self.pieces if radius <= piece.high), self.pieces[-1])
         return float(2 * (len(piece.contacts) - 1) / np.log(piece.high / piece.low))

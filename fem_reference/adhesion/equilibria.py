@@ -80,7 +80,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | No
         accuracy: asked of the interpolation between solved radii, relative.
 
     Raises:
-        InvalidInput: no stable state carries the load: the indenter has come off.
+        InvalidInput: no stable state carries the load: the indenter has detached.
     """
     loading, work = scene.loading, work_of_adhesion(scene)
     if isinstance(loading, ContactRadii):

@@ -65,8 +65,8 @@ class Extremum:
         return 0.0 if self.is_at_end else -self.slope(other, self.load) / self.curvature
 
     def shift_between(self, error: float) -> float:
-        """How far an error of interpolation of the load [its unit] moves it: it waves between the solved radii."""
-        return 0.0 if self.is_at_end else self.branch.waves(self.radius) * error / abs(self.curvature)
+        """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii."""
+        return 0.0 if self.is_at_end else self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
 
 
 def pull_off_errors(

@@ -17,7 +17,6 @@ import numpy as np
 
 from contact import NotConvergedError, StageLog
 from contact.records.validation import FloatArray, IntArray
-from fem_reference.code_verification.patch_test import patch_defect
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.fields import mutual_energies
 from fem_reference.discrete_layer.indenter import ScaledIndenter
@@ -25,6 +24,7 @@ from fem_reference.discrete_layer.material import Moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
+from fem_reference.elastic.patch_test import patch_defect
 from fem_reference.elastic.shape_derivative import cut_off, energy_shape_derivative
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12 and a broken

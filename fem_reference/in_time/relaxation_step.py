@@ -53,7 +53,7 @@ class RelaxationStep:
 
     @cached_property
     def instant(self) -> RelaxationStep:
-        """A jump of the rates in next to no time, before steps like this one, by ``dt e'_1 = e_1 - e_0``."""
+        """A jump of the rates within a negligible time, before steps like this one, by ``dt e'_1 = e_1 - e_0``."""
         return replace(self, duration=INSTANT * self.duration, rule=(1.0, -1.0, 0.0, 0.0))
 
     @cached_property

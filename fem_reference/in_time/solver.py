@@ -35,7 +35,7 @@ def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> Imp
         return record
 
     guess, span = _impact_scales(scene, loading)
-    radius, pilot = setup.fitted_radius(1.6 * guess, lambda stage: simulate(condensed, span / 60))
+    radius, pilot = setup.fitted_radius(1.6 * guess, lambda condensed: simulate(condensed, span / 60))
     duration = pilot.time[-1] / setup.resolution.steps
     histories = []
     for cells, steps in ((2, 2), (2, 1), (1, 1)):
@@ -114,7 +114,7 @@ def prescribed_history(setup: HistorySetup, loading: DepthHistory | ForceHistory
         log.count("steps", len(record.time))
         return record
 
-    radius, _ = setup.fitted_radius(1.6 * _history_radius(scene, loading), lambda stage: simulate(condensed, 40))
+    radius, _ = setup.fitted_radius(1.6 * _history_radius(scene, loading), lambda condensed: simulate(condensed, 40))
     histories = []
     for cells, steps in ((2, 2), (2, 1), (1, 1)):
         condensed = setup.condensed(radius, setup.resolution.cells // cells)
