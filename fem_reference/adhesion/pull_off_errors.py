@@ -19,7 +19,7 @@ from fem_reference.adhesion.branch_errors import degree_error, edge_error
 
 Load = Callable[[InterpolatedBranch, FloatArray], FloatArray]
 
-# Step of ln a for second differences of the load: its square and the roundings it magnifies are both below 1e-4.
+# Step of ln a for second differences of the load: they err by its square, 1e-4, and magnify roundings to 1e-12.
 BEND = 1e-2
 # Relative tolerance of the search for an extremum; also stated as an error of its place.
 ROOT = 1e-12

@@ -106,7 +106,9 @@ class ContactWithErrors:
 
     @property
     def _coarse_rate(self) -> float:
-        return min(FIXED_RADIUS.coarse_rate * self.settings.growth**3, 1.0)
+        nearly_incompressible = self.layer.poissons_ratio >= 0.49
+        rate = FIXED_RADIUS.incompressible_rate if nearly_incompressible else FIXED_RADIUS.coarse_rate
+        return min(rate * self.settings.growth**3, 1.0)
 
     @property
     def fastest_rate(self) -> float:
