@@ -97,12 +97,17 @@ class ContactWithErrors:
     @property
     def rate(self) -> float:
         """rho: the error of the answer relative to the last change between degrees."""
+        return max(self.rate_at_load, self._coarse_rate) if len(self._last_changes) > 1 else self.rate_at_load
+
+    @property
+    def rate_at_load(self) -> float:
+        """The same for numbers in which most errors cancel: coarse meshes let them fall as fast as fine ones do."""
         if self.settings.order == min(self.levels):
             return 1.0
         if len(self._last_changes) == 1:
             return min(1.0, FIXED_RADIUS.unmeasured_rate * self.settings.growth**3)
         previous, last = (self._change(*pair).mean() for pair in self._last_changes[-2:])
-        return float(np.clip(last / previous, max(self.fastest_rate, self._coarse_rate), 1.0))
+        return float(np.clip(last / previous, self.fastest_rate, 1.0))
 
     @property
     def _coarse_rate(self) -> float:
@@ -126,14 +131,15 @@ class ContactWithErrors:
         change[1] = max(change[1], change[0])
         return dict(zip(QUANTITIES, FIXED_RADIUS.safety * self.rate * change, strict=True))
 
-    def interpolation_error_of(self, numbers: Callable[[PrescribedContact], FloatArray]) -> FloatArray:
-        """Absolute errors of numbers that follow from one solution, from what they change with the degree.
+    def changes_of(self, numbers: Callable[[PrescribedContact], FloatArray]) -> FloatArray:
+        """By how much numbers that follow from one solution change with the last degree, times the safety factor.
 
-        Errors that cancel in a number do so at every degree: no error of stiffness, depth or force is added up.
+        Errors that cancel in a number do so at every degree: no error of stiffness, depth or force is added up.  Times
+        a rate, these are the absolute errors by interpolation.
         """
         changes = [np.abs(numbers(self.levels[high]) - numbers(self.levels[low])) for low, high in self._last_changes]
         expected = [AT_LOAD.fastest_share * self.fastest_rate * before for before in changes[-2:-1]]
-        return np.asarray(FIXED_RADIUS.safety * self.rate * np.max([changes[-1], *expected], axis=0))
+        return np.asarray(FIXED_RADIUS.safety * np.max([changes[-1], *expected], axis=0))
 
     def outer_edge_error_of_force(self, depth: float) -> float:
         """Error of the force / (E* a^2) at a depth / a that the mesh's end makes."""

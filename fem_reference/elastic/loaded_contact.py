@@ -41,7 +41,9 @@ class LoadedContact:
         depth = self._depth(answer)
         force = answer.force(depth) if self.by_depth else self.load
         values = np.array([depth, force, 1.0, answer.stiffness])
-        absolute = contact.interpolation_error_of(self._numbers) + self._outer_edge_error(depth) + self._remainder
+        # Depth, force and stiffness are known as well as energies; the radius errs like the numbers at a fixed radius.
+        rates = np.array([contact.rate_at_load, contact.rate_at_load, contact.rate, contact.rate_at_load])
+        absolute = rates * contact.changes_of(self._numbers) + self._outer_edge_error(depth) + self._remainder
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
