@@ -201,15 +201,12 @@ def test_radius_at_a_load_errs_like_the_load_at_the_radius():
 
 def test_coarse_meshes_state_sharp_errors_at_a_load():
     """Errors of depth, force and stiffness at a load fall as fast on coarse meshes as on fine ones."""
-    assert_sharp(
-        {
-            name: values
-            for name, values in at_loads((0, 1, 4, 5, 7, 8, 11), {"accuracy": 1e-2}, 3).items()
-            if name != "contact_radius"
-        }
-    )
+    ratios = at_loads((0, 4, 5), {"accuracy": 1e-2}, 3)
+    del ratios["contact_radius"]
+    assert_sharp(ratios)
 
 
+@pytest.mark.slow
 def test_a_load_on_a_coarse_mesh_beside_a_flat_end_is_found():
     """At b/a = 0.9999 neighbouring meshes differ by 8e-3 in the load: three solutions did not settle."""
     scene = random_scene(np.random.default_rng([3, 13]), "elastic", (0.1, 5.0))
