@@ -30,7 +30,7 @@ def settings_for(accuracy: float) -> Discretisation:
         order=4,
         growth=growth,
         edge_cell=float(np.clip(accuracy / 2, 1e-11, 1e-3)),
-        # Forces on thin layers feel the outer edge up to forty times more than the stiffness does.
+        # The outer edge shall add nothing to the other errors.
         truncation=float(np.clip(0.003 * accuracy, 1e-13, 1e-3)),
         half_space_thickness=float(np.clip(100 / accuracy, 1e3, 1e12)),
     )
