@@ -57,7 +57,8 @@ def their_force(height: np.ndarray, depth: float) -> float:
     from ContactMechanics.Systems import NonSmoothContactSystem  # noqa: PLC0415
     from SurfaceTopography import Topography  # noqa: PLC0415
 
-    young = LAYER.youngs_modulus  # with a thickness the package takes E, without one it takes E*
+    # With a thickness the package takes E, without one it takes E*.
+    young = LAYER.youngs_modulus
     substrate = PeriodicFFTElasticHalfSpace(height.shape, young, (BOX, BOX), thickness=THICKNESS, poisson=NU)
     surface = Topography(-height, (BOX, BOX), periodic=True)
     system = NonSmoothContactSystem(substrate=substrate, surface=surface)

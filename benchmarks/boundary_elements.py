@@ -30,7 +30,8 @@ KERNELS: tuple[tuple[Support, float], ...] = (("bonded", 0.3), ("bonded", 0.5), 
 PARABOLOID, CONE = Paraboloid(radius_of_curvature=0.1), TruncatedCone(flat_radius=0.5e-3, slope=0.1)
 PROFILES: tuple[tuple[str, Profile], ...] = (("paraboloid", PARABOLOID), ("truncated cone", CONE))
 ADHERING = Paraboloid(radius_of_curvature=0.01)
-GRIDS = np.array([128, 180, 256, 362, 512, 724, 1024])  # even numbers
+# Cells across the grid: even numbers, a factor of about the root of two apart.
+GRIDS = np.array([128, 180, 256, 362, 512, 724, 1024])
 
 
 def write(text: str) -> None:

@@ -25,10 +25,13 @@ from fem_reference.discrete_layer.mesh import Grading, layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 
 POISSONS_RATIO = 0.3
-STIFFNESS = 2 * 2.48352462914  # k_N / (E* a): integral equation
-OUTER_RADIUS = 9.0  # exp(-2 s (R - a) / h) = 5e-7 of the stiffness, s = 0.913
+# k_N / (E* a), from the integral equation.
+STIFFNESS = 2 * 2.48352462914
+# Outer radius of the section: it costs exp(-2 s (R - a) / h) = 5e-7 of the stiffness, s = 0.913.
+OUTER_RADIUS = 9.0
 ACCURACY = 1e-5
-WEDGE = 180.0  # CalculiX turns an axisymmetric mesh into a wedge of two degrees
+# CalculiX turns an axisymmetric mesh into a wedge of two degrees, of which 180 make the whole.
+WEDGES = 180.0
 
 
 @dataclass(frozen=True)
@@ -46,7 +49,8 @@ def calculix_input(growth: float) -> tuple[str, int]:
     mesh = layer_mesh(1.0, OUTER_RADIUS, Grading(points=((1.0, 1e-5),), growth=growth, max_cell=growth))
     problem = LayerProblem(mesh, PAIRS["P2"], POISSONS_RATIO, "bonded")
     r, z = problem.positions
-    corners = np.array(problem.space.displacement_dofs.element_dofs[:6].T)  # vertices 0 1 2, midpoints 01 12 02
+    # Vertices 0, 1, 2, then the midpoints of 01, 12 and 02.
+    corners = np.array(problem.space.displacement_dofs.element_dofs[:6].T)
     first, second, third = mesh.mesh.p[:, mesh.mesh.t].transpose(1, 0, 2)
     turned = (
         np.cross(np.vstack([second - first, 0 * first[:1]]).T, np.vstack([third - first, 0 * first[:1]]).T)[:, 2] < 0
@@ -98,7 +102,7 @@ def run_calculix(growth: float) -> Run:
     headline = next(i for i, line in enumerate(lines) if "total force" in line)
     force = float(lines[headline + 2].split()[1])
     seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    error = abs(WEDGE * force) / STIFFNESS - 1
+    error = abs(WEDGES * force) / STIFFNESS - 1
     return Run(abs(error), meshing + seconds, 2 * nodes, after.ru_maxrss / 1024)
 
 
@@ -119,7 +123,8 @@ def compare() -> tuple[Run, Run]:
     """
     if shutil.which("ccx") is None:
         raise RuntimeError("the program ccx is not installed (Debian package calculix-ccx)")
-    run_ours(2.0)  # both are timed warm
+    # Both are timed after a first run.
+    run_ours(2.0)
     return _coarsest(run_calculix, (0.25, 0.18, 0.14, 0.11, 0.09)), _coarsest(run_ours, (1.0, 0.85, 0.7, 0.6, 0.5))
 
 

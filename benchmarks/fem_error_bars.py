@@ -11,10 +11,9 @@ from collections.abc import Mapping
 from itertools import chain
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
+from benchmarks.fem_impacts import SCALARS, largest_difference
 from contact import (
     Cone,
     FlatPunch,
@@ -30,19 +29,16 @@ from contact import (
 from fem_reference import Fem
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.error_estimate import CertifiedContact, solve_certified_contact
+from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from mdr.impact.solver import solve_impact
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
-Array = NDArray[np.float64]
 Ratios = dict[str, list[float]]
 
-PROFILES = ("punch", "paraboloid", "cone")
-SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 CHANNELS = ("indentation_depth", "velocity", "normal_force", "contact_radius", "kinetic_energy")
 
 
-def random_contact(rng: np.random.Generator) -> tuple[CertifiedContact, dict[str, float]]:
+def random_contact(rng: np.random.Generator) -> tuple[ContactWithErrors, dict[str, float]]:
     """A prescribed contact and its true relative errors."""
     a = float(np.exp(rng.uniform(np.log(0.05), np.log(20))))
     nu = float(rng.choice([0, 0.2, 0.3, 0.45, 0.49, 0.5]))
@@ -60,7 +56,7 @@ def random_contact(rng: np.random.Generator) -> tuple[CertifiedContact, dict[str
         (TruncatedCone(flat_radius=b, slope=1.0), solve_contact(a, support, nu, truncated_cone(b), b)),
     ][rng.integers(3)]
     layer = Layer(thickness=1.0, youngs_modulus=1 - nu**2, poissons_ratio=nu, support=support)
-    contact = solve_certified_contact(layer, ScaledIndenter(profile, a), settings, "superlu", StageLog())
+    contact = solve_contact_with_errors(layer, ScaledIndenter(profile, a), settings, "superlu", StageLog())
     answer = contact.answer
     errors = {
         "stiffness": answer.stiffness * a / exact.stiffness - 1,
@@ -126,12 +122,7 @@ def impacts(count: int, seed: int) -> Ratios:
 def _history_errors(history: ImpactHistory, exact: ImpactHistory) -> dict[str, float]:
     """Relative errors, of channels by their largest value; their last hundredth, where radii end steeply, left out."""
     errors = {name: abs(getattr(history, name) / getattr(exact, name) - 1) for name in SCALARS}
-    time, first = np.unique(exact.time, return_index=True)
-    some = history.time <= 0.99 * exact.time[-1]
-    for name in CHANNELS:
-        truth = getattr(exact, name)
-        there = CubicSpline(time, truth[first])(history.time[some])
-        errors[name] = np.abs(getattr(history, name)[some] - there).max() / np.abs(truth).max()
+    errors |= {name: largest_difference(name, history, exact, until=0.99) for name in CHANNELS}
     return {name: max(float(error), 1e-15) for name, error in errors.items()}
 
 

@@ -16,7 +16,8 @@ from fem_reference import Fem
 from mdr.impact.solver import solve_impact
 from tests.mdr.viscoelastic_scenes import figure_12
 
-THICKNESSES = (np.inf, 3e-3, 2e-3, 1e-3)  # m
+# Layer thicknesses of Fig. 12 [m].
+THICKNESSES = (np.inf, 3e-3, 2e-3, 1e-3)
 POISSONS_RATIOS = (0.3, 0.4, 0.49, 0.4999, 0.5)
 CHANNELS = ("normal_force", "indentation_depth", "velocity", "contact_radius")
 SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")

@@ -1,6 +1,6 @@
 """What the finite element reference costs on one core: processor seconds and memory of four typical tasks.
 
-Run ``OMP_NUM_THREADS=1 python -m benchmarks.fem_speed``; with CalculiX installed it is raced, too.
+Run ``OMP_NUM_THREADS=1 python -m benchmarks.fem_speed``; with CalculiX installed, its time is shown beside.
 """
 
 from __future__ import annotations
@@ -75,12 +75,12 @@ def megabytes() -> float:
 
 
 def main() -> None:
-    """One line for each task, then memory, then the race."""
+    """One line for each task, then memory, then the comparison with CalculiX."""
     for task in tasks():
         sys.stdout.write(f"{task.name:34} {seconds(task):6.3f} s CPU (allowed {task.allowed:g})\n")
     sys.stdout.write(f"{'peak memory of all of them':34} {megabytes():6.0f} MB (allowed 500)\n")
     if shutil.which("ccx") is None:
-        sys.stdout.write("CalculiX is not installed (Debian package calculix-ccx): no race\n")
+        sys.stdout.write("CalculiX is not installed (Debian package calculix-ccx): no comparison\n")
     else:
         calculix_flat_punch.main()
 

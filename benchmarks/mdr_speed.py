@@ -34,7 +34,8 @@ SOURCE = IntegralEquation()
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 BALL = Paraboloid(radius_of_curvature=0.01)
 REPEATS, BATCH, FEW = 60, 10_000, 200
-MAXWELL, LONG_TERM, RELAXATION = 7.5e6, 7.5e6 / 9.0, 1e-3  # of Fig. 12 [Pa], [Pa], [s]
+# Maxwell and long-term shear moduli [Pa] and relaxation time [s] of Fig. 12.
+MAXWELL, LONG_TERM, RELAXATION = 7.5e6, 7.5e6 / 9.0, 1e-3
 TERMS = (1, 2, 4, 8, 16, 32)
 
 

@@ -1,7 +1,8 @@
 """Where a flat punch detaches stably from a layer: the stability map over a/h and Poisson's ratio.
 
-Under displacement control the depth at which detachment proceeds is -dl(a), `AdhesiveBranch.elongation`.  A shrinking
-contact is stable where dl falls with a, hence between a maximum of dl (its smaller end) and a minimum (its larger end).
+Under displacement control the depth at which detachment proceeds is -dl(a), `InterpolatedBranch.elongation`.  A
+shrinking contact is stable where dl falls with a, hence between a maximum of dl (its smaller end) and a minimum (its
+larger end).
 A punch outside of every such range jumps off at once; one inside peels stably until a/h has come down to the maximum.
 """
 
@@ -12,19 +13,20 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer
-from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
+from contact.records.validation import FloatArray
+from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
 from fem_reference.adhesion.detachment import slope_root
 from fem_reference.adhesion.equilibria import branch_samples
 from fem_reference.adhesion.pull_off_errors import Extremum
-from fem_reference.elastic.error_estimate import CertifiedContact
+from fem_reference.elastic.error_estimate import ContactWithErrors
 
-Array = NDArray[np.float64]
-
-RATIOS = (0.1, 0.5, 2.4, 12.0)  # a/h at the ends of pieces: below, a layer is a half-space; beyond, a bed of springs
+# a/h at the ends of the branch's pieces: below the first the layer is a half-space, beyond the last a row of
+# independent springs.
+RATIOS = (0.1, 0.5, 2.4, 12.0)
+# Chebyshev points of a piece.
 NODES = 13
 
 
@@ -47,7 +49,7 @@ class Reversal:
     elongation_error: float
 
 
-def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple[Reversal, ...]:
+def reversals(layer: Layer, solve: Callable[[float], ContactWithErrors]) -> tuple[Reversal, ...]:
     """All changes of stability for 0.1 < a/h < 12, in the order of increasing a/h.
 
     Args:
@@ -63,10 +65,10 @@ def reversals(layer: Layer, solve: Callable[[float], CertifiedContact]) -> tuple
     return tuple(_reversal(branch, a, h, is_maximum=bool(slope[i] > 0)) for a, i in zip(places, turns, strict=True))
 
 
-def _reversal(branch: AdhesiveBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
-    here, extremum = np.array([radius]), Extremum(branch, AdhesiveBranch.elongation, radius)
+def _reversal(branch: InterpolatedBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
+    here, extremum = np.array([radius]), Extremum(branch, InterpolatedBranch.elongation, radius)
 
-    def numbers(other: AdhesiveBranch) -> Array:
+    def numbers(other: InterpolatedBranch) -> FloatArray:
         return np.array([other.elongation(here)[0], extremum.shift(other)])
 
     height, between = numbers(branch)[0], branch.errors_between(here)[0, 0]

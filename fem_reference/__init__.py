@@ -1,6 +1,8 @@
 """The independent reference: axisymmetric finite elements for contact with layers.
 
-Nothing here knows the layer kernel, the integral equation or the method of dimensionality reduction.
+Enters: a scene. Leaves: contact paths, detachments, impacts and histories with stated errors. Read `method` first, then
+`elastic.path`, `elastic.prescribed_radius` and `discrete_layer.problem`; `error_model` holds every coefficient of a
+stated error. Nothing here knows the layer kernel, the integral equation or the method of dimensionality reduction.
 """
 
 from fem_reference.method import Fem

@@ -36,10 +36,10 @@ from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
-from fem_reference.elastic.error_estimate import CertifiedContact, solve_certified_contact
+from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (
     ContactSolver,
-    Equilibrium,
+    FemEquilibrium,
     contact_path,
     equilibria_at_radii,
     flat_punch_equilibria,
@@ -139,19 +139,19 @@ class Fem:
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
     ) -> ImpactHistory | HistoryPath:
         from fem_reference.in_time import solver as viscoelastic  # noqa: PLC0415 - only scenes in time load it
-        from fem_reference.in_time.setup import Theatre  # noqa: PLC0415
+        from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
-            theatre = Theatre(scene, settings, self.solver, log)
+            setup = HistorySetup(scene, settings, self.solver, log)
             if isinstance(loading, Impact):
-                return viscoelastic.impact_history(theatre, loading, asdict(self))
-            return viscoelastic.prescribed_history(theatre, loading, asdict(self))
+                return viscoelastic.impact_history(setup, loading, asdict(self))
+            return viscoelastic.prescribed_history(setup, loading, asdict(self))
 
         if self.accuracy is None:
             return attempt(self.discretisation)
         return solve_history_to_accuracy(attempt, self.accuracy)
 
-    def _equilibria(self, scene: Scene, log: StageLog) -> list[Equilibrium]:
+    def _equilibria(self, scene: Scene, log: StageLog) -> list[FemEquilibrium]:
         loading, solve = scene.loading, self._solver(scene, log)
         if scene.effects:
             from fem_reference.adhesion.equilibria import adhesive_equilibria  # noqa: PLC0415 - only listed effects load
@@ -168,13 +168,13 @@ class Fem:
             return [self._equilibrium_at_load(scene, float(force) / modulus, log) for force in loading.values]
         raise UnsupportedSceneError(f"fem has no elastic path for loading {type(loading).__name__}")
 
-    def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> Equilibrium:
-        """Unknown contact set, then polish; target is a depth [m] or a force / E* [m^2]."""
-        from fem_reference.elastic.at_load import polished_equilibrium  # noqa: PLC0415 - only scenes that search pay for it
+    def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> FemEquilibrium:
+        """Searches the contact, then solves it at a prescribed radius; target is a depth [m] or a force / E* [m^2]."""
+        from fem_reference.elastic.at_load import equilibrium_at_load  # noqa: PLC0415 - only scenes that search pay for it
         from fem_reference.elastic.contact_search import find_contact  # noqa: PLC0415
 
         found = find_contact(scene, target, self.discretisation, self.solver, log)
-        return polished_equilibrium(scene, target, found.contact_radius * found.radius, self._solver(scene, log), log)
+        return equilibrium_at_load(scene, target, found.contact_radius * found.radius, self._solver(scene, log), log)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
@@ -188,11 +188,11 @@ class Fem:
     def _solver(self, scene: Scene, log: StageLog) -> ContactSolver:
         return partial(self.solve_contact, scene, log=log)
 
-    def solve_contact(self, scene: Scene, contact_radius: float, log: StageLog) -> CertifiedContact:
+    def solve_contact(self, scene: Scene, contact_radius: float, log: StageLog) -> ContactWithErrors:
         """One contact radius [m] with error bars."""
         indenter = ScaledIndenter(scene.indenter, contact_radius)
 
-        def attempt(settings: Discretisation) -> CertifiedContact:
-            return solve_certified_contact(scene.layer, indenter, settings, self.solver, log)
+        def attempt(settings: Discretisation) -> ContactWithErrors:
+            return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log)
 
         return attempt(self.discretisation) if self.accuracy is None else solve_to_accuracy(attempt, self.accuracy)

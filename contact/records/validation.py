@@ -12,6 +12,8 @@ from numpy.typing import NDArray
 from pydantic import PlainValidator, WithJsonSchema
 
 FloatArray: TypeAlias = NDArray[np.float64]
+IntArray: TypeAlias = NDArray[np.int64]
+BoolArray: TypeAlias = NDArray[np.bool_]
 Numbers: TypeAlias = Sequence[float] | Sequence[np.floating[Any]] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
 """What a vector may be given as: a list, tuple or range of numbers, or an array of shape (n,)."""
 

@@ -17,13 +17,13 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Chebyshev
-from numpy.typing import NDArray
 
-from fem_reference.elastic.error_estimate import SAFETY, CertifiedContact
+from contact.records.validation import FloatArray
+from fem_reference.elastic.error_estimate import ContactWithErrors
+from fem_reference.error_model import FIXED_RADIUS, ON_BRANCH
 
-Array = NDArray[np.float64]
-
-QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "profile_force")
+# What is interpolated along the branch, with the power of the contact radius that turns it into SI lengths.
+POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
 
 
 @dataclass(frozen=True)
@@ -41,10 +41,10 @@ class BranchPiece:
     low: float
     high: float
     graded: bool
-    contacts: tuple[CertifiedContact, ...]
+    contacts: tuple[ContactWithErrors, ...]
     degree: int | None = None
 
-    def parameter(self, radius: Array) -> Array:
+    def parameter(self, radius: FloatArray) -> FloatArray:
         """s of radii [m]."""
         if self.graded:
             return np.sqrt((radius - self.low) / (self.high - self.low))
@@ -53,9 +53,9 @@ class BranchPiece:
     @cached_property
     def _interpolants(self) -> dict[str, Chebyshev]:
         s = chebyshev_points(len(self.contacts))
-        return {name: Chebyshev.fit(s, self._values(name), len(s) - 1, domain=[0, 1]) for name in QUANTITIES}
+        return {name: Chebyshev.fit(s, self._values(name), len(s) - 1, domain=[0, 1]) for name in POWERS}
 
-    def _values(self, name: str) -> Array:
+    def _values(self, name: str) -> FloatArray:
         """Quantity at the nodes, in SI lengths; stiffness and its slope over the power of a that half-spaces have."""
         radii = np.array([contact.indenter.contact_radius for contact in self.contacts])
         solutions = [contact.levels[self.degree or contact.settings.order] for contact in self.contacts]
@@ -63,7 +63,7 @@ class BranchPiece:
         scaled = np.log(values) if name.startswith("stiffness") else values * radii ** POWERS[name]
         return np.asarray(scaled)
 
-    def evaluate(self, name: str, radius: Array) -> Array:
+    def evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         """A quantity [powers of m, E* = 1] at radii within the piece."""
         value = self._interpolants[name](self.parameter(radius))
         return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
@@ -80,7 +80,7 @@ class BranchPiece:
 
         Those of a profile that is not analytic fall like a power of their number: more is left than the last two.
         """
-        left = ROUGH if self._is_rough else 1.0
+        left = ON_BRANCH.rough_profile if self._is_rough else 1.0
         return {name: left * float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
 
     @cached_property
@@ -91,9 +91,9 @@ class BranchPiece:
         """
         degrees = sorted(self.contacts[0].levels)[-2:]
         low, high = (replace(self, degree=degree)._interpolants for degree in degrees)
-        share = SAFETY * float(np.mean([contact.rate for contact in self.contacts]))
-        meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in QUANTITIES}
-        more = ROUGH_BETWEEN if self._is_rough else 1.0
+        share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
+        meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in POWERS}
+        more = ON_BRANCH.rough_profile_stated if self._is_rough else 1.0
         return {name: max(0.0, more * size - meshes[name]) for name, size in self.last_coefficients.items()}
 
     @property
@@ -103,21 +103,13 @@ class BranchPiece:
         return any(r * indenter.contact_radius > self.low * (1 + 1e-9) for r in indenter.breakpoints)
 
 
-ROUGH = 3.0
-# On `ROUGH`, where the error is stated.  Measured on two tabulated profiles (detachments of seeds 1 and 3, 2026-11-22):
-# the error between the solved radii is up to 1.25 times that of `ROUGH`.
-ROUGH_BETWEEN = 1.5
-SAMPLES = 41  # radii at which the force's error is compared with an accuracy
-POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
-
-
-def chebyshev_points(count: int) -> Array:
+def chebyshev_points(count: int) -> FloatArray:
     """Chebyshev points of the second kind on [0, 1], increasing."""
     return np.asarray((1 - np.cos(np.pi * np.arange(count) / (count - 1))) / 2)
 
 
 @dataclass(frozen=True)
-class AdhesiveBranch:
+class InterpolatedBranch:
     """States in adhesive equilibrium.
 
     Attributes:
@@ -130,36 +122,37 @@ class AdhesiveBranch:
     work: float
     is_shifted: bool = False
 
-    def at_degree(self, degree: int) -> AdhesiveBranch:
+    def at_degree(self, degree: int) -> InterpolatedBranch:
         """The branch as elements of another degree have it."""
         return replace(self, pieces=[replace(piece, degree=degree) for piece in self.pieces])
 
-    def _evaluate(self, name: str, radius: Array) -> Array:
+    def _evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         if self.is_shifted:
             radius = np.maximum(radius * (1 - np.interp(radius, *self._edge_shifts)), self.pieces[0].low)
-        values = np.full_like(radius, np.nan)  # beyond the ends nothing is known
+        # Beyond the ends nothing is known.
+        values = np.full_like(radius, np.nan)
         for piece in self.pieces:
             inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
             values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
         return values
 
-    def stiffness(self, radius: Array) -> Array:
+    def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N / E* [m]."""
         return self._evaluate("stiffness", radius)
 
-    def elongation(self, radius: Array) -> Array:
+    def elongation(self, radius: FloatArray) -> FloatArray:
         """dl = sqrt(4 pi a dgamma / k_N') [m], Eq. (40)."""
         return np.asarray(np.sqrt(4 * np.pi * radius * self.work / self._evaluate("stiffness_slope", radius)))
 
-    def depth(self, radius: Array) -> Array:
+    def depth(self, radius: FloatArray) -> FloatArray:
         """delta [m]."""
         return self._evaluate("smooth_depth", radius) - self.elongation(radius)
 
-    def force(self, radius: Array) -> Array:
+    def force(self, radius: FloatArray) -> FloatArray:
         """F / E* [m^2]."""
         return self.stiffness(radius) * self.depth(radius) + self._evaluate("profile_force", radius)
 
-    def slope(self, function: Callable[[Array], Array], radius: Array) -> Array:
+    def slope(self, function: Callable[[FloatArray], FloatArray], radius: FloatArray) -> FloatArray:
         """d function / d a by central differences inside the piece of each radius (the interpolants are smooth)."""
         slopes = np.empty_like(radius)
         for piece in self.pieces:
@@ -171,13 +164,13 @@ class AdhesiveBranch:
         return slopes
 
     @cached_property
-    def _edge_shifts(self) -> tuple[Array, Array]:
+    def _edge_shifts(self) -> tuple[FloatArray, FloatArray]:
         """Radii [m] of the contacts, and by how much each acts like a smaller one, relative."""
         shifts = {contact.indenter.contact_radius: contact.edge_shift for contact in self.contacts}
         return np.array(list(shifts)), np.array(list(shifts.values()))
 
     @property
-    def contacts(self) -> list[CertifiedContact]:
+    def contacts(self) -> list[ContactWithErrors]:
         """All solved contacts."""
         return [contact for piece in self.pieces for contact in piece.contacts]
 
@@ -195,18 +188,18 @@ class AdhesiveBranch:
     @property
     def force_interpolation_error(self) -> float:
         """Of the force between the solved radii, relative to the terms whose difference it is there."""
-        radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, SAMPLES)
+        radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, 41)
         terms = np.abs(self.force(radius)) + self.stiffness(radius) * self.elongation(radius)
         return float(np.max(self.errors_between(radius, "last_coefficients")[1] / terms))
 
-    def _stated(self, kind: str, radius: Array) -> list[Array]:
+    def _stated(self, kind: str, radius: FloatArray) -> list[FloatArray]:
         """``far``, ``between`` or ``last_coefficients`` of the piece around each radius."""
         ends = [piece.high for piece in self.pieces[:-1]]
         found = np.searchsorted(ends, radius)
         names = getattr(self.pieces[0], kind)
         return [np.array([getattr(piece, kind)[name] for piece in self.pieces])[found] for name in names]
 
-    def errors_far(self, radius: Array) -> Array:
+    def errors_far(self, radius: FloatArray) -> FloatArray:
         """Of depth [m] and force / E* [m^2] by outer edge and half-space, shape (2, radius)."""
         stiffness, slope, smooth_depth, smooth_force = self._stated("far", radius)
         elongation = self.elongation(radius)
@@ -215,14 +208,14 @@ class AdhesiveBranch:
         force = np.abs(self.force(radius) + pulled) * smooth_force + pulled * (stiffness + slope / 2)
         return np.array([depth, force])
 
-    def errors_between(self, radius: Array, kind: str = "between") -> Array:
+    def errors_between(self, radius: FloatArray, kind: str = "between") -> FloatArray:
         """Of depth [m] and force / E* [m^2] between the solved radii, shape (2, radius)."""
         stiffness, slope, smooth_depth, profile_force = self._stated(kind, radius)
         elongation, pressed = self.elongation(radius), self.stiffness(radius)
         force = pressed * smooth_depth + profile_force + pressed * elongation * (stiffness + slope / 2)
         return np.array([smooth_depth + elongation * slope / 2, force])
 
-    def waves(self, radius: float) -> float:
+    def tilt_of_last_polynomial(self, radius: float) -> float:
         """Slope per ln a of the last Chebyshev polynomial around a radius: an error of interpolation tilts so much."""
         piece = next((piece for piece in self.pieces if radius <= piece.high), self.pieces[-1])
         return float(2 * (len(piece.contacts) - 1) / np.log(piece.high / piece.low))
@@ -232,9 +225,9 @@ def solve_branch(
     breaks: Sequence[float],
     kinks: Sequence[float],
     work: float,
-    solve: Callable[[float], CertifiedContact],
+    solve: Callable[[float], ContactWithErrors],
     nodes: int,
-) -> AdhesiveBranch:
+) -> InterpolatedBranch:
     """Solve the branch on [breaks[0], breaks[-1]], in pieces that end at ``breaks``.
 
     Args:
@@ -251,4 +244,4 @@ def solve_branch(
         radii = low + (high - low) * s**2 if graded else low * (high / low) ** s
         radii[0], radii[-1] = low, high
         pieces.append(BranchPiece(low, high, graded, tuple(solve(float(a)) for a in radii)))
-    return AdhesiveBranch(tuple(pieces), work)
+    return InterpolatedBranch(tuple(pieces), work)

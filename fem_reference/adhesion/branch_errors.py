@@ -5,7 +5,7 @@ is on the answer's:
 
 * **degree**: the branch of the next lower degree, times the rate at which such changes fall;
 * **edge cell**: the branch on which every contact acts like a smaller one;
-* **interpolation** between the solved radii, **outer edge** and **half-space**: bounds, see `AdhesiveBranch`.
+* **interpolation** between the solved radii, **outer edge** and **half-space**: bounds, see `InterpolatedBranch`.
 
 What cancels in the number, or at an extremum, does so on these branches too.
 """
@@ -17,46 +17,38 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_reference.adhesion.branch import AdhesiveBranch
-from fem_reference.elastic.error_estimate import FASTEST_AT_LOAD, SAFETY
+from contact.records.validation import FloatArray
+from fem_reference.adhesion.branch import InterpolatedBranch
+from fem_reference.error_model import AT_LOAD, FIXED_RADIUS, ON_BRANCH
 
-Array = NDArray[np.float64]
-Numbers = Callable[[AdhesiveBranch], Array]
-
-# Least error of the degree along a piece of a branch, over its root mean square there: it passes zero now and then.
-LEAST = 0.7
-# On the error of the degree: every solved radius has a mesh and an error of its own, and a branch is made of a dozen.
-# Measured on 22 detachments (seed 1 at accuracy 1e-3 and seed 3 at 1e-2, 2026-11-22): without it, three of 44 worst
-# states and one of 66 numbers of pull-offs were off by up to 1.3 times what was stated.
-SCATTER = 1.5
+Numbers = Callable[[InterpolatedBranch], FloatArray]
 
 
-def degree_error(branch: AdhesiveBranch, numbers: Numbers) -> Array:
+def degree_error(branch: InterpolatedBranch, numbers: Numbers) -> FloatArray:
     """What the last change of the degree means for numbers; absolute."""
     contacts = branch.contacts
     values = [numbers(branch.at_degree(degree)) for degree in sorted(contacts[0].levels)]
     changes = [np.abs(high - low) for low, high in pairwise(values)]
     rate, fastest = (float(np.mean([getattr(c, name) for c in contacts])) for name in ("rate", "fastest_rate"))
-    expected = [FASTEST_AT_LOAD * fastest * before for before in changes[-2:-1]]
-    return np.asarray(SCATTER * SAFETY * rate * np.max([changes[-1], *expected], axis=0))
+    expected = [AT_LOAD.fastest_share * fastest * before for before in changes[-2:-1]]
+    return np.asarray(ON_BRANCH.scatter * FIXED_RADIUS.safety * rate * np.max([changes[-1], *expected], axis=0))
 
 
-def edge_error(branch: AdhesiveBranch, numbers: Numbers) -> Array:
+def edge_error(branch: InterpolatedBranch, numbers: Numbers) -> FloatArray:
     """What the edge cells mean for numbers; absolute."""
     return np.abs(numbers(replace(branch, is_shifted=True)) - numbers(branch))
 
 
-def errors_along(branch: AdhesiveBranch, radius: Array) -> Array:
+def errors_along(branch: InterpolatedBranch, radius: FloatArray) -> FloatArray:
     """Absolute errors of depth [m] and force / E* [m^2] at radii [m], shape (2, radius)."""
 
-    def loads(other: AdhesiveBranch) -> Array:
+    def loads(other: InterpolatedBranch) -> FloatArray:
         return np.array([other.depth(radius), other.force(radius)])
 
     by_degree = degree_error(branch, loads)
     for piece in branch.pieces:
         there = (radius >= piece.low) & (radius <= piece.high)
         typical = np.sqrt(np.mean(by_degree[:, there] ** 2, axis=1, keepdims=True))
-        by_degree[:, there] = np.maximum(by_degree[:, there], LEAST * typical)
+        by_degree[:, there] = np.maximum(by_degree[:, there], ON_BRANCH.share_of_mean * typical)
     return by_degree + edge_error(branch, loads) + branch.errors_far(radius) + branch.errors_between(radius)

@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact import (
@@ -19,7 +18,8 @@ from contact import (
     Scene,
     StageLog,
 )
-from fem_reference.adhesion.branch import AdhesiveBranch
+from contact.records.validation import FloatArray
+from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.adhesion.equilibria import SPANS, branch_of, branch_samples
 from fem_reference.adhesion.pull_off_errors import ROOT, pull_off_errors
@@ -27,7 +27,6 @@ from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
-Array = NDArray[np.float64]
 Control = Literal["displacement", "force"]
 
 CAVITATION = (
@@ -100,7 +99,7 @@ def detachment_path(
 
 def _branch_to_pull_off(
     scene: Scene, loading: Detachment, solve: ContactSolver, accuracy: float | None
-) -> AdhesiveBranch:
+) -> InterpolatedBranch:
     """A branch long enough to become unstable, or the longest."""
     for span in SPANS:
         branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy, span)
@@ -116,21 +115,21 @@ def presses_most_in_the_centre(contact: PrescribedContact) -> bool:
     return bool(centre > beside)
 
 
-def _point(branch: AdhesiveBranch, radius: float, control: str, kind: str) -> CriticalPoint:
+def _point(branch: InterpolatedBranch, radius: float, control: str, kind: str) -> CriticalPoint:
     """A critical point with its force still in units of E*."""
     a = np.array([radius])
     depth, force = float(branch.depth(a)[0]), float(branch.force(a)[0])
     return CriticalPoint(control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force)
 
 
-def _start(scene: Scene, branch: AdhesiveBranch) -> list[CriticalPoint]:
+def _start(scene: Scene, branch: InterpolatedBranch) -> list[CriticalPoint]:
     """A flat punch holds its radius until detachment begins at its rim."""
     if not isinstance(scene.indenter, FlatPunch):
         return []
     return [_point(branch, scene.indenter.radius, control, "start") for control in ("displacement", "force")]
 
 
-def _turning_points(branch: AdhesiveBranch, radius: Array) -> list[CriticalPoint]:
+def _turning_points(branch: InterpolatedBranch, radius: FloatArray) -> list[CriticalPoint]:
     """Every change of sign of d(depth)/da and dF/da, in the order of decreasing radius."""
     points = []
     for control, load in (("displacement", branch.depth), ("force", branch.force)):
@@ -141,18 +140,21 @@ def _turning_points(branch: AdhesiveBranch, radius: Array) -> list[CriticalPoint
     return points
 
 
-def slope_root(branch: AdhesiveBranch, load: Callable[[Array], Array], low: float, high: float) -> float:
+def slope_root(branch: InterpolatedBranch, load: Callable[[FloatArray], FloatArray], low: float, high: float) -> float:
     """Radius [m] between two at which the slope of a load changes its sign."""
 
     def slope(a: float) -> float:
         return float(branch.slope(load, np.array([a]))[0])
 
-    if slope(low) * slope(high) >= 0:  # the slope jumps at a kink
+    # The slope jumps at a kink.
+    if slope(low) * slope(high) >= 0:
         return high
     return float(brentq(slope, low, high, xtol=ROOT * high))
 
 
-def _pull_off(branch: AdhesiveBranch, radius: Array, control: Control, critical: list[CriticalPoint]) -> CriticalPoint:
+def _pull_off(
+    branch: InterpolatedBranch, radius: FloatArray, control: Control, critical: list[CriticalPoint]
+) -> CriticalPoint:
     """Where contact is lost for good: at the lowest of the first state, if that is unstable, and the turning points.
 
     A contact that jumps from a higher one comes to rest on the stable part of the branch before the lowest.

@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact import (
@@ -19,23 +18,20 @@ from contact import (
     NotConvergedError,
     Scene,
 )
-from fem_reference.adhesion.branch import AdhesiveBranch, solve_branch
+from contact.records.validation import FloatArray
+from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.elastic.error_estimate import CertifiedContact
-from fem_reference.elastic.path import ContactSolver, Equilibrium
+from fem_reference.elastic.error_estimate import ContactWithErrors
+from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 
-Array = NDArray[np.float64]
-
-NODES = (11, 17, 25, 41)  # Chebyshev points of a piece: the first number that meets the accuracy
-INTERPOLATED = 0.5  # of the accuracy
-
+# Chebyshev points of a piece: the first number that meets the accuracy is taken.
+NODES = (11, 17, 25, 41)
 # First over last radius of a branch, tried in turn until it becomes unstable.  From the radius where height and
-# elongation are equal, half-spaces let go a paraboloid at 1/6 of it and a cone at 1/40; a prescribed first radius may
+# elongation are equal, half-spaces detach a paraboloid at 1/6 of it and a cone at 1/40; a prescribed first radius may
 # be larger than that by any factor.
 SPANS = (12.0, 100.0, 1e4)
-
-LARGEST_RATIO = 6.0  # of the radii that end one piece
+# Radii at which changes of sign are looked for along a branch: a hundredth apart over its first span.
 SAMPLES = 241
 
 
@@ -45,7 +41,7 @@ def work_of_adhesion(scene: Scene) -> float:
     return adhesion.work_of_adhesion / contact_modulus(scene.layer) if adhesion else 0.0
 
 
-def adhesive_equilibrium(contact: CertifiedContact, work: float) -> Equilibrium:
+def adhesive_equilibrium(contact: ContactWithErrors, work: float) -> FemEquilibrium:
     """The state in which the energy release rate equals the work of adhesion dgamma / E* [m]."""
     answer, error = contact.answer, contact.error
     scaled_work = work / contact.indenter.contact_radius
@@ -56,7 +52,7 @@ def adhesive_equilibrium(contact: CertifiedContact, work: float) -> Equilibrium:
     )
 
 
-def fixed_radius_equilibrium(contact: CertifiedContact, depth: float, depth_error: float) -> Equilibrium:
+def fixed_radius_equilibrium(contact: ContactWithErrors, depth: float, depth_error: float) -> FemEquilibrium:
     """Contact held at its radius, at depth / a known within depth_error."""
     answer, error = contact.answer, contact.error
     force = answer.force(depth)
@@ -72,10 +68,10 @@ def fixed_radius_equilibrium(contact: CertifiedContact, depth: float, depth_erro
         "contact_stiffness": error["stiffness"],
         "pressure": contact.pressure_error,
     }
-    return Equilibrium(contact=contact, depth=depth, force=force, error=reported)
+    return FemEquilibrium(contact=contact, depth=depth, force=force, error=reported)
 
 
-def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | None) -> list[Equilibrium]:
+def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | None) -> list[FemEquilibrium]:
     """States at prescribed radii, depths or forces; of several states at one load, the stable one.
 
     Args:
@@ -84,7 +80,7 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | No
         accuracy: asked of the interpolation between solved radii, relative.
 
     Raises:
-        InvalidInput: no stable state carries the load: the indenter has come off.
+        InvalidInput: no stable state carries the load: the indenter has detached.
     """
     loading, work = scene.loading, work_of_adhesion(scene)
     if isinstance(loading, ContactRadii):
@@ -98,7 +94,9 @@ def adhesive_equilibria(scene: Scene, solve: ContactSolver, accuracy: float | No
     return [_state_at(scene, branch, float(target), by_depth, solve) for target in targets]
 
 
-def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: bool, solve: ContactSolver) -> Equilibrium:
+def _state_at(
+    scene: Scene, branch: InterpolatedBranch, target: float, by_depth: bool, solve: ContactSolver
+) -> FemEquilibrium:
     load = branch.depth if by_depth else branch.force
     end = branch.pieces[-1].high
     if isinstance(scene.indenter, FlatPunch) and target >= load(np.array([end]))[0]:
@@ -108,14 +106,15 @@ def _state_at(scene: Scene, branch: AdhesiveBranch, target: float, by_depth: boo
     radius = stable_radius(branch, load, target)
     state = adhesive_equilibrium(solve(radius), work_of_adhesion(scene))
     name, found = ("indentation_depth", state.depth) if by_depth else ("normal_force", state.force)
-    slope = branch.slope(load, np.array([radius]))[0]  # d load / da, in SI lengths
+    # d load / da, in SI lengths.
+    slope = branch.slope(load, np.array([radius]))[0]
     on_branch = errors_along(branch, np.array([radius]))[0 if by_depth else 1, 0]
     solved = state.error[name] * abs(found) * radius ** (1 if by_depth else 2)
     moved = (solved + on_branch) / radius / abs(slope)
     return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
 
 
-def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target: float) -> float:
+def stable_radius(branch: InterpolatedBranch, load: Callable[[FloatArray], FloatArray], target: float) -> float:
     """The largest radius at which a load (that grows with the radius there) has the target value.
 
     Raises:
@@ -123,7 +122,8 @@ def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target
     """
     radii = branch_samples(branch)[::-1]
     values = load(radii)
-    falling = np.flatnonzero(np.diff(values) > 0)  # from large radii to small ones a stable load falls
+    # From large radii to small ones a stable load falls.
+    falling = np.flatnonzero(np.diff(values) > 0)
     last = int(falling[0]) if len(falling) else len(radii) - 1
     below = np.flatnonzero(values[: last + 1] <= target)
     if not len(below) or values[0] < target:
@@ -136,7 +136,7 @@ def stable_radius(branch: AdhesiveBranch, load: Callable[[Array], Array], target
     return float(brentq(lambda a: load(np.array([a]))[0] - target, radii[i], radii[i - 1], xtol=1e-13 * radii[i]))
 
 
-def branch_samples(branch: AdhesiveBranch) -> Array:
+def branch_samples(branch: InterpolatedBranch) -> FloatArray:
     """Radii along the branch, increasing, the ends of all pieces among them."""
     ends = [branch.pieces[0].low, *(piece.high for piece in branch.pieces)]
     return np.unique(np.concatenate([np.geomspace(ends[0], ends[-1], SAMPLES), ends]))
@@ -144,7 +144,7 @@ def branch_samples(branch: AdhesiveBranch) -> Array:
 
 def branch_of(
     scene: Scene, start: float | None, solve: ContactSolver, accuracy: float | None, span: float = SPANS[0]
-) -> AdhesiveBranch:
+) -> InterpolatedBranch:
     """The branch from a radius [m] (by default one where the contact is pressed) down to one ``span`` times smaller.
 
     Raises:
@@ -156,18 +156,18 @@ def branch_of(
     low = 3 * smallest / span if isinstance(scene.indenter, FlatPunch) or kinks else high / span
     breaks = [low]
     for end in (*kinks, high):
-        pieces = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(LARGEST_RATIO))))
+        pieces = max(1, int(np.ceil(np.log(end / breaks[-1]) / np.log(6.0))))
         breaks += [*np.geomspace(breaks[-1], end, pieces + 1)[1:-1], end]
-    solved: dict[float, CertifiedContact] = {}
+    solved: dict[float, ContactWithErrors] = {}
 
-    def once(radius: float) -> CertifiedContact:
+    def once(radius: float) -> ContactWithErrors:
         if radius not in solved:
             solved[radius] = solve(radius)
         return solved[radius]
 
     for nodes in NODES:
         branch = solve_branch(breaks, kinks, work_of_adhesion(scene), once, nodes)
-        if accuracy is None or _is_fine_enough(branch, INTERPOLATED * accuracy, nodes):
+        if accuracy is None or _is_fine_enough(branch, 0.5 * accuracy, nodes):
             return branch
     raise NotConvergedError(
         f"accuracy {accuracy:g} was not reached along the branch",
@@ -175,7 +175,7 @@ def branch_of(
     )
 
 
-def _is_fine_enough(branch: AdhesiveBranch, error: float, nodes: int) -> bool:
+def _is_fine_enough(branch: InterpolatedBranch, error: float, nodes: int) -> bool:
     """Whether depth and force are interpolated within an error; the force gets one finer attempt, then it states it."""
     force = nodes > NODES[0] or branch.force_interpolation_error <= error
     return force and branch.depth_interpolation_error <= error

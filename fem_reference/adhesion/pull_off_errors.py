@@ -11,21 +11,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import CriticalPoint
-from fem_reference.adhesion.branch import AdhesiveBranch
+from contact.records.validation import FloatArray
+from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
 
-Array = NDArray[np.float64]
-Load = Callable[[AdhesiveBranch, Array], Array]
+Load = Callable[[InterpolatedBranch, FloatArray], FloatArray]
 
-# Of ln a, for second differences of the load.
+# Step of ln a for second differences of the load: they err by its square, 1e-4, and magnify roundings to 1e-12.
 BEND = 1e-2
-# Relative, of the search for an extremum.
+# Relative tolerance of the search for an extremum; also stated as an error of its place.
 ROOT = 1e-12
-# How near the end of a piece an extremum lies exactly there, relative: a thousand times what the search may miss.
-AT_END = 1e-9
 
 
 @dataclass(frozen=True)
@@ -38,15 +35,18 @@ class Extremum:
         radius: the place [m].
     """
 
-    branch: AdhesiveBranch
+    branch: InterpolatedBranch
     load: Load
     radius: float
 
     @cached_property
     def is_at_end(self) -> bool:
-        """Whether it is the end of a piece: a punch's rim, or a kink where the slope jumps.  No error moves it."""
+        """Whether it is the end of a piece: a punch's rim, or a kink where the slope jumps.  No error moves it.
+
+        It counts as the end within a thousand times what the search for it may miss.
+        """
         ends = np.array([piece.high for piece in self.branch.pieces])
-        return bool(np.any(np.abs(ends / self.radius - 1) < AT_END))
+        return bool(np.any(np.abs(ends / self.radius - 1) < 1e3 * ROOT))
 
     @cached_property
     def curvature(self) -> float:
@@ -55,30 +55,34 @@ class Extremum:
         left, middle, right = self.load(self.branch, np.clip(self.radius, low, high) * np.exp([-BEND, 0.0, BEND]))
         return float((left - 2 * middle + right) / BEND**2)
 
-    def slope(self, branch: AdhesiveBranch, load: Load) -> float:
+    def slope(self, branch: InterpolatedBranch, load: Load) -> float:
         """d load / d(ln a) here of a load on a branch."""
         here = np.array([self.radius])
         return float(self.radius * branch.slope(lambda a: load(branch, a), here)[0])
 
-    def shift(self, other: AdhesiveBranch) -> float:
+    def shift(self, other: InterpolatedBranch) -> float:
         """How far, in ln a, the extremum of another branch lies away."""
         return 0.0 if self.is_at_end else -self.slope(other, self.load) / self.curvature
 
     def shift_between(self, error: float) -> float:
-        """How far an error of interpolation of the load [its unit] moves it: it waves between the solved radii."""
-        return 0.0 if self.is_at_end else self.branch.waves(self.radius) * error / abs(self.curvature)
+        """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii."""
+        return 0.0 if self.is_at_end else self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
 
 
-def pull_off_errors(branch: AdhesiveBranch, pull_off: CriticalPoint, strongest: CriticalPoint) -> dict[str, Array]:
+def pull_off_errors(
+    branch: InterpolatedBranch, pull_off: CriticalPoint, strongest: CriticalPoint
+) -> dict[str, FloatArray]:
     """Relative errors of force, depth and place."""
     here, there = np.array([pull_off.contact_radius]), np.array([strongest.contact_radius])
     by_depth = pull_off.control == "displacement"
-    extremum = Extremum(branch, AdhesiveBranch.depth if by_depth else AdhesiveBranch.force, pull_off.contact_radius)
-    depth_slope = extremum.slope(branch, AdhesiveBranch.depth)
+    extremum = Extremum(
+        branch, InterpolatedBranch.depth if by_depth else InterpolatedBranch.force, pull_off.contact_radius
+    )
+    depth_slope = extremum.slope(branch, InterpolatedBranch.depth)
     # The strongest point is the pull-off itself or an extremum of the force.
-    force_slope = extremum.slope(branch, AdhesiveBranch.force) if here[0] == there[0] else 0.0
+    force_slope = extremum.slope(branch, InterpolatedBranch.force) if here[0] == there[0] else 0.0
 
-    def numbers(other: AdhesiveBranch) -> Array:
+    def numbers(other: InterpolatedBranch) -> FloatArray:
         """Depth, force and ln a of the extremum."""
         shift = extremum.shift(other)
         return np.array(

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 from functools import cache, cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from skfem import MeshTri
 from skfem.assembly.dofs import Dofs
@@ -18,12 +17,11 @@ from skfem.element import Element
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTri
 
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import Moduli
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-
+# Takes the mean of the normal strains (rr, zz, hoop) off a strain (rr, zz, hoop, sqrt(2) rz).
 DEVIATOR = np.eye(4)
 DEVIATOR[:3, :3] -= 1 / 3
 
@@ -37,11 +35,11 @@ class Tabulation:
         gradient: reference gradients, shape (2, basis, point).
     """
 
-    value: Array
-    gradient: Array
+    value: FloatArray
+    gradient: FloatArray
 
 
-def tabulate(element: Element, points: Array) -> Tabulation:
+def tabulate(element: Element, points: FloatArray) -> Tabulation:
     """Values and reference gradients of every basis function at reference points (2, n)."""
     pairs = [element.lbasis(points, i) for i in range(_basis_count(element))]
     value = np.array([np.broadcast_to(phi, points.shape[1]) for phi, _ in pairs], dtype=float)
@@ -54,7 +52,7 @@ def _basis_count(element: Element) -> int:
 
 
 @cache
-def _quadrature(degree: int) -> tuple[Array, Array]:
+def _quadrature(degree: int) -> tuple[FloatArray, FloatArray]:
     """Points (2, n) and weights of the rule exact for ``degree``."""
     points, weights = get_quadrature(RefTri, degree)
     return points, weights
@@ -88,32 +86,32 @@ class Space:
         return self.displacement_count + (int(self.pressure_dofs.N) if self.pair.is_mixed else 0)
 
     @property
-    def quadrature(self) -> tuple[Array, Array]:
+    def quadrature(self) -> tuple[FloatArray, FloatArray]:
         """Rule on the reference triangle: exact for degree 2k, scikit-fem's own default."""
         return _quadrature(2 * self.pair.degree)
 
     @cached_property
-    def jacobians(self) -> Array:
+    def jacobians(self) -> FloatArray:
         """``dx/dX`` of each triangle, shape (triangle, 2, 2)."""
         corners = self.mesh.p[:, self.mesh.t]
         return np.stack([corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]], axis=-1).transpose(1, 0, 2)
 
     @cached_property
-    def radius(self) -> Array:
+    def radius(self) -> FloatArray:
         """r at the quadrature points, shape (triangle, point)."""
         points, _ = self.quadrature
         barycentric = np.array([1 - points.sum(axis=0), *points])
         return np.asarray(self.mesh.p[0, self.mesh.t].T @ barycentric)
 
     @cached_property
-    def measure(self) -> Array:
+    def measure(self) -> FloatArray:
         """``2 pi r dr dz`` at the quadrature points, shape (triangle, point)."""
         _, weights = self.quadrature
         area = np.abs(np.linalg.det(self.jacobians))[:, None] * weights
         return np.asarray(2 * np.pi * self.radius * area)
 
     @cached_property
-    def gradients(self) -> Array:
+    def gradients(self) -> FloatArray:
         """Gradients of the scalar basis, shape (triangle, 2, basis, point)."""
         reference = tabulate(self.pair.displacement, self.quadrature[0]).gradient
         inverse = np.linalg.inv(self.jacobians)
@@ -121,17 +119,17 @@ class Space:
         return flat.reshape(len(flat), 2, *reference.shape[1:])
 
     @cached_property
-    def displacement_values(self) -> Array:
+    def displacement_values(self) -> FloatArray:
         """Scalar basis values, shape (basis, point)."""
         return tabulate(self.pair.displacement, self.quadrature[0]).value
 
     @cached_property
-    def pressure_values(self) -> Array:
+    def pressure_values(self) -> FloatArray:
         """Pressure basis values, shape (basis, point)."""
         return tabulate(self.pair.pressure, self.quadrature[0]).value
 
     @cached_property
-    def strains(self) -> Array:
+    def strains(self) -> FloatArray:
         """Strain of every basis function, shape (triangle, point, 4, 2 x basis)."""
         gradient = self.gradients.transpose(0, 3, 1, 2)
         triangles, points, _, basis = gradient.shape
@@ -144,53 +142,53 @@ class Space:
         return strain.reshape(triangles, points, 4, 2 * basis)
 
     @cached_property
-    def element_displacements(self) -> Index:
+    def element_displacements(self) -> IntArray:
         """Global displacement unknowns of each triangle, shape (triangle, 2 x basis)."""
         scalar = self.displacement_dofs.element_dofs.T.astype(np.int64)
         return np.stack([2 * scalar, 2 * scalar + 1], axis=-1).reshape(len(scalar), -1)
 
     @cached_property
-    def element_pressures(self) -> Index:
+    def element_pressures(self) -> IntArray:
         """Global pressure unknowns of each triangle, shape (triangle, basis)."""
         return np.asarray(self.pressure_dofs.element_dofs.T.astype(np.int64) + self.displacement_count)
 
     @cached_property
-    def element_unknowns(self) -> Index:
+    def element_unknowns(self) -> IntArray:
         """All unknowns of each triangle, displacements first."""
         if not self.pair.is_mixed:
             return self.element_displacements
         return np.hstack([self.element_displacements, self.element_pressures])
 
 
-def shear_elements(space: Space, shear_modulus: float) -> Array:
+def shear_elements(space: Space, shear_modulus: float) -> FloatArray:
     """``2 mu int dev(u) : dev(v)`` of each triangle."""
     deviator = (DEVIATOR @ space.strains) * np.sqrt(2 * shear_modulus * space.measure)[:, :, None, None]
     flat = deviator.reshape(len(deviator), -1, deviator.shape[-1])
     return flat.transpose(0, 2, 1) @ flat
 
 
-def _divergences(space: Space) -> Array:
+def _divergences(space: Space) -> FloatArray:
     """``div u`` of every basis function, shape (triangle, point, 2 x basis)."""
     return np.asarray(space.strains[:, :, :3].sum(axis=2))
 
 
-def volume_elements(space: Space, bulk_modulus: float) -> Array:
+def volume_elements(space: Space, bulk_modulus: float) -> FloatArray:
     """``K int div u div v`` of each triangle."""
     weighted = _divergences(space) * np.sqrt(bulk_modulus * space.measure)[:, :, None]
     return weighted.transpose(0, 2, 1) @ weighted
 
 
-def constraint_elements(space: Space) -> Array:
+def constraint_elements(space: Space) -> FloatArray:
     """``- int q div u`` of each triangle, shape (triangle, pressure, displacement)."""
     return -space.pressure_values @ (space.measure[:, :, None] * _divergences(space))
 
 
-def pressure_mass_elements(space: Space) -> Array:
+def pressure_mass_elements(space: Space) -> FloatArray:
     """``int p q`` of each triangle."""
     return (space.pressure_values * space.measure[:, None, :]) @ space.pressure_values.T
 
 
-def stiffness_elements(space: Space, moduli: Moduli) -> Array:
+def stiffness_elements(space: Space, moduli: Moduli) -> FloatArray:
     """Element matrices of the whole formulation, mixed or displacement."""
     shear = shear_elements(space, moduli.shear)
     if not space.pair.is_mixed:
@@ -198,7 +196,7 @@ def stiffness_elements(space: Space, moduli: Moduli) -> Array:
     return saddle_elements(shear, constraint_elements(space), moduli.compressibility * pressure_mass_elements(space))
 
 
-def saddle_elements(shear: Array, constraint: Array, compliance: Array) -> Array:
+def saddle_elements(shear: FloatArray, constraint: FloatArray, compliance: FloatArray) -> FloatArray:
     """``[[A, B^T], [B, -C]]`` of each triangle."""
     return np.block([[shear, constraint.transpose(0, 2, 1)], [constraint, -compliance]])
 
@@ -208,7 +206,7 @@ def stiffness_matrix(space: Space, moduli: Moduli) -> sparse.csc_array:
     return scatter(stiffness_elements(space, moduli), space.element_unknowns, space.size)
 
 
-def scatter(elements: Array, unknowns: Index, size: int) -> sparse.csc_array:
+def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_array:
     """Sum element matrices (triangle, n, n) into a sparse matrix."""
     count = unknowns.shape[1]
     rows = np.repeat(unknowns, count, axis=1).ravel()
@@ -216,7 +214,7 @@ def scatter(elements: Array, unknowns: Index, size: int) -> sparse.csc_array:
     return sparse.coo_array((elements.ravel(), (rows, columns)), shape=(size, size)).tocsc()
 
 
-def node_positions(space: Space) -> Array:
+def node_positions(space: Space) -> FloatArray:
     """(r, z) of the scalar displacement unknowns, shape (2, n)."""
     reference = space.pair.displacement.doflocs.T
     barycentric = np.array([1 - reference.sum(axis=0), *reference])

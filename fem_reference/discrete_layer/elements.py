@@ -34,6 +34,7 @@ class ElementPair:
         return self.pressure is not None
 
 
+# All element pairs by name: the stable ones, displacement formulations, and two unstable pairs for tests.
 PAIRS = {
     pair.name: pair
     for pair in (

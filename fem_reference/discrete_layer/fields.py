@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import DEVIATOR, Space
 from fem_reference.discrete_layer.material import Moduli
 from fem_reference.discrete_layer.outer_edge import decay_rate
 from fem_reference.discrete_layer.problem import LayerProblem
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -31,29 +28,29 @@ class PointFields:
         compressibility: 1/K.
     """
 
-    measure: Array
-    radius: Array
-    displacement: Array
-    gradient: Array
-    hoop: Array
-    pressure: Array
+    measure: FloatArray
+    radius: FloatArray
+    displacement: FloatArray
+    gradient: FloatArray
+    hoop: FloatArray
+    pressure: FloatArray
     shear_modulus: float
     compressibility: float
 
     @property
-    def divergence(self) -> Array:
+    def divergence(self) -> FloatArray:
         """div u."""
         return np.asarray(self.gradient[..., 0, 0] + self.gradient[..., 1, 1] + self.hoop)
 
     @property
-    def deviator(self) -> Array:
+    def deviator(self) -> FloatArray:
         """Deviatoric strain (rr, zz, hoop, sqrt(2) rz), shape (m, triangle, point, 4)."""
         g = self.gradient
         shear = (g[..., 0, 1] + g[..., 1, 0]) * np.sqrt(0.5)
         return np.stack([g[..., 0, 0], g[..., 1, 1], self.hoop, shear], axis=-1) @ DEVIATOR
 
     @property
-    def stress(self) -> Array:
+    def stress(self) -> FloatArray:
         """(rr, zz, hoop, rz), shape (m, triangle, point, 4)."""
         stress = 2 * self.shear_modulus * self.deviator
         stress[..., 3] *= np.sqrt(0.5)
@@ -61,14 +58,14 @@ class PointFields:
         return stress
 
     @property
-    def energy_products(self) -> Array:
+    def energy_products(self) -> FloatArray:
         """Twice the mutual energy density, ``2 mu dev(u_i) : dev(u_j) + p_i p_j / K``; (m, m, triangle, point)."""
         deviatoric = np.einsum("itqs,jtqs->ijtq", self.deviator, self.deviator)
         volumetric = np.einsum("itq,jtq->ijtq", self.pressure, self.pressure)
         return np.asarray(2 * self.shear_modulus * deviatoric + self.compressibility * volumetric)
 
 
-def point_fields(space: Space, moduli: Moduli, solutions: Array, triangles: Index) -> PointFields:
+def point_fields(space: Space, moduli: Moduli, solutions: FloatArray, triangles: IntArray) -> PointFields:
     """Fields of solutions (size, m) on the given triangles."""
     local = solutions.T[:, space.element_displacements[triangles]]
     nodal = local.reshape(*local.shape[:2], -1, 2)
@@ -102,12 +99,12 @@ class MutualEnergies:
         decay: rate per length at which ``beyond`` falls with the outer radius.
     """
 
-    total: Array
-    beyond: Array
+    total: FloatArray
+    beyond: FloatArray
     decay: float
 
 
-def mutual_energies(problem: LayerProblem, solutions: Array) -> MutualEnergies:
+def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> MutualEnergies:
     """Energies of solutions (size, m), from stresses and strains at points.
 
     Energy densities decay like ``exp(-2 s r / h)``; hence ``beyond = strip / (exp(2 s w / h) - 1)`` for the outermost

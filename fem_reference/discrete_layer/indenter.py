@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Profile
-
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray
 
 
 @dataclass(frozen=True)
@@ -25,15 +23,15 @@ class ScaledIndenter:
     profile: Profile
     contact_radius: float
 
-    def height(self, radius: Array) -> Array:
+    def height(self, radius: FloatArray) -> FloatArray:
         """f / a at r / a; nodes at the rim of a punch may exceed it by rounding."""
         return np.asarray(self.profile.height(self._inside(radius)) / self.contact_radius)
 
-    def slope(self, radius: Array) -> Array:
+    def slope(self, radius: FloatArray) -> FloatArray:
         """f' at r / a, at the contact edge the value from inside."""
         return np.asarray(self.profile.slope_at((1 - 1e-10) * self._inside(radius)))
 
-    def _inside(self, radius: Array) -> Array:
+    def _inside(self, radius: FloatArray) -> FloatArray:
         return np.minimum(radius * self.contact_radius, min(self.contact_radius, self.profile.max_radius))
 
     @cached_property

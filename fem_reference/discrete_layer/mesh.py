@@ -16,12 +16,10 @@ from threading import current_thread, main_thread
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from skfem import MeshTri
 
 from contact import NotConvergedError
-
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray, IntArray
 
 MISSING_LIBRARIES = (
     "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
@@ -29,8 +27,11 @@ MISSING_LIBRARIES = (
 )
 
 
-LONGEST_LINE = 1e10  # over its smallest cell
-RESOLVED = 3e-8  # smallest cell that gmsh meshes well, over its distance from the origin
+# Longest line over its smallest cell; gmsh takes minutes for longer ones.
+LONGEST_LINE = 1e10
+# Smallest cell over its distance from gmsh's origin: gmsh squares coordinates, so cells below the root of a rounding,
+# 1.5e-8, degenerate; this is twice that.
+RESOLVED = 3e-8
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -97,8 +98,10 @@ def _gmsh() -> Any:
         raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
     handler = getsignal(SIGPIPE)
     gmsh.initialize([], interruptible=False)
-    if current_thread() is main_thread():  # the only one that may set signals
-        signal(SIGPIPE, handler)  # gmsh lets a broken pipe end the process: a pool would die with any of its workers
+    # gmsh lets a broken pipe end the process: a pool would die with any of its workers.  Only the main thread may set
+    # signals.
+    if current_thread() is main_thread():
+        signal(SIGPIPE, handler)
     for option, value in {
         "General.Terminal": 0,
         "General.NumThreads": 1,
@@ -173,7 +176,7 @@ def _split_where_fine(x: list[float], cells: dict[float, float]) -> list[float]:
     return sorted(stations)
 
 
-def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
+def _mesh_arrays(gmsh_mesh: Any) -> tuple[FloatArray, IntArray]:
     """Points (2, n) and triangles (3, m)."""
     tags, coordinates, _ = gmsh_mesh.getNodes()
     _, nodes = gmsh_mesh.getElementsByType(2)
@@ -183,7 +186,7 @@ def _mesh_arrays(gmsh_mesh: Any) -> tuple[Array, NDArray[np.int64]]:
     return points, np.ascontiguousarray(position[nodes].reshape(-1, 3).T)
 
 
-def named_layer_mesh(points: Array, triangles: NDArray[np.int64]) -> LayerMesh:
+def named_layer_mesh(points: FloatArray, triangles: IntArray) -> LayerMesh:
     """Name the four boundaries of a rectangular section given by points (2, n) and triangles (3, m).
 
     Raises:

@@ -9,15 +9,12 @@ complement of displacements already eliminated, so the symmetric indefinite matr
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 
-
-def nested_dissection(space: Space) -> Index:
+def nested_dissection(space: Space) -> IntArray:
     """All unknowns of the space in their order of elimination."""
     centres = space.mesh.p[:, space.mesh.t].mean(axis=1)
     halvings = max(1, int(np.ceil(np.log2(centres.shape[1]))))
@@ -26,13 +23,14 @@ def nested_dissection(space: Space) -> Index:
     highest = np.zeros(space.size, dtype=np.int64)
     np.minimum.at(lowest, space.element_unknowns.ravel(), part)
     np.maximum.at(highest, space.element_unknowns.ravel(), part)
-    level = bit_length(lowest ^ highest)  # the number of halvings undone until one part holds all triangles
+    # The number of halvings that are undone until one part holds all triangles of an unknown.
+    level = bit_length(lowest ^ highest)
     last_part = ((lowest >> level) + 1) << level
     is_pressure = np.arange(space.size) >= space.displacement_count
     return np.lexsort((is_pressure, level, last_part)).astype(np.int64)
 
 
-def bisect(points: Array, halvings: int) -> Index:
+def bisect(points: FloatArray, halvings: int) -> IntArray:
     """Binary code of the part in which each point (2, n) lies after so many halvings by count."""
     code = np.zeros(points.shape[1], dtype=np.int64)
     for halving in range(halvings):
@@ -47,7 +45,7 @@ def bisect(points: Array, halvings: int) -> Index:
     return code
 
 
-def _upper_half(along: Array, code: Index, parts: int) -> Index:
+def _upper_half(along: FloatArray, code: IntArray, parts: int) -> IntArray:
     """1 for the points of each part beyond its median."""
     order = np.lexsort((along, code))
     count = np.bincount(code, minlength=parts)
@@ -57,7 +55,8 @@ def _upper_half(along: Array, code: Index, parts: int) -> Index:
     return (rank >= (count[code] + 1) // 2).astype(np.int64)
 
 
-def bit_length(numbers: Index) -> Index:
+def bit_length(numbers: IntArray) -> IntArray:
     """Number of binary digits of each non-negative number."""
-    _, exponent = np.frexp(numbers.astype(np.float64))  # exact below 2^53
+    # The conversion is exact below 2^53.
+    _, exponent = np.frexp(numbers.astype(np.float64))
     return exponent.astype(np.int64)

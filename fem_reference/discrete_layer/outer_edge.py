@@ -12,7 +12,9 @@ import math
 
 from scipy.optimize import brentq
 
-UNBONDED_DECAY = 2.10619612  # smallest imaginary part of the roots of sinh(2 q) + 2 q = 0
+# Rate per thickness of the bending-like mode of an unbonded layer: smallest imaginary part of the complex roots of
+# sinh(2 q) + 2 q = 0.
+UNBONDED_DECAY = 2.10619612
 
 
 def decay_rate(poissons_ratio: float, support: str) -> float:

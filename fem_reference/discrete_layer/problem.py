@@ -7,10 +7,10 @@ from functools import cached_property
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import sparse
 from skfem import ElementVector, FacetBasis
 
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.assembly import Space, node_positions, stiffness_matrix
 from fem_reference.discrete_layer.elements import ElementPair
@@ -19,8 +19,6 @@ from fem_reference.discrete_layer.material import Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.ordering import nested_dissection
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
 Support = Literal["bonded", "unbonded"]
 
 
@@ -64,23 +62,23 @@ class LayerProblem:
         return outer_edge_matrix(self.space, self.moduli.shear)
 
     @cached_property
-    def positions(self) -> Array:
+    def positions(self) -> FloatArray:
         """(r, z) of the scalar displacement unknowns, shape (2, n)."""
         return node_positions(self.space)
 
-    def nodes_on(self, boundary: str) -> Index:
+    def nodes_on(self, boundary: str) -> IntArray:
         """Scalar displacement unknowns on a named boundary."""
         return facet_nodes(self.space, self.layer_mesh.mesh.boundaries[boundary])
 
     @cached_property
-    def supported_unknowns(self) -> Index:
+    def supported_unknowns(self) -> IntArray:
         """Displacements that the axis and the base hold at zero."""
         held = [2 * self.nodes_on("axis"), 2 * self.nodes_on("base") + 1]
         if self.support == "bonded":
             held.append(2 * self.nodes_on("base"))
         return np.unique(np.concatenate(held))
 
-    def top_nodes(self, radius: float) -> Index:
+    def top_nodes(self, radius: float) -> IntArray:
         """Scalar displacement unknowns of the top cells within ``radius``, in the order of increasing r."""
         mesh = self.layer_mesh.mesh
         facets = mesh.boundaries["top"]
@@ -88,12 +86,12 @@ class LayerProblem:
         nodes = facet_nodes(self.space, facets[inside])
         return nodes[np.argsort(self.positions[0, nodes])]
 
-    def solver(self, held: Index) -> RestrictedSolver:
+    def solver(self, held: IntArray) -> RestrictedSolver:
         """Factorise once with these unknowns prescribed."""
         return RestrictedSolver(self, held)
 
 
-def facet_nodes(space: Space, facets: Index) -> Index:
+def facet_nodes(space: Space, facets: IntArray) -> IntArray:
     """Scalar displacement unknowns on facets."""
     return np.asarray(space.displacement_dofs.get_facet_dofs(facets).all(), dtype=np.int64)
 
@@ -114,30 +112,31 @@ class RestrictedSolver:
         checked: the factorised matrix of the others.
     """
 
-    def __init__(self, problem: LayerProblem, held: Index) -> None:
+    def __init__(self, problem: LayerProblem, held: IntArray) -> None:
         order = nested_dissection(problem.space)
         is_free = np.ones(problem.space.size, dtype=bool)
         is_free[held] = False
         self.problem = problem
         self.held = held
         self._free = order[is_free[order]]
-        rows = problem.matrix.T[self._free]  # symmetric: the transpose is the same matrix, stored by rows
+        # The transpose is the same symmetric matrix, stored by rows.
+        rows = problem.matrix.T[self._free]
         self._coupling = rows[:, held]
         self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend)
 
-    def solve_displaced(self, values: Array) -> Array:
+    def solve_displaced(self, values: FloatArray) -> FloatArray:
         """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""
         solution = np.zeros((self.problem.space.size, values.shape[1]))
         solution[self.held] = values
         solution[self._free] = self.checked.solve(-(self._coupling @ values))
         return solution
 
-    def solve_loaded(self, loads: Array) -> Array:
+    def solve_loaded(self, loads: FloatArray) -> FloatArray:
         """All unknowns, shape (size, m), for loads of that shape, the prescribed unknowns at zero."""
         solution = np.zeros_like(loads)
         solution[self._free] = self.checked.solve(loads[self._free])
         return solution
 
-    def reactions(self, solution: Array, unknowns: Index) -> Array:
+    def reactions(self, solution: FloatArray, unknowns: IntArray) -> FloatArray:
         """Nodal forces that act on the layer at these unknowns."""
         return np.asarray(self.problem.matrix[unknowns] @ solution)

@@ -5,19 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Self
 
-import numpy as np
-from numpy.typing import NDArray
-
 from contact import InvalidInput, Layer
 from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
 from fem_reference.discrete_layer.outer_edge import outer_distance
-
-Array = NDArray[np.float64]
-
-
-LEAST_CELL = 1e-13  # a thousand roundings of the radius there
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,7 +93,8 @@ def graded_points(
     logarithmic, like its square, but the L2 error of the pressure like its root.
     """
     last_kink = max(indenter.kinks, default=0.0)
-    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), LEAST_CELL)
+    # No cell is smaller than a thousand roundings of the radius.
+    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), 1e-13)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)
     cells |= {

@@ -6,15 +6,14 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray, IntArray
 
 
 @cache
-def _lagrange(degree: int) -> Array:
+def _lagrange(degree: int) -> FloatArray:
     """Coefficients (power, node) of the Lagrange polynomials on equispaced nodes of [0, 1]."""
     return np.asarray(np.linalg.inv(np.vander(np.linspace(0, 1, degree + 1), increasing=True)))
 
@@ -28,20 +27,20 @@ class TraceSpace:
         degree: polynomial degree.
     """
 
-    radii: Array
+    radii: FloatArray
     degree: int
 
     @property
-    def vertices(self) -> Array:
+    def vertices(self) -> FloatArray:
         """Cell ends."""
         return self.radii[:: self.degree]
 
-    def basis(self, t: Array) -> Array:
+    def basis(self, t: FloatArray) -> FloatArray:
         """The degree + 1 basis functions at local coordinates t in [0, 1], shape (..., node)."""
         values = np.vander(t.ravel(), self.degree + 1, increasing=True) @ _lagrange(self.degree)
         return np.asarray(values).reshape(*t.shape, self.degree + 1)
 
-    def evaluate(self, values: Array, radius: Array) -> Array:
+    def evaluate(self, values: FloatArray, radius: FloatArray) -> FloatArray:
         """Function with nodal ``values`` at radii within the trace; zero beyond it."""
         vertices = self.vertices
         cell = np.clip(np.searchsorted(vertices, radius, side="right") - 1, 0, len(vertices) - 2)
@@ -50,14 +49,14 @@ class TraceSpace:
         inside = (radius >= vertices[0]) & (radius <= vertices[-1])
         return np.where(inside, np.sum(self.basis(t) * values[nodes], axis=1), 0.0)
 
-    def gauss(self, points: int) -> tuple[Array, Array]:
+    def gauss(self, points: int) -> tuple[FloatArray, FloatArray]:
         """Radii (cell, point) and weights ``2 pi r dr`` of a Gauss rule on every cell."""
         x, w = np.polynomial.legendre.leggauss(points)
         length = np.diff(self.vertices)[:, None]
         radius = self.vertices[:-1, None] + length * (x + 1) / 2
         return radius, 2 * np.pi * radius * length * w / 2
 
-    def moments(self, function_values: Array, points: int) -> Array:
+    def moments(self, function_values: FloatArray, points: int) -> FloatArray:
         """``int f v 2 pi r dr`` for every basis function v, f given at ``gauss(points)``."""
         _, weights = self.gauss(points)
         x, _ = np.polynomial.legendre.leggauss(points)
@@ -65,7 +64,7 @@ class TraceSpace:
         loads = np.bincount(self._cell_nodes.ravel(), local.ravel(), minlength=len(self.radii))
         return np.asarray(loads, dtype=np.float64)
 
-    def hat_moments(self, stride: int) -> Array:
+    def hat_moments(self, stride: int) -> FloatArray:
         """``int v hat 2 pi r dr`` for every basis function v and the hat functions on every ``stride``-th node.
 
         Shape (node, hat); ``stride`` divides the degree, so that hats bend at nodes only.
@@ -82,7 +81,7 @@ class TraceSpace:
         return moments
 
     @property
-    def _cell_nodes(self) -> NDArray[np.int64]:
+    def _cell_nodes(self) -> IntArray:
         return np.arange(0, len(self.radii) - 1, self.degree)[:, None] + np.arange(self.degree + 1)
 
     def mass_matrix(self) -> coo_array:
@@ -97,6 +96,6 @@ class TraceSpace:
         size = len(self.radii)
         return coo_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
 
-    def recover(self, nodal_forces: Array) -> Array:
+    def recover(self, nodal_forces: FloatArray) -> FloatArray:
         """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery."""
         return np.asarray(splu(self.mass_matrix().tocsc()).solve(nodal_forces))

@@ -10,40 +10,42 @@ import numpy as np
 
 from contact import HistoryPath, ImpactHistory, NotConvergedError
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.error_estimate import CertifiedContact, ContactAttempt
+from fem_reference.elastic.error_estimate import ContactAttempt, ContactWithErrors
 
-ATTEMPTS = 6
-JUDGED = ("stiffness", "smooth_depth", "smooth_force")
-HISTORY_ATTEMPTS = 5  # every one takes twice the steps and twice the cells
-COARSEST = 1.0  # growth; on meshes of fewer than a hundred triangles the errors of three degrees say little
-ERROR_ORDER = 7.0  # measured: the error of P4P3 falls like growth^7 on graded meshes (2k = 8 less mesh irregularity)
-ERROR_AT_HALF = 8e-6  # measured: above all estimated errors of P4P3 at growth 1/2, of punches, cones and paraboloids
-
+# The error of P4P3 falls like this power of the growth on graded meshes: measured, the theoretical 2k = 8 less what
+# irregular meshes lose.  It chooses the next mesh only; a wrong value costs attempts, no accuracy.
+ERROR_ORDER = 7.0
+# An error above all that were estimated for P4P3 at growth 1/2 on punches, cones and paraboloids (measured).  It
+# chooses the first mesh only.
+ERROR_AT_HALF = 8e-6
 
 H = TypeVar("H", bound=HistoryPath | ImpactHistory)
 
 
 def settings_for(accuracy: float) -> Discretisation:
     """A discretisation that usually meets ``accuracy`` (relative) at the first attempt."""
+    # Beyond a growth of one a mesh has fewer than a hundred triangles, on which the errors of three degrees say little.
+    growth = float(np.clip(0.5 * (accuracy / ERROR_AT_HALF) ** (1 / ERROR_ORDER), 0.05, 1.0))
     return Discretisation(
         order=4,
-        growth=float(np.clip(0.5 * (accuracy / ERROR_AT_HALF) ** (1 / ERROR_ORDER), 0.05, COARSEST)),
+        growth=growth,
         edge_cell=float(np.clip(accuracy / 2, 1e-11, 1e-3)),
-        truncation=float(np.clip(0.003 * accuracy, 1e-13, 1e-3)),  # on thin layers the force feels it 40-fold
+        # The outer edge shall add nothing to the other errors.
+        truncation=float(np.clip(0.003 * accuracy, 1e-13, 1e-3)),
         half_space_thickness=float(np.clip(100 / accuracy, 1e3, 1e12)),
     )
 
 
-def solve_to_accuracy(attempt: ContactAttempt, accuracy: float) -> CertifiedContact:
+def solve_to_accuracy(attempt: ContactAttempt, accuracy: float) -> ContactWithErrors:
     """Refine until the estimated errors of stiffness, depth and force are below ``accuracy``.
 
     Raises:
         NotConvergedError: six refinements did not suffice.
     """
     settings = settings_for(accuracy)
-    for _ in range(ATTEMPTS):
+    for _ in range(6):
         contact = attempt(settings)
-        worst = max(contact.error[name] for name in JUDGED)
+        worst = max(contact.error[name] for name in ("stiffness", "smooth_depth", "smooth_force"))
         if worst <= accuracy:
             return contact
         factor = np.clip(0.9 * (accuracy / worst) ** (1 / ERROR_ORDER), 0.5, 0.9)
@@ -66,7 +68,7 @@ def solve_history_to_accuracy(attempt: Callable[[Discretisation], H], accuracy: 
         NotConvergedError: five attempts did not suffice.
     """
     settings = replace(settings_for(accuracy), growth=1.0)
-    for _ in range(HISTORY_ATTEMPTS):
+    for _ in range(5):
         history = attempt(settings)
         names = ("coefficient_of_restitution", "peak_force", "peak_depth", "indentation_depth", "normal_force")
         judged = names[:3] if isinstance(history, ImpactHistory) else names[3:]

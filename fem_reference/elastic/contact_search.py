@@ -5,19 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import IndentationDepths, InvalidInput, NotConvergedError, Scene, StageLog
+from contact.records.validation import BoolArray, FloatArray
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
-from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense, strip_mesh
+from fem_reference.elastic.surface_compliance import STRIP_CELLS, SurfaceCompliance, condense, strip_mesh
 
-Array = NDArray[np.float64]
-Mask = NDArray[np.bool_]
-
-STRIP_CELLS = 120
-EDGE = (0.11, 1.0, 0.04)  # measured on paraboloids and cones on thick, thin and compressible layers, to 0.06 cells
-WIDENINGS = 12
+# Coefficients, highest power first, of the polynomial that tells the distance [cells] from the last pressed vertex to
+# the contact edge from the ratio of the last two pressures.  Fitted to paraboloids and cones on thick, thin and
+# compressible layers, where it is right to 0.06 cells.
+EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 
 
 @dataclass(frozen=True)
@@ -69,13 +67,13 @@ class FoundContact:
         return edge_radius(self.strip.radii, self.state.pressure)
 
 
-def edge_radius(radii: Array, pressure: Array) -> float:
+def edge_radius(radii: FloatArray, pressure: FloatArray) -> float:
     """Contact radius from the last two pressures that press, to a few hundredths of a cell.
 
     Next to its edge every smooth contact is the same problem of the half-plane, p = K sqrt(a - r).  Solved on equal
     cells, the distance from the last pressed vertex to the true edge is one function of the ratio of the last two
-    pressures, whatever K: the polynomial `EDGE`.  A last pressure above its neighbour is that of a sharp rim, where the
-    contact ends.
+    pressures, whatever K: the polynomial `EDGE_POLYNOMIAL`.  A last pressure above its neighbour is that of a sharp
+    rim, where the contact ends.
     """
     pressed = np.flatnonzero(pressure > 0)
     if not len(pressed):
@@ -86,7 +84,7 @@ def edge_radius(radii: Array, pressure: Array) -> float:
     inner, outer = pressure[last - 1 : last + 1]
     if outer >= inner:
         return float(radii[last])
-    return float(radii[last] + np.polyval(EDGE, outer / inner) * (radii[last] - radii[last - 1]))
+    return float(radii[last] + np.polyval(EDGE_POLYNOMIAL, outer / inner) * (radii[last] - radii[last - 1]))
 
 
 class ContactSearch:
@@ -101,7 +99,7 @@ class ContactSearch:
         quadrature, _ = self.strip.pressure_space.gauss(4)
         self._profile = self.strip.weighted(scene.indenter.height(quadrature * radius) / radius)
         self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
-        self._active: Mask | None = None
+        self._active: BoolArray | None = None
 
     def at_depth(self, depth: float) -> FoundContact:
         """Contact at depth [m]; starts from the last active set."""
@@ -143,7 +141,7 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
     by_depth = isinstance(scene.loading, IndentationDepths)
     end = scene.indenter.max_radius
     radius = _first_radius(scene, target, by_depth)
-    for _ in range(WIDENINGS):
+    for _ in range(12):
         search = ContactSearch(scene, radius, settings, backend, log)
         found = search.at_depth(target) if by_depth else search.at_force(target)
         if search.reaches_end(found):

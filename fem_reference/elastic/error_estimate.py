@@ -5,9 +5,11 @@ Four sources of error are estimated apart and added:
 * **interpolation**: the same mesh is solved with lower degrees.  The change from degree k-1 to k is the error of
   degree k-1; the error of degree k is that change times the rate ``rho`` at which the changes themselves fall;
 * **edge cell**: the square-root singularity is not resolved inside the cell at the contact edge.  Its loss acts like a
-  contact smaller by ``EDGE_SHIFT`` cells;
+  contact smaller by a share of that cell;
 * **outer edge**: the energy that a longer section would store, from the decay in the outermost strip;
 * **half-space**: a half-space is replaced by a thick layer, stiffer by about 1.13 a / h (bonded, nu = 1/2, the worst).
+
+The coefficients stand in `error_model.FIXED_RADIUS`.
 """
 
 from __future__ import annotations
@@ -18,9 +20,9 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer, StageLog
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import LayerMesh
@@ -28,37 +30,15 @@ from fem_reference.discrete_layer.outer_edge import UNBONDED_DECAY
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, graded_points
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
-
-Array = NDArray[np.float64]
+from fem_reference.error_model import AT_LOAD, FIXED_RADIUS
 
 QUANTITIES = ("stiffness", "stiffness_slope", "smooth_depth", "smooth_force")
-ESTIMATING_DEGREES = {2: (2, 3), 3: (2, 3), 4: (2, 3, 4)}  # by the degree of the answer
-EDGE_SHIFT = {
-    2: 0.15,
-    3: 0.08,
-    4: 0.06,
-}  # measured: 0.02 (nu = 1/2) to 0.055 (nu = 0) for k = 4, rings next to the cell included
-HALF_SPACE_COEFFICIENT = 1.2
-UNBONDED_TRUNCATION = 5.0
-ROUND_OFF = 1e-12
-TYPICAL_RATE = 0.1  # measured: e(k) / e(k-1) is seldom below this times growth^2 on graded meshes
-UNMEASURED_RATE = 0.4  # measured: e(3) / e(2) is seldom above this times growth^3
-COARSE_RATE = 0.3  # measured: e(4) over the last change is below three times this times growth^3 in 19 of 20 contacts
-TRUNCATION_SAFETY = 4.0  # the mesh's end lets the layer give way a few times more than the energy beyond it
-SAFETY = 3.0  # on the interpolation error: rho is itself an extrapolation
-# Which share of the expected fall of a number's changes is believed, at a given load, where most of them cancel: a
-# smaller last change is an accident.  Measured on random scenes (seeds 1 to 5, 2026-11-22).
-FASTEST_AT_LOAD = 0.3
-# Error of the pressure over its last change between degrees: least and most, and per fall of the changes.  Measured on
-# 136 states of random scenes (seeds 1 and 5, 2026-11-22): 0.04 to 0.55 where the changes fall by ten or more, up to 0.9
-# where a cell at a kink is so large that they fall by five to ten, up to 1.15 where they hardly fall.
-PRESSURE_RATE = (0.6, 1.5)
-PRESSURE_FALL = 10.0
-SLOPE_RATIO = 1.0  # the change of k_N' may be small by accident: its error is seldom above that of k_N
+# Degrees that are solved on the same mesh, by the degree of the answer: two show a change, three how fast it falls.
+ESTIMATING_DEGREES = {2: (2, 3), 3: (2, 3), 4: (2, 3, 4)}
 
 
 @dataclass(frozen=True, kw_only=True)
-class CertifiedContact:
+class ContactWithErrors:
     """One contact radius, solved with several degrees on one mesh.
 
     Attributes:
@@ -96,13 +76,13 @@ class CertifiedContact:
         """Relative error of the smooth contact pressure in the ``2 pi r``-weighted L2 norm.
 
         Next to the axis, the kinks and the edge the pressure gains less from a higher degree than energies do: the
-        true error is `PRESSURE_RATE` times the last change at least, and as much more as the changes fall slowly.
+        true error is at least a fixed share of the last change, and more where the changes fall slowly.
         """
         changes = [self._pressure_change(*pair) for pair in self._last_changes]
         if self.settings.order == min(self.levels):
             return 1.5 * changes[-1]
         fall = changes[-1] / changes[-2] if len(changes) > 1 else 0.0
-        return float(np.clip(PRESSURE_FALL * fall, *PRESSURE_RATE)) * changes[-1]
+        return float(np.clip(FIXED_RADIUS.pressure_per_fall * fall, *FIXED_RADIUS.pressure_bounds)) * changes[-1]
 
     @property
     def _last_changes(self) -> list[tuple[int, int]]:
@@ -110,59 +90,69 @@ class CertifiedContact:
         degrees = sorted(self.levels)
         return list(pairwise(degrees))
 
-    def _change(self, lower: int, higher: int) -> Array:
+    def _change(self, lower: int, higher: int) -> FloatArray:
         coarse, fine = ([getattr(self.levels[k], name) for name in QUANTITIES] for k in (lower, higher))
         return relative_change(np.array(coarse), np.array(fine))
 
     @property
     def rate(self) -> float:
         """rho: the error of the answer relative to the last change between degrees."""
+        return max(self.rate_at_load, self._coarse_rate) if len(self._last_changes) > 1 else self.rate_at_load
+
+    @property
+    def rate_at_load(self) -> float:
+        """The same for numbers in which most errors cancel: coarse meshes let them fall as fast as fine ones do."""
         if self.settings.order == min(self.levels):
             return 1.0
         if len(self._last_changes) == 1:
-            return min(1.0, UNMEASURED_RATE * self.settings.growth**3)
+            return min(1.0, FIXED_RADIUS.unmeasured_rate * self.settings.growth**3)
         previous, last = (self._change(*pair).mean() for pair in self._last_changes[-2:])
-        return float(np.clip(last / previous, max(self.fastest_rate, self._coarse_rate), 1.0))
+        return float(np.clip(last / previous, self.fastest_rate, 1.0))
 
     @property
     def _coarse_rate(self) -> float:
-        return min(COARSE_RATE * self.settings.growth**3, 1.0)
+        nearly_incompressible = self.layer.poissons_ratio >= 0.49
+        rate = FIXED_RADIUS.incompressible_rate if nearly_incompressible else FIXED_RADIUS.coarse_rate
+        return min(rate * self.settings.growth**3, 1.0)
 
     @property
     def fastest_rate(self) -> float:
         """Below this, the fall of the changes is an accident."""
-        return min(TYPICAL_RATE * self.settings.growth**2, 1.0)
+        return min(FIXED_RADIUS.fastest_rate * self.settings.growth**2, 1.0)
 
     @property
     def _interpolation_error(self) -> Mapping[str, float]:
         change = self._change(*self._last_changes[-1])
-        for before in self._last_changes[-2:-1]:  # a change that fell faster than errors do is small by accident
+        # A change that fell faster than errors do is small by accident.
+        for before in self._last_changes[-2:-1]:
             change = np.maximum(change, self.fastest_rate * self._change(*before))
-        change = np.maximum(change, 0.6 * change.mean())  # one quantity may change little by accident
-        change[1] = max(change[1], SLOPE_RATIO * change[0])
-        return dict(zip(QUANTITIES, SAFETY * self.rate * change, strict=True))
+        # One quantity may change little by accident; the error of k_N' is seldom below that of k_N.
+        change = np.maximum(change, FIXED_RADIUS.share_of_mean * change.mean())
+        change[1] = max(change[1], change[0])
+        return dict(zip(QUANTITIES, FIXED_RADIUS.safety * self.rate * change, strict=True))
 
-    def interpolation_error_of(self, numbers: Callable[[PrescribedContact], Array]) -> Array:
-        """Absolute errors of numbers that follow from one solution, from what they change with the degree.
+    def changes_of(self, numbers: Callable[[PrescribedContact], FloatArray]) -> FloatArray:
+        """By how much numbers that follow from one solution change with the last degree, times the safety factor.
 
-        Errors that cancel in a number do so at every degree: no error of stiffness, depth or force is added up.
+        Errors that cancel in a number do so at every degree: no error of stiffness, depth or force is added up.  Times
+        a rate, these are the absolute errors by interpolation.
         """
         changes = [np.abs(numbers(self.levels[high]) - numbers(self.levels[low])) for low, high in self._last_changes]
-        expected = [FASTEST_AT_LOAD * self.fastest_rate * before for before in changes[-2:-1]]
-        return np.asarray(SAFETY * self.rate * np.max([changes[-1], *expected], axis=0))
+        expected = [AT_LOAD.fastest_share * self.fastest_rate * before for before in changes[-2:-1]]
+        return np.asarray(FIXED_RADIUS.safety * np.max([changes[-1], *expected], axis=0))
 
     def outer_edge_error_of_force(self, depth: float) -> float:
         """Error of the force / (E* a^2) at a depth / a that the mesh's end makes."""
         if self.layer.support == "unbonded" and not self.layer.is_half_space:
             return self._unbonded_truncation_error * self.answer.stiffness * depth
-        tail = TRUNCATION_SAFETY * np.abs(self.answer.tail_energies)
+        tail = FIXED_RADIUS.outer_edge_safety * np.abs(self.answer.tail_energies)
         return float(tail[0, 1] + abs(depth) * tail[0, 0])
 
     @property
     def edge_shift(self) -> float:
         """By how much, relative to its radius, the contact acts like a smaller one."""
         edge = dict(graded_points(self.layer_mesh.thickness, self.indenter, self.settings))[1.0]
-        return EDGE_SHIFT[self.settings.order] * edge
+        return FIXED_RADIUS.edge_shift[self.settings.order] * edge
 
     @property
     def _edge_error(self) -> Mapping[str, float]:
@@ -180,7 +170,7 @@ class CertifiedContact:
     def _truncation_error(self) -> Mapping[str, float]:
         if self.layer.support == "unbonded" and not self.layer.is_half_space:
             return dict.fromkeys(QUANTITIES, self._unbonded_truncation_error)
-        answer, tail = self.answer, TRUNCATION_SAFETY * np.abs(self.answer.tail_energies)
+        answer, tail = self.answer, FIXED_RADIUS.outer_edge_safety * np.abs(self.answer.tail_energies)
         force_at_depth = tail[0, 1] + abs(answer.smooth_depth) * tail[0, 0]
         depth = answer.decay * force_at_depth / answer.stiffness_slope
         absolute = (tail[0, 0], answer.decay * tail[0, 0], depth, force_at_depth + depth * answer.stiffness)
@@ -191,12 +181,14 @@ class CertifiedContact:
     def _unbonded_truncation_error(self) -> float:
         """The membrane mode passes the outer edge; what is left decays with the bending-like mode."""
         distance = (self.layer_mesh.outer_radius - 1) / self.layer_mesh.thickness
-        return UNBONDED_TRUNCATION * float(np.exp(-2 * UNBONDED_DECAY * distance))
+        return FIXED_RADIUS.unbonded_outer_edge * float(np.exp(-2 * UNBONDED_DECAY * distance))
 
     @property
     def common_error(self) -> float:
         """Relative error of every number: the layer that stands for a half-space, and rounding."""
-        return ROUND_OFF + (HALF_SPACE_COEFFICIENT / self.layer_mesh.thickness if self.layer.is_half_space else 0.0)
+        return FIXED_RADIUS.rounding + (
+            FIXED_RADIUS.half_space / self.layer_mesh.thickness if self.layer.is_half_space else 0.0
+        )
 
     def _pressure_change(self, lower: int, higher: int) -> float:
         """Relative L2 change of the pressure of smooth contact."""
@@ -204,10 +196,10 @@ class CertifiedContact:
         return pressure_difference(coarse, coarse.smooth_depth or 1.0, fine, fine.smooth_depth or 1.0)
 
 
-ContactAttempt = Callable[[Discretisation], CertifiedContact]
+ContactAttempt = Callable[[Discretisation], ContactWithErrors]
 
 
-def relative_change(coarse: Array, fine: Array) -> Array:
+def relative_change(coarse: FloatArray, fine: FloatArray) -> FloatArray:
     """|coarse - fine| / |fine|, zero where both vanish (depth and force of a flat punch in smooth contact)."""
     return np.divide(np.abs(coarse - fine), np.abs(fine), out=np.zeros_like(fine), where=fine != 0)
 
@@ -230,9 +222,9 @@ def relative_size(error: float, value: float) -> float:
     return float(error / abs(value)) if value != 0 else 0.0
 
 
-def solve_certified_contact(
+def solve_contact_with_errors(
     layer: Layer, indenter: ScaledIndenter, settings: Discretisation, backend: str, log: StageLog
-) -> CertifiedContact:
+) -> ContactWithErrors:
     """Mesh the section and solve it with the degrees that answer and error estimate need."""
     with log.stage("mesh"):
         mesh = contact_mesh(layer, indenter, settings)
@@ -242,4 +234,4 @@ def solve_certified_contact(
         )
         for k in ESTIMATING_DEGREES[settings.order]
     }
-    return CertifiedContact(layer=layer, indenter=indenter, settings=settings, layer_mesh=mesh, levels=levels)
+    return ContactWithErrors(layer=layer, indenter=indenter, settings=settings, layer_mesh=mesh, levels=levels)

@@ -8,16 +8,12 @@ from pathlib import Path
 
 import meshio
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from contact import InvalidInput
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space, tabulate
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-
-CORNERS_AND_MIDPOINTS = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])  # nodes of a quadratic triangle
 
 
 @dataclass(frozen=True)
@@ -41,10 +37,10 @@ class Section:
         return Space(self.contact.layer_mesh.mesh, self.contact.pair)
 
     @cached_property
-    def _unknowns(self) -> Array:
+    def _unknowns(self) -> FloatArray:
         return np.asarray(self.contact.solutions @ [self.depth, 1.0])
 
-    def displacement(self, radius: ArrayLike, depth: ArrayLike) -> Array:
+    def displacement(self, radius: ArrayLike, depth: ArrayLike) -> FloatArray:
         """(u_r, u_z) [m] at points (r, z) [m], shape (n, 2).
 
         Raises:
@@ -53,7 +49,7 @@ class Section:
         triangles, local = self._locate(radius, depth)
         return self._evaluate(triangles, local)[0]
 
-    def stress(self, radius: ArrayLike, depth: ArrayLike) -> Array:
+    def stress(self, radius: ArrayLike, depth: ArrayLike) -> FloatArray:
         """(rr, zz, hoop, rz) [Pa] at points (r, z) [m], tension positive, shape (n, 4).
 
         Raises:
@@ -62,7 +58,7 @@ class Section:
         triangles, local = self._locate(radius, depth)
         return self._evaluate(triangles, local)[1]
 
-    def _locate(self, radius: ArrayLike, depth: ArrayLike) -> tuple[Index, Array]:
+    def _locate(self, radius: ArrayLike, depth: ArrayLike) -> tuple[IntArray, FloatArray]:
         """Triangle of each point and its coordinates (2, n) in the reference triangle."""
         points = np.array(np.broadcast_arrays(np.atleast_1d(radius), np.atleast_1d(depth)), dtype=float)
         points /= self.contact_radius
@@ -76,7 +72,7 @@ class Section:
         local = np.linalg.solve(self._space.jacobians[triangles], (points - corner).T[:, :, None])[:, :, 0].T
         return triangles, local
 
-    def _evaluate(self, triangles: Index, local: Array) -> tuple[Array, Array]:
+    def _evaluate(self, triangles: IntArray, local: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Displacement (n, 2) [m] and stress (n, 4) [Pa] at reference coordinates (2, n) of given triangles."""
         space, moduli, mesh = self._space, self.contact.moduli, self.contact.layer_mesh.mesh
         nodal = self._unknowns[space.element_displacements[triangles]].reshape(len(triangles), -1, 2)
@@ -86,9 +82,8 @@ class Section:
         displacement = np.einsum("nbi,bn->ni", nodal, basis.value)
         corners = mesh.p[0, mesh.t[:, triangles]]
         radius = corners[0] + (corners[1] - corners[0]) * local[0] + (corners[2] - corners[0]) * local[1]
-        hoop = np.divide(
-            displacement[:, 0], radius, out=gradient[:, 0, 0].copy(), where=radius > 0
-        )  # u_r,r on the axis
+        # On the axis the hoop strain is u_r,r.
+        hoop = np.divide(displacement[:, 0], radius, out=gradient[:, 0, 0].copy(), where=radius > 0)
         volume = gradient[:, 0, 0] + gradient[:, 1, 1] + hoop
         if self.contact.pair.pressure is None:
             pressure = -moduli.bulk * volume
@@ -113,7 +108,7 @@ class Section:
             raise InvalidInput(f"{file.name}: the ending must be .vtu or .xdmf")
         count = self.contact.layer_mesh.mesh.t.shape[1]
         triangles = np.repeat(np.arange(count), 6)
-        local = np.tile(CORNERS_AND_MIDPOINTS, count)
+        local = np.tile([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]], count)
         displacement, stress = self._evaluate(triangles, local)
         mesh = self.contact.layer_mesh.mesh
         corner = mesh.p[:, mesh.t[0, triangles]]
@@ -134,7 +129,7 @@ class Section:
         exported.write(file, **({"data_format": "XML"} if file.suffix == ".xdmf" else {}))
 
 
-def nearest_triangles(vertices: Array, triangles: Index, points: Array) -> Index:
+def nearest_triangles(vertices: FloatArray, triangles: IntArray, points: FloatArray) -> IntArray:
     """A triangle that holds each point (2, n), to rounding: where the point's least barycentric coordinate is largest.
 
     The triangles with the nearest centres are tried first; a point that none of them holds is sought in all.
@@ -154,7 +149,7 @@ def nearest_triangles(vertices: Array, triangles: Index, points: Array) -> Index
     return found
 
 
-def _least_barycentric(corners: Array, point: Array) -> Array:
+def _least_barycentric(corners: FloatArray, point: FloatArray) -> FloatArray:
     """Smallest barycentric coordinate of a point in triangles (2, 3, m)."""
     (ax, bx, cx), (ay, by, cy) = corners
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)

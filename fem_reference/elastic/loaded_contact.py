@@ -10,23 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from fem_reference.elastic.error_estimate import CertifiedContact, pressure_difference
-from fem_reference.elastic.path import Equilibrium
+from contact.records.validation import FloatArray
+from fem_reference.elastic.error_estimate import ContactWithErrors, pressure_difference
+from fem_reference.elastic.path import FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-Array = NDArray[np.float64]
-
-# Relative error of the secants' slope, by which the last correction of the radius is made.  Measured at the default
-# settings on 13 loads (random elastic scenes of seed 5, 2026-11-22): 0.002 to 0.007 of the correction.
-UNCERTAIN_SLOPE = 0.01
-# On the errors of the radius by interpolation and edge cell.  Measured on 91 loads (random elastic scenes of seed 3 at
-# accuracy 1e-2 and seed 1 at 1e-4, 2026-11-22): without it, two were off by 1.1 and 1.4 times what was stated, because
-# the error of the radius changes its sign with the degree.
-RADIUS_SAFETY = 1.5
-# Roundings of the radius, whatever its slope.
-ROUNDING = 1e-15
+from fem_reference.error_model import AT_LOAD
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,25 +29,28 @@ class LoadedContact:
         radius_factor: the radius that carries the load.
     """
 
-    contact: CertifiedContact
+    contact: ContactWithErrors
     load: float
     by_depth: bool
     radius_factor: float
 
     @property
-    def equilibrium(self) -> Equilibrium:
+    def equilibrium(self) -> FemEquilibrium:
         """The state at the load, with the relative error of each number."""
         contact, answer = self.contact, self.contact.answer
         depth = self._depth(answer)
         force = answer.force(depth) if self.by_depth else self.load
         values = np.array([depth, force, 1.0, answer.stiffness])
-        absolute = contact.interpolation_error_of(self._numbers) + self._outer_edge_error(depth) + self._remainder
+        # Depth, force and stiffness are known as well as energies; the radius errs like the numbers at a fixed radius.
+        rates = np.array([contact.rate_at_load, contact.rate_at_load, contact.rate, contact.rate_at_load])
+        absolute = rates * contact.changes_of(self._numbers) + self._outer_edge_error(depth) + self._remainder
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
-        uncertain = UNCERTAIN_SLOPE * abs(self.radius_factor - 1)
+        uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - 1)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
-        radius_error = RADIUS_SAFETY * (radius_error + contact.edge_shift) + correction + ROUNDING
+        # The last term is the rounding of the radius, whatever its slope.
+        radius_error = AT_LOAD.radius_safety * (radius_error + contact.edge_shift) + correction + 1e-15
         # The field is that of the solved radius: at the load it has a little of the singular pressure of a flat punch.
         singular = pressure_difference(answer, answer.smooth_depth, answer, depth)
         reported = {
@@ -68,20 +60,22 @@ class LoadedContact:
             "contact_stiffness": stiffness_error + correction * answer.stiffness_slope / answer.stiffness,
             "pressure": contact.pressure_error + radius_error + singular,
         }
-        return Equilibrium(contact=contact, depth=depth, force=force, error=reported, radius_factor=self.radius_factor)
+        return FemEquilibrium(
+            contact=contact, depth=depth, force=force, error=reported, radius_factor=self.radius_factor
+        )
 
     def _depth(self, level: PrescribedContact) -> float:
         if self.by_depth:
             return self.load
         return level.smooth_depth + (self.load - level.smooth_force) / level.stiffness
 
-    def _numbers(self, level: PrescribedContact) -> Array:
+    def _numbers(self, level: PrescribedContact) -> FloatArray:
         """Depth, force, radius and stiffness at the load, to first order, from the solution of one degree."""
         depth = self._depth(level)
         radius = 1 + (depth - level.smooth_depth) / self.contact.answer.smooth_depth_slope
         return np.array([depth, level.force(depth), radius, level.stiffness + level.stiffness_slope * (radius - 1)])
 
-    def _outer_edge_error(self, depth: float) -> Array:
+    def _outer_edge_error(self, depth: float) -> FloatArray:
         """Absolute errors of `_numbers` by the end of the mesh, which takes some of the force at each depth."""
         answer, force = self.contact.answer, self.contact.outer_edge_error_of_force(depth)
         at_load = 0.0 if self.by_depth else force / answer.stiffness
@@ -89,7 +83,7 @@ class LoadedContact:
         return np.array([at_load, force, radius, force / depth + radius * answer.stiffness_slope])
 
     @property
-    def _remainder(self) -> Array:
+    def _remainder(self) -> FloatArray:
         """What first order leaves out in `_numbers`, half the second differential of the energy: k_N' delta_0' da^2."""
         answer, square = self.contact.answer, (self.radius_factor - 1) ** 2
         force = answer.stiffness_slope * answer.smooth_depth_slope * square / 2

@@ -6,21 +6,21 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.elastic.error_estimate import CertifiedContact
+from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.surface_fields import FemFields, SurfaceState
 
-Array = NDArray[np.float64]
-
-OWN_CHECKS = ("energy_defect", "patch_defect")  # residuals published beside the error estimates
-ContactSolver = Callable[[float], CertifiedContact]  # of a contact radius [m]
+# Residuals that are published beside the error estimates.
+OWN_CHECKS = ("energy_defect", "patch_defect")
+# Solves the contact of a given radius [m].
+ContactSolver = Callable[[float], ContactWithErrors]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Equilibrium:
+class FemEquilibrium:
     """One state of a path, in units of its contact radius and of E*.
 
     Attributes:
@@ -31,7 +31,7 @@ class Equilibrium:
         radius_factor: contact radius over that of the mesh, one up to a last correction.
     """
 
-    contact: CertifiedContact
+    contact: ContactWithErrors
     depth: float
     force: float
     error: Mapping[str, float]
@@ -44,7 +44,7 @@ class Equilibrium:
         return answer.stiffness + answer.stiffness_slope * (self.radius_factor - 1)
 
 
-def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
+def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
     """The state in which the pressure vanishes at the contact edge."""
     answer, error = contact.answer, contact.error
     if answer.smooth_depth <= 0 or answer.smooth_force <= 0:
@@ -59,10 +59,10 @@ def smooth_equilibrium(contact: CertifiedContact) -> Equilibrium:
         "contact_stiffness": error["stiffness"],
         "pressure": contact.pressure_error,
     }
-    return Equilibrium(contact=contact, depth=answer.smooth_depth, force=answer.smooth_force, error=reported)
+    return FemEquilibrium(contact=contact, depth=answer.smooth_depth, force=answer.smooth_force, error=reported)
 
 
-def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibrium:
+def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquilibrium:
     """A flat punch at depth / a; its pressure error is measured with the weight (1 - r^2/a^2), which its edge needs."""
     reported = {
         "contact_radius": 0.0,
@@ -71,15 +71,15 @@ def flat_punch_equilibrium(contact: CertifiedContact, depth: float) -> Equilibri
         "contact_stiffness": contact.error["stiffness"],
         "pressure": contact.pressure_error,
     }
-    return Equilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
+    return FemEquilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
 
 
-def equilibria_at_radii(radii: Array, solve: ContactSolver) -> list[Equilibrium]:
+def equilibria_at_radii(radii: FloatArray, solve: ContactSolver) -> list[FemEquilibrium]:
     """Smooth contact at prescribed radii [m]."""
     return [smooth_equilibrium(solve(float(a))) for a in radii]
 
 
-def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver) -> list[Equilibrium]:
+def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver) -> list[FemEquilibrium]:
     """A flat punch at prescribed depths or forces: one solution, scaled."""
     contact = solve(punch.radius)
     loading, a = scene.loading, punch.radius
@@ -91,15 +91,15 @@ def flat_punch_equilibria(scene: Scene, punch: FlatPunch, solve: ContactSolver) 
     raise InvalidInput(f"loading = {type(loading).__name__}: a flat punch takes depths or forces")
 
 
-def _known_force(state: Equilibrium) -> Equilibrium:
+def _known_force(state: FemEquilibrium) -> FemEquilibrium:
     """Depth carries the error when the force is prescribed."""
     error = dict(state.error) | {"indentation_depth": state.error["normal_force"], "normal_force": 0.0}
-    return Equilibrium(contact=state.contact, depth=state.depth, force=state.force, error=error)
+    return FemEquilibrium(contact=state.contact, depth=state.depth, force=state.force, error=error)
 
 
 def contact_path(
     scene: Scene,
-    equilibria: Sequence[Equilibrium],
+    equilibria: Sequence[FemEquilibrium],
     settings: Mapping[str, bool | int | float | str | None],
     log: StageLog,
     notes: tuple[str, ...] = (),
@@ -116,7 +116,8 @@ def contact_path(
     depth = radius * np.array([state.depth for state in equilibria])
     errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
     own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
-    if scene.effects:  # depth and force may cross zero: their errors refer to the largest along the path
+    # With adhesion, depth and force may cross zero: their errors refer to the largest value along the path.
+    if scene.effects:
         errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
         errors["normal_force"] *= np.abs(force) / np.abs(force).max()
     meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))

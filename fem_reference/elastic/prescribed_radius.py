@@ -14,10 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import NotConvergedError, StageLog
-from fem_reference.code_verification.patch_test import patch_defect
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.fields import mutual_energies
 from fem_reference.discrete_layer.indenter import ScaledIndenter
@@ -25,12 +24,13 @@ from fem_reference.discrete_layer.material import Moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
+from fem_reference.elastic.patch_test import patch_defect
 from fem_reference.elastic.shape_derivative import cut_off, energy_shape_derivative
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-
+# Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12 and a broken
+# down factorisation misses by 1e-2, so anything between tells the two apart.
 ENERGY_AGREEMENT = 1e-8
+# Largest residual of a constant strain over the size of its terms: a hundred thousand roundings.
 PATCH_AGREEMENT = 1e-11
 
 
@@ -61,18 +61,18 @@ class PrescribedContact:
     stiffness_slope: float
     smooth_depth: float
     profile_force: float
-    tail_energies: Array
+    tail_energies: FloatArray
     decay: float
     contact_trace: TraceSpace
-    pressures: Array
+    pressures: FloatArray
     top_trace: TraceSpace
-    displacements: Array
+    displacements: FloatArray
     energy_defect: float
     patch_defect: float
     layer_mesh: LayerMesh
     pair: ElementPair
     moduli: Moduli
-    solutions: Array
+    solutions: FloatArray
 
     @property
     def unknowns(self) -> int:
@@ -98,11 +98,11 @@ class PrescribedContact:
         punch = self.contact_trace.evaluate(self.pressures[:, 0], inside)
         return float((self.pressure(inside, self.smooth_depth) / punch / (2 * (1 - inside)))[0])
 
-    def pressure(self, radius: Array, depth: float) -> Array:
+    def pressure(self, radius: FloatArray, depth: float) -> FloatArray:
         """p(r), zero outside the contact."""
         return self.contact_trace.evaluate(self.pressures @ [depth, 1.0], radius)
 
-    def surface_displacement(self, radius: Array, depth: float) -> Array:
+    def surface_displacement(self, radius: FloatArray, depth: float) -> FloatArray:
         """u_z(r) on the top; zero beyond the mesh."""
         return self.top_trace.evaluate(self.displacements @ [depth, 1.0], radius)
 
@@ -135,7 +135,7 @@ def solve_prescribed_contact(problem: LayerProblem, indenter: ScaledIndenter, lo
 
 
 def _evaluate(
-    problem: LayerProblem, indenter: ScaledIndenter, contact: Index, solutions: Array, reactions: Array
+    problem: LayerProblem, indenter: ScaledIndenter, contact: IntArray, solutions: FloatArray, reactions: FloatArray
 ) -> PrescribedContact:
     """All numbers from u_1, u_2 (size, 2) and their reactions on the contact nodes."""
     stiffness, profile_force = reactions.sum(axis=0)
@@ -171,8 +171,8 @@ def _evaluate(
 
 
 def _shape_derivative(
-    problem: LayerProblem, solutions: Array, indenter: ScaledIndenter, radii: Array
-) -> tuple[Array, Array]:
+    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray
+) -> tuple[FloatArray, FloatArray]:
     """A'(u_i, u_j), and ``eta f'`` at the contact nodes: the change of the profile seen by nodes that move."""
     mesh = problem.layer_mesh.mesh
     reach = 0.6 * min(1.0, problem.layer_mesh.thickness, 1.0 - max(indenter.kinks, default=0.0))

@@ -14,22 +14,20 @@ accurate as the energy itself (a smooth eta at quadrature points costs four digi
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.fields import PointFields, point_fields
 from fem_reference.discrete_layer.problem import LayerProblem
 
-Array = NDArray[np.float64]
 
-
-def cut_off(points: Array, centre: float, support: float) -> Array:
+def cut_off(points: FloatArray, centre: float, support: float) -> FloatArray:
     """A bump at vertices (2, n): one within support/6 of (centre, 0), zero beyond ``support``, C^1 between."""
     distance = np.hypot(points[0] - centre, points[1])
     t = np.clip((1.2 * distance / support - 0.2), 0, 1)
     return np.asarray(1 - t**2 * (3 - 2 * t))
 
 
-def energy_shape_derivative(problem: LayerProblem, solutions: Array, eta: Array) -> Array:
+def energy_shape_derivative(problem: LayerProblem, solutions: FloatArray, eta: FloatArray) -> FloatArray:
     """A'(u_i, u_j) for solutions (size, m) and the edge's motion ``eta`` at vertices; shape (m, m)."""
     mesh = problem.layer_mesh.mesh
     moving = np.flatnonzero((eta[mesh.t] != 0).any(axis=0))
@@ -42,7 +40,7 @@ def energy_shape_derivative(problem: LayerProblem, solutions: Array, eta: Array)
     return _shape_form(fields, eta_value, eta_gradient)
 
 
-def _shape_form(fields: PointFields, eta: Array, eta_gradient: Array) -> Array:
+def _shape_form(fields: PointFields, eta: FloatArray, eta_gradient: FloatArray) -> FloatArray:
     """The integral above; eta (triangle, point), its gradient (triangle, 2)."""
     stretch = (eta_gradient[:, :1] + eta / fields.radius) * fields.measure
     cross = np.einsum("itq,jtq,tq->ij", fields.pressure, fields.divergence, stretch)
@@ -55,7 +53,7 @@ def _shape_form(fields: PointFields, eta: Array, eta_gradient: Array) -> Array:
     return np.asarray(squares - mutual - mutual.T)
 
 
-def _traction(fields: PointFields, eta_gradient: Array) -> Array:
+def _traction(fields: PointFields, eta_gradient: FloatArray) -> FloatArray:
     """``sigma_ij eta_,j``, shape (m, triangle, point, 2)."""
     rr, zz, _, rz = np.moveaxis(fields.stress, -1, 0)
     d_r, d_z = eta_gradient[:, :1], eta_gradient[:, 1:]

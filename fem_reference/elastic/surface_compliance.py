@@ -11,21 +11,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer, StageLog
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.trace import TraceSpace
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int64]
-
+# Degree of the displacements, so that the mesh errs less than the contact set, which is found to a cell.
 STRIP_ORDER = 4
-GROWTH_ONE = 120  # cells that go with a growth of one
-STRIDE = 2  # displacement nodes from one pressure vertex to the next
+# Displacement nodes from one pressure vertex to the next.
+STRIDE = 2
+# Cells of the strip on which a contact is searched; a strip of so many goes with a growth of one away from it.
+STRIP_CELLS = 120
 
 
 @dataclass(frozen=True)
@@ -43,17 +43,17 @@ class SurfaceCompliance:
 
     layer_mesh: LayerMesh
     pressure_space: TraceSpace
-    matrix: Array
-    resultants: Array
-    vertex_displacements: Array
+    matrix: FloatArray
+    resultants: FloatArray
+    vertex_displacements: FloatArray
     unknowns: int
 
     @property
-    def radii(self) -> Array:
+    def radii(self) -> FloatArray:
         """Candidate vertices."""
         return self.pressure_space.radii
 
-    def weighted(self, function: Array) -> Array:
+    def weighted(self, function: FloatArray) -> FloatArray:
         """``int phi_i f 2 pi r dr`` for f given at ``pressure_space.gauss(4)``."""
         return self.pressure_space.moments(function, 4)
 
@@ -75,7 +75,7 @@ def strip_mesh(
     cell = STRIP_ORDER / STRIDE / cells
     outer = 1 + thickness * settings.distance(layer)
     points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
-    growth = (GROWTH_ONE / cells) ** (1 / 3)
+    growth = (STRIP_CELLS / cells) ** (1 / 3)
     grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))
     return layer_mesh(thickness, outer, grading)
 
@@ -104,12 +104,12 @@ def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> Surf
     )
 
 
-def strip_vertices(problem: LayerProblem) -> Index:
+def strip_vertices(problem: LayerProblem) -> IntArray:
     """Scalar displacement unknowns at the vertices of the pressures on the strip of radius one."""
     return problem.top_nodes(1.0)[::STRIDE]
 
 
-def strip_loads(problem: LayerProblem) -> Array:
+def strip_loads(problem: LayerProblem) -> FloatArray:
     """Loads of the piecewise linear pressures on the strip of radius one, shape (size, n)."""
     nodes = problem.top_nodes(1.0)
     moments = TraceSpace(problem.positions[0, nodes], problem.pair.degree).hat_moments(STRIDE)

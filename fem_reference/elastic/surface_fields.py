@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contact.records.validation import FloatArray
 from fem_reference.elastic.interior import Section
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -36,7 +32,7 @@ class FemFields:
 
     states: tuple[SurfaceState, ...]
 
-    def pressure(self, radius: Array, step: int) -> Array:
+    def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa]."""
         state = self.states[step]
         return state.contact_modulus * state.contact.pressure(radius / state.contact_radius, state.depth)
@@ -46,7 +42,7 @@ class FemFields:
         state = self.states[step]
         return Section(state.contact, state.contact_radius, state.depth, state.contact_modulus)
 
-    def surface_displacement(self, radius: Array, step: int) -> Array:
+    def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m], positive into the layer; zero beyond the mesh, where it is below the truncation error."""
         state = self.states[step]
         return state.contact_radius * state.contact.surface_displacement(radius / state.contact_radius, state.depth)

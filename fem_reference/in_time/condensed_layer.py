@@ -1,23 +1,21 @@
-"""A layer at rest with the indenter before it, condensed to the contact: what histories play on."""
+"""Surface compliance, node radii and profile moments on the contact strip, at the beginning of a history."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from contact.records.validation import FloatArray
 from fem_reference.in_time.surface_memory import ViscoelasticSurface
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Stage:
-    """Lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0, times in seconds.
+class CondensedLayer:
+    """A layer at rest and its indenter, condensed to the contact strip.
+
+    Units: lengths by the strip's radius L, stresses by the instantaneous shear modulus G_0, times in seconds.
 
     Attributes:
-        surface: the layer; it has a memory, so a stage serves one history.
+        surface: the layer; it has a memory, so a condensed layer serves one history.
         radii: vertices of the pressures, shape (n,); one entry for a flat punch.
         profile: moments ``int phi_i f 2 pi r dr`` of the indenter's profile, shape (n,).
         radius: L [m].
@@ -25,7 +23,7 @@ class Stage:
     """
 
     surface: ViscoelasticSurface
-    radii: Array
-    profile: Array
+    radii: FloatArray
+    profile: FloatArray
     radius: float
     unknowns: int

@@ -1,8 +1,8 @@
 """Error bars of histories: what half the cells change, what half the steps change, and what neither shows.
 
-The trajectory is simulated three times.  Contact sets are found to a cell, so differences scatter, and one number may
-change little by accident: the changes by space of restitution, peaks and range therefore stand in for each other, and
-what a channel changes beside its peak stands in for the change of the peak.
+The trajectory is simulated three times.  Contact sets are resolved to one cell, so two meshes may agree in one number
+by accident.  Hence no error by the cells is stated below a share of the mean change of all numbers, and no peak's below
+a share of the largest change near it.  The coefficients stand in `error_model.IN_TIME`.
 """
 
 from __future__ import annotations
@@ -11,23 +11,21 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import HistoryPath, ImpactHistory
+from fem_reference.error_model import IN_TIME
 
-Array = NDArray[np.float64]
 H = TypeVar("H", bound=HistoryPath | ImpactHistory)
 
+# Numbers of an impact that follow from its channels.
 DERIVED = ("coefficient_of_restitution", "contact_time")
+# The channel of each peak.
 PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
-BESIDE = 0.9  # of the peak: the samples there see the edge pass several cells
-FINER = 1 / 3  # error of second order over the largest change by half the cells: a third to a fifth of it
-TYPICAL = 0.8  # of the mean change by space: the least that is believed of one number
 
 
 @dataclass(frozen=True, kw_only=True)
 class KnownErrors:
-    """Relative errors that halving shows not, or that are not there.
+    """Relative errors that halving cells and steps does not show.
 
     Attributes:
         everywhere: of every quantity, from the outer edge and the thickness that stands for a half-space.
@@ -43,24 +41,27 @@ class KnownErrors:
     space: float
 
 
-def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
+def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
     """The finest history with its error estimates.
 
     Args:
         fine: history as asked.
-        wider: on half the cells.
-        coarse: on half the cells with half the steps.
+        half_cells: on half the cells.
+        half_both: on half the cells with half the steps.
         known: what these do not show.
     """
     channels = [name for name in fine.ARRAYS if name != "time"]
     scalars = [*fine.SCALARS, *(name for name in DERIVED if hasattr(fine, name))]
-    space = {name: known.space * _channel_change(fine, wider, name) for name in channels}
-    space |= {name: known.space * _scalar_change(fine, wider, name) for name in scalars}
-    space |= {name: max(space[name], FINER * _change_beside_peak(fine, wider, PEAKS[name])) for name in fine.SCALARS}
-    time = {name: _channel_change(wider, coarse, name) for name in channels}
-    time |= {name: _scalar_change(wider, coarse, name) for name in scalars}
+    space = {name: known.space * _channel_change(fine, half_cells, name) for name in channels}
+    space |= {name: known.space * _scalar_change(fine, half_cells, name) for name in scalars}
+    space |= {
+        name: max(space[name], IN_TIME.share_beside_peak * _change_beside_peak(fine, half_cells, PEAKS[name]))
+        for name in fine.SCALARS
+    }
+    time = {name: _channel_change(half_cells, half_both, name) for name in channels}
+    time |= {name: _scalar_change(half_cells, half_both, name) for name in scalars}
     judged = [name for name in ("indentation_depth", "normal_force", *scalars) if "radius" not in name]
-    typical = TYPICAL * float(np.mean([space[name] for name in judged if name not in known.exact]))
+    typical = IN_TIME.share_of_mean * float(np.mean([space[name] for name in judged if name not in known.exact]))
     error = {}
     for name in (*channels, *scalars):
         size = (
@@ -75,14 +76,14 @@ def with_errors(fine: H, wider: H, coarse: H, known: KnownErrors) -> H:
     return replace(fine, error_estimate=error)
 
 
-def _change_beside_peak(fine: H, wider: H, name: str) -> float:
+def _change_beside_peak(fine: H, half_cells: H, name: str) -> float:
     """Largest change of a channel while it is near its peak, relative to the peak.
 
     The force errs now more, now less as the edge passes a cell, so two grids may agree at the peak itself by accident.
     """
-    values, others = getattr(fine, name), getattr(wider, name)
-    change = np.abs(np.interp(wider.time, fine.time, values) - others)
-    return float(change[others >= BESIDE * others.max()].max() / max(values.max(), np.finfo(float).tiny))
+    values, others = getattr(fine, name), getattr(half_cells, name)
+    change = np.abs(np.interp(half_cells.time, fine.time, values) - others)
+    return float(change[others >= IN_TIME.beside_peak * others.max()].max() / max(values.max(), np.finfo(float).tiny))
 
 
 def _share(history: HistoryPath | ImpactHistory, name: str) -> float:

@@ -13,17 +13,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Layer
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.assembly import pressure_mass_elements, scatter, shear_elements
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.problem import LayerProblem, RestrictedSolver
 from fem_reference.elastic.surface_compliance import STRIP_ORDER, strip_loads, strip_vertices
 from fem_reference.in_time.relaxation_step import RelaxationStep
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -39,10 +37,10 @@ class _EffectiveLayer:
 
     solver: RestrictedSolver
     scale: float
-    responses: Array
-    compliance: Array
+    responses: FloatArray
+    compliance: FloatArray
 
-    def solve(self, loads: Array, displacements: int) -> Array:
+    def solve(self, loads: FloatArray, displacements: int) -> FloatArray:
         """Unknowns under loads (size, m); the first ``displacements`` rows are displacements, the others pressures."""
         solution = self.solver.solve_loaded(loads)
         solution[:displacements] /= self.scale
@@ -67,7 +65,8 @@ class CompressibleSurface:
     def __init__(self, layer: Layer, mesh: LayerMesh, branches: int, backend: str) -> None:
         self._layer, self._mesh, self._backend = layer, mesh, backend
         nu = layer.poissons_ratio
-        self._bulk = 2 * (1 + nu) / (3 * (1 - 2 * nu))  # K in units of the instantaneous shear modulus
+        # K in units of the instantaneous shear modulus.
+        self._bulk = 2 * (1 + nu) / (3 * (1 - 2 * nu))
         problem = self._problem(nu)
         space = problem.space
         self._displacements = space.displacement_count
@@ -101,7 +100,7 @@ class CompressibleSurface:
             self._effective[shear_modulus] = layer
         return self._effective[shear_modulus]
 
-    def begin(self, step: RelaxationStep) -> tuple[Array, Array]:
+    def begin(self, step: RelaxationStep) -> tuple[FloatArray, FloatArray]:
         """See `ViscoelasticSurface`."""
         memory = step.decay @ self._branches - step.tangent.sum() * self._now
         memory = memory + step.dashpot * step.rate_memory(self._now, self._before, self._rate)
@@ -109,7 +108,7 @@ class CompressibleSurface:
         self._unloaded = layer.solve(-(self._deviator @ memory)[:, None], self._displacements)[:, 0]
         return layer.compliance, self._loads.T @ self._unloaded
 
-    def accept(self, step: RelaxationStep, pressure: Array) -> None:
+    def accept(self, step: RelaxationStep, pressure: FloatArray) -> None:
         """See `ViscoelasticSurface`."""
         layer = self._effective_layer(step.effective_modulus)
         following = self._unloaded + layer.responses @ pressure

@@ -12,22 +12,20 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import NotConvergedError, Relaxation
 from fem_reference.elastic.active_set import solve_complementarity
 from fem_reference.elastic.contact_search import edge_radius
-from fem_reference.in_time.condensed_layer import Stage
+from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.relaxation_step import RelaxationStep, relaxation_step
 
-Array = NDArray[np.float64]
-
+# Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
 MAX_STEPS = 200_000
 
 
 @dataclass(frozen=True, kw_only=True)
 class Body:
-    """The impacting body in the units of its stage.
+    """The impacting body in the units of its condensed layer.
 
     Attributes:
         mass: M / (G_0 L) [s^2].
@@ -39,8 +37,8 @@ class Body:
 
 
 @dataclass
-class Record:
-    """Samples of a history, in the units of its stage."""
+class HistorySamples:
+    """Samples of a history, in the units of its condensed layer."""
 
     time: list[float] = field(default_factory=list)
     depth: list[float] = field(default_factory=list)
@@ -56,26 +54,26 @@ class Record:
             getattr(self, name).append(value)
 
 
-def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: float) -> Record:
+def simulate_impact(condensed: CondensedLayer, body: Body, relaxation: Relaxation, duration: float) -> HistorySamples:
     """Steps of ``duration`` [s] from first touch to the loss of contact.
 
     Raises:
         NotConvergedError: the body never comes off (a layer without long-term elasticity may hold it).
     """
-    surface = stage.surface
+    surface = condensed.surface
     step = relaxation_step(relaxation, duration)
-    force = touch(stage, body, step)
+    force = touch(condensed, body, step)
     kappa = duration**2 / (4 * body.mass)
     w = surface.resultants
     depth, velocity = 0.0, body.velocity
-    record = Record()
+    record = HistorySamples()
     record.add(time=0.0, depth=0.0, velocity=velocity, force=force, radius=0.0, stored=0.0, dissipated=0.0)
     active, overlap = None, 0.0
     for n in range(1, MAX_STEPS):
         now = step.first if n == 1 else step
         matrix, offset = surface.begin(now)
         ballistic = depth + duration * velocity - kappa * force
-        approach = ballistic * w - stage.profile - offset
+        approach = ballistic * w - condensed.profile - offset
         state = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
         surface.accept(now, state.pressure)
         following, overlap_before = float(w @ state.pressure), overlap
@@ -90,7 +88,7 @@ def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: 
             depth=depth,
             velocity=velocity,
             force=force,
-            radius=edge_radius(stage.radii, state.pressure),
+            radius=edge_radius(condensed.radii, state.pressure),
             stored=surface.stored_energy,
             dissipated=surface.dissipated_energy,
         )
@@ -99,13 +97,13 @@ def simulate_impact(stage: Stage, body: Body, relaxation: Relaxation, duration: 
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
-def touch(stage: Stage, body: Body, step: RelaxationStep) -> float:
+def touch(condensed: CondensedLayer, body: Body, step: RelaxationStep) -> float:
     """Force at first touch: that of the dashpots under the part of the profile that is flat."""
     if step.dashpot == 0:
         return 0.0
-    instant, surface = step.instant, stage.surface
+    instant, surface = step.instant, condensed.surface
     matrix, offset = surface.begin(instant)
-    approach = instant.duration * body.velocity * surface.resultants - stage.profile - offset
+    approach = instant.duration * body.velocity * surface.resultants - condensed.profile - offset
     pressure = solve_complementarity(matrix, approach).pressure
     surface.accept(instant, pressure)
     return float(surface.resultants @ pressure)

@@ -5,96 +5,99 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import NotConvergedError, Relaxation
-from fem_reference.elastic.active_set import Complementary, Mask, solve_complementarity
+from contact.records.validation import BoolArray, FloatArray
+from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.contact_search import edge_radius
-from fem_reference.in_time.condensed_layer import Stage
-from fem_reference.in_time.impact import Record
+from fem_reference.in_time.condensed_layer import CondensedLayer
+from fem_reference.in_time.impact import HistorySamples
 from fem_reference.in_time.relaxation_step import INSTANT, RelaxationStep, relaxation_step
 
-Array = NDArray[np.float64]
 
-SMALLEST_SEGMENT = 4  # steps in the shortest segment between two given instants
-FORCE_TOLERANCE = 1e-10
-MAX_NEWTON = 60
-
-
-def segment_steps(time: Array, steps: int) -> list[int]:
-    """How many equal steps each segment between given instants gets, about ``steps`` in all."""
+def segment_steps(time: FloatArray, steps: int) -> list[int]:
+    """How many equal steps each segment between given instants gets: about ``steps`` in all, four at least."""
     share = np.diff(time) / (time[-1] - time[0]) * steps
-    return [max(SMALLEST_SEGMENT, round(float(s))) for s in share]
+    return [max(4, round(float(s))) for s in share]
 
 
-def simulate_depths(stage: Stage, relaxation: Relaxation, time: Array, depth: Array, steps: int) -> Record:
+def simulate_depths(
+    condensed: CondensedLayer, relaxation: Relaxation, time: FloatArray, depth: FloatArray, steps: int
+) -> HistorySamples:
     """Depths linear between the given instants.
 
     Args:
-        stage: the layer at rest and its indenter.
+        condensed: the layer at rest and its indenter.
         relaxation: shear relaxation.
         time: instants [s].
-        depth: depths at these instants, in the units of the stage.
+        depth: depths at these instants, in the units of the condensed layer.
         steps: about how many steps in all.
     """
     record = _at_rest(time[0], depth[0])
-    surface = stage.surface
+    surface = condensed.surface
 
-    def advance(step: RelaxationStep, depth: float, active: Mask | None) -> Complementary:
+    def advance(step: RelaxationStep, depth: float, active: BoolArray | None) -> Complementary:
         matrix, offset = surface.begin(step)
-        state = solve_complementarity(matrix, depth * surface.resultants - stage.profile - offset, active)
+        state = solve_complementarity(matrix, depth * surface.resultants - condensed.profile - offset, active)
         surface.accept(step, state.pressure)
         return state
 
     for (t0, t1), (d0, d1), count in zip(pairwise(time), pairwise(depth), segment_steps(time, steps), strict=True):
         step = relaxation_step(relaxation, (t1 - t0) / count)
-        if step.dashpot > 0:  # the rates jump with that of the depth
+        # The rates jump with that of the depth.
+        if step.dashpot > 0:
             advance(step.instant, d0 + (d1 - d0) * INSTANT / count, None)
         active = None
         for n in range(1, count + 1):
             now = d0 + (d1 - d0) * n / count
             state = advance(step.first if n == 1 else step, now, active)
             active = state.active
-            _add(record, stage, state, t0 + (t1 - t0) * n / count, now)
+            _add(record, condensed, state, t0 + (t1 - t0) * n / count, now)
     return record
 
 
-def simulate_forces(stage: Stage, relaxation: Relaxation, time: Array, force: Array, steps: int) -> Record:
-    """Forces linear between the given instants, in the units of the stage; see `simulate_depths`.
+def simulate_forces(
+    condensed: CondensedLayer, relaxation: Relaxation, time: FloatArray, force: FloatArray, steps: int
+) -> HistorySamples:
+    """Forces linear between the given instants, in the units of the condensed layer; see `simulate_depths`.
 
     Raises:
         NotConvergedError: no depth carries the force.
     """
     record = _at_rest(time[0], 0.0)
-    surface, depth = stage.surface, 0.0
+    surface, depth = condensed.surface, 0.0
 
     def advance(step: RelaxationStep, force: float, depth: float) -> tuple[Complementary, float]:
         matrix, offset = surface.begin(step)
-        state, depth = _depth_of_force(matrix, surface.resultants, stage.profile + offset, force, depth)
+        state, depth = _depth_of_force(matrix, surface.resultants, condensed.profile + offset, force, depth)
         surface.accept(step, state.pressure)
         return state, depth
 
     for (t0, t1), (f0, f1), count in zip(pairwise(time), pairwise(force), segment_steps(time, steps), strict=True):
         step = relaxation_step(relaxation, (t1 - t0) / count)
-        if step.dashpot > 0 and t0 == time[0] and f0 > 0:  # the only jump of the force, hence of the rates
+        # The only jump of the force, hence of the rates.
+        if step.dashpot > 0 and t0 == time[0] and f0 > 0:
             _, depth = advance(step.instant, float(f0), depth)
         for n in range(1, count + 1):
             now = max(0.0, f0 + (f1 - f0) * n / count)
             state, depth = advance(step.first if n == 1 else step, now, depth)
-            _add(record, stage, state, t0 + (t1 - t0) * n / count, depth)
+            _add(record, condensed, state, t0 + (t1 - t0) * n / count, depth)
     return record
 
 
-def _depth_of_force(matrix: Array, w: Array, gap: Array, force: float, depth: float) -> tuple[Complementary, float]:
+def _depth_of_force(
+    matrix: FloatArray, w: FloatArray, gap: FloatArray, force: float, depth: float
+) -> tuple[Complementary, float]:
     """Contact with a given resultant: Newton's method on the convex, piecewise linear F(delta)."""
-    least = float(np.min(gap / w))  # the depth of first touch
+    # The depth of first touch.
+    least = float(np.min(gap / w))
     if force == 0:
         return solve_complementarity(matrix, least * w - gap), min(depth, least)
     depth = max(depth, least + 1e-9 * abs(least) + 1e-15)
-    for _ in range(MAX_NEWTON):
+    for _ in range(60):
         state = solve_complementarity(matrix, depth * w - gap)
         defect = force - float(w @ state.pressure)
-        if abs(defect) <= FORCE_TOLERANCE * force:
+        if abs(defect) <= 1e-10 * force:
             return state, depth
         act = state.active if state.active.any() else gap / w <= depth + 1e-12
         block = matrix[np.ix_(act, act)]
@@ -102,18 +105,18 @@ def _depth_of_force(matrix: Array, w: Array, gap: Array, force: float, depth: fl
     raise NotConvergedError("no depth carries the prescribed force", {"force_defect": defect})
 
 
-def _at_rest(time: float, depth: float) -> Record:
-    record = Record()
+def _at_rest(time: float, depth: float) -> HistorySamples:
+    record = HistorySamples()
     record.add(time=float(time), depth=float(depth), force=0.0, radius=0.0, stored=0.0, dissipated=0.0)
     return record
 
 
-def _add(record: Record, stage: Stage, state: Complementary, time: float, depth: float) -> None:
+def _add(record: HistorySamples, condensed: CondensedLayer, state: Complementary, time: float, depth: float) -> None:
     record.add(
         time=float(time),
         depth=float(depth),
-        force=float(stage.surface.resultants @ state.pressure),
-        radius=edge_radius(stage.radii, state.pressure),
-        stored=stage.surface.stored_energy,
-        dissipated=stage.surface.dissipated_energy,
+        force=float(condensed.surface.resultants @ state.pressure),
+        radius=edge_radius(condensed.radii, state.pressure),
+        stored=condensed.surface.stored_energy,
+        dissipated=condensed.surface.dissipated_energy,
     )

@@ -4,7 +4,7 @@ Each Maxwell branch obeys ``s' = G_j e' - s / tau_j``.  With alpha = exp(-dt / t
 
     s_1 = alpha s_0 + beta (e_1 - e_0),    beta = G_j (tau_j / dt) (1 - alpha),
 
-and a dashpot adds ``eta e'``, by the second-order backward difference (`BACKWARD`).  The first of equal steps takes
+and a dashpot adds ``eta e'``, by the second-order backward difference.  The first of equal steps takes
 the trapezoidal rule instead, from a known rate; where the rate jumps, a tiny step of the implicit Euler rule finds it.
 Moduli are given in units of the instantaneous shear modulus.
 """
@@ -16,17 +16,14 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import Relaxation
+from contact.records.validation import FloatArray
 
-Array = NDArray[np.float64]
 RateRule = tuple[float, float, float, float]
 
-BACKWARD: RateRule = (1.5, -2.0, 0.5, 0.0)  # dt e'_1 = 3/2 e_1 - 2 e_0 + 1/2 e_(-1)
-TRAPEZOID: RateRule = (2.0, -2.0, 0.0, -1.0)  # dt e'_1 = 2 e_1 - 2 e_0 - dt e'_0
-EULER: RateRule = (1.0, -1.0, 0.0, 0.0)
-INSTANT = 1e-7  # of a step
+# The tiny step that finds the rates after a jump, over the steps that follow.
+INSTANT = 1e-7
 
 
 @dataclass(frozen=True)
@@ -39,33 +36,33 @@ class RelaxationStep:
         moduli: G_j, shape (m,).
         times: tau_j [s], shape (m,).
         dashpot: eta [s], in units of the instantaneous modulus.
-        rule: coefficients of e_1, e_0, e_(-1) and dt e'_0 in dt e'_1.
+        rule: coefficients of e_1, e_0, e_(-1) and dt e'_0 in dt e'_1; by default the second-order backward difference.
     """
 
     duration: float
     long_term: float
-    moduli: Array
-    times: Array
+    moduli: FloatArray
+    times: FloatArray
     dashpot: float
-    rule: RateRule = BACKWARD
+    rule: RateRule = (1.5, -2.0, 0.5, 0.0)
 
     @cached_property
     def first(self) -> RelaxationStep:
-        """The first of steps like this one."""
-        return replace(self, rule=TRAPEZOID)
+        """The first of steps like this one, by the trapezoidal rule ``dt e'_1 = 2 e_1 - 2 e_0 - dt e'_0``."""
+        return replace(self, rule=(2.0, -2.0, 0.0, -1.0))
 
     @cached_property
     def instant(self) -> RelaxationStep:
-        """A jump of the rates in next to no time, before steps like this one."""
-        return replace(self, duration=INSTANT * self.duration, rule=EULER)
+        """A jump of the rates within a negligible time, before steps like this one, by ``dt e'_1 = e_1 - e_0``."""
+        return replace(self, duration=INSTANT * self.duration, rule=(1.0, -1.0, 0.0, 0.0))
 
     @cached_property
-    def decay(self) -> Array:
+    def decay(self) -> FloatArray:
         """alpha_j."""
         return np.exp(-self.duration / self.times)
 
     @cached_property
-    def tangent(self) -> Array:
+    def tangent(self) -> FloatArray:
         """beta_j; evaluated without cancellation for dt << tau."""
         ratio = self.duration / self.times
         return np.asarray(-self.moduli * np.expm1(-ratio) / ratio)
@@ -75,12 +72,12 @@ class RelaxationStep:
         """Change of stress per change of strain at the end of the step, per 2."""
         return float(self.long_term + self.tangent.sum() + self.rule[0] * self.dashpot / self.duration)
 
-    def rate_memory(self, now: Array, before: Array, rate: Array) -> Array:
+    def rate_memory(self, now: FloatArray, before: FloatArray, rate: FloatArray) -> FloatArray:
         """e'_1 if e_1 were zero; e'_1 is this plus ``rule[0] e_1 / dt``."""
         _, w_now, w_before, w_rate = self.rule
         return np.asarray((w_now * now + w_before * before) / self.duration + w_rate * rate)
 
-    def dissipation(self, before: Array, change: Array, product: Any) -> float:
+    def dissipation(self, before: FloatArray, change: FloatArray, product: Any) -> float:
         """Energy lost in the branches and the dashpot during a step.
 
         Args:
@@ -89,13 +86,14 @@ class RelaxationStep:
             product: symmetric matrix of the energy product, dense or sparse, shape (n, n).
         """
 
-        def inner(a: Array, b: Array) -> float:
+        def inner(a: FloatArray, b: FloatArray) -> float:
             return float(a @ (product @ b))
 
         rate = change / self.duration
         lost = self.dashpot * self.duration * inner(rate, rate)
         for s, modulus, time, alpha in zip(before, self.moduli, self.times, self.decay, strict=True):
-            steady = modulus * time * rate  # s(t) = steady + transient exp(-t / tau)
+            # s(t) = steady + transient exp(-t / tau).
+            steady = modulus * time * rate
             transient = s - steady
             integral = self.duration * inner(steady, steady)
             integral += 2 * time * (1 - alpha) * inner(steady, transient)

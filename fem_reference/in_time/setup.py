@@ -1,4 +1,4 @@
-"""The theatre of a viscoelastic scene: which surface, which strip, how many cells and steps, which errors are known."""
+"""Sets up the condensed layer of a scene in time: its strip, its cells and steps, and the errors known beforehand."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import (
     DepthHistory,
@@ -20,28 +19,20 @@ from contact import (
     StageLog,
     Viscoelasticity,
 )
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.material import shear_modulus
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
-from fem_reference.elastic.error_estimate import HALF_SPACE_COEFFICIENT, CertifiedContact, solve_certified_contact
+from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense, strip_mesh
-from fem_reference.in_time.condensed_layer import Stage
+from fem_reference.error_model import FIXED_RADIUS, IN_TIME
+from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import KnownErrors
 from fem_reference.in_time.field_memory import CompressibleSurface
-from fem_reference.in_time.impact import Record
+from fem_reference.in_time.impact import HistorySamples
 from fem_reference.in_time.surface_memory import ProportionalSurface
-
-Array = NDArray[np.float64]
-
-FITTINGS = 12
-LEAST_TRUNCATION = 1e-7  # far below the errors of cells and steps, and half the mesh of 1e-12
-TRUNCATION_SAFETY = 40.0  # on thin layers the force feels the outer edge so much more than the stiffness
-EDGE_SCATTER = 0.1  # cells between the true edge of the contact and the one read from the pressures
-RIM_SCATTER = 1.0  # the same next to a kink, where pressures do not end like sqrt(a - r)
-RIM_REACH = 2.0  # cells
-KINKED = 2.0  # measured: errors of truncated profiles reach 1.3 times what half the cells change
 
 
 @dataclass(frozen=True)
@@ -71,14 +62,15 @@ def relaxation_of(scene: Scene) -> Relaxation:
     return Relaxation(long_term_modulus=shear_modulus(scene.layer), moduli=nothing, times=nothing, viscosity=0.0)
 
 
-class Theatre:
-    """Sets the stage for one scene, as often as histories are simulated on it."""
+class HistorySetup:
+    """Condensed layers of one scene, a fresh one for every history that is simulated."""
 
     def __init__(self, scene: Scene, settings: Discretisation, backend: str, log: StageLog) -> None:
         self.scene = scene
         self.relaxation = relaxation_of(scene)
         self.log = log
-        self._settings = replace(settings, truncation=max(settings.truncation, LEAST_TRUNCATION))
+        # Below 1e-7 the outer edge adds nothing to the errors of cells and steps; 1e-12 would double the mesh.
+        self._settings = replace(settings, truncation=max(settings.truncation, 1e-7))
         self.resolution = resolution_of(settings)
         self._backend = backend
         moduli = self.relaxation.moduli
@@ -87,18 +79,18 @@ class Theatre:
         self._needs_field = relaxes and scene.layer.poissons_ratio < 0.5
         self._strips: dict[tuple[float, int], SurfaceCompliance] = {}
 
-    def set(self, radius: float, cells: int) -> Stage:
+    def condensed(self, radius: float, cells: int) -> CondensedLayer:
         """The layer at rest with a strip of ``radius`` [m]."""
         if isinstance(self.scene.indenter, FlatPunch) and not self._needs_field:
-            return self._punch_stage(self.scene.indenter, is_fine=cells >= self.resolution.cells)
+            return self._condensed_punch(self.scene.indenter, is_fine=cells >= self.resolution.cells)
         if self._needs_field:
             mesh = self._mesh(radius, cells)
             with self.log.stage("factor"):
                 field = CompressibleSurface(self.scene.layer, mesh, self._branches, self._backend)
-            return Stage(field, field.radii, self._profile(field.radii, radius), radius, field.unknowns)
+            return CondensedLayer(field, field.radii, self._profile(field.radii, radius), radius, field.unknowns)
         strip = self._strip(radius, cells)
         surface = ProportionalSurface(strip.matrix * self._per_shear, strip.resultants, self._branches)
-        return Stage(surface, strip.radii, self._profile(strip.radii, radius), radius, strip.unknowns)
+        return CondensedLayer(surface, strip.radii, self._profile(strip.radii, radius), radius, strip.unknowns)
 
     def _strip(self, radius: float, cells: int) -> SurfaceCompliance:
         if (radius, cells) not in self._strips:
@@ -109,7 +101,7 @@ class Theatre:
     def known_errors(self, radius: float, peak_radius: float) -> KnownErrors:
         """Errors that halving cells and steps does not show; strip and largest contact radius [m]."""
         layer, settings = self.scene.layer, self._settings
-        thick = HALF_SPACE_COEFFICIENT / settings.half_space_thickness if layer.is_half_space else 0.0
+        thick = FIXED_RADIUS.half_space / settings.half_space_thickness if layer.is_half_space else 0.0
         exact = {
             "indentation_depth": isinstance(self.scene.loading, DepthHistory),
             "normal_force": isinstance(self.scene.loading, ForceHistory),
@@ -117,12 +109,12 @@ class Theatre:
             "peak_contact_radius": isinstance(self.scene.indenter, FlatPunch),
         }
         cell = radius / self.resolution.cells
-        at_rim = any(abs(peak_radius - kink) < RIM_REACH * cell for kink in self.scene.indenter.kinks)
+        at_rim = any(abs(peak_radius - kink) < IN_TIME.kink_reach * cell for kink in self.scene.indenter.kinks)
         return KnownErrors(
-            everywhere=thick + TRUNCATION_SAFETY * settings.truncation,
-            radius=(RIM_SCATTER if at_rim else EDGE_SCATTER) * cell / peak_radius,
+            everywhere=thick + IN_TIME.outer_edge_safety * settings.truncation,
+            radius=(IN_TIME.edge_reading_at_kink if at_rim else IN_TIME.edge_reading) * cell / peak_radius,
             exact=frozenset(name for name, is_exact in exact.items() if is_exact),
-            space=KINKED if self.scene.indenter.kinks else 1.0,
+            space=IN_TIME.kinked_profile if self.scene.indenter.kinks else 1.0,
         )
 
     @property
@@ -130,7 +122,7 @@ class Theatre:
         """Compliances are per contact modulus E* = 2 G / (1 - nu); this turns them to unit G."""
         return (1 - self.scene.layer.poissons_ratio) / 2
 
-    def _punch_stage(self, punch: FlatPunch, *, is_fine: bool) -> Stage:
+    def _condensed_punch(self, punch: FlatPunch, *, is_fine: bool) -> CondensedLayer:
         """A flat punch moves as one: its force is the only unknown, 1 / k_N its compliance.
 
         In place of half the cells it takes a stiffness that is wrong by the stated error.
@@ -139,12 +131,12 @@ class Theatre:
         stiffness = contact.answer.stiffness * (1 if is_fine else 1 + contact.error["stiffness"])
         compliance = np.array([[self._per_shear / stiffness]])
         surface = ProportionalSurface(compliance, np.ones(1), self._branches)
-        return Stage(surface, np.ones(1), np.zeros(1), punch.radius, contact.answer.unknowns)
+        return CondensedLayer(surface, np.ones(1), np.zeros(1), punch.radius, contact.answer.unknowns)
 
     @cached_property
-    def _punch_contact(self) -> CertifiedContact:
+    def _punch_contact(self) -> ContactWithErrors:
         indenter = ScaledIndenter(self.scene.indenter, self.scene.indenter.flat_radius)
-        return solve_certified_contact(self.scene.layer, indenter, self._settings, self._backend, self.log)
+        return solve_contact_with_errors(self.scene.layer, indenter, self._settings, self._backend, self.log)
 
     def _mesh(self, radius: float, cells: int) -> LayerMesh:
         layer, indenter = self.scene.layer, self.scene.indenter
@@ -153,14 +145,16 @@ class Theatre:
                 return contact_mesh(layer, ScaledIndenter(indenter, radius), replace(self._settings, edge_cell=1e-4))
             return strip_mesh(layer, radius, cells, indenter.kinks, self._settings)
 
-    def _profile(self, radii: Array, radius: float) -> Array:
+    def _profile(self, radii: FloatArray, radius: float) -> FloatArray:
         """Moments of the profile by the strip's radius."""
         space = TraceSpace(radii, 1)
         quadrature, _ = space.gauss(4)
         inside = np.minimum(quadrature * radius, min(radius, self.scene.indenter.max_radius))
         return space.moments(self.scene.indenter.height(inside) / radius, 4)
 
-    def fitted_radius(self, guess: float, simulate: Callable[[Stage], Record]) -> tuple[float, Record]:
+    def fitted_radius(
+        self, guess: float, simulate: Callable[[CondensedLayer], HistorySamples]
+    ) -> tuple[float, HistorySamples]:
         """A strip a quarter larger than the largest contact, and the record of the pilot simulation on it.
 
         Raises:
@@ -169,10 +163,10 @@ class Theatre:
         """
         indenter = self.scene.indenter
         if isinstance(indenter, FlatPunch):
-            return indenter.radius, simulate(self.set(indenter.radius, 20))
+            return indenter.radius, simulate(self.condensed(indenter.radius, 20))
         radius = min(guess, indenter.max_radius)
-        for _ in range(FITTINGS):
-            record = simulate(self.set(radius, 30))
+        for _ in range(12):
+            record = simulate(self.condensed(radius, 30))
             largest = max(record.radius)
             if largest == 0:
                 raise NotConvergedError(

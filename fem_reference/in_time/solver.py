@@ -1,7 +1,7 @@
 """Viscoelastic scenes: impacts and prescribed histories, their answers in SI units with error bars.
 
 Every scene is solved three times: with half the cells and half the steps, with half the cells, and as asked.  The
-differences are the error estimates, see `history_errors`.
+differences are the error estimates, see `errors`.
 """
 
 from __future__ import annotations
@@ -9,42 +9,41 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
+from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
-from fem_reference.in_time.condensed_layer import Stage
+from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import with_errors
-from fem_reference.in_time.impact import Body, Record, simulate_impact
+from fem_reference.in_time.impact import Body, HistorySamples, simulate_impact
 from fem_reference.in_time.prescribed import simulate_depths, simulate_forces
-from fem_reference.in_time.setup import Theatre
+from fem_reference.in_time.setup import HistorySetup
 
-Array = NDArray[np.float64]
 Settings = Mapping[str, bool | int | float | str | None]
 
 
-def impact_history(theatre: Theatre, loading: Impact, shown: Settings) -> ImpactHistory:
+def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> ImpactHistory:
     """An impact from first touch to the loss of contact."""
-    scene, log = theatre.scene, theatre.log
+    scene, log = setup.scene, setup.log
     modulus = shear_modulus(scene.layer)
 
-    def simulate(stage: Stage, duration: float) -> Record:
-        body = Body(mass=loading.mass / (modulus * stage.radius), velocity=loading.velocity / stage.radius)
+    def simulate(condensed: CondensedLayer, duration: float) -> HistorySamples:
+        body = Body(mass=loading.mass / (modulus * condensed.radius), velocity=loading.velocity / condensed.radius)
         with log.stage("time_steps"):
-            record = simulate_impact(stage, body, theatre.relaxation, duration)
+            record = simulate_impact(condensed, body, setup.relaxation, duration)
         log.count("steps", len(record.time))
         return record
 
     guess, span = _impact_scales(scene, loading)
-    radius, pilot = theatre.fitted_radius(1.6 * guess, lambda stage: simulate(stage, span / 60))
-    duration = pilot.time[-1] / theatre.resolution.steps
+    radius, pilot = setup.fitted_radius(1.6 * guess, lambda condensed: simulate(condensed, span / 60))
+    duration = pilot.time[-1] / setup.resolution.steps
     histories = []
     for cells, steps in ((2, 2), (2, 1), (1, 1)):
-        stage = theatre.set(radius, theatre.resolution.cells // cells)
-        record = simulate(stage, steps * duration)
-        histories.append(_impact_in_si(theatre, loading, stage, record, shown))
-    coarse, wider, fine = histories
-    return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.peak_contact_radius))
+        condensed = setup.condensed(radius, setup.resolution.cells // cells)
+        record = simulate(condensed, steps * duration)
+        histories.append(_impact_in_si(setup, loading, condensed, record, shown))
+    half_both, half_cells, fine = histories
+    return with_errors(fine, half_cells, half_both, setup.known_errors(radius, fine.peak_contact_radius))
 
 
 def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
@@ -59,9 +58,11 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
     return r, 3 * float(height(r)) / loading.velocity
 
 
-def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Record, shown: Settings) -> ImpactHistory:
-    scene, log = theatre.scene, theatre.log
-    length, modulus = stage.radius, shear_modulus(scene.layer)
+def _impact_in_si(
+    setup: HistorySetup, loading: Impact, condensed: CondensedLayer, record: HistorySamples, shown: Settings
+) -> ImpactHistory:
+    scene, log = setup.scene, setup.log
+    length, modulus = condensed.radius, shear_modulus(scene.layer)
     energy = modulus * length**3
     force, depth = np.array(record.force), np.array(record.depth)
     velocity = np.array(record.velocity) * length
@@ -71,7 +72,7 @@ def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Recor
         method="fem",
         settings=shown,
         error_estimate={},
-        cost=log.cost(unknowns=stage.unknowns),
+        cost=log.cost(unknowns=condensed.unknowns),
         stages=log.records,
         time=np.array(record.time),
         indentation_depth=depth * length,
@@ -87,7 +88,7 @@ def _impact_in_si(theatre: Theatre, loading: Impact, stage: Stage, record: Recor
     )
 
 
-def peak(values: Array) -> float:
+def peak(values: FloatArray) -> float:
     """Largest value of a smooth sampled function: the vertex of the parabola through the three highest samples."""
     i = int(np.argmax(values))
     if i in (0, len(values) - 1):
@@ -97,41 +98,43 @@ def peak(values: Array) -> float:
     return float(top - (right - left) ** 2 / (8 * curvature)) if curvature < 0 else float(top)
 
 
-def prescribed_history(theatre: Theatre, loading: DepthHistory | ForceHistory, shown: Settings) -> HistoryPath:
+def prescribed_history(setup: HistorySetup, loading: DepthHistory | ForceHistory, shown: Settings) -> HistoryPath:
     """Response to a prescribed history of depth or force."""
-    scene, log = theatre.scene, theatre.log
+    scene, log = setup.scene, setup.log
     modulus = shear_modulus(scene.layer)
 
-    def simulate(stage: Stage, steps: int) -> Record:
+    def simulate(condensed: CondensedLayer, steps: int) -> HistorySamples:
         with log.stage("time_steps"):
             if isinstance(loading, DepthHistory):
-                depth = loading.depth / stage.radius
-                record = simulate_depths(stage, theatre.relaxation, loading.time, depth, steps)
+                depth = loading.depth / condensed.radius
+                record = simulate_depths(condensed, setup.relaxation, loading.time, depth, steps)
             else:
-                force = loading.force / (modulus * stage.radius**2)
-                record = simulate_forces(stage, theatre.relaxation, loading.time, force, steps)
+                force = loading.force / (modulus * condensed.radius**2)
+                record = simulate_forces(condensed, setup.relaxation, loading.time, force, steps)
         log.count("steps", len(record.time))
         return record
 
-    radius, _ = theatre.fitted_radius(1.6 * _history_radius(scene, loading), lambda stage: simulate(stage, 40))
+    radius, _ = setup.fitted_radius(1.6 * _history_radius(scene, loading), lambda condensed: simulate(condensed, 40))
     histories = []
     for cells, steps in ((2, 2), (2, 1), (1, 1)):
-        stage = theatre.set(radius, theatre.resolution.cells // cells)
-        record = simulate(stage, theatre.resolution.steps // steps)
-        histories.append(_history_in_si(theatre, stage, record, shown))
-    coarse, wider, fine = histories
-    return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.contact_radius.max()))
+        condensed = setup.condensed(radius, setup.resolution.cells // cells)
+        record = simulate(condensed, setup.resolution.steps // steps)
+        histories.append(_history_in_si(setup, condensed, record, shown))
+    half_both, half_cells, fine = histories
+    return with_errors(fine, half_cells, half_both, setup.known_errors(radius, fine.contact_radius.max()))
 
 
-def _history_in_si(theatre: Theatre, stage: Stage, record: Record, shown: Settings) -> HistoryPath:
-    scene, log, length = theatre.scene, theatre.log, stage.radius
+def _history_in_si(
+    setup: HistorySetup, condensed: CondensedLayer, record: HistorySamples, shown: Settings
+) -> HistoryPath:
+    scene, log, length = setup.scene, setup.log, condensed.radius
     force, radius = np.array(record.force), np.array(record.radius) * length
     return HistoryPath(
         scene=scene,
         method="fem",
         settings=shown,
         error_estimate={},
-        cost=log.cost(unknowns=stage.unknowns),
+        cost=log.cost(unknowns=condensed.unknowns),
         stages=log.records,
         time=np.array(record.time),
         indentation_depth=np.array(record.depth) * length,

@@ -11,23 +11,21 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray
 from fem_reference.in_time.relaxation_step import RelaxationStep
-
-Array = NDArray[np.float64]
 
 
 class ViscoelasticSurface(Protocol):
     """A layer with memory, seen from its contact."""
 
-    resultants: Array
+    resultants: FloatArray
     """``w_i``: force per pressure unknown."""
 
-    def begin(self, step: RelaxationStep) -> tuple[Array, Array]:
+    def begin(self, step: RelaxationStep) -> tuple[FloatArray, FloatArray]:
         """Matrix A and offset o of the displacement moments ``A p + o`` at the end of the step, for end pressures p."""
 
-    def accept(self, step: RelaxationStep, pressure: Array) -> None:
+    def accept(self, step: RelaxationStep, pressure: FloatArray) -> None:
         """Advance the memory by the step begun, with these end pressures."""
 
     @property
@@ -48,7 +46,7 @@ class ProportionalSurface:
         branches: number of Maxwell branches.
     """
 
-    def __init__(self, compliance: Array, resultants: Array, branches: int) -> None:
+    def __init__(self, compliance: FloatArray, resultants: FloatArray, branches: int) -> None:
         self.resultants = resultants
         self._compliance = compliance
         self._strain = np.zeros_like(resultants)
@@ -60,20 +58,20 @@ class ProportionalSurface:
         self._rate = np.zeros_like(resultants)
         self._memory = np.zeros_like(resultants)
 
-    def begin(self, step: RelaxationStep) -> tuple[Array, Array]:
+    def begin(self, step: RelaxationStep) -> tuple[FloatArray, FloatArray]:
         """See `ViscoelasticSurface`."""
         self._memory = self._stress_of_return(step)
         modulus = step.effective_modulus
         return self._compliance / modulus, -self._compliance @ self._memory / modulus
 
-    def _stress_of_return(self, step: RelaxationStep) -> Array:
+    def _stress_of_return(self, step: RelaxationStep) -> FloatArray:
         """Stress at the end of the step if y returned to zero."""
         memory = step.decay @ self._branches - step.tangent.sum() * self._strain
         if step.dashpot > 0:
             memory += step.dashpot * step.rate_memory(self._strain, self._before, self._rate)
         return np.asarray(memory)
 
-    def accept(self, step: RelaxationStep, pressure: Array) -> None:
+    def accept(self, step: RelaxationStep, pressure: FloatArray) -> None:
         """See `ViscoelasticSurface`."""
         strain = (pressure - self._memory) / step.effective_modulus
         change = strain - self._strain

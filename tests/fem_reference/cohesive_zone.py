@@ -12,7 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 from contact import FlatPunch, InvalidInput, Layer, StageLog
@@ -20,8 +19,6 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, kw_only=True)

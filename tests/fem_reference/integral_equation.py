@@ -10,12 +10,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray
 
 
-def kernel_complement(q: Array, support: str, poissons_ratio: float) -> Array:
+def kernel_complement(q: FloatArray, support: str, poissons_ratio: float) -> FloatArray:
     """``1 - chi(q)`` of a layer of thickness one."""
     if support == "unbonded":
         return (2 * q - np.expm1(-2 * q)) / (2 * q + np.sinh(2 * q))
@@ -24,7 +23,7 @@ def kernel_complement(q: Array, support: str, poissons_ratio: float) -> Array:
     return numerator / (1 + 4 * q**2 + kolosov**2 + 2 * kolosov * np.cosh(2 * q))
 
 
-def gauss(breaks: Array, nodes: int) -> tuple[Array, Array]:
+def gauss(breaks: FloatArray, nodes: int) -> tuple[FloatArray, FloatArray]:
     """Composite Gauss-Legendre rule."""
     x, w = np.polynomial.legendre.leggauss(nodes)
     half, mid = np.diff(breaks) / 2, (breaks[1:] + breaks[:-1]) / 2
@@ -45,7 +44,7 @@ def solve_contact(
     a: float,
     support: str = "bonded",
     poissons_ratio: float = 0.5,
-    transform: Callable[[Array], Array] = lambda x: x**2,
+    transform: Callable[[FloatArray], FloatArray] = lambda x: x**2,
     kink: float = 0.0,
 ) -> Contact:
     """Smooth contact of radius ``a`` under a profile whose half-space transform is ``transform`` (x^2/R: paraboloid).
@@ -68,12 +67,12 @@ def solve_contact(
     return Contact(stiffness, 2 * edge[0] ** 2, depth, depth * stiffness - profile_force)
 
 
-def truncated_cone(b: float) -> Callable[[Array], Array]:
+def truncated_cone(b: float) -> Callable[[FloatArray], FloatArray]:
     """Half-space transform of a truncated cone of slope one: ``x arccos(b/x)`` beyond b."""
     return lambda x: np.where(x > b, x * np.arccos(np.minimum(1.0, b / np.maximum(x, 1e-300))), 0.0)
 
 
-def smooth_pressure(a: float, radius: Array, support: str, poissons_ratio: float, b: float = 0.0) -> Array:
+def smooth_pressure(a: float, radius: FloatArray, support: str, poissons_ratio: float, b: float = 0.0) -> FloatArray:
     """Pressure of smooth contact of radius ``a`` under a truncated cone of slope one, or a paraboloid x^2/2 for b = 0.
 
     ``p(r) = -(1/pi) int_r^a phi'(t) / sqrt(t^2 - r^2) dt`` with phi' from the differentiated equation, phi(a) = 0.
@@ -89,7 +88,7 @@ def smooth_pressure(a: float, radius: Array, support: str, poissons_ratio: float
     phi = np.linalg.solve(np.eye(len(x)) - (cosine * weight) @ cosine.T * w, contact.depth - transform(x))
     spectrum = weight * k * (cosine.T @ (w * phi))
 
-    def slope(t: Array, beyond: Array) -> Array:
+    def slope(t: FloatArray, beyond: FloatArray) -> FloatArray:
         """phi'(t); ``beyond`` is t - b, free of cancellation."""
         root = np.sqrt(np.maximum(beyond * (t + b), 1e-300))
         own = np.where(beyond > 0, np.arctan2(root, b) + b / root, 0.0) if b else 2 * t
@@ -98,7 +97,7 @@ def smooth_pressure(a: float, radius: Array, support: str, poissons_ratio: float
     return np.array([_abel(slope, r, a, b) for r in radius])
 
 
-def _abel(slope: Callable[[Array, Array], Array], r: float, a: float, b: float) -> float:
+def _abel(slope: Callable[[FloatArray, FloatArray], FloatArray], r: float, a: float, b: float) -> float:
     """``-(1/pi) int_r^a slope(t) / sqrt(t^2 - r^2) dt``; t = low + (high - low) s^2 removes the roots at r and b."""
     s, w = gauss(np.concatenate([[0.0], np.geomspace(1e-5, 1, 24)]), 12)
     total = 0.0

@@ -22,7 +22,7 @@ from contact import (
 )
 from fem_reference import Fem
 from fem_reference.elastic.adaptive import solve_history_to_accuracy
-from fem_reference.in_time.condensed_layer import Stage
+from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.impact import MAX_STEPS, Body, simulate_impact
 from fem_reference.in_time.relaxation_step import relaxation_step
 from fem_reference.in_time.solver import peak
@@ -96,8 +96,8 @@ def test_flat_punch_on_a_kelvin_voigt_layer(damping):
 def single_spring(relaxation, steps):
     """Restitution of one degree of freedom (unit compliance, mass and speed) with so many steps in a half period."""
     surface = ProportionalSurface(np.eye(1), np.ones(1), len(relaxation.moduli))
-    stage = Stage(surface, np.ones(1), np.zeros(1), 1.0, 1)
-    record = simulate_impact(stage, Body(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
+    condensed = CondensedLayer(surface, np.ones(1), np.zeros(1), 1.0, 1)
+    record = simulate_impact(condensed, Body(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
     return -record.velocity[-1], record
 
 

@@ -16,6 +16,7 @@ from contact import (
     FlatPunch,
     Impact,
     IndentationDepths,
+    InvalidInput,
     Layer,
     NormalForces,
     Paraboloid,
@@ -67,6 +68,15 @@ def test_requested_accuracies_of_random_scenes_are_covered(accuracy):
     for record in records_of(plan, seed=1):
         assert record.covered >= 0.95, record.quantity
         assert record.sharpness is None or record.sharpness < 10, record.quantity
+
+
+@pytest.mark.parametrize("stream", [[2, 13], [3, 23], [6, 0], [6, 7]])
+def test_requested_accuracies_of_incompressible_layers_are_covered(stream):
+    """Four scenes whose depth or force was off by 1.1 to 1.2 times what was stated: errors fall slower at nu = 1/2."""
+    scene = random_scene(np.random.default_rng(stream), "elastic", (0.1, 5.0))
+    path = Fem(accuracy=1e-2).solve(scene)
+    for name, expected in second_opinion(path).values.items():
+        assert np.all(np.abs(getattr(path, name) / expected - 1) <= path.error_estimate[name] + 1e-14), name
 
 
 def test_error_of_the_edge_cell_follows_the_slope_of_the_depth():
@@ -157,7 +167,11 @@ def at_loads(random_numbers, settings, family_seed):
         scene = random_scene(np.random.default_rng([family_seed, number]), "elastic", (0.1, 5.0))
         if isinstance(scene.loading, ContactRadii) or isinstance(scene.indenter, FlatPunch):
             continue
-        path = Fem(**settings).solve(scene)
+        try:
+            path = Fem(**settings).solve(scene)
+        except InvalidInput as refusal:
+            assert "ring contact" in str(refusal)  # noqa: PT017 - measured profiles need not make one circle
+            continue
         opinion = second_opinion(path).values
         for name, expected in opinion.items():
             stated, error = path.error_estimate[name], np.abs(getattr(path, name) / expected - 1)
@@ -183,6 +197,23 @@ def test_radius_at_a_load_errs_like_the_load_at_the_radius():
             error = abs(getattr(path, name)[0] / expected[0] - 1)
             stated = path.error_estimate[name][0]
             assert stated == 0 or error < stated < 30 * error, name
+
+
+def test_coarse_meshes_state_sharp_errors_at_a_load():
+    """Errors of depth, force and stiffness at a load fall as fast on coarse meshes as on fine ones."""
+    ratios = at_loads((0, 4, 5), {"accuracy": 1e-2}, 3)
+    del ratios["contact_radius"]
+    assert_sharp(ratios)
+
+
+@pytest.mark.slow
+def test_a_load_on_a_coarse_mesh_beside_a_flat_end_is_found():
+    """At b/a = 0.9999 neighbouring meshes differ by 8e-3 in the load: three solutions did not settle."""
+    scene = random_scene(np.random.default_rng([3, 13]), "elastic", (0.1, 5.0))
+    path = Fem(accuracy=1e-2).solve(scene)
+    for name, expected in second_opinion(path).values.items():
+        stated, error = path.error_estimate[name], np.abs(getattr(path, name) / expected - 1)
+        assert np.all(error <= stated + 1e-14), name
 
 
 @pytest.mark.slow

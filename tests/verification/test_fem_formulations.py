@@ -8,7 +8,6 @@ from skfem import ElementVector, FacetBasis, LinearForm, MeshTri
 
 from contact import FlatPunch, IndentationDepths, InvalidInput, Layer, NotConvergedError, Paraboloid, Scene, StageLog
 from fem_reference import Fem
-from fem_reference.code_verification.inf_sup import measure_inf_sup
 from fem_reference.discrete_layer.elements import PAIRS
 from fem_reference.discrete_layer.fields import point_fields
 from fem_reference.discrete_layer.indenter import ScaledIndenter
@@ -16,6 +15,7 @@ from fem_reference.discrete_layer.mesh import Grading, layer_mesh, named_layer_m
 from fem_reference.discrete_layer.problem import LayerProblem, facet_nodes
 from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
 from tests.fem_reference.integral_equation import solve_contact
+from tests.verification.inf_sup import measure_inf_sup
 
 MIXED = [pair for pair in PAIRS.values() if pair.is_mixed and pair.inf_sup_stable]
 DISPLACEMENT = [pair for pair in PAIRS.values() if not pair.is_mixed]

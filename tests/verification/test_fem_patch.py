@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from fem_reference.code_verification.patch_test import patch_defect
 from fem_reference.discrete_layer.elements import PAIRS
 from fem_reference.discrete_layer.fields import point_fields
 from fem_reference.discrete_layer.mesh import Grading, layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem, facet_nodes
 from fem_reference.discrete_layer.trace import TraceSpace
+from fem_reference.elastic.patch_test import patch_defect
 
 MESH = layer_mesh(1.0, 2.0, Grading(points=((1.0, 0.02),), growth=0.5, max_cell=0.4))
 STABLE = [pair for pair in PAIRS.values() if pair.inf_sup_stable]

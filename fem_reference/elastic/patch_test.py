@@ -8,11 +8,13 @@ boundary is an error of assembly: geometry, quadrature, hoop strain or coupling.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.problem import LayerProblem
 
-STRETCH = 0.1  # s; with c = (1 - 2 nu) - 2 s the volume strain is 1 - 2 nu, so that the pressure is finite at nu = 1/2
+# The radial strain s, any number of the size of the volume strain 1 - 2 nu: with c = (1 - 2 nu) - 2 s the pressure is
+# finite at nu = 1/2.
+STRETCH = 0.1
 
 
 def patch_defect(problem: LayerProblem) -> float:
@@ -23,14 +25,15 @@ def patch_defect(problem: LayerProblem) -> float:
     return float(np.max((np.abs(problem.matrix @ state) / terms)[inner], initial=0.0))
 
 
-def constant_strain(problem: LayerProblem) -> NDArray[np.float64]:
+def constant_strain(problem: LayerProblem) -> FloatArray:
     """All unknowns of the state: its displacements, then, in a mixed formulation, its pressure."""
     nu, (r, z) = problem.poissons_ratio, problem.positions
     displacement = np.column_stack([STRETCH * r, ((1 - 2 * nu) - 2 * STRETCH) * z]).ravel()
-    pressure = -2 * problem.moduli.shear * (1 + nu) / 3  # p = -K div u with K = 2 mu (1 + nu) / (3 (1 - 2 nu))
+    # p = -K div u with K = 2 mu (1 + nu) / (3 (1 - 2 nu)).
+    pressure = -2 * problem.moduli.shear * (1 + nu) / 3
     return np.concatenate([displacement, np.full(problem.space.size - displacement.size, pressure)])
 
 
-def _boundary_unknowns(problem: LayerProblem) -> NDArray[np.int64]:
+def _boundary_unknowns(problem: LayerProblem) -> IntArray:
     nodes = np.concatenate([problem.nodes_on(name) for name in problem.layer_mesh.mesh.boundaries])
     return np.concatenate([2 * nodes, 2 * nodes + 1])

@@ -1,0 +1,143 @@
+"""Every coefficient that shapes a stated error of the finite elements, in the order in which the errors are built up.
+
+Coverage and sharpness of the results are measured by ``python -m benchmarks.fem_error_bars`` and
+``contact-verify coverage``, and asserted by ``tests/verification/test_fem_error_bars.py``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from types import MappingProxyType
+
+
+@dataclass(frozen=True)
+class FixedRadiusCoefficients:
+    """They shape the stated errors of stiffness, depth, force and pressure of a contact of given radius.
+
+    Measured: ``benchmarks.fem_error_bars`` (220 random contacts, seed 5) and coverage at accuracy 1e-2 and 1e-4 (80
+    random scenes each, seed 1); at least 95 in 100 are covered, less than ten times overestimated in the median.
+    """
+
+    # Safety factor on the error by interpolation, because the rate at which it falls is itself extrapolated.
+    safety: float = 3.0
+    # The error of degree 4 over that of degree 3 is typically this times growth^2, and a faster fall of a measured
+    # change is taken for an accident.  Measured on 120 contacts of ``benchmarks.fem_error_bars`` (seed 5, 2026-11-22):
+    # 0.12 in the median, above 0.076 in 95 of 100 numbers.
+    fastest_rate: float = 0.1
+    # The error of degree 3 over that of degree 2, which two degrees alone cannot show, is below this times growth^3 in
+    # 95 of 100 numbers (same contacts).
+    unmeasured_rate: float = 0.4
+    # The error of degree 4 over the last change is below the safety factor times this times growth^3 in 97 of 100
+    # numbers (same contacts).  On the coarsest meshes it covers all 256 contacts with nu below 1/2 (random elastic
+    # scenes of seeds 1 to 6 at accuracy 1e-2, 2026-11-22).
+    coarse_rate: float = 0.3
+    # The same from nu = 0.49 on, because the errors of incompressible layers fall slower on coarse meshes: by the rate
+    # above, 38 of 42 depths were covered at nu = 1/2, the others off by up to 1.2 times what was stated (same scenes).
+    incompressible_rate: float = 0.4
+    # One number may change little with the degree by accident, so its change counts as at least this share of the mean
+    # change of all four.  Chosen: without it 97 to 98 of 100 depths at accuracy 1e-2 are covered, with it 98 to 99, and
+    # stated errors grow by a fifth in the median (random elastic scenes of seeds 1 to 6, 2026-11-22).
+    share_of_mean: float = 0.6
+    # The unresolved singularity in the cell at the contact edge acts like a contact smaller by this share of the cell,
+    # by the degree.  Measured for degree 4: 0.02 (nu = 1/2) to 0.055 (nu = 0), with the rings of cells beside it.
+    edge_shift: MappingProxyType[int, float] = field(
+        default_factory=lambda: MappingProxyType({2: 0.15, 3: 0.08, 4: 0.06})
+    )
+    # The stiffness lost to the outer edge of a bonded layer over the energy that a longer section would store.
+    # Measured on meshes that end 1.5 to 4 thicknesses beyond the contact (nu = 0.3 and 1/2, a/h = 0.2 to 10,
+    # 2026-11-22): 0.3 to 3.7.
+    outer_edge_safety: float = 4.0
+    # On an unbonded layer the outer edge costs this times exp(-2 s distance), s the rate of the bending-like mode.
+    # Measured at distances of 1.5 and 2 thicknesses (nu = 0.3 and 1/2, a/h = 0.2 to 10, 2026-11-22): 0.25 to 2.0.
+    unbonded_outer_edge: float = 5.0
+    # A thick layer is stiffer than the half-space by at most 1.13 a/h, relative (bonded, nu = 1/2: k_bar = 1.0596 at
+    # a/h = 0.05 by the integral equation), stated with a margin of six per cent.
+    half_space: float = 1.2
+    # Relative error of every number by rounding.  Chosen: a tenth of the backward error that linear solves are held to.
+    rounding: float = 1e-12
+    # The error of the pressure over its last change between degrees is this times the fall of the changes, within the
+    # bounds below.  Measured on 136 states of random scenes (seeds 1 and 5, 2026-11-22): 0.04 to 0.55 where the changes
+    # fall by ten or more, up to 0.9 where a large cell at a kink lets them fall by five to ten, up to 1.15 where they
+    # hardly fall.
+    pressure_per_fall: float = 10.0
+    # The least and the largest value of that ratio, from the same measurement.
+    pressure_bounds: tuple[float, float] = (0.6, 1.5)
+
+
+@dataclass(frozen=True)
+class LoadCoefficients:
+    """They shape the stated errors of radius, depth, force and stiffness at a prescribed depth or force.
+
+    Measured on random elastic scenes (`test_error_bars_at_a_load_are_sharp`).
+    """
+
+    # Where errors cancel, only this share of the expected fall of a number's changes is believed: a smaller last change
+    # is an accident.  Measured on random scenes (seeds 1 to 5, 2026-11-22).
+    fastest_share: float = 0.3
+    # Relative error of the secants' slope, by which the last correction of the radius is made.  Measured at the default
+    # settings on 13 loads (random elastic scenes of seed 5, 2026-11-22): 0.002 to 0.007 of the correction.
+    uncertain_slope: float = 0.01
+    # Safety factor on the errors of the radius by interpolation and edge cell, because the error of the radius changes
+    # its sign with the degree.  Measured on 91 loads (random elastic scenes of seed 3 at accuracy 1e-2 and seed 1 at
+    # 1e-4, 2026-11-22): without it, two were off by 1.1 and 1.4 times what was stated.
+    radius_safety: float = 1.5
+
+
+@dataclass(frozen=True)
+class BranchCoefficients:
+    """They shape the stated errors of an adhesive branch and of its pull-off.
+
+    Measured on 22 detachments (random adhesive scenes of seed 1 at accuracy 1e-3 and seed 3 at 1e-2, 2026-11-22), and
+    asserted by `test_error_bars_of_pull_offs_are_sharp`.
+    """
+
+    # Factor on the error by the degree, because every solved radius has a mesh and an error of its own, and a branch is
+    # made of a dozen.  Without it, three of 44 worst states and one of 66 numbers of pull-offs were off by up to 1.3
+    # times what was stated.
+    scatter: float = 1.5
+    # The error by the degree passes zero now and then along a piece of a branch: at least this share of its root mean
+    # square there is stated.
+    share_of_mean: float = 0.7
+    # Where the profile has breakpoints inside a piece, Chebyshev coefficients fall like a power of their number, and
+    # more is left than the last two say: this times as much.
+    rough_profile: float = 3.0
+    # Factor on the former where an error is stated, because the error between the solved radii of two tabulated
+    # profiles was up to 1.25 times as large.
+    rough_profile_stated: float = 1.5
+
+
+@dataclass(frozen=True)
+class HistoryCoefficients:
+    """They shape the stated errors of impacts and histories.
+
+    Measured: 190 random and designed impacts (CHANGELOG), ``benchmarks.fem_error_bars`` (60 impacts, seed 7); all peaks
+    are covered and their median overestimate is about five.
+    """
+
+    # Half the cells change smooth profiles at least as much as the answer errs; errors of truncated profiles reach 1.3
+    # times that change (measured), stated as twice.
+    kinked_profile: float = 2.0
+    # A channel's change is looked for where it exceeds this share of its peak: there the contact edge passes several
+    # cells, so that two meshes cannot agree everywhere by accident.
+    beside_peak: float = 0.9
+    # A peak states at least this share of the largest change beside it: an error of second order in the cells is a
+    # third to a fifth of what half the cells change.
+    share_beside_peak: float = 1 / 3
+    # Every number states at least this share of the mean change of all of them by half the cells.
+    share_of_mean: float = 0.8
+    # Factor on the truncation.  Chosen, and far on the safe side: a truncation of 1e-5 moved stiffness, depth and force
+    # by at most 1.1e-5 (nu = 0.3 to 1/2, a/h = 0.2 to 300, 2026-11-22); at the usual 1e-7 the term adds 4e-6.
+    outer_edge_safety: float = 40.0
+    # Distance, in cells, between the true contact edge and the one read from the pressures, whose polynomial is good to
+    # 0.06 cells.
+    edge_reading: float = 0.1
+    # The same beside a kink, where pressures do not end like sqrt(a - r).
+    edge_reading_at_kink: float = 1.0
+    # How many cells from a kink count as beside it.
+    kink_reach: float = 2.0
+
+
+FIXED_RADIUS = FixedRadiusCoefficients()
+AT_LOAD = LoadCoefficients()
+ON_BRANCH = BranchCoefficients()
+IN_TIME = HistoryCoefficients()
