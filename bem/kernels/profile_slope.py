@@ -26,6 +26,11 @@ def profile_slope(indenter: Profile, excess: FloatArray, room: FloatArray) -> Fl
     return None
 
 
+def has_closed_slope(indenter: Profile) -> bool:
+    """Whether a closed form is registered for this kind of profile."""
+    return profile_slope.dispatch(type(indenter)) is not profile_slope.dispatch(Profile)
+
+
 @profile_slope.register
 def _(indenter: Cone, excess: FloatArray, room: FloatArray) -> FloatArray:
     return np.full(excess.shape, np.pi / 2 * indenter.slope)
