@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
+from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import Stage
 from fem_reference.in_time.errors import with_errors
 from fem_reference.in_time.impact import Body, Record, simulate_impact
@@ -44,6 +45,7 @@ def impact_history(theatre: Theatre, loading: Impact, shown: Settings) -> Impact
         record = simulate(stage, steps * duration)
         histories.append(_impact_in_si(theatre, loading, stage, record, shown))
     coarse, wider, fine = histories
+    refuse_touching_at(scene, fine.peak_contact_radius, log)
     return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.peak_contact_radius))
 
 
@@ -120,6 +122,7 @@ def prescribed_history(theatre: Theatre, loading: DepthHistory | ForceHistory, s
         record = simulate(stage, theatre.resolution.steps // steps)
         histories.append(_history_in_si(theatre, stage, record, shown))
     coarse, wider, fine = histories
+    refuse_touching_at(scene, float(fine.contact_radius.max()), log)
     return with_errors(fine, wider, coarse, theatre.known_errors(radius, fine.contact_radius.max()))
 
 
