@@ -33,6 +33,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.one_circle import refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
@@ -193,7 +194,7 @@ class Bem(Record):
         kind, values = _prescription(scene)
         steps = [step(scene, kind, float(value), log) for value in values]
         arrays = {name: np.array([s.values[name] for s in steps]) for name in ContactPath.ARRAYS}
-        return ContactPath(
+        path = ContactPath(
             scene=scene,
             method=self.name,
             settings=self._settings(),
@@ -206,6 +207,7 @@ class Bem(Record):
             normal_force=arrays["normal_force"],
             contact_stiffness=arrays["contact_stiffness"],
         )
+        return refuse_touching_path(path)
 
     def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
         press = Press(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)

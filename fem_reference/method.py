@@ -36,6 +36,7 @@ from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
+from fem_reference.elastic.beside_contact import refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (
     ContactSolver,
@@ -120,7 +121,7 @@ class Fem:
         """The answer with its error estimates.
 
         Raises:
-            UnsupportedSceneError: the scene asks for what `supports` denies.
+            UnsupportedSceneError: the scene asks for what `supports` denies, or the contact would be no single circle.
             NotConvergedError: a linear solve or the requested accuracy was missed.
         """
         support = self.supports(scene)
@@ -133,7 +134,9 @@ class Fem:
             return detachment_path(scene, self._solver(scene, log), self.accuracy, asdict(self), log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
-        return contact_path(scene, self._equilibria(scene, log), asdict(self), log)
+        equilibria = self._equilibria(scene, log)
+        refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
+        return contact_path(scene, equilibria, asdict(self), log)
 
     def _solve_in_time(
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog

@@ -13,6 +13,7 @@ from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Lay
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields, pressure_error
+from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
@@ -32,6 +33,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     Raises:
         InvalidInput: If a prescribed value is out of reach of the indenter or the flat-punch data.
         SeveralContacts: If the contact would not be one circle.
+        UnsupportedSceneError: If the indenter would touch beside it.
     """
     log = StageLog()
     with log.stage("mdr_profile"):
@@ -41,6 +43,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
+    refuse_touching_beside(scene, system, radius, depth)
     return ContactPath(
         scene=scene,
         method="mdr",

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from bem.adhesion.beside_contact import refuse_touching_beside
 from bem.adhesion.branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
 from bem.adhesion.sequence import Held, at_radii, followed
@@ -73,6 +74,7 @@ class AdheringDiscs:
 
         Raises:
             InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
+            UnsupportedSceneError: If the indenter would touch beside its circle of contact.
             UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
         """
         fine, coarse = self._branches()
@@ -83,6 +85,7 @@ class AdheringDiscs:
         )
         radius = values["contact_radius"]
         self._refuse_thin_layer(float(radius.max()))
+        refuse_touching_beside(self.scene, radius, values["indentation_depth"], self.points, self.threads)
         floor = FLOOR + TRUNCATION * fine.truncation(radius) + self._by_ring(radius)
         errors = {name: DIFFERENCE * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
@@ -115,6 +118,7 @@ class AdheringDiscs:
         cut = Withdrawal(fine.cut(), start).pull_off(control)
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
         depth, force = fine.depth(radius), fine.force(radius)
+        refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)
         lost_at = np.array(pull_off["pull_off_contact_radius"])
         own = float(FLOOR + TRUNCATION * fine.truncation(lost_at) + self._by_ring(lost_at))
         share = dict.fromkeys(pull_off, own) | {"pull_off_depth": own * _swing(depth, pull_off["pull_off_depth"])}

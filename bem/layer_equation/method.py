@@ -25,13 +25,13 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
-    Profile,
     Scene,
     StageLog,
     Supported,
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.one_circle import refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
@@ -99,12 +99,12 @@ class IntegralEquationMethod(Record):
             contacts = [solver.contact(float(value)) for value in scene.loading.values]  # type: ignore[attr-defined]
         with log.stage("one_circle"):
             for contact in contacts:
-                _refuse_rings(contact, scene.indenter)
+                _refuse_tension(contact)
         with log.stage("error_estimate"):
             fewer = [_Solver(scene, self.panel_width, self.nodes * quarters // 4, log) for quarters in (3, 2)]
             errors = _errors(contacts, [[coarse.at_radius(c) for c in contacts] for coarse in fewer], scene)
         answers = np.array([contact.answer for contact in contacts])
-        return ContactPath(
+        path = ContactPath(
             scene=scene,
             method=self.name,
             settings={"nodes": self.nodes, "panel_width": self.panel_width},
@@ -117,6 +117,7 @@ class IntegralEquationMethod(Record):
             stages=log.records,
             fields=DirectFields(scene, contacts),
         )
+        return refuse_touching_path(path)
 
 
 def _too_thin(ratio: float) -> str:
@@ -263,21 +264,16 @@ class _Solver:
         return float(min(layer.thickness, 10 * length, indenter.max_radius / 2))
 
 
-def _refuse_rings(contact: DirectContact, indenter: Profile) -> None:
-    """One circle of contact presses everywhere inside and touches nowhere outside."""
+def _refuse_tension(contact: DirectContact) -> None:
+    """One circle of contact presses everywhere inside; whether it touches outside is asked of the whole path."""
     if contact.singular_edge:
         return
     density, unit = contact.density, contact.density.unit
-    breaks = np.array(indenter.breakpoints) / unit
-    outside = breaks[breaks > density.contact_radius]
     inside, pressure = contact.sampled
-    gap = density.displacement_outside(outside, contact.depth) - contact.depth + indenter.height(outside * unit) / unit
     pulled = inside[pressure < -LEAST_TENSION * pressure.max()] + density.panels.origin
-    wrong = np.concatenate([pulled, outside[gap < 0]])
-    if wrong.size:
-        a, where = density.contact_radius * unit, float(wrong[0]) * unit
-        what = "would be pulled" if where < a else "would touch"
-        message = f"a contact of radius {a:g} m {what} at r = {where:g} m: it is no single circle"
+    if pulled.size:
+        a, where = density.contact_radius * unit, float(pulled[0]) * unit
+        message = f"a contact of radius {a:g} m would be pulled at r = {where:g} m: it is no single circle"
         raise UnsupportedSceneError(f"{message}; smooth the profile or press less")
 
 

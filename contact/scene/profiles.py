@@ -56,6 +56,11 @@ class Profile(Record, ABC):
         """Radius [m] where the profile ends."""
         return math.inf
 
+    @property
+    def is_convex(self) -> bool:
+        """Whether f' never falls; then the indenter cannot touch beside its circle of contact (`one_circle`)."""
+        return isinstance(self, CONVEX)
+
     if TYPE_CHECKING:  # at run time a property here would hide the fields of that name below
 
         @property
@@ -270,6 +275,12 @@ class Tabulated(Pointed):
     def breakpoints(self) -> tuple[float, ...]:
         return tuple(float(r) for r in self.radii[1:])
 
+    @cached_property
+    def is_convex(self) -> bool:  # f'' is linear between two breakpoints
+        cubic, square = self._curve.c[:2]
+        second = np.array([2 * square, 6 * cubic * np.diff(self.radii) + 2 * square])
+        return bool(np.all(second >= 0.0))
+
     @property
     def max_radius(self) -> float:
         return float(self.radii[-1])
@@ -285,3 +296,6 @@ PROFILES: tuple[type[Profile], ...] = (
     PowerLaw,
     Tabulated,
 )
+
+# Profiles whose slope never falls.
+CONVEX = (FlatPunch, Paraboloid, Sphere, Cone, TruncatedCone, TruncatedParaboloid, PowerLaw)

@@ -21,9 +21,16 @@ from contact import (
 from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import errors_along
-from fem_reference.adhesion.equilibria import SPANS, branch_of, branch_samples
+from fem_reference.adhesion.equilibria import (
+    SPANS,
+    adhesive_equilibrium,
+    branch_of,
+    branch_samples,
+    work_of_adhesion,
+)
 from fem_reference.adhesion.pull_off_errors import ROOT, pull_off_errors
 from fem_reference.discrete_layer.material import contact_modulus
+from fem_reference.elastic.beside_contact import refuse_touching_contacts
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
@@ -53,11 +60,14 @@ def detachment_path(
 
     Raises:
         NotConvergedError: the branch ends before it becomes unstable.
+        UnsupportedSceneError: the indenter would touch beside one of the contacts.
     """
     loading = scene.loading
     if not isinstance(loading, Detachment):
         raise InvalidInput(f"loading = {type(loading).__name__}: this path needs a Detachment")
     branch = _branch_to_pull_off(scene, loading, solve, accuracy)
+    work = work_of_adhesion(scene)
+    refuse_touching_contacts(scene, ((c, adhesive_equilibrium(c, work).depth) for c in branch.contacts))
     radius = branch_samples(branch)[::-1]
     depth, force = branch.depth(radius), branch.force(radius)
     critical = [*_start(scene, branch), *_turning_points(branch, radius)]

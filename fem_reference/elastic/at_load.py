@@ -41,7 +41,7 @@ def equilibrium_at_load(
         load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
         return load / target
 
-    radius, exponent = radius_of_load(lambda a: ratio(_coarse_solution(scene, a, log), a), start, flat)
+    radius, exponent = radius_of_load(lambda a: ratio(quick_solution(scene, a, log), a), start, flat)
     name = "smooth_depth" if by_depth else "smooth_force"
     for is_last in (False, False, True):
         contact = solve(radius)
@@ -56,7 +56,8 @@ def equilibrium_at_load(
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
 
-def _coarse_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
+def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
+    """The contact of a radius [m], solved with few cells, to about 1e-5 or, of tables, 1e-4."""
     indenter, layer = ScaledIndenter(scene.indenter, radius), scene.layer
     with log.stage("mesh"):
         mesh = contact_mesh(layer, indenter, COARSE)

@@ -97,7 +97,8 @@ class ContactSearch:
         self.radius = radius
         self.strip = condense(scene.layer, mesh, backend, log)
         quadrature, _ = self.strip.pressure_space.gauss(4)
-        self._profile = self.strip.weighted(scene.indenter.height(quadrature * radius) / radius)
+        inside = np.minimum(quadrature * radius, scene.indenter.max_radius)  # a strip may end where the profile does
+        self._profile = self.strip.weighted(scene.indenter.height(inside) / radius)
         self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
         self._active: BoolArray | None = None
 

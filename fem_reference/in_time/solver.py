@@ -13,6 +13,7 @@ import numpy as np
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
+from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import with_errors
 from fem_reference.in_time.impact import Body, HistorySamples, simulate_impact
@@ -43,6 +44,7 @@ def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> Imp
         record = simulate(condensed, steps * duration)
         histories.append(_impact_in_si(setup, loading, condensed, record, shown))
     half_both, half_cells, fine = histories
+    refuse_touching_at(scene, fine.peak_contact_radius, log)
     return with_errors(fine, half_cells, half_both, setup.known_errors(radius, fine.peak_contact_radius))
 
 
@@ -121,6 +123,7 @@ def prescribed_history(setup: HistorySetup, loading: DepthHistory | ForceHistory
         record = simulate(condensed, setup.resolution.steps // steps)
         histories.append(_history_in_si(setup, condensed, record, shown))
     half_both, half_cells, fine = histories
+    refuse_touching_at(scene, float(fine.contact_radius.max()), log)
     return with_errors(fine, half_cells, half_both, setup.known_errors(radius, fine.contact_radius.max()))
 
 

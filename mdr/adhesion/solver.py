@@ -32,6 +32,7 @@ from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.withdrawal import CONTROLS, Route
 from mdr.elastic import PathFields, solve_elastic
 from mdr.springs.assembly import equivalent_system
+from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import FIRST_RATIO
 from mdr.springs.shared_tables import bisected, growing_radii, power_law, upper
@@ -53,6 +54,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
 
     Raises:
         InvalidInput: If there is nothing to detach, or the indenter ends too early.
+        UnsupportedSceneError: If the indenter would touch beside its circle of contact.
     """
     log, loading = StageLog(), scene.loading
     if not isinstance(loading, Detachment):
@@ -61,6 +63,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         route, bounds, uncertain = _withdrawal(scene, loading, flat_punch)
         system = bounds.system
         radius, values, errors, stable = _states(route, bounds, uncertain)
+        refuse_touching_beside(scene, system, radius, values[DEPTH])
         control = CONTROLS.index(loading.control)
         loss, tension = route.loss(control), route.largest_tension(control)
         lost_radius, lost_depth, _ = route.state(loss)
@@ -101,12 +104,14 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
 
     Raises:
         InvalidInput: If a prescribed value lies beyond pull-off.
+        UnsupportedSceneError: If the indenter would touch beside its circle of contact.
     """
     if work_of_adhesion(scene) == 0.0:
         return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
     log = StageLog()
     with log.stage("adhesion"):
         system, radius, depth, errors = _prescribed(scene, flat_punch)
+        refuse_touching_beside(scene, system, radius, depth)
         force = np.asarray(system.force(radius, depth))
         if isinstance(scene.loading, NormalForces):
             force = scene.loading.values

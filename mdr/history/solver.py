@@ -32,6 +32,7 @@ from mdr.history.force_control import Ramp, pressed_at_once, to_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
 from mdr.impact.units import is_flat, relaxation_of
 from mdr.springs.assembly import equivalent_system
+from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.shared_tables import bisected, growing_radii, own_table, upper
 from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 
@@ -79,7 +80,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
 
     Raises:
         InvalidInput: If a force is negative or nothing is ever pressed.
-        UnsupportedSceneError: If the contact would leave a gap inside itself.
+        UnsupportedSceneError: If the contact would leave a gap inside itself, or touch beside itself.
         NotConvergedError: If fewer springs give another answer.
     """
     log, loading = StageLog(), scene.loading
@@ -91,6 +92,8 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         table, beds, springs = _beds(scene, loading, law, flat_punch, gaps)
     with log.stage("history"):
         found = _followed(law, beds, loading, _substeps(loading, fineness))
+        radius = _radius(scene, table, found.track.y)
+        refuse_touching_at(scene, flat_punch, float(radius.max()))
     log.count("springs", beds[0].y.size)
     log.count("instants", loading.time.size)
     return HistoryPath(
@@ -104,7 +107,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         time=loading.time,
         indentation_depth=found.track.depth,
         normal_force=found.track.force,
-        contact_radius=_radius(scene, table, found.track.y),
+        contact_radius=radius,
     )
 
 

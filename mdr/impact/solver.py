@@ -20,6 +20,7 @@ from mdr.impact.history import history
 from mdr.impact.motion import Impacts, TableTooShort, impacts
 from mdr.impact.results import ImpactResults, joined, results
 from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, relaxation_of, scaled, table_of
+from mdr.springs.beside_contact import refuse_touching_at
 
 ACCURACY = 1e-9
 _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
@@ -53,6 +54,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     Raises:
         NotConvergedError: If the indenter never rebounds.
         InvalidInput: If it is pressed in beyond its rim.
+        UnsupportedSceneError: If it would touch beside its largest circle of contact.
     """
     known = {"accuracy": ACCURACY, **settings}
     log, accuracy = StageLog(), float(known["accuracy"] or ACCURACY)
@@ -63,7 +65,9 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     legs = motion.way_in + motion.way_out
     log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in legs))
     log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
-    return history(scene, problem, motion, log, accuracy, settings=known)
+    found = history(scene, problem, motion, log, accuracy, settings=known)
+    refuse_touching_at(scene, flat_punch, found.peak_contact_radius)
+    return found
 
 
 def _pressed(
@@ -111,7 +115,10 @@ def impact_batch(
             order += chunk
             if progress is not None:
                 progress(len(order), len(scenes))
-    return joined(found, np.argsort(order))
+    answer = joined(found, np.argsort(order))
+    for scene, radius in zip(scenes, answer.peak_contact_radius.tolist(), strict=True):
+        refuse_touching_at(scene, flat_punch, radius)
+    return answer
 
 
 def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: float) -> list[tuple[list[int], _Solver]]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bem.adhesion.beside_contact import refuse_touching_beside
 from bem.adhesion.branch import SCOUT_CELLS
 from bem.adhesion.cell_by_cell.path import (
     CellHistory,
@@ -18,6 +19,7 @@ from bem.adhesion.withdrawal import Control
 from bem.grid.flat_punch import contact_stiffness
 from contact import ContactPath, DetachmentPath, IndentationDepths, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
+from contact.records.validation import FloatArray
 
 
 @dataclass(frozen=True)
@@ -52,6 +54,7 @@ class AdheringCells:
                 CellHistory.of_depths(self.scene, loading.values, cells, self.threads, self.log)
                 for cells in (self.points, self.points // 2)
             )
+        self._refuse_touching(fine.contact_radius, loading.values)
         layer, radii = self.scene.layer, fine.contact_radius.tolist()
         return ContactPath(
             scene=self.scene,
@@ -76,6 +79,7 @@ class AdheringCells:
                 detachment_branch(self.scene, start, cells, self.threads, self.log, to_least_force=control == "force")
                 for cells in (self.points, self.points // 2)
             )
+        self._refuse_touching(fine.contact_radius, fine.indentation_depth)
         end = fine.pull_off(control)
         errors = branch_errors(fine, coarse, control)
         return DetachmentPath(
@@ -96,3 +100,6 @@ class AdheringCells:
             pull_off_contact_radius=float(fine.contact_radius[end]),
             critical_points=fine.critical_points(),
         )
+
+    def _refuse_touching(self, radius: FloatArray, depth: FloatArray) -> None:
+        refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)

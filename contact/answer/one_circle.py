@@ -1,0 +1,149 @@
+"""Whether an indenter touches the surface beside its circle of contact, where its answer would be silently wrong.
+
+An indenter whose slope never falls (`Profile.is_convex`) cannot. Contact grows by flat punches,
+
+    gap(r; a) = int_a^r [1 - U(r; x)] g'(x) dx,    U: displacement of the surface beside a unit punch of radius x,
+
+and U < 1, also where the surface bulges up and U < 0. So the gap is positive wherever the MDR profile g rises. A convex
+profile is a sum of truncated cones, gaps at one contact radius add up, and g of every truncated cone rises: on the
+half-space because r f' does not fall, on thin incompressible layers because f exceeds its mean within r, and in between
+as computed (`tests/verification/test_one_circle.py`). A profile that is only monotone can touch: a step on its flank.
+The same integral says that, where g rises within the largest contact, the largest contact has the smallest gaps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from contact.answer.solution import ContactPath
+from contact.records.errors import UnsupportedSceneError
+from contact.records.validation import FloatArray
+from contact.scene.profiles import Profile
+from contact.scene.scene import Scene
+
+# Looked at between two neighbouring breakpoints of the profile, the outer one included.
+SAMPLES = 6
+# A profile without an end is looked at out to so many contact radii.
+FARTHEST = 1e3
+# Where a bulge beside the contact is looked for: distances from the edge over the smaller of contact radius and
+# thickness.
+PROBES = np.geomspace(0.01, 10.0, 16)
+# Times the highest bulge seen at the probes: heights beyond that are out of its reach. A bulge is as wide as it is far
+# from the edge, and the distances of two probes differ by a factor of 1.6, so that one of them sees most of it.
+REACH = 2.0
+# Narrowings of the place of a smallest gap, each by a factor of eight.
+NARROWINGS = 3
+
+
+@dataclass(frozen=True)
+class Circle:
+    """One circle of contact and the surface beside it.
+
+    Attributes:
+        contact_radius: a [m].
+        indentation_depth: delta [m].
+        displacement: w [m] at radii [m] beyond a, shape (n,).
+        tolerance: Overlap [m] that is still an error of the displacement.
+    """
+
+    contact_radius: float
+    indentation_depth: float
+    displacement: Callable[[FloatArray], FloatArray]
+    tolerance: float
+
+
+def refuse_touching(scene: Scene, circles: Iterable[Circle]) -> None:
+    """Refuse circles beside which the indenter would touch.
+
+    Raises:
+        UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
+    """
+    if scene.indenter.is_convex:
+        return
+    for circle in circles:
+        where = touching_radius(scene, circle)
+        if where is not None:
+            raise UnsupportedSceneError(
+                f"a contact of radius {circle.contact_radius:g} m would touch at r = {where:g} m: it is no single "
+                "circle; smooth the profile or press less"
+            )
+
+
+def refuse_touching_path(path: ContactPath) -> ContactPath:
+    """The path, unless the indenter would touch beside one of its contacts, as far as the stated errors can tell."""
+    refuse_touching(path.scene, (_circle(path, step) for step in range(len(path))))
+    return path
+
+
+def _circle(path: ContactPath, step: int) -> Circle:
+    """A step of a path; it may overlap by what its depth is uncertain, and its radius at the slope there."""
+    radius, depth = float(path.contact_radius[step]), float(path.indentation_depth[step])
+    errors = path.error_estimate
+    height = max(abs(depth), float(path.scene.indenter.height(radius)))
+    uncertain = errors["indentation_depth"][step] + errors["contact_radius"][step]
+    return Circle(radius, depth, lambda r: path.surface_displacement(r, step), float(uncertain) * height)
+
+
+def touching_radius(scene: Scene, circle: Circle) -> float | None:
+    """Radius [m] of the deepest overlap beside a contact, or None."""
+    a, profile = circle.contact_radius, scene.indenter
+    if profile.is_convex or not 0.0 < a < profile.max_radius:
+        return None
+    r = np.concatenate([[a], _radii(profile, a)])
+    clear = profile.height(r) - circle.indentation_depth
+    near = clear <= _bulge(circle, min(a, scene.layer.thickness))
+    near[0] = False
+    gap = np.where(near, 0.0, clear)
+    gap[near] = _gap(profile, circle, r[near])
+    gap[0] = 0.0
+    lowest = [(float(gap[i]), float(r[i])) for i in np.flatnonzero(gap < 0)]
+    lowest += [_narrowed(profile, circle, r[i - 1], r[i + 1]) for i in _minima(gap) if gap[i] >= 0]
+    overlap, where = min(lowest, default=(0.0, a))
+    return where if overlap < -circle.tolerance else None
+
+
+def _radii(profile: Profile, contact_radius: float) -> FloatArray:
+    """Breakpoints beyond the contact's edge, and radii between each and the one before."""
+    ends = [r for r in profile.breakpoints if r > contact_radius]
+    if profile.max_radius == np.inf:
+        first = ends[-1] if ends else contact_radius
+        ends += list(np.geomspace(first, FARTHEST * first, 10 * SAMPLES)[1:])
+    elif not ends or ends[-1] < profile.max_radius:
+        ends.append(profile.max_radius)
+    starts = np.array([contact_radius, *ends[:-1]])
+    share = np.arange(1, SAMPLES + 1) / SAMPLES
+    between = starts[:, None] + share * (np.array(ends) - starts)[:, None]
+    between[:, -1] = ends
+    return np.asarray(between.ravel())
+
+
+def _bulge(circle: Circle, length: float) -> float:
+    """Height [m] that the surface beside the contact reaches nowhere."""
+    return REACH * max(0.0, -float(circle.displacement(circle.contact_radius + length * PROBES).min()))
+
+
+def _gap(profile: Profile, circle: Circle, radius: FloatArray) -> FloatArray:
+    if not radius.size:
+        return radius
+    return np.asarray(profile.height(radius) - circle.indentation_depth + circle.displacement(radius))
+
+
+def _minima(gap: FloatArray) -> list[int]:
+    """Inner samples no higher than their neighbours, from which a parabola may fall to zero between them."""
+    inner = gap[1:-1]
+    is_lowest = (inner <= gap[:-2]) & (inner <= gap[2:])
+    may_touch = inner <= np.maximum(gap[:-2], gap[2:]) - inner
+    return [int(i) + 1 for i in np.flatnonzero(is_lowest & may_touch)]
+
+
+def _narrowed(profile: Profile, circle: Circle, low: float, high: float) -> tuple[float, float]:
+    """The smallest gap between two radii, and where it is."""
+    for _ in range(NARROWINGS):
+        r = np.linspace(low, high, 18)[1:-1]
+        gap = _gap(profile, circle, r)
+        i = int(gap.argmin())
+        low, high = r[max(i - 1, 0)], r[min(i + 1, r.size - 1)]
+    return float(gap[i]), float(r[i])

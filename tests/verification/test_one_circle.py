@@ -1,0 +1,236 @@
+"""Where an indenter would touch the surface beside its circle of contact, every method refuses to answer."""
+
+import re
+
+import numpy as np
+import pytest
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.method import IntegralEquationMethod
+from bem.method import Bem
+from contact import (
+    Adhesion,
+    Cone,
+    ContactError,
+    ContactPath,
+    ContactRadii,
+    DepthHistory,
+    Detachment,
+    FlatPunch,
+    ForceHistory,
+    Impact,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+    UnsupportedSceneError,
+)
+from contact.answer.one_circle import Circle, touching_radius
+from fem_reference import Fem
+from mdr import Mdr, equivalent_system
+
+LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
+INCOMPRESSIBLE = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
+MDR, DIRECT, FEM, BEM = Mdr(), IntegralEquationMethod(), Fem(accuracy=1e-3), Bem(points=128)
+METHODS = pytest.mark.parametrize("method", [MDR, DIRECT, FEM, BEM], ids=lambda m: m.name)
+
+# Two measured profiles with a second dip, at r = 2 mm and at r = 0.8 mm.
+DIPPED = Tabulated(radii=np.linspace(0, 4e-3, 9), heights=np.array([0, 20, 30, 25, 5, 6, 20, 60, 150]) * 1e-6)
+NARROW = Tabulated(
+    radii=np.array([0, 0.2, 0.4, 0.6, 0.8, 1, 1.5, 2]) * 1e-3, heights=np.array([0, 6, 8, 3, 2, 8, 30, 80]) * 1e-6
+)
+# Rises everywhere: a blunt tip, a steep flank, and a plateau that the surface reaches where it bulges up.
+STEPPED = Tabulated(
+    radii=np.array([0, 0.8, 1.0, 1.1, 2.0, 3.0, 4.0]) * 1e-3, heights=np.array([0, 2, 4, 20, 20.1, 20.2, 60]) * 1e-6
+)
+TOUCH = r"would touch at r = 0\.00"
+ADHESION = Adhesion(work_of_adhesion=1e-4)
+
+
+def scene_of(indenter, loading, layer=LAYER, effects=()):
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
+
+
+@METHODS
+@pytest.mark.parametrize(("indenter", "depth", "dip"), [(DIPPED, 1.5e-5, 2e-3), (NARROW, 4e-6, 0.8e-3)])
+def test_a_second_dip_below_the_surface_is_refused_with_its_radius(method, indenter, depth, dip):
+    with pytest.raises(UnsupportedSceneError, match="no single circle") as refusal:
+        method.solve(scene_of(indenter, IndentationDepths(values=[depth])))
+    where = float(re.search(r"touch at r = (\S+) m", str(refusal.value))[1])
+    assert where == pytest.approx(dip, rel=0.05, abs=0)
+
+
+@METHODS
+def test_no_method_answers_where_a_wider_contact_would_swallow_the_dip(method):
+    with pytest.raises(ContactError, match="circle"):
+        method.solve(scene_of(NARROW, IndentationDepths(values=[6e-6])))
+
+
+@METHODS
+@pytest.mark.parametrize("loading", [ContactRadii(values=[0.24e-3]), NormalForces(values=[4.9e-3])])
+def test_the_same_under_prescribed_radii_and_forces(method, loading):
+    with pytest.raises(UnsupportedSceneError, match=TOUCH):
+        method.solve(scene_of(DIPPED, loading))
+
+
+@pytest.mark.parametrize(
+    ("method", "loading"),
+    [
+        (MDR, ContactRadii(values=[0.1e-3, 0.24e-3])),
+        (MDR, IndentationDepths(values=[1.5e-5])),
+        (MDR, Detachment(initial_contact_radius=0.24e-3)),
+        (FEM, ContactRadii(values=[0.24e-3])),
+        pytest.param(FEM, Detachment(initial_contact_radius=0.24e-3), marks=pytest.mark.slow),
+        (BEM, ContactRadii(values=[0.24e-3])),
+        pytest.param(BEM, Detachment(initial_contact_radius=0.24e-3), marks=pytest.mark.slow),
+        pytest.param(Bem(points=128, adhesion="cells"), IndentationDepths(values=[1.5e-5]), marks=pytest.mark.slow),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_adhering_contacts_are_refused_in_their_own_states(method, loading):
+    with pytest.raises(UnsupportedSceneError, match=TOUCH):
+        method.solve(scene_of(DIPPED, loading, effects=(ADHESION,)))
+
+
+def test_adhesion_may_hold_a_dip_above_the_surface_that_pressing_would_touch():
+    """The radius whose elastic depth touches the dip is answered where adhesion needs less depth."""
+    path = MDR.solve(scene_of(NARROW, ContactRadii(values=[0.08e-3]), effects=(Adhesion(work_of_adhesion=5e-2),)))
+    assert gap_beside(path, NARROW).min() >= 0.0
+    with pytest.raises(UnsupportedSceneError):
+        MDR.solve(scene_of(NARROW, ContactRadii(values=[0.08e-3])))
+
+
+MOTIONS = [
+    Impact(mass=1e-3, velocity=0.02),
+    DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 8e-6, 0.0]),
+    ForceHistory(time=[0.0, 1.0, 2.0], force=[0.0, 2e-2, 0.0]),
+]
+
+
+@pytest.mark.parametrize("method", [MDR, FEM], ids=lambda m: m.name)
+@pytest.mark.parametrize("loading", MOTIONS, ids=lambda value: type(value).__name__)
+def test_motions_are_refused_at_their_largest_contact(method, loading):
+    with pytest.raises(UnsupportedSceneError, match="no single circle"):
+        method.solve(scene_of(DIPPED, loading, layer=INCOMPRESSIBLE))
+
+
+def test_a_batch_of_impacts_is_refused_too():
+    from mdr.batches import impacts
+
+    with pytest.raises(UnsupportedSceneError, match=TOUCH):
+        impacts([scene_of(DIPPED, MOTIONS[0], layer=INCOMPRESSIBLE)], IntegralEquation())
+
+
+@pytest.mark.parametrize("method", [MDR, DIRECT, FEM], ids=lambda m: m.name)
+def test_the_bulge_beside_an_incompressible_layer_touches_a_plateau_higher_than_the_depth(method):
+    """At this radius the depth is 19 um, the plateau is 20 um high, and the surface would rise by 3 um there."""
+    loading = ContactRadii(values=[1.032e-3])
+    with pytest.raises(UnsupportedSceneError, match=TOUCH):
+        method.solve(scene_of(STEPPED, loading, layer=INCOMPRESSIBLE))
+
+
+def random_table(rng):
+    """A measured profile that falls here and there, and a depth."""
+    count = int(rng.integers(5, 12))
+    radii = np.append(0.0, np.cumsum(rng.uniform(0.2, 1.0, count))) * 10 ** rng.uniform(-1.0, 0.5) * 1e-3 / count
+    rises = rng.uniform(-0.6, 1.0, count)
+    rises[0], rises[-1] = abs(rises[0]) + 0.05, 3.0
+    heights = 1e-2 * radii[-1] * np.append(0.0, np.cumsum(rises)) / count
+    return Tabulated(radii=radii, heights=heights), 0.3 * float(rng.uniform(0.05, 0.9) * heights.max())
+
+
+def random_layer(rng):
+    support, ratio = str(rng.choice(["bonded", "unbonded"])), float(rng.choice([0.5, 0.45, 0.3]))
+    return Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=ratio, support=support)
+
+
+def gap_beside(path, indenter):
+    """The gap over the depth on many radii outside the contact."""
+    r = np.linspace(float(path.contact_radius[0]), indenter.max_radius, 3000)[1:]
+    depth = float(path.indentation_depth[0])
+    return (indenter.height(r) - depth + path.surface_displacement(r)) / depth
+
+
+@pytest.mark.parametrize(("method", "count"), [(MDR, 60), (DIRECT, 4), (FEM, 3), (BEM, 5)], ids=lambda v: str(v)[:3])
+def test_what_is_answered_has_no_negative_gap_beside_the_contact(method, count):
+    check_random_tables(method, count, seed=1)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("method", "count"), [(MDR, 600), (DIRECT, 60), (FEM, 40), (BEM, 60)], ids=lambda v: str(v)[:3]
+)
+def test_the_same_for_many_tables(method, count):
+    check_random_tables(method, count, seed=2)
+
+
+def check_random_tables(method, count, seed):
+    rng, answered = np.random.default_rng(seed), 0
+    for _ in range(count):
+        (indenter, depth), layer = random_table(rng), random_layer(rng)
+        try:
+            path = method.solve(scene_of(indenter, IndentationDepths(values=[depth]), layer=layer))
+        except ContactError:
+            continue
+        answered += 1
+        stated = path.error_estimate["contact_radius"][0] + path.error_estimate["normal_force"][0]
+        assert gap_beside(path, indenter).min() >= -stated - 1e-9
+    assert answered >= count // 5
+
+
+@METHODS
+def test_a_noisy_table_that_touches_nowhere_else_is_answered(method):
+    radii = np.linspace(0.0, 2e-3, 21)
+    noise = np.append(0.0, np.random.default_rng(4).uniform(-0.02, 0.02, 20))
+    indenter = Tabulated(radii=radii, heights=radii**2 / 0.02 * (1 + noise))
+    assert not indenter.is_convex
+    path = method.solve(scene_of(indenter, IndentationDepths(values=[2e-5]), layer=INCOMPRESSIBLE))
+    assert isinstance(path, ContactPath)
+
+
+CONVEX = [
+    FlatPunch(radius=1.0),
+    Paraboloid(radius_of_curvature=1.0),
+    Sphere(radius=1.0),
+    Cone(slope=1.0),
+    TruncatedCone(flat_radius=0.3, slope=1.0),
+    TruncatedParaboloid(flat_radius=0.3, radius_of_curvature=1.0),
+    PowerLaw(exponent=12.0, reference_radius=1.0, reference_height=1.0),
+    PowerLaw(exponent=1.0, reference_radius=1.0, reference_height=1.0),
+    Tabulated(radii=np.linspace(0, 1, 9), heights=np.linspace(0, 1, 9) ** 2),
+]
+
+
+@pytest.mark.parametrize("indenter", CONVEX, ids=lambda p: type(p).__name__)
+def test_convex_profiles_have_slopes_that_never_fall_and_cost_nothing(indenter):
+    assert indenter.is_convex
+    slope = indenter.slope_at(np.linspace(0.0, 0.999, 1000))
+    assert np.all(np.diff(slope) >= -1e-12)
+
+    def unasked(radius):
+        raise AssertionError(f"displacement asked at {radius}")
+
+    assert touching_radius(scene_of(indenter, IndentationDepths(values=[0.1])), Circle(0.5, 0.1, unasked, 0.0)) is None
+
+
+@pytest.mark.parametrize("indenter", [DIPPED, NARROW, STEPPED])
+def test_tables_with_falling_slopes_are_not_convex(indenter):
+    assert not indenter.is_convex
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("ratio", [0.5, 0.48, 0.3, 0.0])
+def test_the_mdr_profile_of_every_truncated_cone_rises(support, ratio):
+    """So convex profiles, sums of truncated cones, cannot be touched by a bulge beside the contact."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=ratio, support=support)
+    for flat in np.geomspace(1e-3, 40.0, 9):
+        cone = TruncatedCone(flat_radius=float(flat), slope=1.0)
+        system = equivalent_system(layer, cone, 60.0, IntegralEquation())
+        excess = np.geomspace(1e-6 * flat, 0.999 * (60.0 - flat), 300)
+        assert np.all(system.mdr_profile_slope(flat + excess) > 0.0)
