@@ -56,7 +56,8 @@ class Profile(Record, ABC):
         """Radius [m] where the profile ends."""
         return math.inf
 
-    if TYPE_CHECKING:  # at run time a property here would hide the fields of that name below
+    # At run time a property here would hide the fields of that name below.
+    if TYPE_CHECKING:
 
         @property
         def flat_radius(self) -> float:
@@ -254,7 +255,8 @@ class Tabulated(Pointed):
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
-        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415  # only tabulated scenes pay for this import
+        # Only tabulated scenes pay for this import.
+        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415
 
         return PchipInterpolator(self.radii, self.heights)
 
