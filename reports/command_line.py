@@ -16,7 +16,8 @@ EPILOG = (
     "method; 4 wrong usage, scene or file; 5 nothing ran."
 )
 INTERRUPTED, INTERNAL_ERROR, USAGE = 2, 3, 4
-USAGE_ERROR: Any = typer.BadParameter.__base__  # every complaint of the option parser
+# Every complaint of the option parser derives from this class.
+USAGE_ERROR: Any = typer.BadParameter.__base__
 
 app = typer.Typer(
     name="contact-verify",
@@ -223,10 +224,10 @@ def accept(
 
     Refused: numbers that are not finite, uncommitted changes, a failing exact or order claim, continuous integration.
     """
-    from reports.commands.accept import Wish, accept_cases  # noqa: PLC0415
+    from reports.commands.accept import AcceptRequest, accept_cases  # noqa: PLC0415
 
-    wish = Wish(reason=reason, run=run, baselines=baseline, loosen=loosen, write=write, jobs=jobs)
-    accept_cases(cases or [], wish)
+    request = AcceptRequest(reason=reason, run=run, baselines=baseline, loosen=loosen, write=write, jobs=jobs)
+    accept_cases(cases or [], request)
 
 
 @app.command()

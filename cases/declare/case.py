@@ -6,7 +6,9 @@ from typing import Any, Protocol, Self
 
 from cases.declare.methods import MethodUse
 from cases.declare.task import Answers, Sampling, Task
-from cases.results.records import Claim, Figure, Kind, Scalar
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.field_types import Scalar
+from cases.results.records.figure import Figure
 from contact import InvalidInput, Scene
 
 SUITES = ("ci", "nightly")
@@ -109,7 +111,7 @@ class Case:
     question: str
     equations: tuple[str, ...]
     text: str
-    suites: tuple[str, ...]
+    suites: tuple[str, ...] = SUITES
     scenes: tuple[CaseScene, ...]
     methods: tuple[MethodUse, ...]
     claims: tuple[ClaimOfCase, ...]
@@ -187,6 +189,11 @@ class Case:
         """The tasks of the work studies alone."""
         for study in self.work:
             yield from study.tasks(self)
+
+
+def text_of(docstring: str | None) -> str:
+    """Return the text of a case from the docstring of its module: everything after the first line."""
+    return (docstring or "").partition("\n")[2].strip()
 
 
 def _refuse_empty(case: str, **fields: object) -> None:

@@ -1,8 +1,8 @@
 """Methods of installed packages join every case: each claim that can be put to them is put to them.
 
-A newcomer follows ``contact.Method`` and may say how accurate it means to be (``claimed_accuracy``, relative, a class
-attribute, at most 10 %); no claim then asks more of it, and every verdict that this relaxes says so.  Where it says
-nothing, a claim asks what it asks of its least exact method.
+Such a method follows ``contact.Method`` and may say how accurate it means to be (``claimed_accuracy``, relative, a
+class attribute, at most 10 %); no claim then asks more of it, and every verdict that this relaxes says so.  Where it
+says nothing, a claim asks what it asks of its least exact method.
 """
 
 from collections.abc import Iterator
@@ -30,7 +30,7 @@ def with_registered(case: Case) -> Case:
         InvalidInput: if such a method cannot be imported, or claims an accuracy that is none.
     """
     for name in registered():
-        case = with_newcomer(case, name, claimed_accuracy=claimed_accuracy(name))
+        case = with_foreign_method(case, name, claimed_accuracy=claimed_accuracy(name))
     return case
 
 
@@ -58,7 +58,7 @@ def check_claim(name: str, claimed: Any) -> float:
     return float(claimed)
 
 
-def with_newcomer(case: Case, name: str, *, claimed_accuracy: float = 0.0) -> Case:
+def with_foreign_method(case: Case, name: str, *, claimed_accuracy: float = 0.0) -> Case:
     """Return ``case`` solved by one more method and with the claims that can be put to it.
 
     Claims about single methods extend to it; agreements compare it with both methods of the case.  Orders of

@@ -2,7 +2,8 @@
 
 from contact import Method
 
-COARSEST = 1e-4  # of the integration in time; statics are finer whatever is asked
+# The integration in time is at least so accurate; static answers are more accurate whatever is asked.
+COARSEST = 1e-4
 
 
 def mdr_by_integral_equation(nodes: int = 24, panel_width: float = 1.0, accuracy: float = 1e-9) -> Method:

@@ -129,7 +129,8 @@ def location(name: str) -> tuple[str, str]:
     return others[name].module, others[name].attr
 
 
-def load(name: str) -> Any:  # a class from another package: its type is not known here
+# The type of a class from another package is not known here.
+def load(name: str) -> Any:
     """Return the class of the method called ``name``.
 
     Raises:
@@ -138,5 +139,6 @@ def load(name: str) -> Any:  # a class from another package: its type is not kno
     module, attribute = location(name)
     try:
         return getattr(importlib.import_module(module), attribute)
-    except Exception as error:  # a package may raise anything when it is imported
+    except Exception as error:
+        # A package may raise anything when it is imported.
         raise InvalidInput(f"method {name!r} cannot be imported from {module}: {error}; install it again") from error

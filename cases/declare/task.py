@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field, replace
 
 from cases.judgement.rules.norms import RingQuadrature, ring_quadrature
-from cases.results.records import SceneRun
+from cases.results.records.scene_run import SceneRun
 from contact import Method, Scene
 
 

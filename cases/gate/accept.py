@@ -6,14 +6,15 @@ from dataclasses import replace
 from pathlib import Path
 
 from cases.gate.baseline import write_baseline
-from cases.gate.history import append_history
-from cases.gate.proposal import Change, Proposal
-from cases.gate.write_permission import Circumstances
-from cases.results.records import Acceptance, CaseResult, Kind, RunResult
+from cases.gate.history import append_history, blank_entry
+from cases.gate.proposal import BaselineChange, Proposal
+from cases.gate.write_permission import WriteConditions
+from cases.results.records.claim import Kind
+from cases.results.records.run import Acceptance, CaseResult, RunResult
 from contact import InvalidInput
 
 
-def accept(folder: Path, proposal: Proposal, run: RunResult, now: Circumstances, *, loosen: bool = False) -> None:
+def accept(folder: Path, proposal: Proposal, run: RunResult, now: WriteConditions, *, loosen: bool = False) -> None:
     """Write the proposed baselines into ``folder`` and append every change to its history.
 
     Raises:
@@ -27,7 +28,7 @@ def accept(folder: Path, proposal: Proposal, run: RunResult, now: Circumstances,
     append_history(folder, _entries(proposal, now))
 
 
-def refusals(proposal: Proposal, run: RunResult, now: Circumstances, *, loosen: bool = False) -> tuple[str, ...]:
+def refusals(proposal: Proposal, run: RunResult, now: WriteConditions, *, loosen: bool = False) -> tuple[str, ...]:
     """Return every reason why ``proposal`` may not be accepted, each with its remedy."""
     return (
         *refusals_beforehand(proposal.case, run, now),
@@ -37,12 +38,12 @@ def refusals(proposal: Proposal, run: RunResult, now: Circumstances, *, loosen: 
     )
 
 
-def refusals_beforehand(case: str, run: RunResult, now: Circumstances) -> tuple[str, ...]:
+def refusals_beforehand(case: str, run: RunResult, now: WriteConditions) -> tuple[str, ...]:
     """Return every reason that is known before the spread is measured."""
     return *_refused_circumstances(run, now), *_refused_run(run, run.case(case))
 
 
-def _refused_circumstances(run: RunResult, now: Circumstances) -> Iterator[str]:
+def _refused_circumstances(run: RunResult, now: WriteConditions) -> Iterator[str]:
     if now.in_ci:
         yield "continuous integration must not accept its own numbers; accept them by hand and commit the files"
     if now.changed:
@@ -79,27 +80,16 @@ def _loosenings(proposal: Proposal) -> Iterator[str]:
         yield f"the {name} would no longer be watched; say --loosen if that is meant"
 
 
-def _loosening(change: Change) -> str:
+def _loosening(change: BaselineChange) -> str:
     name = f"{change.record.quantity} of {change.record.scene!r} by {change.method}"
     if change.old is None or change.new is None:
         return f"{name} would no longer be watched"
     return f"the tolerance of {name} would grow from {change.old.tolerance:.1e} to {change.new.tolerance:.1e}"
 
 
-def _entries(proposal: Proposal, now: Circumstances) -> Iterator[Acceptance]:
+def _entries(proposal: Proposal, now: WriteConditions) -> Iterator[Acceptance]:
     """Return one entry for all new records of a method, and one for each that changed, was loosened or withdrawn."""
-    blank = Acceptance(
-        date=now.date,
-        case=proposal.case,
-        method="",
-        quantity="",
-        old=None,
-        new=None,
-        old_tolerance=None,
-        new_tolerance=None,
-        reason=proposal.reason,
-        revision=now.revision,
-    )
+    blank = blank_entry(now, proposal.case, "", "", proposal.reason)
     for baseline in proposal.baselines:
         changes = [change for change in proposal.changes if change.method == baseline.method]
         new = sum(change.old is None for change in changes)
@@ -110,7 +100,7 @@ def _entries(proposal: Proposal, now: Circumstances) -> Iterator[Acceptance]:
         yield replace(blank, method=name.rpartition(" by ")[2], quantity=f"{name} withdrawn")
 
 
-def _changed(blank: Acceptance, change: Change) -> Acceptance:
+def _changed(blank: Acceptance, change: BaselineChange) -> Acceptance:
     old, new = change.values
     return replace(
         blank,

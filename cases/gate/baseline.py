@@ -12,10 +12,12 @@ from pydantic.dataclasses import dataclass
 
 from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.files import write_whole
-from cases.results.records import Finite, Kind, Mapping, NotNegative, Positive, Vector
+from cases.results.records.claim import Kind
+from cases.results.records.field_types import Finite, Mapping, NotNegative, Positive, Vector
 from cases.results.sealed import read_sealed, sealed_text
 from contact import InvalidInput
 
+# Files of another version are refused.
 BASELINE_VERSION = 1
 REMEDY = "restore it from the repository, or accept the case anew"
 _ENTRY = "baseline"

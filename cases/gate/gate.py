@@ -9,7 +9,10 @@ from cases.gate.checks.counts import count_checks
 from cases.gate.checks.uncertainties import uncertainty_checks
 from cases.gate.checks.values import value_checks
 from cases.gate.ladders import ladder_claims
-from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, RunResult, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.reliability import Ladder
+from cases.results.records.run import Acceptance, CaseResult, RunResult
+from cases.results.records.scene_run import SceneRun
 
 Watched = Callable[[str, SceneRun], bool]
 
@@ -32,13 +35,13 @@ def gate(
         ladders: accepted stability ladders.
         watched: whether a solution of a case needs accepted numbers; those of the nightly suite alone do not.
     """
-    climbed = tuple(ladders)
+    accepted_ladders = tuple(ladders)
     accepted: dict[str, list[Baseline]] = {}
     for baseline in baselines:
         accepted.setdefault(baseline.case, []).append(baseline)
     present = {case.name for case in run.cases}
     lost = [_lost_case(name) for name in sorted(accepted) if name not in present and _belongs(accepted[name], run)]
-    cases = tuple(_gated(case, accepted.get(case.name, []), climbed, watched) for case in (*run.cases, *lost))
+    cases = tuple(_gated(case, accepted.get(case.name, []), accepted_ladders, watched) for case in (*run.cases, *lost))
     return replace(run, cases=cases, acceptances=tuple(history))
 
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 from pydantic import TypeAdapter, ValidationError
 
+from cases.gate.write_permission import WriteConditions
 from cases.results.files import write_whole
-from cases.results.records import Acceptance
+from cases.results.records.run import Acceptance
 from cases.results.sealed import parsed
 from contact import InvalidInput
 
@@ -36,6 +37,22 @@ def append_history(folder: Path, entries: Iterable[Acceptance]) -> None:
     path = history_path(folder)
     before = path.read_text(encoding="utf-8") if path.is_file() else ""
     write_whole(path, before + "".join(_line(entry) for entry in entries))
+
+
+def blank_entry(now: WriteConditions, case: str, method: str, quantity: str, reason: str) -> Acceptance:
+    """Return an entry about something that had no accepted value before."""
+    return Acceptance(
+        date=now.date,
+        case=case,
+        method=method,
+        quantity=quantity,
+        old=None,
+        new=None,
+        old_tolerance=None,
+        new_tolerance=None,
+        reason=reason,
+        revision=now.revision,
+    )
 
 
 def _entry(line: bytes, place: str) -> Acceptance:

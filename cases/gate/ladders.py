@@ -10,11 +10,15 @@ from pathlib import Path
 from pydantic import TypeAdapter, ValidationError
 
 from cases.gate.baseline import REMEDY
-from cases.gate.history import append_history
-from cases.gate.write_permission import Circumstances
+from cases.gate.checks.check import regression_claim
+from cases.gate.history import append_history, blank_entry
+from cases.gate.write_permission import WriteConditions
+from cases.judgement.rules.judgement import Judgement, nothing_compared, passed_or_failed
 from cases.measurements.ladders.ladders import worsened
 from cases.results.files import write_whole
-from cases.results.records import Acceptance, CaseResult, Claim, Kind, Ladder, Origin, Verdict
+from cases.results.records.claim import Claim
+from cases.results.records.reliability import Ladder
+from cases.results.records.run import CaseResult
 from cases.results.sealed import read_sealed, sealed_text
 from cases.results.status import Status
 from contact import InvalidInput
@@ -56,32 +60,31 @@ def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Clai
 
 
 def _claim(ladder: Ladder, before: Ladder | None) -> Claim:
-    worse = [] if before is None else worsened(ladder, before)
-    status = Status.INCOMPARABLE if before is None else Status.DIFF if worse else Status.PASS
-    extra = "extra: this ladder was never accepted; look at it, then accept the run"
-    return Claim(
-        name="accepted rungs and digits",
-        kind=Kind.REGRESSION,
+    return regression_claim(
+        "accepted rungs and digits",
+        _judged(ladder, before),
         scene=ladder.name,
         methods=(ladder.method,),
         quantity=ladder.quantity,
-        unit="1",
-        status=status,
-        verdict=Verdict.NONE if before is None else Verdict.FAIL if worse else Verdict.PASS,
-        observed=None if before is None else float(len(worse)),
         expected=None if before is None else 0.0,
         tolerance=0.5,
-        fraction=None if before is None else 2.0 * len(worse),
-        origin=Origin.OWN_EARLIER_OUTPUT,
         source=f"baselines/{_NAME.format(ladder.method)}",
         because="a method should not give up earlier than it did",
         derived_from="one digit: repeats that differ by single roundings share about as many digits every time",
-        message=extra if before is None else "; ".join(worse) or "no rung lost, no more than one digit lost",
     )
 
 
+def _judged(ladder: Ladder, before: Ladder | None) -> Judgement:
+    if before is None:
+        message = "extra: this ladder was never accepted; look at it, then accept the run"
+        return nothing_compared(Status.INCOMPARABLE, message)
+    worse = worsened(ladder, before)
+    message = "; ".join(worse) or "no rung lost, no more than one digit lost"
+    return passed_or_failed(float(len(worse)), 0.5, message, failure=Status.DIFF)
+
+
 def accept_ladders(
-    folder: Path, ladders: Iterable[Ladder], now: Circumstances, *, reason: str, loosen: bool = False
+    folder: Path, ladders: Iterable[Ladder], now: WriteConditions, *, reason: str, loosen: bool = False
 ) -> None:
     """Write ladders into ``folder``, those of a method over those accepted before, and a line into its history.
 
@@ -97,25 +100,10 @@ def accept_ladders(
         merged = [ladder for ladder in (accepted | new).values() if ladder.method == method]
         _write(folder / _NAME.format(method), merged)
         count = sum(ladder.method == method for ladder in new.values())
-        append_history(folder, [_entry(now, method, f"{count} ladders", reason)])
+        append_history(folder, [blank_entry(now, "stability", method, f"{count} ladders", reason)])
 
 
 def _write(path: Path, ladders: list[Ladder]) -> None:
     tree = _LADDERS.dump_python(tuple(sorted(ladders, key=lambda ladder: ladder.name)), mode="json")
     path.parent.mkdir(parents=True, exist_ok=True)
     write_whole(path, sealed_text({"ladders": tree}))
-
-
-def _entry(now: Circumstances, method: str, quantity: str, reason: str) -> Acceptance:
-    return Acceptance(
-        date=now.date,
-        case="stability",
-        method=method,
-        quantity=quantity,
-        old=None,
-        new=None,
-        old_tolerance=None,
-        new_tolerance=None,
-        reason=reason,
-        revision=now.revision,
-    )

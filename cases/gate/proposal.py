@@ -10,12 +10,13 @@ from cases.gate.checks.uncertainties import curve_uncertainties
 from cases.gate.specification import specification
 from cases.gate.spread import Spreads
 from cases.judgement.rules.tolerance import permitted_difference, relative_tolerance
-from cases.results.records import CaseResult, Quantity, SceneRun
+from cases.results.records.run import CaseResult
+from cases.results.records.scene_run import Quantity, SceneRun
 from contact import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True)
-class Change:
+class BaselineChange:
     """One record before and after; ``old`` is None for a new one, ``new`` for one that would be withdrawn."""
 
     method: str
@@ -83,7 +84,7 @@ class Proposal:
     case: str
     reason: str
     baselines: tuple[Baseline, ...]
-    changes: tuple[Change, ...]
+    changes: tuple[BaselineChange, ...]
     lost: tuple[str, ...]
 
 
@@ -156,7 +157,8 @@ class _Evidence:
     def _record(self, run: SceneRun, quantity: Quantity, old: AcceptedQuantity | None) -> AcceptedQuantity:
         spread = self._spread(run, quantity)
         if old is not None and relative_tolerance(spread) <= old.tolerance:
-            spread = old.spread  # the widest measured so far: a lucky repetition tightens nothing
+            # The widest spread measured so far counts: a repetition that agrees by chance tightens nothing.
+            spread = old.spread
         record = AcceptedQuantity(
             scene=run.scene,
             settings=run.settings,
@@ -179,10 +181,10 @@ class _Evidence:
         return self.spreads[place]
 
 
-def _changes(before: Baseline | None, after: Baseline) -> Iterator[Change]:
+def _changes(before: Baseline | None, after: Baseline) -> Iterator[BaselineChange]:
     old = {record.place: record for record in before.records} if before else {}
     new = {record.place: record for record in after.records}
-    changes = (Change(method=after.method, old=old.get(p), new=new.get(p)) for p in dict.fromkeys([*old, *new]))
+    changes = (BaselineChange(method=after.method, old=old.get(p), new=new.get(p)) for p in dict.fromkeys([*old, *new]))
     yield from (change for change in changes if not change.is_nothing)
 
 

@@ -4,7 +4,9 @@ import hashlib
 import json
 from typing import Any
 
-from cases.results.records import CaseResult, Mapping, SceneRun
+from cases.results.records.field_types import Mapping
+from cases.results.records.run import CaseResult
+from cases.results.records.scene_run import SceneRun
 
 
 def specification(case: CaseResult, run: SceneRun) -> str:
@@ -24,5 +26,6 @@ def specification_hash(canonical: str, settings: Mapping) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def _rounded(text: str) -> Any:  # a tree of plain values
+# The result is a tree of plain values.
+def _rounded(text: str) -> Any:
     return json.loads(text, parse_float=lambda digits: f"{float(digits):.12g}")

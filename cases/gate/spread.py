@@ -15,14 +15,15 @@ import numpy as np
 from cases.declare.case import Case
 from cases.declare.task import Task
 from cases.judgement.rules.tolerance import relative_spread
-from cases.results.records import Quantity, SceneRun
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.run.executors import process_pool
 from cases.run.solve_task import solve
 from contact import ContactRadii, IndentationDepths, InvalidInput, NormalForces, Scene
 
 PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice
 
-Spreads = Mapping[tuple[str, str, str], float]  # by method, scene and quantity
+# The keys are method, scene and quantity.
+Spreads = Mapping[tuple[str, str, str], float]
 
 
 def measured_spreads(case: Case, runs: Mapping[tuple[str, str], SceneRun], *, jobs: int = 2) -> Spreads:

@@ -12,7 +12,7 @@ from contact import InvalidInput
 
 
 @dataclass(frozen=True, kw_only=True)
-class Circumstances:
+class WriteConditions:
     """What decides whether a baseline may be written at all.
 
     Attributes:
@@ -28,9 +28,9 @@ class Circumstances:
     date: str
 
 
-def circumstances(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> Circumstances:
-    """Return the circumstances of this process and the source in ``repository``."""
-    return Circumstances(
+def write_conditions(repository: Path, baselines: Path, environment: Mapping[str, str] = os.environ) -> WriteConditions:
+    """Return the conditions of this process and the source in ``repository``."""
+    return WriteConditions(
         revision=stamp.revision(repository),
         changed=_changed_files(repository, baselines),
         in_ci=environment.get("CI", "").lower() not in ("", "0", "false"),

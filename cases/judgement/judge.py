@@ -7,7 +7,7 @@ from typing import TypeVar
 from cases.declare.case import Case
 from cases.declare.task import Answers, MissingAnswer
 from cases.judgement.claims.order import Order
-from cases.results.records import CaseResult, SceneDescription
+from cases.results.records.run import CaseResult, SceneDescription
 from contact import scene_to_mapping
 
 T = TypeVar("T")
@@ -26,6 +26,7 @@ def case_result(case: Case, answers: Answers, *, complete: bool = True) -> CaseR
     """
 
     def there(records: Iterable[T]) -> Iterator[T]:
+        """Yield the records whose answers are there."""
         try:
             yield from records
         except MissingAnswer:

@@ -4,7 +4,6 @@ import dataclasses
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import (
     ContactRadii,
@@ -15,6 +14,7 @@ from contact import (
     Profile,
     Scene,
 )
+from contact.records.validation import FloatArray
 
 THICKNESS = 1e-3  # m
 YOUNGS_MODULUS = 1e6  # Pa
@@ -27,11 +27,16 @@ LAYERS: dict[str, tuple[str, float]] = {
 }
 
 
-def layer(label: str, thickness: float = THICKNESS) -> Layer:
+def layer(label: str) -> Layer:
     """Return the layer called ``label``: its support and, when bonded, its Poisson's ratio."""
     support, poissons_ratio = LAYERS[label]
+    return layer_of(poissons_ratio, support)
+
+
+def layer_of(poissons_ratio: float, support: str = "bonded") -> Layer:
+    """Return a layer of the usual thickness and modulus."""
     return Layer(
-        thickness=thickness,
+        thickness=THICKNESS,
         youngs_modulus=YOUNGS_MODULUS,
         poissons_ratio=poissons_ratio,
         support="unbonded" if support == "unbonded" else "bonded",
@@ -88,7 +93,8 @@ def in_millimetres(scene: Scene) -> Scene:
 def _scaled_profile(profile: Profile, factor: float) -> Profile:
     """Scale the lengths of a profile; slopes have no unit."""
     lengths = {"radius", "flat_radius", "radius_of_curvature"}
-    own = {field.name for field in dataclasses.fields(profile)}  # type: ignore[arg-type]  # every profile is a dataclass
+    # Every profile is a dataclass.
+    own = {field.name for field in dataclasses.fields(profile)}  # type: ignore[arg-type]
     return profile.replace(**{name: factor * getattr(profile, name) for name in own & lengths})
 
 
@@ -104,7 +110,7 @@ def _scaled_loading(scene: Scene, factor: float) -> ContactRadii | IndentationDe
             raise InvalidInput(f"loading = {type(other).__name__}: no unit change is written for it")
 
 
-def prescribed_radii(scene: Scene) -> NDArray[np.float64]:
+def prescribed_radii(scene: Scene) -> FloatArray:
     """Return the contact radii [m] that ``scene`` prescribes."""
     if not isinstance(scene.loading, ContactRadii):
         raise InvalidInput(f"loading = {type(scene.loading).__name__}: this closed form takes contact radii")

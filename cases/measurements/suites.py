@@ -7,7 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cases.results.files import write_run
-from cases.results.records import CaseResult, RunResult
+from cases.results.records.run import CaseResult, RunResult
 from cases.run.executors import ClusterLost, ExecutorFactory
 from cases.run.stamp import stamp
 

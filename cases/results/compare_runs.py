@@ -4,11 +4,13 @@ import math
 from dataclasses import dataclass
 from enum import StrEnum
 
-from cases.results.records import Claim, Quantity, RunResult, SceneRun
+from cases.results.records.claim import Claim
+from cases.results.records.run import RunResult
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
 
-class Change(StrEnum):
+class ChangeKind(StrEnum):
     """How two numbers differ, measured by the combined uncertainty of both."""
 
     IDENTICAL = "identical"  # every digit
@@ -31,7 +33,7 @@ class NumberChange:
     quantity: str
     unit: str
     methods: tuple[str, str]
-    change: Change
+    change: ChangeKind
     values: tuple[float, float] | None
     uncertainties: tuple[float, float] | None
     difference: float | None
@@ -121,7 +123,7 @@ def _numbers(case: str, one: SceneRun, two: SceneRun) -> list[NumberChange]:
 
 def _number(case: str, one: SceneRun, two: SceneRun, first: Quantity, second: Quantity) -> NumberChange:
     values = uncertainties = difference = uncertainty = None
-    change = Change.INCOMPARABLE
+    change = ChangeKind.INCOMPARABLE
     if first.unit == second.unit and len(first.values) == len(second.values) > 0:
         step = max(range(len(first.values)), key=lambda i: abs(second.values[i] - first.values[i]))
         scale = max(first.scale, second.scale)
@@ -145,12 +147,12 @@ def _number(case: str, one: SceneRun, two: SceneRun, first: Quantity, second: Qu
     )
 
 
-def _change(difference: float, uncertainty: float | None) -> Change:
+def _change(difference: float, uncertainty: float | None) -> ChangeKind:
     if difference == 0.0:
-        return Change.IDENTICAL
+        return ChangeKind.IDENTICAL
     if uncertainty is None:
-        return Change.UNKNOWN
-    return Change.WITHIN if abs(difference) <= uncertainty else Change.BEYOND
+        return ChangeKind.UNKNOWN
+    return ChangeKind.WITHIN if abs(difference) <= uncertainty else ChangeKind.BEYOND
 
 
 def _claims(first: RunResult, second: RunResult) -> list[ClaimChange]:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
-from cases.results.records import SCHEMA_VERSION, CaseResult, RunResult
+from cases.results.records.run import SCHEMA_VERSION, CaseResult, RunResult
 from cases.results.sealed import read_sealed, sealed_text, unsealed
 from contact import InvalidInput
 from contact.files.storage import write_tree

@@ -25,7 +25,8 @@ class SerialExecutor(Executor):
         future: Future[T] = Future()
         try:
             future.set_result(fn(*args, **kwargs))
-        except Exception as error:  # a future carries its error
+        except Exception as error:
+            # A future carries its error.
             future.set_exception(error)
         return future
 
@@ -88,10 +89,13 @@ class DaskExecutor(Executor):
         """Send ``fn`` to the cluster and return its future."""
         future: Future[T] = Future()
 
-        def deliver(remote: Any) -> None:  # a future of the cluster; ``result`` waits if its worker died meanwhile
+        # The future belongs to the cluster: ``result`` waits if its worker died meanwhile.
+        def deliver(remote: Any) -> None:
+            """Hand the answer or the error of the cluster to the future."""
             try:
                 future.set_result(remote.result())
-            except Exception as error:  # a future carries its error
+            except Exception as error:
+                # A future carries its error.
                 future.set_exception(self._named(error))
 
         if self._is_lost:

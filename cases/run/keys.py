@@ -50,7 +50,8 @@ def differences(old: Any, new: Any, place: str = "") -> list[str]:  # trees of p
     return [] if old == new else [f"{place}: {_shown(old)} -> {_shown(new)}"]
 
 
-def plain(value: Any) -> Any:  # any setting of any method
+# The value may be any setting of any method.
+def plain(value: Any) -> Any:
     """Return a record of settings as plain values that JSON can hold."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         fields = {
@@ -114,7 +115,8 @@ def _source_file(module: str) -> Path | None:
     try:
         spec = importlib.util.find_spec(module)
     except ModuleNotFoundError:
-        return None  # "from package import name" may name a function, not a module
+        # An import "from package import name" may name a function, not a module.
+        return None
     return Path(spec.origin) if spec and spec.origin and spec.origin.endswith(".py") else None
 
 

@@ -8,7 +8,7 @@ from cases.results.status import Status
 
 
 @dataclass(frozen=True, kw_only=True)
-class Event:
+class ProgressEvent:
     """One thing that happened.
 
     Attributes:
@@ -29,8 +29,8 @@ class Event:
     reason: str = ""
 
 
-Progress = Callable[[Event], None]
+Progress = Callable[[ProgressEvent], None]
 
 
-def silent(event: Event) -> None:
+def silent(event: ProgressEvent) -> None:
     """Tell nobody."""

@@ -5,8 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from cases.declare.task import Sampling
-from cases.results.records import CostRecord, Curve, Quantity, Stage
+from cases.results.records.scene_run import CostRecord, Curve, Quantity, Stage
 from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
+from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
 _IMPACT_SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
@@ -47,7 +48,8 @@ def _uncertainty(solution: Solution, name: str, size: int) -> tuple[float, ...]:
     if name not in solution.error_estimate:
         return _of_the_branch(solution, name)
     stated = np.abs(np.atleast_1d(solution.uncertainty(name)))
-    if stated.size != size:  # one number for all steps, or one for each step of a history whose peak is the quantity
+    if stated.size != size:
+        # There is one number for all steps, or one for each step of a history whose peak is the quantity.
         return (float(np.max(stated)),) * size
     return tuple(stated.tolist())
 
@@ -62,7 +64,7 @@ def _of_the_branch(solution: Solution, name: str) -> tuple[float, ...]:
     return (float(stated[nearest]),)
 
 
-def _size(values: np.typing.NDArray[np.float64]) -> float:
+def _size(values: FloatArray) -> float:
     largest = float(np.max(np.abs(values)))
     return largest if largest > 0 else 1.0
 

@@ -17,13 +17,14 @@ from cases.declare.case import Case
 from cases.declare.task import Answers, Task
 from cases.judgement.judge import case_result
 from cases.results.files import write_run
-from cases.results.records import CaseResult, RunResult, SceneRun
+from cases.results.records.run import CaseResult, RunResult
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from cases.run.executors import ClusterLost, ExecutorFactory, fresh_processes, process_pool, serial
 from cases.run.keys import content_key, key_parts
 from cases.run.lock import locked
-from cases.run.progress import Event, Progress, silent
-from cases.run.solve_task import solve
+from cases.run.progress import Progress, ProgressEvent, silent
+from cases.run.solve_task import solve, without_numbers
 from cases.run.stamp import stamp
 from cases.run.store import TaskStore
 from contact import InvalidInput
@@ -75,8 +76,9 @@ class _Run:
 
     def tell(self, kind: str, label: str, status: Status | None = None, reason: str = "") -> None:
         """Report an event."""
-        event = Event(
-            kind=kind,  # type: ignore[arg-type]  # one of the words, by its callers
+        event = ProgressEvent(
+            # Its callers pass one of the permitted words.
+            kind=kind,  # type: ignore[arg-type]
             label=label,
             done=len(self.rows),
             total=self.total,
@@ -191,7 +193,8 @@ def _solve_in(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Pla
 def _solve_until_broken(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> list[_Planned]:
     """Return the tasks that were under way when the executor broke; none if it did not."""
     waiting, under_way = deque(planned), dict[Future[SceneRun], _Planned]()
-    ahead = 1 if factory is serial else 2 * jobs  # few enough that little is repeated after a breakdown
+    # So few tasks are handed over at a time that little is repeated after a breakdown.
+    ahead = 1 if factory is serial else 2 * jobs
     with _closing(factory(jobs)) as executor:
         try:
             while waiting or under_way:
@@ -211,7 +214,8 @@ def _closing(executor: Executor) -> Iterator[Executor]:
     """Wait for the executor's own threads and processes to end, unless the run itself is over."""
     try:
         yield executor
-    except BaseException:  # Ctrl-C above all
+    except BaseException:
+        # This is mostly Ctrl-C.
         executor.shutdown(wait=False, cancel_futures=True)
         raise
     executor.shutdown(wait=True, cancel_futures=True)
@@ -226,17 +230,7 @@ def _solve_apart(run: _Run, factory: ExecutorFactory, planned: _Planned) -> None
         try:
             row = _submit(executor, run, planned).result()
         except BrokenExecutor as error:
-            row = _died(planned, f"the process that solved it died: {error}")
+            row = without_numbers(
+                planned.task, planned.key, Status.INVALID, f"the process that solved it died: {error}"
+            )
     run.finish(planned, row)
-
-
-def _died(planned: _Planned, reason: str) -> SceneRun:
-    return SceneRun(
-        key=planned.key,
-        scene=planned.task.scene,
-        method=planned.task.method,
-        settings={},
-        status=Status.INVALID,
-        reason=reason,
-        cost=None,
-    )

@@ -3,11 +3,13 @@
 import time
 from collections import deque
 
-from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
+# This package ships no types.
+from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
 from cases.declare.methods import shared_inputs
 from cases.declare.task import Task
-from cases.results.records import Scalar, SceneRun
+from cases.results.records.field_types import Scalar
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from cases.run.empty_caches import forget
 from cases.run.recording import cost_record, curves, quantities, stage_records
@@ -26,30 +28,34 @@ def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
         time_limit: seconds; zero for no limit.
     """
     try:
-        with time_limited(time_limit), threadpool_limits(limits=1):  # one thread: times compare, sums repeat bit by bit
+        # With one thread, times can be compared and sums repeat bit by bit.
+        with time_limited(time_limit), threadpool_limits(limits=1):
             support = task.solver.supports(task.problem)
             if not support:
-                return _without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
+                return without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
             return _solved(task, key)
     except TimeLimitReached:
-        return _without_numbers(task, key, Status.TIMEOUT, f"not finished after {time_limit:g} s")
+        return without_numbers(task, key, Status.TIMEOUT, f"not finished after {time_limit:g} s")
     except UnsupportedSceneError as error:
-        return _without_numbers(task, key, Status.SKIP, str(error))
+        return without_numbers(task, key, Status.SKIP, str(error))
     except NotConvergedError as error:
-        return _without_numbers(task, key, Status.INVALID, f"NotConvergedError: {error}")
-    except Exception as error:  # a solver that breaks in its own way is a row, too
-        return _without_numbers(task, key, Status.INVALID, f"{type(error).__name__}: {error}")
+        return without_numbers(task, key, Status.INVALID, f"NotConvergedError: {error}")
+    except Exception as error:
+        # A solver that breaks in its own way becomes a row, too.
+        return without_numbers(task, key, Status.INVALID, f"{type(error).__name__}: {error}")
 
 
 def _solved(task: Task, key: str) -> SceneRun:
     if task.timed or task.forgetful:
-        task.solver.solve(task.problem)  # loads what the method imports on demand
+        # This loads what the method imports on demand.
+        task.solver.solve(task.problem)
         forget()
     start = time.perf_counter()
     solutions = deque([task.solver.solve(task.problem)], maxlen=1)
     cold = time.perf_counter() - start
     samples = timed_warm(lambda: solutions.append(task.solver.solve(task.problem))).samples if task.timed else ()
-    solution = solutions[0]  # the row of a timing run shows the stages of a warm solve
+    # The row of a timing run shows the stages of a warm solve.
+    solution = solutions[0]
     return SceneRun(
         key=key,
         scene=task.scene,
@@ -73,7 +79,8 @@ def _settings(solution: Solution) -> dict[str, Scalar]:
     return {name: value if isinstance(value, plain) else str(value) for name, value in solution.settings.items()}
 
 
-def _without_numbers(task: Task, key: str, status: Status, reason: str) -> SceneRun:
+def without_numbers(task: Task, key: str, status: Status, reason: str) -> SceneRun:
+    """Return the row of a task that has no answer, and why."""
     return SceneRun(
         key=key,
         scene=task.scene,

@@ -7,9 +7,10 @@ from datetime import UTC, datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from threadpoolctl import threadpool_info  # type: ignore[import-untyped]  # ships no types
+# This package ships no types.
+from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
 
-from cases.results.records import Stamp
+from cases.results.records.run import Stamp
 
 _PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "pyfftw", "h5py", "pydantic", "contact-verification")
 _SOURCE = Path(__file__).resolve().parent.parent

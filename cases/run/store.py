@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import TypeAdapter, ValidationError
 
 from cases.results.files import write_whole
-from cases.results.records import SceneRun
+from cases.results.records.scene_run import SceneRun
 from cases.results.sealed import read_sealed, sealed_text
 from cases.run.keys import content_key, differences
 from contact import InvalidInput

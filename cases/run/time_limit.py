@@ -59,7 +59,8 @@ def _timer(seconds: float) -> Iterator[None]:
         with lock:
             running = False
         timer.cancel()
-        _raise_in(thread, None)  # what was raised at the last moment has nothing left to interrupt
+        # What was raised at the last moment has nothing left to interrupt.
+        _raise_in(thread, None)
 
 
 def _raise_in(thread: int, error: object) -> None:

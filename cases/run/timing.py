@@ -9,9 +9,16 @@ import numpy as np
 
 from contact import InvalidInput
 
+# A time is the median of so many samples; of six and more the range covers the median
+# with more than 95 %.
 SAMPLES = 7
-SHORTEST = 0.1  # seconds; anything faster is looped
-LONG, FEW_SAMPLES = 2.0, 3  # calls of more seconds vary by less than what they are compared for
+# A sample lasts at least so many seconds; anything faster is repeated within it. Chosen: it is far longer than a tick
+# of the clock and short enough for many samples.
+SHORTEST = 0.1
+# Calls of more seconds (first number) are sampled less often (second number): they vary by less than what they are
+# compared for.
+LONG, FEW_SAMPLES = 2.0, 3
+# Draws of the bootstrap that gives the 95 % interval of a ratio. Chosen; the seed is fixed, so the interval repeats.
 _BOOTSTRAPS = 4000
 
 
@@ -59,7 +66,8 @@ def timed(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float
 def timed_warm(call: Callable[[], object], *, samples: int = SAMPLES, shortest: float = SHORTEST) -> Timing:
     """Sample a call that has been warmed up; one of more than ``LONG`` seconds ``FEW_SAMPLES`` times only."""
     first = _seconds(call, 1)
-    if first >= shortest:  # not looped: a sample already
+    if first >= shortest:
+        # Such a call is not repeated within a sample: it is a sample already.
         left = (FEW_SAMPLES if first > LONG else samples) - 1
         return summed_up([first, *(_seconds(call, 1) for _ in range(left))])
     loops = int(np.ceil(shortest / max(first, 1e-9)))

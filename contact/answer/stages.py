@@ -118,7 +118,8 @@ class StageLog:
 def peak_memory_bytes() -> int:
     """High-water mark of this program's resident memory."""
     status = Path("/proc/self/status")
-    if status.exists():  # on Linux `getrusage` remembers the program that started this one, too
+    # On Linux `getrusage` also remembers the program that started this one, so the kernel's own file is read.
+    if status.exists():
         return 1024 * int(status.read_text(encoding="ascii").split("VmHWM:")[1].split()[0])
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     return peak if sys.platform == "darwin" else 1024 * peak

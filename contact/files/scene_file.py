@@ -40,7 +40,8 @@ def load_scene(path: str | Path) -> Scene:
     text = scene_text(file)
     try:
         mapping = tomllib.loads(text)
-    except ValueError as error:  # of the syntax, or of an integer of more digits than Python reads
+    except ValueError as error:
+        # The syntax is wrong, or an integer has more digits than Python reads.
         raise InvalidInput(f"{file}: not valid TOML: {error!s:.200}") from None
     except RecursionError:
         raise InvalidInput(f"{file}: nested too deeply for a scene") from None
@@ -148,5 +149,6 @@ def _named(item: Profile | Loading | Effect) -> dict[str, Any]:
 
 
 def _plain(item: Record) -> dict[str, Any]:
-    values = ((f.name, getattr(item, f.name)) for f in dataclasses.fields(item))  # type: ignore[arg-type]  # all records are dataclasses
+    # All records are dataclasses.
+    values = ((f.name, getattr(item, f.name)) for f in dataclasses.fields(item))  # type: ignore[arg-type]
     return {name: v.tolist() if isinstance(v, np.ndarray) else v for name, v in values if v is not None}

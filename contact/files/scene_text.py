@@ -40,7 +40,8 @@ def scene_text(file: Path) -> str:
     """
     try:
         content = _pipe_content(file) if stat.S_ISFIFO(file.stat().st_mode) else _file_content(file)
-    except (OSError, ValueError) as error:  # a ValueError for a path with a zero byte
+    except (OSError, ValueError) as error:
+        # A path with a zero byte raises a ValueError.
         reason = getattr(error, "strerror", None) or error
         raise InvalidInput(f"{file}: cannot be read ({reason}); check the path") from None
     if len(content) > MAX_BYTES:

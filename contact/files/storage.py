@@ -24,14 +24,19 @@ from contact.records.errors import InvalidInput
 from contact.records.record import shown
 from contact.records.validation import FloatArray
 
-Tree: TypeAlias = Mapping[str, Any]  # values: arrays, numbers, strings, None, or mappings of the same
+# The values are arrays, numbers, strings, None, or mappings of the same.
+Tree: TypeAlias = Mapping[str, Any]
 
 SCHEMA = "contact-verification/solution/1"
 SEAL = b"contact-verification sha256 "  # what a file begins with, before the digest of its content
-MAX_BYTES = 2_000_000_000  # of a file; a larger one is refused before memory is taken
+# A larger file [bytes] is refused before memory is taken. Chosen: the format itself has no limit.
+MAX_BYTES = 2_000_000_000
+# Deeper trees are refused, so that reading and writing them needs no deep recursion; a solution is three deep.
 MAX_DEPTH = 32
+# Longer names of entries are refused; those of solutions have fewer than thirty letters.
 MAX_NAME = 200
-_BLOCK = 512  # bytes that HDF5 leaves to its user, before its own
+# HDF5 leaves so many bytes to its user before its own; 512 is the smallest block that its format allows.
+_BLOCK = 512
 
 _KINDS: dict[str, type[Solution]] = {
     cls.__name__: cls for cls in (ContactPath, DetachmentPath, HistoryPath, ImpactHistory)
@@ -113,7 +118,8 @@ def _write_leaf(group: h5py.Group, name: str, value: Any) -> None:
         TypeError,
         OverflowError,
         KeyError,
-    ) as error:  # an integer beyond 64 bits, a text with a zero byte
+    ) as error:
+        # HDF5 holds no integer beyond 64 bits and no text with a zero byte.
         raise InvalidInput(f"{group.name}/{name} = {shown(value)}: cannot be stored ({error!s:.160})") from None
 
 

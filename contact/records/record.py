@@ -14,15 +14,18 @@ from contact.records.errors import InvalidInput
 from contact.records.plain_text import printable
 
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True)
-_SHOWN = 80  # characters of an offending value that an error shows
-_MOST_LINES = 8  # problems that one error tells
+# An error shows so many characters of an offending value: about one line of a terminal.
+_SHOWN = 80
+# One error tells so many problems: as many as a user mends before trying again.
+_MOST_LINES = 8
 
 
 class Record:
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
     def _content(self) -> tuple[Any, ...]:
-        fields = dataclasses.fields(self)  # type: ignore[arg-type]  # every subclass is made a dataclass by `record`
+        # Every subclass is made a dataclass by `record`.
+        fields = dataclasses.fields(self)  # type: ignore[arg-type]
         values = (getattr(self, field.name) for field in fields)
         return type(self), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values)
 
@@ -58,7 +61,8 @@ def record(cls: type[R]) -> type[R]:
             raise InvalidInput(describe(error, made)) from None
 
     made.__init__ = checked
-    return made  # type: ignore[no-any-return]  # pydantic returns the class it was given
+    # pydantic returns the class that it was given.
+    return made  # type: ignore[no-any-return]
 
 
 def describe(error: pydantic.ValidationError, cls: type[Any]) -> str:
@@ -95,6 +99,7 @@ def shown(value: object) -> str:
     head = value[: _SHOWN + 1] if isinstance(value, str | bytes) else value
     try:
         text = np.array2string(head, threshold=8) if isinstance(head, np.ndarray) else repr(head)
-    except (ValueError, RecursionError):  # an integer of more digits than Python prints, or tables in tables in tables
+    except (ValueError, RecursionError):
+        # An integer has more digits than Python prints, or tables are nested too deeply.
         text = f"a huge {type(value).__name__}"
     return text if len(text) <= _SHOWN else f"{text[:_SHOWN]}..."

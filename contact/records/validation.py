@@ -32,8 +32,10 @@ else:
     # At run time the validators below convert, and the field is the array itself.
     Vector = FloatArray
 
-SMALLEST, LARGEST = 1e-75, 1e75  # of magnitudes in any units: products of four fit into double precision
-MAX_ENTRIES = 1_000_000  # a longer list in a scene is a mistake or an attack, never a measurement
+# Magnitudes outside these are refused, whatever their unit: products of four of them still fit into double precision.
+SMALLEST, LARGEST = 1e-75, 1e75
+# A longer list in a scene is refused: it is a mistake or an attack, never a measurement.
+MAX_ENTRIES = 1_000_000
 
 
 def _is_number(value: object) -> bool:
@@ -44,7 +46,8 @@ def _number(value: object, remedy: str) -> float:
     if not _is_number(value):
         raise ValueError(f"must be a number; {remedy}")
     try:
-        return float(value)  # type: ignore[arg-type]  # Real has __float__
+        # Every Real has __float__.
+        return float(value)  # type: ignore[arg-type]
     except OverflowError:
         raise ValueError(f"must fit into double precision; {remedy}") from None
 

@@ -61,7 +61,8 @@ class Profile(Record, ABC):
         """Whether f' never falls; then the indenter cannot touch beside its circle of contact (`one_circle`)."""
         return isinstance(self, CONVEX)
 
-    if TYPE_CHECKING:  # at run time a property here would hide the fields of that name below
+    # At run time a property here would hide the fields of that name below.
+    if TYPE_CHECKING:
 
         @property
         def flat_radius(self) -> float:
@@ -259,7 +260,8 @@ class Tabulated(Pointed):
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
-        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415  # only tabulated scenes pay for this import
+        # Only tabulated scenes pay for this import.
+        from scipy.interpolate import PchipInterpolator  # noqa: PLC0415
 
         return PchipInterpolator(self.radii, self.heights)
 

@@ -15,7 +15,9 @@ from contact.scene.layer import Layer
 from contact.scene.loading import ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
 from contact.scene.profiles import FlatPunch, Profile
 
-_MODULUS_AGREEMENT = 1e-9  # relative; a user's rounding of E = 2 (1 + nu) G is far above it only by mistake
+# Two stated moduli may differ by this, relative: E = 2 (1 + nu) G is rounded to 1e-15, and typed numbers that agree
+# to fewer than nine digits are two different materials.
+_MODULUS_AGREEMENT = 1e-9
 
 E = TypeVar("E", bound=Effect)
 L = TypeVar("L", bound=Loading)

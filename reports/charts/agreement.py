@@ -7,17 +7,22 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.records import CaseResult, Claim, Kind
-from reports.figures.axes_grid import cut
-from reports.figures.figure import Cell, Plate
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.run import CaseResult
+from reports.figures.axes_grid import numbered_parts
+from reports.figures.figure import Cell, ReportFigure
 from reports.figures.style import BLUE, GREEN, GREY, ORANGE, TINT, VERMILLION, mark_signed_decades
 from reports.words.method_names import display_name
 from reports.words.outcomes import tone_of
 
-ROWS_A_PLATE = 40
-MOST_PLATES = 2  # on the page; the data of the last one hold the rest as well
+# A figure has so many rows of comparisons: one page.
+ROWS_A_FIGURE = 40
+# So many figures stand on the page; the data of the last one hold the rest as well.
+MOST_FIGURES = 2
+# Height of a row [inches]: labels of neighbours do not touch.
 ROW_HEIGHT = 0.21  # inches
-SMALLEST = 1e-4  # of a tolerance; below, the axis is linear
+# Below this fraction of a tolerance the axis is linear.
+SMALLEST = 1e-4
 TONES = {"good": (BLUE, "o"), "warn": (ORANGE, "D"), "bad": (VERMILLION, "X"), "skip": (GREEN, ".")}
 CAPTION = (
     "Each row is one comparison: the signed difference of the two answers, first minus second, divided by its "
@@ -31,28 +36,24 @@ COLUMNS = (
 )  # fmt: skip
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """The agreement plates of a case: its worst eighty comparisons, forty a plate; the data hold all."""
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """The comparisons of a case: its worst eighty, forty a figure; the data hold all."""
     compared = [claim for claim in case.claims if claim.kind is Kind.AGREEMENT and claim.observed is not None]
     compared.sort(key=lambda claim: -(claim.fraction or 0.0))
-    parts = list(cut(compared, ROWS_A_PLATE))
-    shown, rest = parts[:MOST_PLATES], [claim for part in parts[MOST_PLATES:] for claim in part]
-    return [
-        _plate(case, part, rest if part is shown[-1] else [], number, command)
-        for number, part in enumerate(shown, start=1)
-    ]
+    shown = list(numbered_parts(compared[: MOST_FIGURES * ROWS_A_FIGURE], ROWS_A_FIGURE))
+    rest = compared[MOST_FIGURES * ROWS_A_FIGURE :]
+    return [_figure(case, part, rest if number == len(shown) else [], number) for number, part in shown]
 
 
-def _plate(case: CaseResult, claims: Sequence[Claim], rest: Sequence[Claim], number: int, command: str) -> Plate:
+def _figure(case: CaseResult, claims: Sequence[Claim], rest: Sequence[Claim], number: int) -> ReportFigure:
     beyond = f" {len(rest)} comparisons with less of their tolerance used up are in the data only." if rest else ""
-    return Plate(
+    return ReportFigure(
         name=f"{case.name}-agreement-{number}",
         title="Differences between methods, with uncertainty",
         caption=CAPTION + beyond,
         paint=partial(draw, claims),
         columns=COLUMNS,
         rows=tuple(_row(claim) for claim in (*claims, *rest)),
-        command=command,
     )
 
 
@@ -78,7 +79,7 @@ def draw(claims: Sequence[Claim]) -> Drawing:
     axes.set_yticks(range(len(claims)), [_label(claim) for claim in claims])
     axes.set_ylim(len(claims) - 0.5, -0.5)
     axes.grid(visible=False, axis="y")
-    axes.tick_params(top=True, labeltop=len(claims) > ROWS_A_PLATE // 2)
+    axes.tick_params(top=True, labeltop=len(claims) > ROWS_A_FIGURE // 2)
     mark_signed_decades(axes.xaxis, smallest=_linear_below(claims), largest=3.0 * extent)
     return drawing
 

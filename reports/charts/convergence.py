@@ -6,14 +6,17 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.records import CaseResult, ConvergenceStudy
-from reports.figures.axes_grid import cut, panel_grid
-from reports.figures.figure import Cell, Plate
+from cases.results.records.convergence import ConvergenceStudy
+from cases.results.records.run import CaseResult
+from reports.figures.axes_grid import numbered_parts, panel_grid
+from reports.figures.figure import Cell, ReportFigure
 from reports.figures.style import GREY, look_of, mark_decades
 from reports.words.method_names import display_name
 
-PANELS_A_PLATE = 6
-BAR_WIDTH = 0.16  # decades of length
+# A figure has so many panels: one page.
+PANELS_A_FIGURE = 6
+# A bar is so wide, in decades of length: bars of grids refined by two (0.3 decades) do not touch.
+BAR_WIDTH = 0.16
 COLUMNS = (
     "scene", "quantity", "method", "mesh_family", "length", "unknowns", "seconds", "value", "error", "gci", "unit",
     "scale", "formal_order", "observed_order", "digits_per_refinement",
@@ -26,30 +29,22 @@ CAPTION = (
 )
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """The convergence plates of a case, six panels each: one panel a scene and quantity, the methods overlaid."""
-    panels = list(_by_panel(case.convergence).values())
-    parts = enumerate(cut(panels, PANELS_A_PLATE), start=1)
-    return [_plate(case, part, number, command) for number, part in parts]
-
-
-def _by_panel(studies: Iterable[ConvergenceStudy]) -> dict[tuple[str, str], list[ConvergenceStudy]]:
-    grouped: dict[tuple[str, str], list[ConvergenceStudy]] = {}
-    for study in studies:
-        grouped.setdefault((study.scene, study.quantity), []).append(study)
-    return grouped
-
-
-def _plate(case: CaseResult, panels: Sequence[Sequence[ConvergenceStudy]], number: int, command: str) -> Plate:
-    return Plate(
-        name=f"{case.name}-convergence-{number}",
-        title="Convergence: error under refinement",
-        caption=CAPTION,
-        paint=partial(draw, panels),
-        columns=COLUMNS,
-        rows=tuple(row for panel in panels for study in panel for row in _rows(study)),
-        command=command,
-    )
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """The convergence of a case, six panels a figure: one panel a scene and quantity, the methods overlaid."""
+    panels: dict[tuple[str, str], list[ConvergenceStudy]] = {}
+    for study in case.convergence:
+        panels.setdefault((study.scene, study.quantity), []).append(study)
+    return [
+        ReportFigure(
+            name=f"{case.name}-convergence-{number}",
+            title="Convergence: error under refinement",
+            caption=CAPTION,
+            paint=partial(draw, part),
+            columns=COLUMNS,
+            rows=tuple(row for panel in part for study in panel for row in _rows(study)),
+        )
+        for number, part in numbered_parts(list(panels.values()), PANELS_A_FIGURE)
+    ]
 
 
 def _rows(study: ConvergenceStudy) -> Iterable[tuple[Cell, ...]]:

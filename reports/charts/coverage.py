@@ -6,9 +6,10 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.records import CaseResult, CoverageRecord
+from cases.results.records.reliability import CoverageRecord
+from cases.results.records.run import CaseResult
 from reports.figures.axes_grid import panel_grid
-from reports.figures.figure import Plate
+from reports.figures.figure import ReportFigure
 from reports.figures.style import BLACK, look_of, mark_decades
 from reports.words.method_names import display_name
 
@@ -18,21 +19,22 @@ CAPTION = (
     "left of 1 is not covered. The further right a curve lies, the more is given away. The table counts all answers, "
     "those without a difference to be seen included."
 )
+# Ratios of stated and true error outside these are drawn at the border.
 SMALLEST, LARGEST = 1e-3, 1e6
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """One plate for all families, if anything was measured."""
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """One figure for all families, if anything was measured."""
     shown = [record for record in case.coverage if record.percentiles]
-    if not shown:
-        return []
-    rows = tuple(row for record in shown for row in _rows(record))
-    title = "Stated over true error"
-    name = f"{case.name}-stated-over-true"
-    return [
-        Plate(name=name, title=title, caption=CAPTION, paint=partial(draw, shown), columns=COLUMNS, rows=rows,
-              command=command)
-    ]  # fmt: skip
+    drawn = ReportFigure(
+        name=f"{case.name}-stated-over-true",
+        title="Stated over true error",
+        caption=CAPTION,
+        paint=partial(draw, shown),
+        columns=COLUMNS,
+        rows=tuple(row for record in shown for row in _rows(record)),
+    )
+    return [drawn] if shown else []
 
 
 def _rows(record: CoverageRecord) -> list[tuple[str | float, ...]]:

@@ -10,15 +10,19 @@ from matplotlib.colors import SymLogNorm
 from matplotlib.figure import Figure as Drawing
 from matplotlib.patches import Rectangle
 
-from cases.results.records import CaseResult, ErrorMap
-from reports.figures.axes_grid import cut, panel_grid
-from reports.figures.figure import Plate
+from cases.results.records.reliability import ErrorMap
+from cases.results.records.run import CaseResult
+from reports.figures.axes_grid import numbered_parts, panel_grid
+from reports.figures.figure import ReportFigure
 from reports.figures.style import BLACK, mark_decades, power_of_ten
 from reports.words.file_names import file_name
 
+# Cells with an error of at most this are framed as good.
 GOOD = 1e-2
+# Colours saturate at the largest error and are linear below the smallest.
 LARGEST, SMALLEST = 1.0, 1e-6
-PANELS_A_PLATE = 4
+# A figure has so many maps: one page.
+PANELS_A_FIGURE = 4
 COLUMNS = ("map", "quantity", "poissons_ratio", "a_over_h", "relative_error")
 CAPTION = (
     "Colour: signed relative error of the force of a paraboloid at a prescribed contact radius, blue too small, red "
@@ -26,22 +30,19 @@ CAPTION = (
 )
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """Four maps a plate."""
-    parts = enumerate(cut(case.maps, PANELS_A_PLATE), start=1)
-    return [_plate(case, part, number, command) for number, part in parts]
-
-
-def _plate(case: CaseResult, maps: Sequence[ErrorMap], number: int, command: str) -> Plate:
-    return Plate(
-        name=file_name(case.name, f"{number}"),
-        title=", ".join(found.title.partition(",")[0] for found in maps),
-        caption=f"{CAPTION} Reference: {maps[0].reference}.",
-        paint=partial(draw, maps),
-        columns=COLUMNS,
-        rows=tuple(row for found in maps for row in _rows(found)),
-        command=command,
-    )
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """Four maps a figure."""
+    return [
+        ReportFigure(
+            name=file_name(case.name, f"{number}"),
+            title=", ".join(found.title.partition(",")[0] for found in maps),
+            caption=f"{CAPTION} Reference: {maps[0].reference}.",
+            paint=partial(draw, maps),
+            columns=COLUMNS,
+            rows=tuple(row for found in maps for row in _rows(found)),
+        )
+        for number, maps in numbered_parts(case.maps, PANELS_A_FIGURE)
+    ]
 
 
 def _rows(found: ErrorMap) -> list[tuple[str | float | None, ...]]:

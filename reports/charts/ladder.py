@@ -8,16 +8,19 @@ from itertools import groupby
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.records import CaseResult, Ladder, Rung
+from cases.results.records.reliability import Ladder, Rung
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
-from reports.figures.axes_grid import cut, panel_grid
-from reports.figures.figure import Cell, Plate
+from reports.figures.axes_grid import numbered_parts, panel_grid
+from reports.figures.figure import Cell, ReportFigure
 from reports.figures.style import look_of, mark_decades
 from reports.words.method_names import display_name
 from reports.words.outcomes import worded
 
+# Significant digits of a double, the unit roundoff as digits.
 DOUBLE_DIGITS = -math.log10(2.0**-53)
-PANELS_A_PLATE = 6
+# A figure has so many panels: one page.
+PANELS_A_FIGURE = 6
 COLUMNS = (
     "ladder", "parameter", "unit", "method", "quantity", "value", "status", "digits", "iterations", "residuals",
     "reason",
@@ -29,25 +32,22 @@ CAPTION = (
 )
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """The ladder plates of a case: one panel a ladder, the methods overlaid, six panels a plate."""
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """The ladders of a case, six panels a figure: one panel a ladder, the methods overlaid."""
     panels: dict[tuple[str, str], list[Ladder]] = {}
     for ladder in case.ladders:
         panels.setdefault((ladder.name, ladder.quantity), []).append(ladder)
-    parts = enumerate(cut(list(panels.values()), PANELS_A_PLATE), start=1)
-    return [_plate(case, part, number, command) for number, part in parts]
-
-
-def _plate(case: CaseResult, panels: Sequence[Sequence[Ladder]], number: int, command: str) -> Plate:
-    return Plate(
-        name=f"{case.name}-ladders-{number}",
-        title="Stability: digits left where it gets hard",
-        caption=CAPTION,
-        paint=partial(draw, panels),
-        columns=COLUMNS,
-        rows=tuple(_row(ladder, rung) for panel in panels for ladder in panel for rung in ladder.rungs),
-        command=command,
-    )
+    return [
+        ReportFigure(
+            name=f"{case.name}-ladders-{number}",
+            title="Stability: digits left where it gets hard",
+            caption=CAPTION,
+            paint=partial(draw, part),
+            columns=COLUMNS,
+            rows=tuple(_row(ladder, rung) for panel in part for ladder in panel for rung in ladder.rungs),
+        )
+        for number, part in numbered_parts(list(panels.values()), PANELS_A_FIGURE)
+    ]
 
 
 def _row(ladder: Ladder, rung: Rung) -> tuple[Cell, ...]:

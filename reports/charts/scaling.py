@@ -7,13 +7,15 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.records import CaseResult, ScalingFit
+from cases.results.records.cost import ScalingFit
+from cases.results.records.run import CaseResult
 from reports.figures.axes_grid import panel_grid
-from reports.figures.figure import Plate
+from reports.figures.figure import ReportFigure
 from reports.figures.style import GREY, look_of, mark_decades
 from reports.words.method_names import display_name
 
-CURVE = 60  # points of a fitted curve
+# A fitted curve has so many points: it looks smooth.
+CURVE = 60
 COLUMNS = ("method", "size", "value", "cpu_seconds")
 CAPTION = (
     "Processor time of a first solution, and c + k n^p fitted to it; in the titles p with its 95 % interval. Dashed: "
@@ -21,27 +23,21 @@ CAPTION = (
 )
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """One plate for all fits, if there are any."""
-    if not case.scaling:
-        return []
-    rows = tuple(
-        (fit.method, fit.size, size, seconds)
-        for fit in case.scaling
-        for size, seconds in zip(fit.sizes, fit.seconds, strict=True)
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """One figure for all fits, if there are any."""
+    drawn = ReportFigure(
+        name=f"{case.name}-seconds",
+        title="Seconds against size",
+        caption=CAPTION,
+        paint=partial(draw, case.scaling),
+        columns=COLUMNS,
+        rows=tuple(
+            (fit.method, fit.size, size, seconds)
+            for fit in case.scaling
+            for size, seconds in zip(fit.sizes, fit.seconds, strict=True)
+        ),
     )
-    name, title = f"{case.name}-seconds", "Seconds against size"
-    return [
-        Plate(
-            name=name,
-            title=title,
-            caption=CAPTION,
-            paint=partial(draw, case.scaling),
-            columns=COLUMNS,
-            rows=rows,
-            command=command,
-        )
-    ]
+    return [drawn] if case.scaling else []
 
 
 def draw(fits: Sequence[ScalingFit]) -> Drawing:

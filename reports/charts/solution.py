@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cases.results.records import Figure, Panel, Series
+from cases.results.records.figure import Figure, Panel, Series
 from contact import UNITS, HistoryPath, ImpactHistory, Solution
 from reports.tables.solution_table import SYMBOLS
 from reports.words.numbers import prefix_for

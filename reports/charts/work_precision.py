@@ -6,8 +6,9 @@ from functools import partial
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.records import CaseResult, WorkPoint, WorkPrecision
-from reports.figures.figure import Cell, Plate
+from cases.results.records.cost import WorkPoint, WorkPrecision
+from cases.results.records.run import CaseResult
+from reports.figures.figure import Cell, ReportFigure
 from reports.figures.style import BLACK, FAINT, GREY, look_of, mark_decades
 from reports.words.file_names import file_name
 from reports.words.method_names import display_name
@@ -17,7 +18,8 @@ COLUMNS = (
     "scene", "quantity", "method", "setting", "status", "error", "bound", "seconds", "lower_quartile", "upper_quartile",
     "unknowns", "peak_memory_bytes", "on_front", "reason",
 )  # fmt: skip
-CROSSES_APART = 0.03  # of the width
+# Crosses of failed settings stand so far apart, as a fraction of the width of the axes.
+CROSSES_APART = 0.03
 CAPTION = (
     "Each symbol is one setting: median time of repeated runs (bars: quartiles) and bound U of the relative error "
     "(error plus uncertainty of the reference, dotted line). Filled: on the Pareto front, nothing is both at least "
@@ -25,22 +27,19 @@ CAPTION = (
 )
 
 
-def plates(case: CaseResult, command: str) -> list[Plate]:
-    """One plate for each scene and quantity that was timed."""
-    return [plate(work, case.name, command) for work in case.work_precision]
-
-
-def plate(work: WorkPrecision, case: str, command: str) -> Plate:
-    """The plate of one scene and quantity."""
-    return Plate(
-        name=file_name(case, "work-precision", work.scene, work.quantity),
-        title=f"Error against seconds: {work.quantity.replace('_', ' ')}, {work.scene}",
-        caption=f"{CAPTION} Reference: {work.reference_source}.",
-        paint=partial(draw, work),
-        columns=COLUMNS,
-        rows=tuple(_row(work, point) for point in work.points),
-        command=command,
-    )
+def figures(case: CaseResult) -> list[ReportFigure]:
+    """One figure for each scene and quantity that was timed."""
+    return [
+        ReportFigure(
+            name=file_name(case.name, "work-precision", work.scene, work.quantity),
+            title=f"Error against seconds: {work.quantity.replace('_', ' ')}, {work.scene}",
+            caption=f"{CAPTION} Reference: {work.reference_source}.",
+            paint=partial(draw, work),
+            columns=COLUMNS,
+            rows=tuple(_row(work, point) for point in work.points),
+        )
+        for work in case.work_precision
+    ]
 
 
 def _row(work: WorkPrecision, point: WorkPoint) -> tuple[Cell, ...]:
@@ -57,7 +56,8 @@ def draw(work: WorkPrecision) -> Drawing:
     axes.set(xscale="log", yscale="log", xlabel="median time [s]")
     axes.set_ylabel(f"bound of the relative error, {work.quantity.replace('_', ' ')}")
     measured = [point for point in work.points if point.bound]
-    if measured:  # a decade of room: a single point has no range of its own
+    if measured:
+        # There is a decade of room on both sides because a single point has no range of its own.
         bounds = [*(_bound(point) for point in measured), work.reference_uncertainty or _bound(measured[0])]
         axes.set_ylim(min(bounds) / 10.0, 10.0 * max(bounds))
     for method in dict.fromkeys(point.method for point in work.points):

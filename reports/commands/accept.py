@@ -9,12 +9,12 @@ from cases.declare.selection import nightly_only
 from cases.gate.accept import accept, refusals, refusals_beforehand
 from cases.gate.baseline import read_baselines
 from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
-from cases.gate.proposal import Change, Proposal, propose
+from cases.gate.proposal import BaselineChange, Proposal, propose
 from cases.gate.race.against import SOURCE
 from cases.gate.spread import measured_spreads
-from cases.gate.write_permission import circumstances
+from cases.gate.write_permission import write_conditions
 from cases.results.files import read_run
-from cases.results.records import CaseResult, RunResult
+from cases.results.records.run import CaseResult, RunResult
 from contact import InvalidInput
 from reports.tables.table import Table
 from reports.terminal.terminal import STYLES, console, show_table
@@ -22,7 +22,7 @@ from reports.words.numbers import small
 
 
 @dataclass(frozen=True, kw_only=True)
-class Wish:
+class AcceptRequest:
     """What the user asks for.
 
     Attributes:
@@ -42,63 +42,63 @@ class Wish:
     jobs: int
 
 
-def accept_cases(names: list[str], wish: Wish) -> None:
+def accept_cases(names: list[str], request: AcceptRequest) -> None:
     """Show for each case (all of the run if none is named) what would change; write it when told to.
 
     Raises:
         InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
     """
-    result, library = read_run(wish.run), load_cases()
+    result, library = read_run(request.run), load_cases()
     ran = [case.name for case in result.cases]
     refused: list[str] = []
     studies = [case for case in result.cases if case.ladders and case.name not in library]
     for study in studies:
         if not names or study.name in names:
-            _accept_ladders(study, result, wish)
+            _accept_ladders(study, result, request)
     known = [name for name in names or ran if name not in {study.name for study in result.cases} - set(library)]
     for case in select(library, names=known) if known else ():
         if case.name not in ran:
-            raise InvalidInput(f"the run in {wish.run} does not have {case.name}; run it first")
+            raise InvalidInput(f"the run in {request.run} does not have {case.name}; run it first")
         try:
-            _accept_case(case, result, wish)
+            _accept_case(case, result, request)
         except InvalidInput as error:
             refused.append(str(error))
     if refused:
         raise InvalidInput("\n".join(refused))
 
 
-def _accept_case(case: Case, result: RunResult, wish: Wish) -> None:
-    ran, now, terminal = _watched(case, result), circumstances(SOURCE, wish.baselines), console()
-    hopeless = refusals_beforehand(case.name, result, now)
-    if hopeless:
-        raise InvalidInput(f"{case.name} is not accepted: {'; '.join(hopeless)}")
+def _accept_case(case: Case, result: RunResult, request: AcceptRequest) -> None:
+    ran, now, terminal = _watched(case, result), write_conditions(SOURCE, request.baselines), console()
+    reasons_against = refusals_beforehand(case.name, result, now)
+    if reasons_against:
+        raise InvalidInput(f"{case.name} is not accepted: {'; '.join(reasons_against)}")
     terminal.print(f"{case.name}: repeating every solution with inputs one unit in the last place away ...")
-    spreads = measured_spreads(case, {(row.scene, row.method): row for row in ran.runs}, jobs=wish.jobs)
+    spreads = measured_spreads(case, {(row.scene, row.method): row for row in ran.runs}, jobs=request.jobs)
     proposal = propose(
-        ran, suites=case.suites, accepted=read_baselines(wish.baselines), spreads=spreads, reason=wish.reason
+        ran, suites=case.suites, accepted=read_baselines(request.baselines), spreads=spreads, reason=request.reason
     )
     show_table(change_table(proposal), on=terminal)
-    refused = refusals(proposal, result, now, loosen=wish.loosen)
+    refused = refusals(proposal, result, now, loosen=request.loosen)
     for reason in refused:
         terminal.print(f"refused: {reason}", style=STYLES["bad"])
-    if wish.write:
-        accept(wish.baselines, proposal, result, now, loosen=wish.loosen)
-        terminal.print(f"{case.name}: written to {wish.baselines / case.name}", style=STYLES["good"])
+    if request.write:
+        accept(request.baselines, proposal, result, now, loosen=request.loosen)
+        terminal.print(f"{case.name}: written to {request.baselines / case.name}", style=STYLES["good"])
     else:
         terminal.print(f"{case.name}: nothing written; say --write to write it", style=STYLES["warn"])
 
 
-def _accept_ladders(study: CaseResult, result: RunResult, wish: Wish) -> None:
+def _accept_ladders(study: CaseResult, result: RunResult, request: AcceptRequest) -> None:
     """Accept the ladders of a study, or say which rungs would be lost."""
-    now = circumstances(SOURCE, wish.baselines)
-    hopeless = refusals_beforehand(study.name, result, now)
-    if hopeless:
-        raise InvalidInput(f"{study.name} is not accepted: {'; '.join(hopeless)}")
+    now = write_conditions(SOURCE, request.baselines)
+    reasons_against = refusals_beforehand(study.name, result, now)
+    if reasons_against:
+        raise InvalidInput(f"{study.name} is not accepted: {'; '.join(reasons_against)}")
     terminal = console()
-    for claim in ladder_claims(study, read_ladders(wish.baselines)):
+    for claim in ladder_claims(study, read_ladders(request.baselines)):
         terminal.print(f"{claim.scene}, {claim.methods[0]}: {claim.message}", markup=False)
-    if wish.write:
-        accept_ladders(wish.baselines, study.ladders, now, reason=wish.reason, loosen=wish.loosen)
+    if request.write:
+        accept_ladders(request.baselines, study.ladders, now, reason=request.reason, loosen=request.loosen)
         terminal.print(f"{study.name}: {len(study.ladders)} ladders written", style=STYLES["good"])
     else:
         terminal.print(f"{study.name}: nothing written; say --write to write it", style=STYLES["warn"])
@@ -127,7 +127,7 @@ def change_table(proposal: Proposal) -> Table:
     )
 
 
-def _row(change: Change) -> tuple[str, ...]:
+def _row(change: BaselineChange) -> tuple[str, ...]:
     record, (old, new) = change.record, change.values
     return (
         change.method,

@@ -14,7 +14,8 @@ from cases.gate.ladders import read_ladders
 from cases.gate.race.against import with_times_against
 from cases.gate.race.race import PAIRS
 from cases.results.files import read_run, require_run, write_run
-from cases.results.records import RunResult, SceneRun
+from cases.results.records.run import RunResult
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import ExitCode, exit_code
 from cases.run.lock import locked
 from contact import InvalidInput

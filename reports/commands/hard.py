@@ -8,7 +8,7 @@ from typing import cast
 
 from cases.declare.guarded_method import build_guarded
 from cases.measurements.advice import advise as advice_on
-from cases.results.records import CaseResult
+from cases.results.records.run import CaseResult
 from contact import InvalidInput, load_scene
 from reports.terminal.terminal import console
 
@@ -84,7 +84,8 @@ def published(study: Callable[[], CaseResult], out: Path | None) -> int:
 
     if out is None:
         return FAILED if study().status.is_failure else 0
-    if out.exists() and not out.is_dir():  # said before the study, not after
+    # This is said before the study, not after it.
+    if out.exists() and not out.is_dir():
         raise InvalidInput(f"--out {out}: a file is in the way; name a folder")
     with locked(out):
         run = run_of((make() for make in [study]), out)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from cases.results.compare_runs import compare
 from cases.results.files import read_run, require_run, write_whole
-from cases.results.records import RunResult
+from cases.results.records.run import RunResult
 from cases.results.status import ExitCode
 from cases.run.lock import locked
 from reports.pages.comparison import claim_table, headline, number_table, write_comparison
@@ -31,8 +31,8 @@ def _code(*runs: RunResult) -> ExitCode:
     return ExitCode.NOTHING_RAN if any(outcomes.nothing_ran(run) for run in runs) else ExitCode.PASSED
 
 
+# Processes that draw figures.
 DRAWERS = 2
-"""Processes that draw figures."""
 
 
 def write_pages(run: RunResult, directory: Path) -> None:
@@ -42,6 +42,7 @@ def write_pages(run: RunResult, directory: Path) -> None:
     write_whole(directory / "junit.xml", junit_text(run))
 
 
+# The terminal shows so many of the numbers that moved; the page shows more.
 ROWS_IN_TERMINAL = 20
 
 

@@ -10,7 +10,7 @@ from cases.declare.case import Case
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import only_methods
 from cases.measurements.suites import with_studies
-from cases.results.records import RunResult
+from cases.results.records.run import RunResult
 from cases.results.status import ExitCode, exit_code
 from cases.run.executors import by_name
 from cases.run.lock import locked
@@ -23,6 +23,7 @@ from reports.terminal.progress import RunDisplay
 from reports.terminal.terminal import STYLES, console, show_table
 from reports.words.outcomes import headline, outcomes
 
+# The terminal shows so many failed checks; the page shows all.
 WORST_SHOWN = 12
 
 

@@ -1,7 +1,7 @@
-"""Several pairs of axes in one figure: a grid without empty frames, and long lists cut into plates."""
+"""Several pairs of axes in one figure: a grid without empty frames, and long lists in numbered parts."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
 from matplotlib.axes import Axes
@@ -13,15 +13,19 @@ T = TypeVar("T")
 def panel_grid(panels: int, columns: int, panel_size: tuple[float, float]) -> tuple[Drawing, list[Axes]]:
     """A figure with so many axes in rows of `columns`; `panel_size` is width and height of one [inches]."""
     columns = min(columns, panels)
-    rows = math.ceil(panels / columns)
     width, height = panel_size
-    drawing = Drawing(figsize=(width * columns, height * rows), layout="constrained")
-    axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
+    drawing = Drawing(figsize=(width * columns, height * math.ceil(panels / columns)), layout="constrained")
+    return drawing, axes_of(drawing, panels, columns)
+
+
+def axes_of(drawing: Drawing, panels: int, columns: int) -> list[Axes]:
+    """So many axes in rows of `columns`; the rest of the last row stays empty."""
+    axes = list(drawing.subplots(math.ceil(panels / columns), columns, squeeze=False).flat)
     for unused in axes[panels:]:
         unused.set_axis_off()
-    return drawing, axes[:panels]
+    return axes[:panels]
 
 
-def cut(items: Sequence[T], length: int) -> list[Sequence[T]]:
-    """The items in parts of at most `length`."""
-    return [items[start : start + length] for start in range(0, len(items), length)]
+def numbered_parts(items: Sequence[T], length: int) -> Iterator[tuple[int, Sequence[T]]]:
+    """The items in parts of at most `length`, each with its number from one."""
+    return enumerate((items[start : start + length] for start in range(0, len(items), length)), start=1)

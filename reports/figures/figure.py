@@ -1,4 +1,4 @@
-"""A plate is a figure of the report with what belongs to it: picture, data, caption, how to make it again."""
+"""A figure of the report with what belongs to it: picture, data and caption, and the files it is written to."""
 
 import csv
 import io
@@ -15,7 +15,7 @@ Cell = str | float | int | bool | None
 
 
 @dataclass(frozen=True, kw_only=True)
-class Plate:
+class ReportFigure:
     """A figure of the report.
 
     Attributes:
@@ -25,7 +25,6 @@ class Plate:
         paint: makes the picture; called inside the common figure style, maybe in another process.
         columns: heads of the data, with units.
         rows: the data drawn, digit for digit those of results.json.
-        command: one shell line that makes the numbers and the figure again.
     """
 
     name: str
@@ -34,7 +33,6 @@ class Plate:
     paint: Callable[[], Drawing]
     columns: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
-    command: str
 
     def csv_text(self) -> str:
         """The data as CSV; floats keep all digits that tell them apart, a missing number is an empty cell."""
@@ -45,15 +43,15 @@ class Plate:
         return buffer.getvalue()
 
 
-def write_plate(plate: Plate, directory: Path) -> str:
+def write_figure(figure: ReportFigure, directory: Path) -> str:
     """Write NAME.svg, NAME.png and NAME.csv into `directory` and return the SVG for the page."""
     with figure_style():
-        drawing = plate.paint()
+        drawing = figure.paint()
         _lay_out(drawing)
-        svg = svg_text(drawing, key=plate.name)
-        write_whole(directory / f"{plate.name}.png", png_bytes(drawing))
-    write_whole(directory / f"{plate.name}.svg", svg)
-    write_whole(directory / f"{plate.name}.csv", plate.csv_text())
+        svg = svg_text(drawing, key=figure.name)
+        write_whole(directory / f"{figure.name}.png", png_bytes(drawing))
+    write_whole(directory / f"{figure.name}.svg", svg)
+    write_whole(directory / f"{figure.name}.csv", figure.csv_text())
     return svg
 
 

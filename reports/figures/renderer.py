@@ -18,16 +18,22 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure as Drawing
 from matplotlib.lines import Line2D
 
-from cases.results.records import Figure, Panel, Series
-from reports.figures.figure import Plate
+from cases.results.records.figure import Figure, Panel, Series
+from reports.figures.axes_grid import axes_of
+from reports.figures.figure import ReportFigure
 from reports.figures.style import BLACK, GREY, Dash, figure_style, look_of, mark_decades, svg_text
 from reports.words.method_names import base_of, display_name
 
 PANEL_HEIGHT, PANEL_WIDTH, LEGEND_ROW = 2.75, 4.0, 0.2  # inches
-ALONE = 1.4  # times larger is a panel that stands alone
-HANDLE_WIDTH, LETTER_WIDTH = 0.62, 0.072  # inches, of a legend entry
+# A panel that stands alone is so many times larger.
+ALONE = 1.4
+# An entry of a legend takes these widths [inches] for its symbol and for each letter.
+HANDLE_WIDTH, LETTER_WIDTH = 0.62, 0.072
+# So many panels stand side by side.
 MOST_COLUMNS = 3
+# A band narrower than this fraction of what the ordinates span is thinner than the line, and left out.
 NARROWEST_BAND = 1e-3
+# A curve of symbols shows about so many of its points; more would run together.
 SYMBOLS_ON_A_CURVE = 24
 LINE_METHODS = ("mdr",)
 FULL_WIDTH, THIN_WIDTH = 1.5, 1.0
@@ -50,17 +56,15 @@ STYLES = {
 }
 
 
-def plate_of(figure: Figure, *, case: str, command: str) -> Plate:
-    """The plate of a case's figure, its data one row a point."""
-    columns = ("panel", "series", "method", "group", "x", "y", "half_width")
-    return Plate(
+def report_figure(figure: Figure, case: str) -> ReportFigure:
+    """A case's figure for the report, its data one row a point."""
+    return ReportFigure(
         name=f"{case}-{figure.name}",
         title=figure.title,
         caption=figure.caption,
         paint=partial(draw, figure),
-        columns=columns,
+        columns=("panel", "series", "method", "group", "x", "y", "half_width"),
         rows=tuple(_rows(figure)),
-        command=command,
     )
 
 
@@ -90,11 +94,8 @@ def draw(figure: Figure) -> Drawing:
         figsize=(width, size * PANEL_HEIGHT * rows + LEGEND_ROW * legend_rows + 0.15), layout="constrained"
     )
     colours = _colours(figure)
-    all_axes = list(drawing.subplots(rows, columns, squeeze=False).flat)
-    for axes, panel in zip(all_axes, figure.panels, strict=False):
+    for axes, panel in zip(axes_of(drawing, len(figure.panels), columns), figure.panels, strict=True):
         draw_panel(axes, panel, colours)
-    for axes in all_axes[len(figure.panels) :]:
-        axes.set_axis_off()
     if legend:
         drawing.legend(handles=legend, loc="outside lower center", ncols=math.ceil(len(legend) / legend_rows))
     return drawing

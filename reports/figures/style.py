@@ -24,6 +24,7 @@ from reports.words.method_names import base_of
 
 BLACK, GREY, FAINT, TINT = "#1a1a1a", "#767676", "#c8c8c8", "#eef4ee"
 BLUE, VERMILLION, GREEN, PURPLE, ORANGE, SKY = "#0072b2", "#d55e00", "#009e73", "#b0509a", "#e69f00", "#56b4e9"
+# Resolution of the PNG beside each SVG: sharp on a slide.
 PNG_DOTS_PER_INCH = 150
 
 SETTINGS: dict[Any, Any] = {
@@ -88,8 +89,10 @@ def look_of(method: str) -> Look:
 
 
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+# An axis of fewer decades (first number) labels steps between them, one of more (second) marks every decade.
 FEW_DECADES, MANY_DECADES = 2, 4
-LONG_NUMBER = 1e4  # from which labels need room
+# Labels from this number on are long: they are grouped, and fewer are shown.
+LONG_NUMBER = 1e4
 
 
 def power_of_ten(value: float, _position: int | None = None) -> str:
@@ -149,7 +152,8 @@ def svg_text(figure: Figure, *, key: str) -> str:
     with mpl.rc_context({"svg.hashsalt": key}):
         metadata = {"Date": None, "Creator": None, "Format": None, "Type": None}
         canvas: Any = FigureCanvasSVG(figure)
-        canvas.print_svg(buffer, metadata=metadata)  # savefig would draw everything twice
+        # `savefig` would draw everything twice.
+        canvas.print_svg(buffer, metadata=metadata)
     return _compact(buffer.getvalue(), key)
 
 

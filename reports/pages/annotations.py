@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from cases.results.records import RunResult
-from reports.words.outcomes import Outcome, outcomes
+from cases.results.records.run import RunResult
+from reports.words.outcomes import CheckOutcome, outcomes
 
+# GitHub shows ten annotations of a step and hides the rest: nine leave room for its own.
 MOST = 9
 
 
@@ -20,7 +21,7 @@ def annotation_lines(run: RunResult) -> list[str]:
     ]
 
 
-def _line(row: Outcome) -> str:
+def _line(row: CheckOutcome) -> str:
     title = f"{row.status} {row.case}: {row.place} ({row.who})"
     facts: Sequence[str] = [
         part for part in (row.message, f"measured {row.observed}, tolerance {row.tolerance}") if row.observed

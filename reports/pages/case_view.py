@@ -1,22 +1,25 @@
 """Everything a page shows of one case, in the order of the page."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
-from cases.results.records import CaseResult, WorkPrecision
+from cases.results.records.cost import WorkPrecision
+from cases.results.records.run import CaseResult
 from reports.charts import agreement, convergence, coverage, error_map, ladder, scaling, work_precision
-from reports.figures.figure_files import Gallery, Hung
-from reports.figures.renderer import plate_of
+from reports.figures.figure import ReportFigure
+from reports.figures.figure_files import FigureFolder, PlacedFigure
+from reports.figures.renderer import report_figure
 from reports.pages.claim_blocks import ClaimBlock, claim_blocks
 from reports.tables import case_tables, cost_tables, hard_tables
 from reports.tables.table import Table
-from reports.words.outcomes import Outcome, case_outcomes, severity
+from reports.words.outcomes import CheckOutcome, case_outcomes, severity
 
 
 @dataclass(frozen=True, kw_only=True)
 class TimedView:
     """Error against seconds with its two tables beside it."""
 
-    drawn: Hung
+    drawn: PlacedFigure
     cheapest: Table
     prices: Table | None
     settings: Table | None
@@ -28,41 +31,45 @@ class CaseView:
 
     result: CaseResult
     claims: tuple[ClaimBlock, ...]
-    figures: tuple[Hung, ...]
-    agreement: tuple[Hung, ...]
+    figures: tuple[PlacedFigure, ...]
+    agreement: tuple[PlacedFigure, ...]
     answers: Table | None
-    convergence: tuple[Hung, ...]
+    convergence: tuple[PlacedFigure, ...]
     work: tuple[TimedView, ...]
-    ladders: tuple[Hung, ...]
+    ladders: tuple[PlacedFigure, ...]
     breakdowns: Table | None
-    coverage: tuple[Hung, ...]
+    coverage: tuple[PlacedFigure, ...]
     covered: Table | None
-    maps: tuple[Hung, ...]
+    maps: tuple[PlacedFigure, ...]
     good_ranges: Table | None
-    scaling: tuple[Hung, ...]
+    scaling: tuple[PlacedFigure, ...]
     refusals: tuple[str, ...]
     effects: Table | None
     stages: Table | None
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[CheckOutcome, ...]
 
 
-def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
+def case_view(case: CaseResult, folder: FigureFolder, command: str) -> CaseView:
     """Draw and tabulate a case; `command` makes its numbers and figures again."""
+
+    def placed(figures: Iterable[ReportFigure]) -> tuple[PlacedFigure, ...]:
+        return folder.place(figures, command)
+
     return CaseView(
         result=case,
         claims=claim_blocks(case),
-        figures=gallery.hang(plate_of(figure, case=case.name, command=command) for figure in case.figures),
-        agreement=gallery.hang(agreement.plates(case, command)),
+        figures=placed(report_figure(figure, case.name) for figure in case.figures),
+        agreement=placed(agreement.figures(case)),
         answers=case_tables.answers(case),
-        convergence=gallery.hang(convergence.plates(case, command)),
-        work=tuple(_timed(work, gallery, case.name, command) for work in case.work_precision),
-        ladders=gallery.hang(ladder.plates(case, command)),
+        convergence=placed(convergence.figures(case)),
+        work=tuple(map(_timed, placed(work_precision.figures(case)), case.work_precision)),
+        ladders=placed(ladder.figures(case)),
         breakdowns=hard_tables.ladders(case),
-        coverage=gallery.hang(coverage.plates(case, command)),
+        coverage=placed(coverage.figures(case)),
         covered=hard_tables.coverage(case),
-        maps=gallery.hang(error_map.plates(case, command)),
+        maps=placed(error_map.figures(case)),
         good_ranges=hard_tables.good_ranges(case),
-        scaling=gallery.hang(scaling.plates(case, command)),
+        scaling=placed(scaling.figures(case)),
         refusals=tuple(ladder.refusals(case)),
         effects=case_tables.effects(case),
         stages=case_tables.stages(case),
@@ -70,8 +77,7 @@ def case_view(case: CaseResult, gallery: Gallery, command: str) -> CaseView:
     )
 
 
-def _timed(work: WorkPrecision, gallery: Gallery, case: str, command: str) -> TimedView:
-    (drawn,) = gallery.hang([work_precision.plate(work, case, command)])
+def _timed(drawn: PlacedFigure, work: WorkPrecision) -> TimedView:
     return TimedView(
         drawn=drawn,
         cheapest=case_tables.cheapest(work),

@@ -6,14 +6,15 @@ A table of scenes by claims would be wider than any page; every single check sta
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cases.results.records import CaseResult, Claim, Kind
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from reports.pages.matrix import Cell, cell_of
 from reports.words.method_names import display_name
 from reports.words.outcomes import claim_outcome, severity
 
+# A relative tolerance beyond this is said beside the verdict: agreement within 5 % is another statement than AGREE.
 WIDE = 1e-2
-"""A relative tolerance beyond this is said beside the verdict: agreement within 5 % is another statement than AGREE."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -3,18 +3,18 @@
 from collections import Counter
 from pathlib import Path
 
-from cases.results.compare_runs import Change, ClaimChange, NumberChange, RunComparison, TimeChange
+from cases.results.compare_runs import ChangeKind, ClaimChange, NumberChange, RunComparison, TimeChange
 from cases.results.files import write_whole
-from cases.results.records import RunResult
+from cases.results.records.run import RunResult
 from reports.pages.report import stamp_lines, stylesheet, template
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, scaled_unit, small
 
+# Rows of a table on the page; the largest changes come first and the rest is counted.
 MOST_ROWS = 400
-"""Rows of a table on the page; the largest changes come first and the rest is counted."""
 
-ORDER = (Change.INCOMPARABLE, Change.BEYOND, Change.UNKNOWN, Change.WITHIN, Change.IDENTICAL)
+ORDER = (ChangeKind.INCOMPARABLE, ChangeKind.BEYOND, ChangeKind.UNKNOWN, ChangeKind.WITHIN, ChangeKind.IDENTICAL)
 
 
 def write_comparison(comparison: RunComparison, runs: tuple[RunResult, RunResult], page: Path) -> None:
@@ -38,12 +38,12 @@ def headline(comparison: RunComparison) -> tuple[str, str]:
     """The result in a few words, and its tone."""
     tally = Counter(number.change for number in comparison.numbers)
     worse = sum(_got_worse(claim) for claim in comparison.claims)
-    moved, total = tally[Change.BEYOND] + tally[Change.INCOMPARABLE], len(comparison.numbers)
+    moved, total = tally[ChangeKind.BEYOND] + tally[ChangeKind.INCOMPARABLE], len(comparison.numbers)
     checks = f"{worse} check{'s'[: worse != 1]} got worse; " if worse else ""
     if not total:
         return f"{checks}no number in common", "bad"
     tone = "bad" if worse or moved else "warn" if comparison.claims or comparison.missing else "good"
-    if tally[Change.IDENTICAL] == total:
+    if tally[ChangeKind.IDENTICAL] == total:
         return f"{checks}all {total} numbers identical", tone
     return f"{checks}{moved} of {total} numbers moved beyond their uncertainty", tone
 
@@ -100,7 +100,7 @@ def _claim_row(change: ClaimChange) -> tuple[str, ...]:
 
 def number_table(numbers: tuple[NumberChange, ...], most: int = MOST_ROWS) -> Table:
     """Every number that moved, the furthest first."""
-    moved = [number for number in numbers if number.change is not Change.IDENTICAL]
+    moved = [number for number in numbers if number.change is not ChangeKind.IDENTICAL]
     moved.sort(key=lambda number: (ORDER.index(number.change), -abs(number.difference or 0.0)))
     left_out = len(moved) - most
     rest = f" {left_out} smaller changes are not listed." if left_out > 0 else ""

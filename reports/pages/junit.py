@@ -3,12 +3,12 @@
 import xml.etree.ElementTree as ET
 from collections.abc import Sequence
 
-from cases.results.records import CaseResult, RunResult
+from cases.results.records.run import CaseResult, RunResult
 from cases.results.status import Status
-from reports.words.outcomes import Outcome, case_outcomes
+from reports.words.outcomes import CheckOutcome, case_outcomes
 
+# Statuses that JUnit calls an error (no answer) and not a failure (a wrong answer).
 BROKEN = (Status.INVALID, Status.TIMEOUT, Status.INCOMPARABLE)
-"""Statuses that JUnit calls an error (no answer) and not a failure (a wrong answer)."""
 
 
 def junit_text(run: RunResult) -> str:
@@ -27,7 +27,7 @@ def _suite(case: CaseResult, started: str) -> ET.Element:
     return suite
 
 
-def _totals(rows: Sequence[Outcome]) -> dict[str, str]:
+def _totals(rows: Sequence[CheckOutcome]) -> dict[str, str]:
     failed = sum(row.status.is_failure and row.status not in BROKEN for row in rows)
     broken = sum(row.status in BROKEN for row in rows)
     skipped = sum(_is_skipped(row) for row in rows)
@@ -36,7 +36,7 @@ def _totals(rows: Sequence[Outcome]) -> dict[str, str]:
     return {name: str(number) for name, number in numbers.items()} | {"time": f"{seconds:.3f}"}
 
 
-def _testcase(row: Outcome) -> ET.Element:
+def _testcase(row: CheckOutcome) -> ET.Element:
     who = "+".join(row.methods)
     element = ET.Element("testcase", classname=f"{row.case}.{who}", name=row.place, time=f"{row.seconds:.3f}")
     if row.status.is_failure:
@@ -48,12 +48,12 @@ def _testcase(row: Outcome) -> ET.Element:
     return element
 
 
-def _is_skipped(row: Outcome) -> bool:
+def _is_skipped(row: CheckOutcome) -> bool:
     """Skipped checks, and those whose verdict stays open: neither passed nor failed."""
     return row.status in (Status.SKIP, Status.XFAIL, Status.INCONCLUSIVE)
 
 
-def _detail(row: Outcome) -> str:
+def _detail(row: CheckOutcome) -> str:
     """All that helps to find the reason."""
     facts = {
         "measured": row.observed,

@@ -3,10 +3,11 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from cases.results.records import CaseResult, Kind, RunResult
+from cases.results.records.claim import Kind
+from cases.results.records.run import CaseResult, RunResult
 from cases.results.status import Status
 from reports.words.file_names import file_name
-from reports.words.outcomes import Outcome, case_outcomes, severity
+from reports.words.outcomes import CheckOutcome, case_outcomes, severity
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,7 +44,7 @@ def _kind_cells(case: CaseResult, kinds: Sequence[Kind]) -> tuple[Cell | None, .
     return tuple(cell_of(part) if part else None for part in parts)
 
 
-def cell_of(rows: Iterable[Outcome]) -> Cell:
+def cell_of(rows: Iterable[CheckOutcome]) -> Cell:
     """The worst of some checks, at least one; those that were skipped are counted apart, unless all were."""
     ordered = sorted(rows, key=severity)
     ran = [row for row in ordered if row.status is not Status.SKIP] or ordered

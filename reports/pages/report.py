@@ -10,9 +10,10 @@ import jinja2
 from markupsafe import Markup
 
 from cases.results.files import write_whole
-from cases.results.records import Acceptance, CaseResult, Kind, RunResult
+from cases.results.records.claim import Kind
+from cases.results.records.run import Acceptance, CaseResult, RunResult
 from cases.results.status import Status
-from reports.figures.figure_files import Gallery
+from reports.figures.figure_files import FigureFolder
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.matrix import run_matrix
@@ -22,6 +23,7 @@ from reports.words.file_names import file_name
 from reports.words.numbers import duration, small
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 
+# The page begins with so many of the worst checks.
 ROWS_ON_FIRST_SCREEN = 5
 
 
@@ -30,10 +32,10 @@ def write_report(run: RunResult, directory: Path, jobs: int = 1) -> Path:
 
     With more than one job many figures are drawn in so many processes.
     """
-    gallery = Gallery(directory)
+    folder = FigureFolder(directory)
     out = shlex.quote(str(directory))
-    cases = [case_view(case, gallery, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
-    gallery.draw(jobs)
+    cases = [case_view(case, folder, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
+    folder.draw(jobs)
     page = directory / "report.html"
     write_whole(page, render(run, directory, cases))
     return page

@@ -4,14 +4,14 @@ import html
 import re
 from collections.abc import Iterable, Sequence
 
-from cases.results.records import RunResult
+from cases.results.records.run import RunResult
 from contact.records.plain_text import printable
 from reports.pages.report import baseline_sentence
 from reports.words.numbers import duration
-from reports.words.outcomes import Outcome, counts, headline, outcomes
+from reports.words.outcomes import CheckOutcome, counts, headline, outcomes
 
+# Bytes; GitHub refuses a job summary above 1 MiB.
 LARGEST = 900 * 1024
-"""Bytes; GitHub refuses a job summary above 1 MiB."""
 
 # What Markdown would take for a cell's end, code, a link, an address, a person, or emphasis at a word's edge.
 MARKDOWN = re.compile(r"[`*~\\@]|\](?=[(\[:])|:(?=//)|(?<!\w)_|_(?!\w)")
@@ -33,7 +33,7 @@ def summary_text(run: RunResult, *, largest: int = LARGEST) -> str:
     return top + _table(rows, largest - len(top.encode()))
 
 
-def _table(rows: Sequence[Outcome], room: int) -> str:
+def _table(rows: Sequence[CheckOutcome], room: int) -> str:
     """As many rows as fit, and how many did not."""
     lines = [_line(row) for row in rows]
     fitting = _fitting(lines, room - len(HEAD.encode()) - 200)
@@ -52,7 +52,7 @@ def _fitting(lines: Iterable[str], room: int) -> int:
     return number
 
 
-def _line(row: Outcome) -> str:
+def _line(row: CheckOutcome) -> str:
     cells = (row.word, row.case, row.place, row.who, row.fraction_text, row.observed, row.tolerance, row.message)
     word, *others = map(_escaped, cells)
     return "| " + " | ".join([f"**{word}**" if row.tone == "bad" else word, *others]) + " |\n"

@@ -3,13 +3,17 @@
 from collections.abc import Iterable, Iterator, Mapping
 
 from cases.measurements.cost.overview import methods
-from cases.results.records import CaseResult, CheapestRun, EffectEntry, Quantity, SceneRun, WorkPrecision
+from cases.results.records.cost import CheapestRun, EffectEntry, WorkPrecision
+from cases.results.records.run import CaseResult
+from cases.results.records.scene_run import Quantity, SceneRun
 from contact import UNITS
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, memory, scaled_unit, small
 
-MOST_DECADES = 3  # a factor of time for one digit beyond this is not worth telling apart
+# Beyond so many decades of time for one digit, factors are not worth telling apart.
+MOST_DECADES = 3
+# Accuracies at which a page says whether an effect may be left out.
 DROPPED_AT = (1e-1, 1e-2, 1e-4)
 DROPPED_WORDS = ", ".join(f"{100 * tau:g} %" for tau in DROPPED_AT)
 
@@ -55,7 +59,8 @@ def _last_value(quantity: Quantity) -> str:
     value = quantity.values[-1]
     factor, unit = scaled_unit(value, quantity.unit)
     if not quantity.uncertainty and quantity.name not in UNITS:
-        return small(value)  # a residual, which vanishes but for rounding, has no uncertainty of its own
+        # A residual vanishes but for rounding: it has no uncertainty of its own.
+        return small(value)
     uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else float("inf")
     return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
 

@@ -3,7 +3,8 @@
 from cases.measurements.advice.error_maps import UNBONDED, good_range
 from cases.measurements.campaigns.coverage import at_90
 from cases.measurements.ladders.ladders import breakdown, fewest_digits
-from cases.results.records import CaseResult, CoverageRecord, ErrorMap, Ladder
+from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from reports.tables.table import Table
 from reports.words.method_names import display_name

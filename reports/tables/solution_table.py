@@ -25,8 +25,8 @@ SYMBOLS = {
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none."
 )
+# Rows of a printed table; longer answers show every n-th state and the last one.
 LONGEST = 40
-"""Rows of a printed table; longer answers show every n-th state and the last one."""
 
 PRINTED = {
     ContactPath: ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"),

@@ -11,7 +11,7 @@ from rich.table import Table as RichTable
 from rich.text import Text
 
 from cases.results.status import Status
-from cases.run.progress import Event
+from cases.run.progress import ProgressEvent
 from reports.terminal.terminal import STYLES
 from reports.words.outcomes import tone_of, worded
 
@@ -44,7 +44,7 @@ class RunDisplay:
         """End the live picture, whatever happened."""
         self._live.stop()
 
-    def __call__(self, event: Event) -> None:
+    def __call__(self, event: ProgressEvent) -> None:
         """Take note of an event."""
         self._bar.update(self._task, completed=event.done, total=event.total)
         if event.kind == "refused":
@@ -58,7 +58,7 @@ class RunDisplay:
         else:
             self._finished(event, event.status)
 
-    def _finished(self, event: Event, status: Status) -> None:
+    def _finished(self, event: ProgressEvent, status: Status) -> None:
         case = event.label.partition(" / ")[0]
         self._counts.setdefault(case, Counter())[tone_of(status)] += 1
         if tone_of(status) == "bad":

@@ -6,12 +6,13 @@ The notation is that of CODATA: `1.480210(21)` means 1.480210 with an uncertaint
 import math
 from collections.abc import Iterable
 
+# What stands where a number should be and is none; the letters of a floating point NaN never reach a page.
 NOT_FINITE = "not finite"
-"""What stands where a number should be and is none; the letters of a floating point NaN never reach a page."""
 
+# Magnitudes outside these are written with a power of ten.
 LARGEST_PLAIN, SMALLEST_PLAIN = 1e5, 1e-3
-"""Magnitudes outside these are written with a power of ten."""
 
+# A double carries so many significant digits.
 DOUBLE_DIGITS = 16
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
@@ -37,7 +38,8 @@ def measured(value: float, uncertainty: float) -> str:
 def _bracketed(value: float, uncertainty: float, exponent: int) -> str:
     """Both numbers to the second digit of the uncertainty, but never past the digits a double carries."""
     decimals = max(0, min(1 - _leading_power(uncertainty), DOUBLE_DIGITS - 1 - exponent))
-    digits = max(1, math.ceil(round(uncertainty * 10.0**decimals, 6)))  # rounded up: never less than it is
+    # The uncertainty is rounded up: never less than it is.
+    digits = max(1, math.ceil(round(uncertainty * 10.0**decimals, 6)))
     shown = f"{digits}" if uncertainty < 1.0 else f"{digits / 10.0**decimals:.{decimals}f}"
     return f"{value:.{decimals}f}({shown})"
 

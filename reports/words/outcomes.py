@@ -5,10 +5,13 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
-from cases.results.records import CaseResult, Claim, Kind, RunResult, SceneRun, Verdict
+from cases.results.records.claim import Claim, Kind, Verdict
+from cases.results.records.run import CaseResult, RunResult
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from reports.words.numbers import NOT_FINITE, measured, small
 
+# The order of reading; skips stand before passes because someone has to look at their reasons.
 WORST_FIRST = (
     Status.INVALID,
     Status.FAIL,
@@ -22,7 +25,6 @@ WORST_FIRST = (
     Status.XFAIL,
     Status.PASS,
 )
-"""The order of reading; skips stand before passes because someone has to look at their reasons."""
 
 EXPLANATIONS: Mapping[Status, str] = {
     Status.PASS: "within tolerance",
@@ -40,7 +42,7 @@ EXPLANATIONS: Mapping[Status, str] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Outcome:
+class CheckOutcome:
     """One check in words: a claim, or the solution of one scene by one method.
 
     `fraction` is error over tolerance, -1 where nothing could be compared. `tone` is the class of colour:
@@ -90,30 +92,30 @@ def tone_of(status: Status) -> str:
     return {Status.INCONCLUSIVE: "warn", Status.SKIP: "skip", Status.XFAIL: "warn"}.get(status, "good")
 
 
-def outcomes(run: RunResult) -> tuple[Outcome, ...]:
+def outcomes(run: RunResult) -> tuple[CheckOutcome, ...]:
     """Every check of the run, worst first."""
     rows = [row for case in run.cases for row in case_outcomes(case)]
     return tuple(sorted(rows, key=severity))
 
 
-def case_outcomes(case: CaseResult) -> tuple[Outcome, ...]:
+def case_outcomes(case: CaseResult) -> tuple[CheckOutcome, ...]:
     """Every check of a case, in the order of the case."""
     claims = (claim_outcome(case.name, claim) for claim in case.claims)
     return (*claims, *(_solved(case.name, run) for run in case.runs))
 
 
-def severity(row: Outcome) -> tuple[int, float]:
+def severity(row: CheckOutcome) -> tuple[int, float]:
     """Sorting key: the worst status first, within it the largest fraction of the tolerance."""
     return WORST_FIRST.index(row.status), -row.fraction
 
 
-def counts(rows: Iterable[Outcome]) -> tuple[tuple[Status, int], ...]:
+def counts(rows: Iterable[CheckOutcome]) -> tuple[tuple[Status, int], ...]:
     """How many checks ended with which status, worst first."""
     tally = Counter(row.status for row in rows)
     return tuple((status, tally[status]) for status in WORST_FIRST if tally[status])
 
 
-def headline(run: RunResult, rows: Iterable[Outcome]) -> tuple[str, str]:
+def headline(run: RunResult, rows: Iterable[CheckOutcome]) -> tuple[str, str]:
     """The verdict in a few words, and its tone."""
     tally = Counter(row.tone for row in rows)
     checks = sum(tally.values()) - tally["skip"]
@@ -138,9 +140,9 @@ def _measured(run: RunResult) -> int:
     return sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
 
 
-def claim_outcome(case: str, claim: Claim) -> Outcome:
+def claim_outcome(case: str, claim: Claim) -> CheckOutcome:
     """A claim in words."""
-    return Outcome(
+    return CheckOutcome(
         case=case,
         scene=claim.scene,
         name=claim.name,
@@ -158,8 +160,8 @@ def claim_outcome(case: str, claim: Claim) -> Outcome:
     )
 
 
-def _solved(case: str, run: SceneRun) -> Outcome:
-    return Outcome(
+def _solved(case: str, run: SceneRun) -> CheckOutcome:
+    return CheckOutcome(
         case=case,
         scene=run.scene,
         name=f"solves {run.scene}",

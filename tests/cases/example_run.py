@@ -3,35 +3,13 @@
 The numbers are made up (a stiffness 2.48 with errors of a first-order and a spectral method); nothing was solved.
 """
 
-from cases.results.records import (
-    Acceptance,
-    CaseResult,
-    CheapestRun,
-    Claim,
-    ConvergenceClass,
-    ConvergenceStudy,
-    CostRecord,
-    Curve,
-    DigitPrice,
-    EffectEntry,
-    Figure,
-    Grid,
-    Kind,
-    Ladder,
-    Origin,
-    Panel,
-    Quantity,
-    Rung,
-    RunResult,
-    SceneDescription,
-    SceneRun,
-    Series,
-    Stage,
-    Stamp,
-    Verdict,
-    WorkPoint,
-    WorkPrecision,
-)
+from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.results.records.convergence import ConvergenceClass, ConvergenceStudy, Grid
+from cases.results.records.cost import CheapestRun, DigitPrice, EffectEntry, WorkPoint, WorkPrecision
+from cases.results.records.figure import Figure, Panel, Series
+from cases.results.records.reliability import Ladder, Rung
+from cases.results.records.run import Acceptance, CaseResult, RunResult, SceneDescription, Stamp
+from cases.results.records.scene_run import CostRecord, Curve, Quantity, SceneRun, Stage
 from cases.results.status import Status
 
 SCENE = "bonded nu=0.3 a/h=1"

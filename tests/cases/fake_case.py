@@ -12,9 +12,10 @@ from cases.judgement.claims.declared import Reason
 from cases.judgement.claims.exact import Exact
 from cases.judgement.claims.field_agreement import FieldAgreement
 from cases.judgement.claims.order import Order
-from cases.judgement.claims.scaling_law import Twin
+from cases.judgement.claims.scaling_law import ScalingLaw
 from cases.measurements.cost.work_precision import WorkStudy
-from cases.results.records import Figure, Origin, Panel, Series
+from cases.results.records.claim import Origin
+from cases.results.records.figure import Figure, Panel, Series
 from contact import ContactRadii, Layer, Paraboloid, Scene
 
 RADII = (0.5e-3, 1e-3)
@@ -81,7 +82,7 @@ def fake_case(*, fast=FAST, slow=SLOW, name="fake_hertz", ladder=None, work=Fals
         FieldAgreement(name="pressure agrees", norm="weighted L2", **pressure),
         FieldAgreement(name="ring loads agree", norm="ring loads", **pressure),
         Order(name="first order", method="slow", **grids, **force),
-        Twin(name="doubling E doubles F", **twin, **force),
+        ScalingLaw(name="doubling E doubles F", **twin, **force),
     )
     return Case(
         name=name,

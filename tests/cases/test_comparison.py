@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from cases.results.compare_runs import Change, compare
+from cases.results.compare_runs import ChangeKind, compare
 from cases.results.status import Status
 from tests.cases.example_run import OTHER_SCENE, example_run, fast_run, passing_case, slow_run
 
@@ -28,14 +28,14 @@ def pair(one, two):
 
 def test_a_run_against_itself_has_no_change():
     result = compare(example_run(), example_run())
-    assert {number.change for number in result.numbers} == {Change.IDENTICAL}
+    assert {number.change for number in result.numbers} == {ChangeKind.IDENTICAL}
     assert not result.claims
     assert not result.missing
     assert {time.ratio for time in result.times} == {1.0}
 
 
 @pytest.mark.parametrize(
-    ("factor", "change"), [(1 + 1e-13, Change.WITHIN), (1 + 1e-11, Change.BEYOND), (2.0, Change.BEYOND)]
+    ("factor", "change"), [(1 + 1e-13, ChangeKind.WITHIN), (1 + 1e-11, ChangeKind.BEYOND), (2.0, ChangeKind.BEYOND)]
 )
 def test_a_changed_number_is_measured_against_both_uncertainties(factor, change):
     one = fast_run("scene")
@@ -48,22 +48,22 @@ def test_a_changed_number_is_measured_against_both_uncertainties(factor, change)
 def test_a_method_without_uncertainty_gives_no_verdict():
     one = fast_run("scene")
     _, force = pair(one, with_force(one, 1.1, uncertainty=())).numbers
-    assert force.change is Change.UNKNOWN
+    assert force.change is ChangeKind.UNKNOWN
 
 
 def test_other_units_or_lengths_are_not_compared():
     one = fast_run("scene")
     depth, force = one.quantities
     other = dataclasses.replace(one, quantities=(depth, dataclasses.replace(force, unit="kN")))
-    assert pair(one, other).numbers[1].change is Change.INCOMPARABLE
+    assert pair(one, other).numbers[1].change is ChangeKind.INCOMPARABLE
     longer = dataclasses.replace(force, values=(1.0, 2.0), uncertainty=())
-    assert pair(one, dataclasses.replace(one, quantities=(depth, longer))).numbers[1].change is Change.INCOMPARABLE
+    assert pair(one, dataclasses.replace(one, quantities=(depth, longer))).numbers[1].change is ChangeKind.INCOMPARABLE
 
 
 def test_two_methods_are_compared_where_each_run_has_one():
     numbers = pair(fast_run("scene"), slow_run("scene")).numbers
     assert [number.methods for number in numbers] == [("mdr", "fem")] * 2
-    assert [number.change for number in numbers] == [Change.WITHIN] * 2
+    assert [number.change for number in numbers] == [ChangeKind.WITHIN] * 2
 
 
 def test_missing_solutions_and_claims_are_named():

@@ -6,7 +6,7 @@ from cases.declare.case import Case
 from cases.declare.methods import MethodUse, build, method_names
 from cases.declare.registry import by_name, load_cases, select
 from cases.judgement.claims.exact import Exact
-from cases.results.records import Origin
+from cases.results.records.claim import Origin
 from contact import InvalidInput
 from tests.cases.fake_case import FAST, REASON, STATED, case_scene, fake_case, hertz_force
 

@@ -4,7 +4,7 @@ import math
 import pytest
 from pydantic import ValidationError
 
-from cases.results.records import Curve, Quantity
+from cases.results.records.scene_run import Curve, Quantity
 from cases.results.status import Status
 from tests.cases.example_run import SCENE, agreement_claim, example_run, fast_run, quantities
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cases.results.files import from_json, json_schema, read_run, to_json, write_run
-from cases.results.records import RunResult
+from cases.results.records.run import RunResult
 from cases.results.sealed import sealed_text
 from contact import InvalidInput
 from contact.files.storage import read_tree

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 
 from cases.results.files import read_run
-from cases.results.records import ConvergenceClass, Verdict
+from cases.results.records.claim import Verdict
+from cases.results.records.convergence import ConvergenceClass
 from cases.results.status import ExitCode, Status, exit_code
 from cases.run.executors import by_name, process_pool, serial
 from cases.run.runner import RunOptions, run_cases

@@ -8,7 +8,7 @@ from cases.measurements import suites as studies
 from cases.measurements.ladders import ladder_study
 from cases.measurements.ladders.ladder_table import LADDERS
 from cases.results.files import read_run
-from cases.results.records import Ladder
+from cases.results.records.reliability import Ladder
 from cases.run.executors import serial
 from tests.cases.example_run import example_run
 

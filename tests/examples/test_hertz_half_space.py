@@ -11,7 +11,7 @@ import pytest
 
 from cases.declare import methods
 from cases.results.files import read_run
-from cases.results.records import Kind
+from cases.results.records.claim import Kind
 from cases.results.status import Status
 from reports.command_line import run
 

@@ -658,7 +658,7 @@ COMPARATORS = [
 
 def passes(_):
     """Whatever it is asked, it passes."""
-    from cases.results.records import Verdict
+    from cases.results.records.claim import Verdict
 
     passed = Judgement(status=Status.PASS, verdict=Verdict.PASS, observed=None, fraction=None, message="")
     return lambda *a: passed
@@ -752,7 +752,7 @@ BASELINES = [
     Fault(
         "tolerances loosened unnoticed",
         "baselines",
-        override("cases.gate.proposal:Change", "loosens", lambda _: property(lambda self: False)),
+        override("cases.gate.proposal:BaselineChange", "loosens", lambda _: property(lambda self: False)),
         Test("cases.gate.test_accept:test_loosening_is_refused_without_the_flag_and_visible_after_it", (TEMPORARY,)),
     ),
     Fault(

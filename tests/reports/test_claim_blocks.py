@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from cases.results.records import Kind
+from cases.results.records.claim import Kind
 from cases.results.status import Status
 from reports.pages.claim_blocks import claim_blocks, is_wide
 from reports.pages.report import write_report

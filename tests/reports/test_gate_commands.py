@@ -8,7 +8,7 @@ import pytest
 
 from cases.gate import spread
 from cases.gate.history import read_history
-from cases.gate.write_permission import Circumstances
+from cases.gate.write_permission import WriteConditions
 from cases.results.sealed import sealed_text
 from cases.run import executors, runner
 from cases.run.runner import RunOptions
@@ -17,7 +17,7 @@ from reports.command_line import run
 from reports.commands import accept as accept_command
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 
-CLEAN = Circumstances(revision=revision(), changed=(), in_ci=False, date="2026-01-01")
+CLEAN = WriteConditions(revision=revision(), changed=(), in_ci=False, date="2026-01-01")
 
 
 @pytest.fixture
@@ -33,7 +33,7 @@ def here(tmp_path, library, monkeypatch):
     set_library(fake_case())
     monkeypatch.setattr(gate_command, "write_pages", lambda *_: None)  # `report` writes them where a test looks
     monkeypatch.setattr(spread, "process_pool", executors.serial)
-    monkeypatch.setattr(accept_command, "circumstances", lambda *_: CLEAN)
+    monkeypatch.setattr(accept_command, "write_conditions", lambda *_: CLEAN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "200")  # whatever the terminal: a table is not folded
     return set_library
@@ -130,7 +130,7 @@ def test_loosening_needs_its_flag_and_is_seen_in_the_report(here, tmp_path, caps
 @pytest.mark.usefixtures("here")
 def test_accepting_in_the_wrong_place_is_refused_before_anything_is_repeated(change, words, monkeypatch, capsys):
     run_cases()
-    monkeypatch.setattr(accept_command, "circumstances", lambda *_: dataclasses.replace(CLEAN, **change))
+    monkeypatch.setattr(accept_command, "write_conditions", lambda *_: dataclasses.replace(CLEAN, **change))
     monkeypatch.setattr(accept_command, "measured_spreads", None)
     assert accept_case("--write") == 4
     assert words in capsys.readouterr().err

@@ -7,7 +7,7 @@ import dataclasses
 import pytest
 
 from cases.measurements.campaigns.coverage import QUICK_PLANS
-from cases.results.records import Ladder, Rung
+from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from reports.charts.ladder import refusals
 from reports.command_line import EXAMPLE_SCENE, run

@@ -7,7 +7,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from cases.results.records import RunResult
+from cases.results.records.run import RunResult
 from cases.results.status import Status
 from contact.records.plain_text import printable
 from reports.pages.annotations import MOST, annotation_lines

@@ -8,10 +8,10 @@ import re
 import pytest
 
 from reports.charts import agreement, convergence, ladder, work_precision
-from reports.figures import figure_files as gallery_module
-from reports.figures.figure import write_plate
-from reports.figures.figure_files import FOLDER, ROOM, Gallery
-from reports.figures.renderer import plate_of
+from reports.figures import figure_files as folder_module
+from reports.figures.figure import write_figure
+from reports.figures.figure_files import FOLDER, ROOM, FigureFolder
+from reports.figures.renderer import report_figure
 from reports.pages.report import write_report
 from tests.cases.example_run import example_run, failing_case, passing_case
 
@@ -34,14 +34,14 @@ def words_of(page):
     return re.sub(r"<style.*?</style>|<[^>]*>", " ", page, flags=re.DOTALL)
 
 
-def plates_of(case):
-    figures = [plate_of(figure, case=case.name, command="again") for figure in case.figures]
+def figures_of(case):
+    figures = [report_figure(figure, case.name) for figure in case.figures]
     charts = (agreement, convergence, ladder, work_precision)
-    return figures + [plate for chart in charts for plate in chart.plates(case, "again")]
+    return figures + [drawing for chart in charts for drawing in chart.figures(case)]
 
 
-def table_of(plate):
-    return list(csv.DictReader(io.StringIO(plate.csv_text())))
+def table_of(drawing):
+    return list(csv.DictReader(io.StringIO(drawing.csv_text())))
 
 
 def not_a_number(text):
@@ -123,55 +123,58 @@ def test_pictures_leave_room_for_tables_below_five_megabytes():
 
 
 def test_a_picture_without_room_is_named_with_its_file(tmp_path):
-    two = plates_of(passing_case())[:2]
-    room = len(write_plate(two[0], tmp_path))
-    gallery = Gallery(tmp_path, room=room)
-    first, second = gallery.hang(two)
-    gallery.draw()
+    two = figures_of(passing_case())[:2]
+    room = len(write_figure(two[0], tmp_path))
+    folder = FigureFolder(tmp_path, room=room)
+    first, second = folder.place(two, "again")
+    folder.draw()
     assert first.svg
     assert not second.svg
-    assert (tmp_path / FOLDER / f"{second.plate.name}.svg").exists()
+    assert (tmp_path / FOLDER / f"{second.figure.name}.svg").exists()
 
 
 def test_processes_draw_the_same_pictures_in_the_same_order(tmp_path, monkeypatch):
-    monkeypatch.setattr(gallery_module, "FEW", 1)
-    plates = plates_of(passing_case()) + plates_of(failing_case())
+    monkeypatch.setattr(folder_module, "FEW", 1)
+    drawings = figures_of(passing_case()) + figures_of(failing_case())
     drawn = []
     for jobs in (1, 2):
-        gallery = Gallery(tmp_path / str(jobs))
-        hung = gallery.hang(plates)
-        gallery.draw(jobs)
-        drawn.append([place.svg for place in hung])
+        folder = FigureFolder(tmp_path / str(jobs))
+        placed = folder.place(drawings, "again")
+        folder.draw(jobs)
+        drawn.append([place.svg for place in placed])
     assert drawn[0] == drawn[1]
-    assert all(f'id="{plate.name}-' in svg for plate, svg in zip(plates, drawn[1], strict=True))
+    assert all(f'id="{drawing.name}-' in svg for drawing, svg in zip(drawings, drawn[1], strict=True))
 
 
 def test_two_figures_of_one_name_are_refused(tmp_path):
-    plate = plates_of(failing_case())[0]
+    drawing = figures_of(failing_case())[0]
     with pytest.raises(ValueError, match="two figures are called 'example_failures-agreement-1'"):
-        Gallery(tmp_path).hang([plate, plate])
+        FigureFolder(tmp_path).place([drawing, drawing], "again")
 
 
-@pytest.mark.parametrize("plate", plates_of(passing_case()) + plates_of(failing_case()), ids=lambda plate: plate.name)
-def test_svg_and_png_are_byte_identical_on_a_second_run(plate, tmp_path):
-    first = write_plate(plate, tmp_path)
-    picture = (tmp_path / f"{plate.name}.png").read_bytes()
-    assert write_plate(plate, tmp_path) == first
-    assert (tmp_path / f"{plate.name}.png").read_bytes() == picture
+DRAWINGS = figures_of(passing_case()) + figures_of(failing_case())
+
+
+@pytest.mark.parametrize("drawing", DRAWINGS, ids=lambda drawing: drawing.name)
+def test_svg_and_png_are_byte_identical_on_a_second_run(drawing, tmp_path):
+    first = write_figure(drawing, tmp_path)
+    picture = (tmp_path / f"{drawing.name}.png").read_bytes()
+    assert write_figure(drawing, tmp_path) == first
+    assert (tmp_path / f"{drawing.name}.png").read_bytes() == picture
     assert not re.search(r"\d{4}-\d\d-\d\d|nan", first)
 
 
 def test_figure_data_equal_the_records_digit_for_digit():
     (figure,) = passing_case().figures
-    rows = table_of(plate_of(figure, case="case", command="again"))
+    rows = table_of(report_figure(figure, "case"))
     expected = [(x, y) for panel in figure.panels for s in panel.series for x, y in zip(s.x, s.y, strict=True)]
     assert [(float(row["x"]), float(row["y"])) for row in rows] == expected
 
 
 def test_convergence_data_equal_the_records_digit_for_digit():
-    (plate,) = convergence.plates(passing_case(), "again")
+    (drawing,) = convergence.figures(passing_case())
     expected = [(grid.length, grid.value, grid.error) for study in passing_case().convergence for grid in study.grids]
-    assert [(float(row["length"]), float(row["value"]), float(row["error"])) for row in table_of(plate)] == expected
+    assert [(float(row["length"]), float(row["value"]), float(row["error"])) for row in table_of(drawing)] == expected
 
 
 def test_convergence_without_a_reference_shows_distances_to_the_extrapolated_value():
@@ -186,26 +189,26 @@ def test_convergence_without_a_reference_shows_distances_to_the_extrapolated_val
 
 
 def test_work_precision_data_equal_the_records_and_failures_keep_their_reason():
-    (plate,) = work_precision.plates(passing_case(), "again")
+    (drawing,) = work_precision.figures(passing_case())
     points = passing_case().work_precision[0].points
-    rows = table_of(plate)
+    rows = table_of(drawing)
     assert [float(row["seconds"]) for row in rows] == [point.seconds for point in points]
     assert [row["bound"] for row in rows] == ["" if point.bound is None else repr(point.bound) for point in points]
     assert rows[-1]["reason"] == "NotConvergedError: locking"
 
 
 def test_ladder_data_equal_the_records_and_a_refused_rung_has_no_digits():
-    (plate,) = ladder.plates(passing_case(), "again")
+    (drawing,) = ladder.figures(passing_case())
     rungs = [rung for climbed in passing_case().ladders for rung in climbed.rungs]
-    rows = table_of(plate)
+    rows = table_of(drawing)
     assert [row["digits"] for row in rows] == ["" if rung.digits is None else repr(rung.digits) for rung in rungs]
     assert rows[-1]["reason"] == "NotConvergedError: residual 1e-3"
 
 
 def test_agreement_data_equal_the_claims_worst_first():
     case = dataclasses.replace(passing_case(), claims=passing_case().claims + failing_case().claims)
-    (plate,) = agreement.plates(case, "again")
-    rows = table_of(plate)
+    (drawing,) = agreement.figures(case)
+    rows = table_of(drawing)
     assert [row["status"] for row in rows] == ["INCONCLUSIVE", "PASS"]
     assert [float(row["observed"]) for row in rows] == [2e-6, 4e-7]
 

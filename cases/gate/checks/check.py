@@ -3,12 +3,13 @@
 from dataclasses import dataclass
 
 from cases.judgement.rules.judgement import Judgement, nothing_compared
-from cases.results.records import Claim, Kind, Origin, SceneRun
+from cases.results.records.claim import Claim, Kind, Origin
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 
 
 @dataclass(frozen=True, kw_only=True)
-class Check:
+class BaselineCheck:
     """A quantity or counter of one scene and method, compared.
 
     Attributes:
@@ -31,25 +32,55 @@ class Check:
 
     def claim(self, case: str, method: str) -> Claim:
         """Return the regression claim of this check."""
-        return Claim(
-            name=f"accepted {self.what}",
-            kind=Kind.REGRESSION,
+        return regression_claim(
+            f"accepted {self.what}",
+            self.judgement,
             scene=self.scene,
             methods=(method,),
             quantity=self.what,
             unit=self.unit,
-            status=self.judgement.status,
-            verdict=self.judgement.verdict,
-            observed=self.judgement.observed,
             expected=self.expected,
             tolerance=self.tolerance,
-            fraction=self.judgement.fraction,
-            origin=Origin.OWN_EARLIER_OUTPUT,
             source=f"baselines/{case}/{method}.json",
             because="an accepted number should not move unnoticed",
             derived_from=self.derived_from,
-            message=self.judgement.message,
         )
+
+
+def regression_claim(
+    name: str,
+    judgement: Judgement,
+    *,
+    scene: str,
+    methods: tuple[str, ...],
+    quantity: str,
+    source: str,
+    because: str,
+    derived_from: str,
+    expected: float | None,
+    tolerance: float,
+    unit: str = "1",
+) -> Claim:
+    """Return a comparison with own earlier output as a claim; the arguments are those of `Claim`."""
+    return Claim(
+        name=name,
+        kind=Kind.REGRESSION,
+        scene=scene,
+        methods=methods,
+        quantity=quantity,
+        unit=unit,
+        status=judgement.status,
+        verdict=judgement.verdict,
+        observed=judgement.observed,
+        expected=expected,
+        tolerance=tolerance,
+        fraction=judgement.fraction,
+        origin=Origin.OWN_EARLIER_OUTPUT,
+        source=source,
+        because=because,
+        derived_from=derived_from,
+        message=judgement.message,
+    )
 
 
 def extra(what: str, scene: str) -> Judgement:

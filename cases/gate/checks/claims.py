@@ -5,9 +5,10 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from cases.gate.baseline import AcceptedClaim, Baseline
-from cases.gate.checks.check import Check
+from cases.gate.checks.check import BaselineCheck
 from cases.judgement.rules.judgement import nothing_compared
-from cases.results.records import CaseResult, Claim, Kind
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 
 FROM_ACCEPTANCE = "a claim is judged on as many scenes as when the case was accepted"
@@ -42,7 +43,7 @@ def _missing(case: CaseResult, claim: AcceptedClaim, count: int) -> Claim:
         f"missing: the {claim.kind} claim {claim.name!r} about {claim.quantity} of {who} was accepted on "
         f"{claim.judged} scenes, this run judges it on {count}; restore it, or accept the case with --loosen"
     )
-    check = Check(
+    check = BaselineCheck(
         scene="",
         what=f"claim {claim.name!r}",
         unit="1",

@@ -3,9 +3,9 @@
 from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters
-from cases.gate.checks.check import Check, extra, missing
+from cases.gate.checks.check import BaselineCheck, extra, missing
 from cases.judgement.rules.regression import judge_counter, permitted_count_change
-from cases.results.records import SceneRun
+from cases.results.records.scene_run import SceneRun
 
 UNKNOWNS = "unknowns"
 FROM_COUNTS = "unknowns repeat exactly; other counters within max(2, 10 %)"
@@ -16,7 +16,7 @@ def counters_of(run: SceneRun) -> dict[str, int]:
     return {UNKNOWNS: run.cost.unknowns, **run.cost.counters} if run.cost else {}
 
 
-def count_checks(rows: Mapping[str, SceneRun], accepted: Mapping[str, AcceptedCounters]) -> Iterator[Check]:
+def count_checks(rows: Mapping[str, SceneRun], accepted: Mapping[str, AcceptedCounters]) -> Iterator[BaselineCheck]:
     """Compare every counter of the accepted scenes of one method.
 
     Args:
@@ -30,7 +30,7 @@ def count_checks(rows: Mapping[str, SceneRun], accepted: Mapping[str, AcceptedCo
             yield _compared(name, found.get(name), record, run)
 
 
-def _compared(name: str, value: int | None, record: AcceptedCounters, run: SceneRun | None) -> Check:
+def _compared(name: str, value: int | None, record: AcceptedCounters, run: SceneRun | None) -> BaselineCheck:
     accepted = record.counters.get(name)
     if accepted is None:
         judged = extra(name, record.scene)
@@ -38,12 +38,13 @@ def _compared(name: str, value: int | None, record: AcceptedCounters, run: Scene
         judged = missing(name, record.scene, run)
     else:
         judged = judge_counter(name, value, accepted)
-    return Check(
+    return BaselineCheck(
         scene=record.scene,
         what=name,
         unit="1",
         judgement=judged,
         derived_from=FROM_COUNTS,
-        tolerance=max(permitted_count_change(name, accepted or 0), 0.5),  # half a count: not a single one
+        # Half a count permits not a single one.
+        tolerance=max(permitted_count_change(name, accepted or 0), 0.5),
         expected=None if accepted is None else float(accepted),
     )

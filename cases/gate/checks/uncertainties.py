@@ -3,11 +3,12 @@
 from collections.abc import Iterable, Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters, AcceptedQuantity
-from cases.gate.checks.check import Check
+from cases.gate.checks.check import BaselineCheck
 from cases.gate.specification import specification
-from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
+from cases.judgement.rules.judgement import Judgement, decided, nothing_compared, worst_judgement
 from cases.judgement.rules.tolerance import SMALLEST_RELATIVE, permitted_difference
-from cases.results.records import CaseResult, Quantity, SceneRun, Verdict
+from cases.results.records.run import CaseResult
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
 # A stated uncertainty may be this many times larger or smaller than the accepted one: as much as a sharp error bar may
@@ -23,7 +24,7 @@ def uncertainty_checks(
     rows: Mapping[str, SceneRun],
     records: Iterable[AcceptedQuantity],
     counters: Iterable[AcceptedCounters],
-) -> Iterator[Check]:
+) -> Iterator[BaselineCheck]:
     """Yield one check for each scene of one method, of the uncertainty that moved most.
 
     Args:
@@ -97,14 +98,8 @@ def judge_uncertainty(name: str, stated: float, accepted: float, floor: float) -
     """
     ratio = (stated + floor) / (accepted + floor)
     fraction = max(ratio, 1.0 / ratio) / LARGEST_RATIO
-    good = fraction <= 1.0
-    return Judgement(
-        status=Status.PASS if good else Status.DIFF,
-        verdict=Verdict.PASS if good else Verdict.FAIL,
-        observed=ratio,
-        fraction=fraction,
-        message=f"{name} {stated:.3g} against accepted {accepted:.3g}: {ratio:.3g} times, permitted 0.1 to 10 times",
-    )
+    message = f"{name} {stated:.3g} against accepted {accepted:.3g}: {ratio:.3g} times, permitted 0.1 to 10 times"
+    return decided(fraction <= 1.0, ratio, fraction, message, Status.DIFF)
 
 
 def _appeared_or_vanished(name: str, appeared: bool) -> Judgement:
@@ -112,10 +107,10 @@ def _appeared_or_vanished(name: str, appeared: bool) -> Judgement:
     return nothing_compared(Status.INCOMPARABLE, f"{words} {name}")
 
 
-def _check(scene: str, entries: list[Judged]) -> Check:
+def _check(scene: str, entries: list[Judged]) -> BaselineCheck:
     worst = worst_judgement([judged for _, judged in entries])
     name = next(name for name, judged in entries if judged is worst)
-    return Check(
+    return BaselineCheck(
         scene=scene,
         what=f"uncertainty of {name}",
         unit="1",

@@ -3,12 +3,13 @@
 from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedQuantity
-from cases.gate.checks.check import Check, extra, missing
+from cases.gate.checks.check import BaselineCheck, extra, missing
 from cases.gate.specification import specification
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
 from cases.judgement.rules.regression import judge_regression
 from cases.judgement.rules.tolerance import permitted_difference
-from cases.results.records import CaseResult, Quantity, SceneRun
+from cases.results.records.run import CaseResult
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
 FROM_SPREAD = "max(10 x measured spread, 1e-12) of the accepted value or its scale"
@@ -16,7 +17,7 @@ FROM_SPREAD = "max(10 x measured spread, 1e-12) of the accepted value or its sca
 
 def value_checks(
     case: CaseResult, rows: Mapping[str, SceneRun], accepted: Mapping[tuple[str, str], AcceptedQuantity]
-) -> Iterator[Check]:
+) -> Iterator[BaselineCheck]:
     """Compare every quantity of one method, accepted or new.
 
     Args:
@@ -35,7 +36,7 @@ def value_checks(
             yield _compared(quantity, record, specification(case, rows[scene]))
 
 
-def _compared(quantity: Quantity, record: AcceptedQuantity, specified: str) -> Check:
+def _compared(quantity: Quantity, record: AcceptedQuantity, specified: str) -> BaselineCheck:
     """Judge the worst step; another specification, unit or number of steps cannot be compared."""
     for what, now, then in (
         ("scene or settings", specified, record.specification),
@@ -48,12 +49,12 @@ def _compared(quantity: Quantity, record: AcceptedQuantity, specified: str) -> C
     return _worst_step(quantity, record)
 
 
-def _worst_step(quantity: Quantity, record: AcceptedQuantity) -> Check:
+def _worst_step(quantity: Quantity, record: AcceptedQuantity) -> BaselineCheck:
     rule = {"scale": record.scale, "rtol": record.tolerance}
     steps = [judge_regression(x, b, **rule) for x, b in zip(quantity.values, record.values, strict=True)]
     worst = worst_judgement(steps)
     expected = record.values[steps.index(worst)]
-    return Check(
+    return BaselineCheck(
         scene=record.scene,
         what=record.quantity,
         unit=record.unit,
@@ -64,5 +65,5 @@ def _worst_step(quantity: Quantity, record: AcceptedQuantity) -> Check:
     )
 
 
-def _named(scene: str, name: str, unit: str, judgement: Judgement) -> Check:
-    return Check(scene=scene, what=name, unit=unit, judgement=judgement, derived_from=FROM_SPREAD)
+def _named(scene: str, name: str, unit: str, judgement: Judgement) -> BaselineCheck:
+    return BaselineCheck(scene=scene, what=name, unit=unit, judgement=judgement, derived_from=FROM_SPREAD)

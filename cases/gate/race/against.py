@@ -6,14 +6,17 @@ from dataclasses import replace
 from pathlib import Path
 
 from cases.declare.case import Case
+from cases.gate.checks.check import regression_claim
 from cases.gate.race.race import PAIRS, SLOWEST, judge_race, race
 from cases.gate.race.version import CannotSolve, Subject, Version, subject
 from cases.gate.race.worktree import worktree
 from cases.judgement.rules.judgement import nothing_compared
-from cases.results.records import Claim, Kind, Origin, RunResult
+from cases.results.records.claim import Claim
+from cases.results.records.run import RunResult
 from cases.results.status import Status
 
-SOURCE = Path(__file__).resolve().parents[2]
+# The folder that holds every package: what is raced against a revision, and what must be committed to be accepted.
+SOURCE = Path(__file__).resolve().parents[3]
 
 
 def with_times_against(
@@ -58,22 +61,15 @@ def _claim(versions: Sequence[Version], what: Subject, revision: str, pairs: int
         judged, limit = judge_race(finished), finished.limit
     except CannotSolve as error:
         judged, limit = nothing_compared(Status.SKIP, str(error)), SLOWEST
-    return Claim(
-        name=f"no slower than {revision}",
-        kind=Kind.REGRESSION,
+    return regression_claim(
+        f"no slower than {revision}",
+        judged,
         scene=what.scene,
         methods=(what.method,),
         quantity="cpu_seconds",
-        unit="1",
-        status=judged.status,
-        verdict=judged.verdict,
-        observed=judged.observed,
         expected=0.0,
         tolerance=limit - 1,
-        fraction=judged.fraction,
-        origin=Origin.OWN_EARLIER_OUTPUT,
         source=f"revision {revision}, timed alternately in the same job",
         because="a change should not make solutions slower unnoticed",
         derived_from="max(10 %, 3 d), d from a pair of identical versions timed in the same job",
-        message=judged.message,
     )

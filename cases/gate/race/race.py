@@ -10,12 +10,14 @@ from dataclasses import dataclass
 
 from cases.gate.race.version import Subject, Version
 from cases.judgement.rules.judgement import Judgement
-from cases.results.records import Verdict
+from cases.results.records.claim import Verdict
 from cases.results.status import Status
 from cases.run.timing import SHORTEST, Slowdown, is_ambiguous, is_slower, slowdown
 
+# A race takes so many pairs of times; the user may ask for more.
 PAIRS = 15
-SLOWEST = 1.10  # ratio that passes on a machine without noise
+# On a machine without noise this ratio of times passes: smaller slowdowns are not worth stopping a change for.
+SLOWEST = 1.10
 
 
 @dataclass(frozen=True, kw_only=True)

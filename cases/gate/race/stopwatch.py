@@ -28,9 +28,11 @@ def serve(questions: TextIO, answers: TextIO) -> None:
         try:
             if subject not in solves:
                 solves[subject] = _solve_of(subject)
-                solves[subject]()  # warm-up: imports, caches
+                # The first call imports modules and fills caches.
+                solves[subject]()
             _say(answers, {"seconds": _seconds(solves[subject], int(count))})
-        except Exception as error:  # the other process decides what an error means
+        except Exception as error:
+            # The other process decides what an error means.
             _say(answers, {"error": f"{type(error).__name__}: {error}"})
 
 
@@ -61,5 +63,6 @@ def _say(answers: TextIO, what: Mapping[str, Any]) -> None:
 
 if __name__ == "__main__":
     channel = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    os.dup2(2, 1)  # what a library prints must not end up among the answers
+    # What a library prints must not end up among the answers.
+    os.dup2(2, 1)
     serve(sys.stdin, channel)

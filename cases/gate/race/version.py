@@ -109,6 +109,7 @@ class Version:
 
 
 def _opened(pipe: IO[str] | None) -> IO[str]:
-    if pipe is None:  # never: the process was opened with pipes
+    if pipe is None:
+        # This never happens: the process was opened with pipes.
         raise InvalidInput("a stopwatch process without pipes")
     return pipe

@@ -9,7 +9,8 @@ from cases.declare.task import Answers
 from cases.judgement.claims.declared import DeclaredClaim, first_missing
 from cases.judgement.rules.agreement import judge_agreement
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.results.records import Claim, Kind, Quantity, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
 

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from cases.declare.case import Case, CaseScene
@@ -10,7 +10,9 @@ from cases.declare.task import Answers
 from cases.judgement.claims.declared import PerMethod, first_missing
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.order import judge_order
-from cases.results.records import Claim, ConvergenceClass, Kind, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.convergence import ConvergenceClass
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from contact import Scene
 
@@ -56,10 +58,4 @@ class Approach(PerMethod):
         order = math.log(abs(far / near)) / math.log(ratio)
         kind = ConvergenceClass.MONOTONE if far * near > 0 else ConvergenceClass.OSCILLATORY
         judged = judge_order(order, self.formal_order, kind)
-        return Judgement(
-            status=judged.status,
-            verdict=judged.verdict,
-            observed=judged.observed,
-            fraction=judged.fraction,
-            message=f"{judged.message}; {near:+.1e} from the limit",
-        )
+        return replace(judged, message=f"{judged.message}; {near:+.1e} from the limit")

@@ -9,7 +9,8 @@ from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers, Task
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.tolerance import positive_tolerance
-from cases.results.records import Claim, Kind, Origin, SceneRun
+from cases.results.records.claim import Claim, Kind, Origin
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from contact import InvalidInput
 
@@ -171,6 +172,13 @@ class PerMethod(DeclaredClaim, ABC):
             return self._on(scenes)
         methods = tuple(label for label in self.methods if all(label in solvers[name] for name in scenes))
         return tuple(replace(claim, methods=methods) for claim in self._on(scenes) if methods)
+
+    def answered(self, case: Case, answers: Answers) -> Iterator[tuple[CaseScene, str, SceneRun, float]]:
+        """Return scene, label, answer and tolerance of every method on every scene."""
+        for scene in self.scenes_of(case):
+            for label in self.labels(case, scene):
+                run = answers.of(case.task(scene, case.use(scene, label)))
+                yield scene, label, run, self.tolerance_of(label)
 
     def tolerance_of(self, label: str) -> float:
         """Return the tolerance of one method."""

@@ -9,7 +9,8 @@ from cases.declare.task import Answers
 from cases.judgement.claims.declared import DeclaredClaim, first_missing
 from cases.judgement.rules.invariant import judge_invariant
 from cases.judgement.rules.judgement import Judgement, nothing_compared
-from cases.results.records import Claim, Kind, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 
 

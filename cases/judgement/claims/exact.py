@@ -9,7 +9,8 @@ from cases.declare.task import Answers
 from cases.judgement.claims.declared import PerMethod, missing
 from cases.judgement.rules.exact import judge_exact
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.results.records import Claim, Kind, Quantity
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.scene_run import Quantity
 from cases.results.status import Status
 from contact import InvalidInput, Scene
 
@@ -32,14 +33,11 @@ class Exact(PerMethod):
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene and method by its worst step."""
-        for scene in self.scenes_of(case):
+        for scene, label, run, tolerance in self.answered(case, answers):
             expected = self._expected(scene)
-            for label in self.labels(case, scene):
-                run = answers.of(case.task(scene, case.use(scene, label)))
-                tolerance = self.tolerance_of(label)
-                judged = missing(run) or _worst_step(run.quantity(self.quantity), expected, tolerance)
-                single = expected[0] if len(expected) == 1 else None
-                yield self.record(judged, scene.name, (label,), expected=single, tolerance=tolerance)
+            judged = missing(run) or _worst_step(run.quantity(self.quantity), expected, tolerance)
+            single = expected[0] if len(expected) == 1 else None
+            yield self.record(judged, scene.name, (label,), expected=single, tolerance=tolerance)
 
     def _expected(self, scene: CaseScene) -> Sequence[float]:
         if not isinstance(self.expected, Mapping):

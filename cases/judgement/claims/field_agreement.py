@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers, Task
@@ -14,13 +13,14 @@ from cases.judgement.claims.declared import DeclaredClaim, first_missing
 from cases.judgement.rules.agreement import judge_agreement
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.norms import RingQuadrature, relative_difference, ring_load_difference
-from cases.results.records import Claim, Curve, Kind, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.scene_run import Curve, SceneRun
 from cases.results.status import Status
+from contact.records.validation import FloatArray
 
-Array = NDArray[np.float64]
 Norm = Literal["weighted L2", "ring loads"]
 
-_NORMS: dict[str, Callable[[Array, Array, RingQuadrature], float]] = {
+_NORMS: dict[str, Callable[[FloatArray, FloatArray, RingQuadrature], float]] = {
     "weighted L2": relative_difference,
     "ring loads": ring_load_difference,
 }

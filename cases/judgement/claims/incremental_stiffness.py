@@ -10,17 +10,18 @@ from typing import ClassVar
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
 from cases.declare.case import Case
 from cases.declare.task import Answers
 from cases.judgement.claims.declared import PerMethod, missing
 from cases.judgement.rules.invariant import judge_invariant
 from cases.judgement.rules.judgement import Judgement, worst_judgement
-from cases.results.records import Claim, Kind, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.scene_run import SceneRun
+from contact.records.validation import FloatArray
 
 
-def chebyshev_radii(lowest: float, highest: float, count: int) -> NDArray[np.float64]:
+def chebyshev_radii(lowest: float, highest: float, count: int) -> FloatArray:
     """Increasing Chebyshev-Lobatto points of [lowest, highest], where a polynomial through smooth values converges."""
     return lowest + (highest - lowest) * np.sin(np.linspace(0, np.pi / 2, count)) ** 2
 
@@ -33,11 +34,8 @@ class IncrementalStiffness(PerMethod):
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene and method by its worst radius."""
-        for scene in self.scenes_of(case):
-            for label in self.labels(case, scene):
-                run = answers.of(case.task(scene, case.use(scene, label)))
-                tolerance = self.tolerance_of(label)
-                yield self.record(missing(run) or _judged(run, tolerance), scene.name, (label,), tolerance=tolerance)
+        for scene, label, run, tolerance in self.answered(case, answers):
+            yield self.record(missing(run) or _judged(run, tolerance), scene.name, (label,), tolerance=tolerance)
 
 
 def _judged(run: SceneRun, tolerance: float) -> Judgement:
@@ -47,7 +45,7 @@ def _judged(run: SceneRun, tolerance: float) -> Judgement:
     return worst_judgement([judge_invariant(float(residual), tolerance=tolerance) for residual in residuals])
 
 
-def _slope(x: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+def _slope(x: FloatArray, values: FloatArray) -> FloatArray:
     """Derivative, at the points themselves, of the polynomial through them."""
     fitted = chebyshev.Chebyshev.fit(x, values, deg=len(x) - 1)
     return np.asarray(fitted.deriv()(x))

@@ -11,7 +11,9 @@ from cases.judgement.claims.declared import DeclaredClaim, first_missing
 from cases.judgement.convergence.study import Refinements, study_of
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.order import judge_digits, judge_order
-from cases.results.records import Claim, ConvergenceStudy, Kind, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.convergence import ConvergenceStudy
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from contact import Scene
 

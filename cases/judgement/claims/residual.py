@@ -9,7 +9,8 @@ from cases.declare.task import Answers
 from cases.judgement.claims.declared import PerMethod, missing
 from cases.judgement.rules.invariant import judge_invariant
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
-from cases.results.records import Claim, Kind, SceneRun
+from cases.results.records.claim import Claim, Kind
+from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 
 
@@ -21,13 +22,9 @@ class Residual(PerMethod):
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene and method by its worst step."""
-        for scene in self.scenes_of(case):
-            for label in self.labels(case, scene):
-                run = answers.of(case.task(scene, case.use(scene, label)))
-                tolerance = self.tolerance_of(label)
-                yield self.record(
-                    missing(run) or self._judged(run, tolerance), scene.name, (label,), tolerance=tolerance
-                )
+        for scene, label, run, tolerance in self.answered(case, answers):
+            judged = missing(run) or self._judged(run, tolerance)
+            yield self.record(judged, scene.name, (label,), tolerance=tolerance)
 
     def _judged(self, run: SceneRun, tolerance: float) -> Judgement:
         if self.quantity not in {q.name for q in run.quantities}:

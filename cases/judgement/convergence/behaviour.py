@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from cases.results.records import ConvergenceClass
+from cases.results.records.convergence import ConvergenceClass
 from contact import InvalidInput
 
 

@@ -7,12 +7,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import minimize_scalar
 
 from contact import InvalidInput
-
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -67,7 +65,7 @@ def _expansions(free: float, formal: float) -> list[tuple[float, ...]]:
     return [(free,)]
 
 
-def _fitted_order(f: Array, h: Array) -> float:
+def _fitted_order(f: FloatArray, h: FloatArray) -> float:
     """Variable projection: for each p the other unknowns are linear, so one scalar search remains."""
     misfit: Callable[[float], float] = lambda p: _solve(f, h, (p,))[1]  # noqa: E731 - a formula
     grid = np.linspace(0.05, 10.0, 200)
@@ -76,13 +74,14 @@ def _fitted_order(f: Array, h: Array) -> float:
     return float(minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-10}).x)
 
 
-def _columns(h: Array, exponents: tuple[float, ...]) -> Array:
+def _columns(h: FloatArray, exponents: tuple[float, ...]) -> FloatArray:
     return np.column_stack([np.ones_like(h), *(h**p for p in exponents)])
 
 
-def _solve(f: Array, h: Array, exponents: tuple[float, ...]) -> tuple[Array, float]:
+def _solve(f: FloatArray, h: FloatArray, exponents: tuple[float, ...]) -> tuple[FloatArray, float]:
     columns = _columns(h, exponents)
-    shift = f[0]  # the differences carry the information; the level would only cost digits
+    # The differences carry the information; the level would only cost digits.
+    shift = f[0]
     coefficients, *_ = np.linalg.lstsq(columns, f - shift, rcond=None)
     residual = f - shift - columns @ coefficients
     freedom = max(f.size - columns.shape[1] - 1, 1)

@@ -21,7 +21,8 @@ def digits_per_refinement(errors: Sequence[float], *, floor: float) -> float:
     above = [i for i, error in enumerate(errors) if error > 10 * floor]
     if not above or above[-1] != len(errors) - 1:
         raise InvalidInput(f"the coarsest error of {tuple(errors)} is at the floor {floor:.1e}; start coarser")
-    first = max(above[0] - 1, 0)  # the first grid at the floor closes the walk
+    # The first grid at the floor ends the sequence.
+    first = max(above[0] - 1, 0)
     if first == len(errors) - 1:
         raise InvalidInput(f"only one error of {tuple(errors)} is above the floor {floor:.1e}; start coarser")
     gained = math.log10(errors[-1]) - math.log10(max(errors[first], floor))

@@ -8,7 +8,8 @@ from cases.judgement.convergence.extrapolation import extrapolated, grid_converg
 from cases.judgement.convergence.least_squares import fit
 from cases.judgement.convergence.observed_order import observed_order
 from cases.judgement.convergence.spectral import digits_per_refinement
-from cases.results.records import ConvergenceClass, ConvergenceStudy, Grid, Quantity
+from cases.results.records.convergence import ConvergenceClass, ConvergenceStudy, Grid
+from cases.results.records.scene_run import Quantity
 from contact import InvalidInput
 
 _HAS_ORDER = {ConvergenceClass.MONOTONE, ConvergenceClass.OSCILLATORY, ConvergenceClass.DIVERGENT}

@@ -4,7 +4,7 @@ import math
 
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.tolerance import positive_tolerance
-from cases.results.records import Verdict
+from cases.results.records.claim import Verdict
 from cases.results.status import Status
 
 _STATUS = {

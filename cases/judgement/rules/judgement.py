@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cases.results.records import Verdict
+from cases.results.records.claim import Verdict
 from cases.results.status import Status, worst
 from contact import InvalidInput
 
@@ -28,13 +28,17 @@ class Judgement:
     message: str
 
 
-def passed_or_failed(error: float, tolerance: float, message: str) -> Judgement:
+def passed_or_failed(error: float, tolerance: float, message: str, failure: Status = Status.FAIL) -> Judgement:
     """Judge an error against its tolerance; a non-finite error is INVALID, never small."""
     if not math.isfinite(error):
         return nothing_compared(Status.INVALID, f"the error is {error}: {message}")
-    good = abs(error) <= tolerance
-    status, verdict = (Status.PASS, Verdict.PASS) if good else (Status.FAIL, Verdict.FAIL)
-    return Judgement(status=status, verdict=verdict, observed=error, fraction=abs(error) / tolerance, message=message)
+    return decided(abs(error) <= tolerance, error, abs(error) / tolerance, message, failure)
+
+
+def decided(good: bool, observed: float, fraction: float, message: str, failure: Status = Status.FAIL) -> Judgement:
+    """Return the judgement of a comparison that passes or ends with ``failure``; the rest as in `Judgement`."""
+    status, verdict = (Status.PASS, Verdict.PASS) if good else (failure, Verdict.FAIL)
+    return Judgement(status=status, verdict=verdict, observed=observed, fraction=fraction, message=message)
 
 
 def nothing_compared(status: Status, message: str) -> Judgement:

@@ -4,12 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bem.polynomials.gauss import legendre_rule
 from contact import InvalidInput
-
-Array = NDArray[np.float64]
+from contact.records.validation import FloatArray
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,19 +20,19 @@ class RingQuadrature:
         weight: weights of the area integral int 2 pi r dr [m^2], same shape.
     """
 
-    edges: Array
-    radius: Array
-    weight: Array
+    edges: FloatArray
+    radius: FloatArray
+    weight: FloatArray
 
-    def loads(self, pressure: Array) -> Array:
+    def loads(self, pressure: FloatArray) -> FloatArray:
         """Return the load on each ring [N], shape (k,), of a pressure [Pa] sampled at ``radius.ravel()``."""
         return np.asarray(np.sum(self._on_rings(pressure) * self.weight, axis=1))
 
-    def norm(self, pressure: Array) -> float:
+    def norm(self, pressure: FloatArray) -> float:
         """Return the 2 pi r weighted L2 norm, sqrt(int p^2 2 pi r dr) [Pa m], of samples at ``radius.ravel()``."""
         return float(np.sqrt(np.sum(self._on_rings(pressure) ** 2 * self.weight)))
 
-    def _on_rings(self, pressure: Array) -> Array:
+    def _on_rings(self, pressure: FloatArray) -> FloatArray:
         values = np.asarray(pressure, dtype=np.float64)
         if values.size != self.radius.size:
             raise InvalidInput(f"{values.size} samples for {self.radius.size} nodes; sample at radius.ravel()")
@@ -63,12 +61,12 @@ def ring_quadrature(edges: Sequence[float], nodes: int = 8) -> RingQuadrature:
     return RingQuadrature(edges=radii, radius=radius, weight=weight)
 
 
-def relative_difference(first: Array, second: Array, rings: RingQuadrature) -> float:
+def relative_difference(first: FloatArray, second: FloatArray, rings: RingQuadrature) -> float:
     """Return the weighted L2 norm of the difference over that of the second field."""
     return rings.norm(np.asarray(first) - np.asarray(second)) / _positive(rings.norm(second), "the reference field")
 
 
-def ring_load_difference(first: Array, second: Array, rings: RingQuadrature) -> float:
+def ring_load_difference(first: FloatArray, second: FloatArray, rings: RingQuadrature) -> float:
     """Return the largest difference of a ring's load over the total load of the second field.
 
     Near a sharp rim the maximum norm of a singular pressure never converges; the loads of rings do.

@@ -1,8 +1,8 @@
 """The observed order of convergence against the formal one of case, quantity and mesh family."""
 
 from cases.judgement.convergence.observed_order import order_is_accepted
-from cases.judgement.rules.judgement import Judgement, nothing_compared
-from cases.results.records import ConvergenceClass, Verdict
+from cases.judgement.rules.judgement import Judgement, decided, nothing_compared
+from cases.results.records.convergence import ConvergenceClass
 from cases.results.status import Status
 
 _NO_ORDER = {ConvergenceClass.FLOOR, ConvergenceClass.TOO_FEW}
@@ -14,24 +14,14 @@ def judge_order(observed: float | None, formal: float, kind: ConvergenceClass) -
         status = Status.INCONCLUSIVE if kind in _NO_ORDER else Status.FAIL
         return nothing_compared(status, f"the sequence is {kind.value}: it has no order; formal order {formal:g}")
     good = order_is_accepted(observed, formal) and kind is not ConvergenceClass.DIVERGENT
-    status, verdict = (Status.PASS, Verdict.PASS) if good else (Status.FAIL, Verdict.FAIL)
     message = f"observed order {observed:.3f}, formal order {formal:g}, {kind.value}"
-    return Judgement(
-        status=status,
-        verdict=verdict,
-        observed=observed,
-        fraction=_fraction_of_band(observed, formal),
-        message=message,
-    )
+    return decided(good, observed, _fraction_of_band(observed, formal), message)
 
 
 def judge_digits(digits: float, least: float) -> Judgement:
     """Judge spectral convergence: at least ``least`` digits per refinement."""
-    good = digits >= least
-    status, verdict = (Status.PASS, Verdict.PASS) if good else (Status.FAIL, Verdict.FAIL)
     fraction = least / digits if digits > least / 100 else 100.0
-    message = f"{digits:.2f} digits per refinement, at least {least:g} claimed"
-    return Judgement(status=status, verdict=verdict, observed=digits, fraction=fraction, message=message)
+    return decided(digits >= least, digits, fraction, f"{digits:.2f} digits per refinement, at least {least:g} claimed")
 
 
 def _fraction_of_band(observed: float, formal: float) -> float:

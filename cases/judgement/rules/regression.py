@@ -2,9 +2,8 @@
 
 import math
 
-from cases.judgement.rules.judgement import Judgement, nothing_compared
+from cases.judgement.rules.judgement import Judgement, decided, nothing_compared
 from cases.judgement.rules.tolerance import permitted_difference
-from cases.results.records import Verdict
 from cases.results.status import Status
 
 
@@ -16,28 +15,17 @@ def judge_regression(value: float, baseline: float, *, scale: float, rtol: float
     change = value - baseline
     good = abs(change) <= permitted
     message = f"{value:.17g} against accepted {baseline:.17g}: change {change:+.1e}, permitted {permitted:.1e}"
-    return Judgement(
-        status=Status.PASS if good else Status.DIFF,
-        verdict=Verdict.PASS if good else Verdict.FAIL,
-        observed=value,
-        fraction=abs(change) / permitted if permitted > 0 else 0.0 if good else math.inf,
-        message=message,
-    )
+    fraction = abs(change) / permitted if permitted > 0 else 0.0 if good else math.inf
+    return decided(good, value, fraction, message, Status.DIFF)
 
 
 def judge_counter(name: str, value: int, baseline: int) -> Judgement:
     """Judge a deterministic counter: unknowns exactly, iterations and the like within max(2, 10 %)."""
     permitted = permitted_count_change(name, baseline)
     change = abs(value - baseline)
-    good = change <= permitted
     message = f"{name} {value} against accepted {baseline}, permitted change {permitted:g}"
-    return Judgement(
-        status=Status.PASS if good else Status.DIFF,
-        verdict=Verdict.PASS if good else Verdict.FAIL,
-        observed=float(value),
-        fraction=change / permitted if permitted > 0 else float(change),
-        message=message,
-    )
+    fraction = change / permitted if permitted > 0 else float(change)
+    return decided(change <= permitted, float(value), fraction, message, Status.DIFF)
 
 
 def permitted_count_change(name: str, baseline: int) -> float:

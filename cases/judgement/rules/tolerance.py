@@ -7,6 +7,8 @@ import numpy as np
 
 from contact import InvalidInput
 
+# No accepted number is held to less than this, relative: 4500 times the unit roundoff 2.2e-16,
+# so that another order of a sum of some thousand terms does not count as a change.
 SMALLEST_RELATIVE = 1e-12
 
 

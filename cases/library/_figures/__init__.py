@@ -11,7 +11,7 @@ import importlib
 from collections.abc import Iterable
 from dataclasses import replace
 
-from cases.results.records import Figure, Series
+from cases.results.records.figure import Figure, Series
 
 
 def paper_figure(number: int, *overlays: Iterable[Series]) -> Figure:
@@ -21,7 +21,8 @@ def paper_figure(number: int, *overlays: Iterable[Series]) -> Figure:
         number: As in the paper.
         overlays: Further series, for the first panel, the second, and so on.
     """
-    from cases.library._figures._parts import with_errors  # noqa: PLC0415  # loads MDR, so only when a figure is drawn
+    # This import loads MDR, so it waits until a figure is drawn.
+    from cases.library._figures._parts import with_errors  # noqa: PLC0415
 
     figure = with_errors(importlib.import_module(f"cases.library._figures.figure_{number:02d}").figure())
     extras = (*overlays, *((),) * (len(figure.panels) - len(overlays)))

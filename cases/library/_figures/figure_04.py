@@ -6,10 +6,11 @@ import numpy as np
 from scipy.optimize import brentq
 
 from cases.library._figures._parts import closed_form, layer, mdr_line, punch
-from cases.results.records import Figure, Panel
+from cases.results.records.figure import Figure, Panel
 
 RATIOS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0)
-RADII = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 201)[:-1])  # of the punch's radius, denser at its edge
+# Radii over that of the punch, denser at its edge.
+RADII = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 201)[:-1])
 _NEAR_CENTRE = 0.05
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cases.library._figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch
-from cases.results.records import Figure, Panel
+from cases.results.records.figure import Figure, Panel
 from contact import Layer, Paraboloid
 from contact.records.validation import FloatArray
 from mdr import equivalent_system

@@ -6,7 +6,7 @@ import numpy as np
 
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, mdr_line, name_of
 from cases.library.elastic._truncated_cone_limits import pressure_limits, profile_limits
-from cases.results.records import Figure, Panel
+from cases.results.records.figure import Figure, Panel
 from contact import ContactRadii, Layer, Scene, TruncatedCone
 from contact.records.validation import FloatArray
 from mdr import equivalent_system
@@ -16,10 +16,13 @@ LAYERS = (UNBONDED, layer(0.45), layer(0.5))
 RATIOS = (0.1, 1.0, 2.0, 5.0, 20.0)
 FLAT = 0.5  # b/a
 SLOPE = 0.01
-_X = FLAT + (1.0 - FLAT) * np.linspace(0.0, 1.0, 101) ** 2  # denser where g starts like a square root
+# Places x over a, denser where g starts like a square root.
+_X = FLAT + (1.0 - FLAT) * np.linspace(0.0, 1.0, 101) ** 2
 _STEPS = np.linspace(0.0, 1.0, 61)[1:] ** 2
-_R = np.concatenate([FLAT * (1.0 - _STEPS[::-1]), FLAT + (1.0 - FLAT) * _STEPS])  # denser beside the ring r = b
-_CLEAR = 1e-3  # of a: how close to the singular ring r = b the pressure is asked for
+# Radii over a, denser beside the ring r = b.
+_R = np.concatenate([FLAT * (1.0 - _STEPS[::-1]), FLAT + (1.0 - FLAT) * _STEPS])
+# The pressure is asked for no closer to the singular ring r = b than this fraction of a.
+_CLEAR = 1e-3
 
 
 def figure() -> Figure:

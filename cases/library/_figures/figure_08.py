@@ -7,15 +7,17 @@ import numpy as np
 from bem.layer_equation.protocol import FlatPunchSource
 from cases.library._figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch
 from cases.library._figures.figure_03 import thin_layer_stiffness
-from cases.results.records import Figure, Panel, Series
+from cases.results.records.figure import Figure, Panel, Series
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
 from contact.records.validation import FloatArray
 from mdr.adhesion.solver import solve_detachment
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.365), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 241)
-_WORK = 1.0 / (2.0 * np.pi)  # makes the depth of detachment -dl_bar in units of the layer
-_SEARCHED = 20.0  # a/h up to which reversals are looked for
+# With this work of adhesion the depth of detachment is -dl_bar in units of the layer.
+_WORK = 1.0 / (2.0 * np.pi)
+# Reversals of stability are searched up to this a/h.
+_SEARCHED = 20.0
 
 
 def elongation(one: Layer, ratio: FloatArray) -> FloatArray:

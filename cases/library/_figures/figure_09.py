@@ -7,13 +7,15 @@ import numpy as np
 from cases.library._figures._parts import SOURCE, layer, mdr_line
 from cases.library._figures.figure_04 import second_maximum
 from cases.library._figures.figure_08 import reversals
-from cases.results.records import Figure, Panel, Series
+from cases.results.records.figure import Figure, Panel, Series
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
 from mdr.adhesion.solver import solve_detachment
 
 RATIOS = (0.1, 0.3, 0.46, 1.0, 2.0, 4.0)  # a*/h
-_RADIUS = 1.0  # a*, the same punch on thinner and thinner layers
-_WORK = 1.0 / (2.0 * np.pi)  # makes the half-space's critical depth -1 and force -2
+# The radius a* of the punch; it stays the same on thinner and thinner layers.
+_RADIUS = 1.0
+# With this work of adhesion the half-space's critical depth is -1 and its force -2.
+_WORK = 1.0 / (2.0 * np.pi)
 
 
 def figure() -> Figure:

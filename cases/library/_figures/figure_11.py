@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from cases.library._figures._parts import UNBONDED, closed_form, layer, mdr_line, name_of, punch
-from cases.results.records import Figure, Panel, Series
+from cases.results.records.figure import Figure, Panel, Series
 from contact.records.validation import FloatArray
 from mdr.closed_forms.flat_punch_restitution import kelvin_voigt_restitution
 
 LAYERS = (layer(0.5), UNBONDED)
-DAMPINGS = (0.05, 0.1, 0.3)  # D on the half-space
+# Damping ratios D on the half-space.
+DAMPINGS = (0.05, 0.1, 0.3)
 RATIOS = np.geomspace(1e-2, 1e1, 121)
 _DAMPING = np.linspace(0.0, 2.0, 161)
 

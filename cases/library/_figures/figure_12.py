@@ -2,48 +2,25 @@
 
 from __future__ import annotations
 
-import math
-
-from cases.library._figures._parts import HALF_SPACE, SOURCE, mdr_line
-from cases.results.records import Figure, Panel
-from contact import Impact, ImpactHistory, Layer, Paraboloid, Scene, StandardSolid
+from cases.library._figures._parts import SOURCE, mdr_line
+from cases.library.in_time.sphere_impact import VELOCITY, scene_of
+from cases.results.records.figure import Figure, Panel
+from contact import ImpactHistory
 from mdr.impact.solver import solve_impact
 
-THICKNESSES = (math.inf, 3e-3, 2e-3, 1e-3)  # m
-MAXWELL_MODULUS = 7.5e6  # G_1 [Pa]
-LONG_TERM_MODULUS = MAXWELL_MODULUS / 9.0  # G_inf [Pa]
-RELAXATION_TIME = 1e-3  # tau [s]
-MASS = 0.02  # M [kg]
-RADIUS = 0.01  # R [m]; only R v0 matters
-VELOCITY = 0.127479  # v0 [m/s], which makes chi_HS = 2.65
-
-
-def scene(thickness: float) -> Scene:
-    """The impact of the paper."""
-    total = LONG_TERM_MODULUS + MAXWELL_MODULUS
-    soft = (
-        Layer.half_space(youngs_modulus=3.0 * total, poissons_ratio=HALF_SPACE.poissons_ratio)
-        if math.isinf(thickness)
-        else Layer.incompressible(thickness=thickness, shear_modulus=total)
-    )
-    model = StandardSolid(
-        long_term_shear_modulus=LONG_TERM_MODULUS,
-        maxwell_shear_modulus=MAXWELL_MODULUS,
-        viscosity=MAXWELL_MODULUS * RELAXATION_TIME,
-    )
-    impact = Impact(mass=MASS, velocity=VELOCITY)
-    return Scene(layer=soft, indenter=Paraboloid(radius_of_curvature=RADIUS), loading=impact, effects=(model,))
+# Zero stands for the half-space. [m]
+THICKNESSES = (0.0, 3e-3, 2e-3, 1e-3)
 
 
 def elastic_half_space() -> ImpactHistory:
     """Its largest depth and force and its duration are the figure's units."""
-    return solve_impact(scene(math.inf).replace(effects=()), SOURCE, {})
+    return solve_impact(scene_of(0.0).replace(effects=()), SOURCE, {})
 
 
 def figure() -> Figure:
     """Panels A (force over depth), B (a/h over time), C (velocity over time), in units of the elastic half-space."""
     elastic = elastic_half_space()
-    histories = {thickness: solve_impact(scene(thickness), SOURCE, {}) for thickness in THICKNESSES}
+    histories = {thickness: solve_impact(scene_of(thickness), SOURCE, {}) for thickness in THICKNESSES}
     loops, ratios, speeds = [], [], []
     for thickness, run in histories.items():
         name, error = _name(thickness), float(run.error_estimate["normal_force"][0])
@@ -51,7 +28,7 @@ def figure() -> Figure:
         force = run.normal_force / elastic.peak_force
         loops.append(mdr_line(name, run.indentation_depth / elastic.peak_depth, force, error))
         speeds.append(mdr_line(name, time, run.velocity / VELOCITY, error))
-        if not math.isinf(thickness):
+        if thickness:
             ratios.append(mdr_line(name, time, run.contact_radius / thickness, error))
     panels = (
         Panel(
@@ -69,12 +46,12 @@ def figure() -> Figure:
 
 
 def _name(thickness: float) -> str:
-    return "half-space" if math.isinf(thickness) else f"h = {1e3 * thickness:g} mm"
+    return f"h = {1e3 * thickness:g} mm" if thickness else "half-space"
 
 
 def _caption(histories: dict[float, ImpactHistory]) -> str:
     bounce = {t: run.coefficient_of_restitution for t, run in histories.items()}
-    thin, thick = histories[1e-3], histories[math.inf]
+    thin, thick = histories[1e-3], histories[0.0]
     return (
         "Lines: MDR, high-order integration. Units: maxima of the elastic half-space with G = G_inf + G_1. "
         "Restitution: "

@@ -1,37 +1,5 @@
-"""Section 4.2 of Forsbach (2023): adhesive detachment of a flat punch under displacement and force control."""
+"""Section 4.2 of Forsbach (2023): adhesive detachment of a flat punch under displacement and force control.
 
-from collections.abc import Iterator
-
-import numpy as np
-
-from cases.declare.case import Case, CaseScene
-from cases.declare.task import Answers
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact
-from cases.library._compared import (
-    BEM,
-    BOUNDARY_ELEMENTS,
-    DETACHING_FEM,
-    EQUATION,
-    FINITE_ELEMENTS,
-    MDR,
-    PUBLISHED_ROUTE,
-    TABLE,
-    agreements,
-    with_reason,
-)
-from cases.library._figures import paper_figure
-from cases.library._layers import THICKNESS, YOUNGS_MODULUS, contact_modulus, half_space
-from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import detachment_costs
-from cases.results.records import Figure, Origin
-from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
-
-WORK_OF_ADHESION = 0.05  # J/m^2
-ADHESION = Adhesion(work_of_adhesion=WORK_OF_ADHESION)
-OTHERS = ("fem", "bem", "integral_equation", "mdr_table")
-
-TEXT = """
 A flat punch of radius a* adheres to a layer and is pulled off. Detachment starts at delta_c1 = -Delta l(a*), with
 Delta l = sqrt(2 pi Delta gamma a / c_N), Eq. (40). On the half-space it is abrupt under both controls (Kendall). On a
 bonded layer with nu above about 0.36 the elongation Delta l(a) has a maximum; beyond it, under displacement control,
@@ -39,15 +7,39 @@ the contact shrinks stably to the radius of the maximum and only then jumps, Eq.
 always abrupt, at F_A = -k_N(a*) Delta l(a*).
 """
 
-MAXIMA = {0.5: (0.461904, 0.392203), 0.45: (0.600217, 0.417261), 0.4: (0.914054, 0.442014)}  # a/h, Delta l bar
-STIFFNESS_AND_SPRING = {1.0: (3.61873584896, 7.684546)}  # nu = 0.5: kbar, cbar at a*/h
+from collections.abc import Iterator
+
+import numpy as np
+
+from cases.declare.case import Case, CaseScene, text_of
+from cases.declare.task import Answers
+from cases.library._claims import agreements, exact
+from cases.library._figures import paper_figure
+from cases.library._layers import THICKNESS, contact_modulus, half_space, layer_of
+from cases.library._methods import BEM, DETACHING_FEM, EQUATION, MDR, TABLE
+from cases.library._reasons import reasons
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import detachment_costs
+from cases.results.records.figure import Figure
+from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
+
+WHY = reasons("flat_punch_adhesion")
+
+WORK_OF_ADHESION = 0.05  # J/m^2
+ADHESION = Adhesion(work_of_adhesion=WORK_OF_ADHESION)
+OTHERS = ("fem", "bem", "integral_equation", "mdr_table")
+
+
+# By Poisson's ratio: a/h of the maximum and the elongation there over its unit.
+MAXIMA = {0.5: (0.461904, 0.392203), 0.45: (0.600217, 0.417261), 0.4: (0.914054, 0.442014)}
+# For nu = 0.5, by a*/h: kbar and cbar.
+STIFFNESS_AND_SPRING = {1.0: (3.61873584896, 7.684546)}
 
 
 def scene_of(nu: float, ratio: float, control: str, layer: Layer | None = None) -> Scene:
     """Return the detachment of a punch of radius ``ratio`` h."""
-    bonded = Layer(thickness=THICKNESS, youngs_modulus=YOUNGS_MODULUS, poissons_ratio=nu)
     return Scene(
-        layer=layer or bonded,
+        layer=layer or layer_of(nu),
         indenter=FlatPunch(radius=ratio * THICKNESS),
         loading=Detachment(control="force" if control == "force" else "displacement"),
         effects=(ADHESION,),
@@ -95,6 +87,12 @@ def unit_elongation(layer: Layer) -> float:
     return float(np.sqrt(2 * np.pi * WORK_OF_ADHESION * layer.thickness / contact_modulus(layer)))
 
 
+def jump_depths() -> dict[str, tuple[float, ...]]:
+    """Return the depth [m] at which contact is lost beyond the maximum, by scene."""
+    pairs = zip(MAXIMA.values(), BEYOND_MAXIMUM, strict=True)
+    return {s.name: (-elongation * unit_elongation(s.scene.layer),) for (_, elongation), s in pairs}
+
+
 def abrupt_force(scene: Scene) -> list[float]:
     """F_A = -k_N(a*) Delta l(a*), Eq. (46), from tabulated kbar and cbar."""
     a = scene.indenter.flat_radius
@@ -110,104 +108,61 @@ def figures(case: Case, answers: Answers) -> Iterator[Figure]:
     yield paper_figure(9)
 
 
-KENDALL = Reason(
-    because="linear elastic fracture mechanics of the punch's edge on the half-space",
-    derived_from="MDR: round-off; finite elements thirty times their accuracy of 3e-5; boundary elements three times "
-    "the 1.2e-3 they state",
-    origin=Origin.CLOSED_FORM,
-    source="Kendall, J. Phys. D 4 (1971) 1186",
-)
-MAXIMUM = Reason(
-    because="under displacement control the contact holds until Delta l(a) is largest, Eq. (45)",
-    derived_from="six printed digits of a maximum found on a separate solution; finite elements add their "
-    "3e-5; boundary elements and table three times what they state, 7e-4 and 2e-4",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="Nystrom solution of the integral equation, maximum of Eq. (42)",
-)
-STABILITY = Reason(
-    because="a maximum is flat: its place is known to the root of what its height is known to",
-    derived_from="six printed digits, twice; finite elements add the root of their error; boundary elements and table "
-    "three times theirs, which grow as the maximum flattens: 7e-4, 1e-3, 5e-3",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="Nystrom solution of the integral equation, maximum of Eq. (42)",
-)
-GRIFFITH = Reason(
-    because="under force control detachment is abrupt at Delta l(a*), Eq. (46)",
-    derived_from="seven printed digits of cbar, halved by the root; the others add three times what they state",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="kbar and cbar of the Nystrom solution",
-)
-
+OTHERS_LOOSER = {"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-3}
 CLAIMS = (
-    Exact(
-        name="Kendall's depth",
-        quantity="pull_off_depth",
-        scenes=tuple(s.name for s in HALF_SPACE),
-        expected=kendall_depth,
+    *exact(
+        WHY["kendall"],
+        {"Kendall's depth": ("pull_off_depth", kendall_depth), "Kendall's force": ("pull_off_force", kendall_force)},
+        scenes=HALF_SPACE,
         tolerance=1e-10,
         tolerances={"fem": 1e-3, "bem": 4e-3},
-        reason=KENDALL,
     ),
-    Exact(
-        name="Kendall's force",
-        quantity="pull_off_force",
-        scenes=tuple(s.name for s in HALF_SPACE),
-        expected=kendall_force,
-        tolerance=1e-10,
-        tolerances={"fem": 1e-3, "bem": 4e-3},
-        reason=KENDALL,
-    ),
-    Exact(
-        name="depth of the jump",
-        quantity="pull_off_depth",
-        expected={
-            s.name: (-MAXIMA[nu][1] * unit_elongation(s.scene.layer),)
-            for nu, s in zip(MAXIMA, BEYOND_MAXIMUM, strict=True)
-        },
+    *exact(
+        WHY["maximum"],
+        {"depth of the jump": ("pull_off_depth", jump_depths())},
         tolerance=3e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-3},
-        reason=MAXIMUM,
+        tolerances=OTHERS_LOOSER,
     ),
     *(
-        Exact(
-            name=f"radius of the jump, nu = {nu:g}",
-            quantity="pull_off_contact_radius",
-            expected={scene.name: (MAXIMA[nu][0] * THICKNESS,)},
+        claim
+        for (nu, (ratio, _)), scene, bem in zip(MAXIMA.items(), BEYOND_MAXIMUM, (2e-3, 3e-3, 1.5e-2), strict=True)
+        for claim in exact(
+            WHY["stability"],
+            {
+                f"radius of the jump, nu = {nu:g}": (
+                    "pull_off_contact_radius",
+                    {scene.name: (MAXIMA[nu][0] * THICKNESS,)},
+                )
+            },
             tolerance=3e-6,
-            tolerances={"fem": 1e-3, "bem": bem, "mdr_table": 1e-3},
-            reason=STABILITY,
+            tolerances=OTHERS_LOOSER | {"bem": bem},
         )
-        for (nu, scene), bem in zip(zip(MAXIMA, BEYOND_MAXIMUM, strict=True), (2e-3, 3e-3, 1.5e-2), strict=True)
     ),
-    Exact(
-        name="force of abrupt detachment",
-        quantity="pull_off_force",
-        scenes=tuple(s.name for s in ABRUPT),
-        expected=abrupt_force,
+    *exact(
+        WHY["griffith"],
+        {"force of abrupt detachment": ("pull_off_force", abrupt_force)},
+        scenes=ABRUPT,
         tolerance=1e-6,
-        tolerances={"fem": 1e-3, "bem": 2e-3, "mdr_table": 1e-3},
-        reason=GRIFFITH,
+        tolerances=OTHERS_LOOSER,
     ),
     *agreements(
         (BEYOND_MAXIMUM[0], *ABRUPT),
         {"fem": 1e-3},
         ("pull_off_force", "pull_off_depth"),
-        reason=with_reason(
-            FINITE_ELEMENTS,
-            "thirty times the finite element accuracy of 3e-5 on every radius",
-        ),
+        derived_from="thirty times the finite element accuracy of 3e-5 on every radius",
     ),
     *agreements(
         (BEYOND_MAXIMUM[0], *ABRUPT),
         {"bem": 8e-3},
         ("pull_off_force", "pull_off_depth"),
-        reason=with_reason(BOUNDARY_ELEMENTS, "three times the error that 128 cells across the contact state, 2.6e-3"),
+        derived_from="three times the error that 128 cells across the contact state, 2.6e-3",
     ),
+    # Where the branch turns, the depth of a table's springs is known to their root only: it is not compared.
     *agreements(
         (BEYOND_MAXIMUM[0], *ABRUPT),
         {"mdr_table": 5e-4},
-        ("pull_off_force",),  # where the branch turns, the depth of a table's springs is known to their root only
-        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table states, 1.2e-4, rounded up"),
+        ("pull_off_force",),
+        derived_from="three times the error that the table states, 1.2e-4, rounded up",
     ),
 )
 
@@ -216,8 +171,7 @@ CASE = Case(
     title="Adhesive detachment of a flat punch",
     question="When does a punch leave a layer, and is it abrupt?",
     equations=("Eq. (40)", "Eq. (42)", "Eq. (45)", "Eq. (46)", "Figs. 8-9"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT),
     methods=(MDR, DETACHING_FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,

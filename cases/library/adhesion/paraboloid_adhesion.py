@@ -1,38 +1,28 @@
-"""JKR adhesion of a paraboloid: closed forms on the half-space, methods against each other on layers."""
+"""JKR adhesion of a paraboloid: closed forms on the half-space, methods against each other on layers.
 
-import numpy as np
-
-from cases.declare.case import Case, CaseScene
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact
-from cases.library._compared import (
-    BEM,
-    BOUNDARY_ELEMENTS,
-    DETACHING_FEM,
-    EQUATION,
-    FINITE_ELEMENTS,
-    MDR,
-    PEELING_FEM,
-    TABLE,
-    agreements,
-    with_reason,
-)
-from cases.library._layers import contact_modulus, half_space, layer
-from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import detachment_costs
-from cases.results.records import Origin
-from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
-
-RADIUS_OF_CURVATURE = 1e-2  # m
-WORK_OF_ADHESION = 0.05  # J/m^2
-
-TEXT = """
 A paraboloid adheres to a layer and is pulled off. On the half-space JKR theory gives the largest tension
 F_A = -(3/2) pi R Delta gamma, whatever the modulus. Contact is lost at the radius (9 pi Delta gamma R^2/(8 E*))^(1/3)
 under force control and (pi Delta gamma R^2/(8 E*))^(1/3) under displacement control, where the branch turns. On layers
 MDR follows the branch through its turning points by the contact radius, Eqs. (40)-(41); finite elements take the energy
 release rate from the derivative of the strain energy.
 """
+
+import numpy as np
+
+from cases.declare.case import Case, CaseScene, text_of
+from cases.library._claims import agreements, exact
+from cases.library._layers import contact_modulus, half_space, layer
+from cases.library._methods import BEM, DETACHING_FEM, EQUATION, MDR, PEELING_FEM, TABLE
+from cases.library._reasons import reasons
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import detachment_costs
+from contact import Adhesion, Detachment, InvalidInput, Layer, Paraboloid, Scene
+
+WHY = reasons("paraboloid_adhesion")
+
+RADIUS_OF_CURVATURE = 1e-2  # m
+WORK_OF_ADHESION = 0.05  # J/m^2
+
 
 RADIUS_FACTOR = {"force": 9 / 8, "displacement": 1 / 8}
 
@@ -49,9 +39,10 @@ def case_scene(label: str, control: str, body: Layer) -> CaseScene:
         name=f"{label}, {control}",
         parameters={"layer": label, "control": control},
         scene=scene,
-        # adhesion takes the slope of springs along the radius, for which a table is too rough: MDR refuses it by name
+        # Adhesion takes the slope of springs along the radius. A table is too rough for it: MDR refuses it by name.
         methods=() if body.is_half_space else (MDR, PEELING_FEM, BEM, EQUATION),
-        nightly=() if control == "force" else ("fem",),  # the same branch, whatever the control
+        # Finite elements walk one and the same branch under either control.
+        nightly=() if control == "force" else ("fem",),
     )
 
 
@@ -88,53 +79,36 @@ def jkr_depth(scene: Scene) -> list[float]:
     ]
 
 
-JKR = Reason(
-    because="Johnson, Kendall and Roberts: energy release rate equals the work of adhesion",
-    derived_from="MDR: turning points of an analytic branch; finite elements thirty times their accuracy of 3e-5; "
-    "boundary elements and table three times what they state",
-    origin=Origin.CLOSED_FORM,
-    source="Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971) 301",
-)
-FOLD = Reason(
-    because="Johnson, Kendall and Roberts: the branch turns where depth or force is stationary",
-    derived_from="a turning point's place is known to the root of what its value is known to",
-    origin=Origin.CLOSED_FORM,
-    source="Johnson, Kendall, Roberts, Proc. R. Soc. A 324 (1971) 301",
-)
-
+# By quantity: its closed form, the tolerance of MDR, those of finite and boundary elements, and the reason.
+CRITICAL = {
+    "pull_off_force": (jkr_force, 1e-9, {"fem": 1e-3, "bem": 6e-3}, WHY["jkr"]),
+    "pull_off_depth": (jkr_depth, 1e-9, {"fem": 1e-3, "bem": 1.5e-2}, WHY["jkr"]),
+    "pull_off_contact_radius": (jkr_radius, 1e-6, {"fem": 1e-3, "bem": 6e-3}, WHY["fold"]),
+}
 CLAIMS = (
     *(
-        Exact(
-            name=f"JKR {quantity.replace('_', ' ')}",
-            quantity=quantity,
-            scenes=tuple(s.name for s in HALF_SPACE),
-            expected=closed_form,
+        claim
+        for quantity, (expected, tolerance, tolerances, reason) in CRITICAL.items()
+        for claim in exact(
+            reason,
+            {f"JKR {quantity.replace('_', ' ')}": (quantity, expected)},
+            scenes=HALF_SPACE,
             tolerance=tolerance,
             tolerances=tolerances,
-            reason=reason,
-        )
-        for quantity, closed_form, tolerance, tolerances, reason in (
-            ("pull_off_force", jkr_force, 1e-9, {"fem": 1e-3, "bem": 6e-3}, JKR),
-            ("pull_off_depth", jkr_depth, 1e-9, {"fem": 1e-3, "bem": 1.5e-2}, JKR),
-            ("pull_off_contact_radius", jkr_radius, 1e-6, {"fem": 1e-3, "bem": 6e-3}, FOLD),
         )
     ),
     *agreements(
         (*HALF_SPACE, *ON_LAYERS),
         {"fem": 2e-3},
         ("pull_off_force", "pull_off_depth"),
-        reason=with_reason(
-            FINITE_ELEMENTS,
-            "accuracy 5e-5 of profile and elongation, whose difference the pull-off is; it states at most 1.8e-3",
-        ),
+        derived_from="accuracy 5e-5 of profile and elongation, whose difference the pull-off is; it states at most "
+        "1.8e-3",
     ),
     *agreements(
         (*HALF_SPACE, *ON_LAYERS),
-        {"bem": {"pull_off_force": 6e-3, "pull_off_depth": 1.5e-2, "pull_off_contact_radius": 6e-3}},
-        ("pull_off_force", "pull_off_depth", "pull_off_contact_radius"),
-        reason=with_reason(
-            BOUNDARY_ELEMENTS, "three times what they state: force and radius 2e-3; depth 5e-3, where the force is flat"
-        ),
+        {"bem": {quantity: tolerances["bem"] for quantity, (_, _, tolerances, _) in CRITICAL.items()}},
+        CRITICAL,
+        derived_from="three times what they state: force and radius 2e-3; depth 5e-3, where the force is flat",
     ),
 )
 
@@ -143,8 +117,7 @@ CASE = Case(
     title="Adhesive detachment of a paraboloid",
     question="Is JKR theory reproduced, and do methods agree on pull-off from layers?",
     equations=("Eq. (40)", "Eq. (41)"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*HALF_SPACE, *ON_LAYERS),
     methods=(MDR, DETACHING_FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,

@@ -3,36 +3,35 @@
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bem.polynomials.gauss import legendre_rule
+from cases.library._figures._symbols import series
 from cases.library._layers import layer
-from cases.results.records import Series
+from cases.results.records.figure import Series
 from contact import TruncatedCone
+from contact.records.validation import FloatArray
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
-
-Array = NDArray[np.float64]
 
 HALF_SPACE, THIN_LAYER = "half-space", "thin layer"
 NODES, WEIGHTS = legendre_rule(60)
 
 
-def profile_limits(label: str, cone: TruncatedCone, a: float, x: Array) -> Iterator[Series]:
+def profile_limits(label: str, cone: TruncatedCone, a: float, x: FloatArray) -> Iterator[Series]:
     """g(x)/f(a) over x/a: x tan(theta) arccos(b/x) on the half-space, f or Eq. (37) on the thin layer."""
     height = float(cone.height(a))
     on_half_space = cone.slope * x * np.arccos(np.minimum(cone.flat_radius / x, 1.0))
-    yield _limit(HALF_SPACE, x / a, on_half_space / height)
-    yield _limit(THIN_LAYER, x / a, thin_cone_profile(layer(label), cone, x) / height)
+    yield series(HALF_SPACE, HALF_SPACE, "", x / a, on_half_space / height)
+    yield series(THIN_LAYER, THIN_LAYER, "", x / a, thin_cone_profile(layer(label), cone, x) / height)
 
 
-def pressure_limits(label: str, cone: TruncatedCone, a: float, r: Array) -> Iterator[Series]:
+def pressure_limits(label: str, cone: TruncatedCone, a: float, r: FloatArray) -> Iterator[Series]:
     """p(r)/p_mean over r/a; both limits are free of the modulus, and of the thickness."""
-    yield _limit(HALF_SPACE, r / a, _half_space_pressure(cone, a, r))
+    yield series(HALF_SPACE, HALF_SPACE, "", r / a, _half_space_pressure(cone, a, r))
     mean = thin_cone_force(layer(label), cone, a) / (np.pi * a**2)
-    yield _limit(THIN_LAYER, r / a, thin_cone_pressure(layer(label), cone, a, r) / mean)
+    yield series(THIN_LAYER, THIN_LAYER, "", r / a, thin_cone_pressure(layer(label), cone, a, r) / mean)
 
 
-def _half_space_pressure(cone: TruncatedCone, a: float, r: Array) -> Array:
+def _half_space_pressure(cone: TruncatedCone, a: float, r: FloatArray) -> FloatArray:
     """p/p_mean, r != b: p = (E* tan / pi) int_max(r,b)^a [arccos(b/x) + b/sqrt(x^2 - b^2)]/sqrt(x^2 - r^2) dx.
 
     x = max(r, b) + s^2 takes the root out of either denominator.
@@ -46,7 +45,3 @@ def _half_space_pressure(cone: TruncatedCone, a: float, r: Array) -> Array:
     pressure = cone.slope / np.pi * np.sum(integrand * WEIGHTS * end / 2, axis=1)  # over E*
     mean = cone.slope / np.pi * (np.arccos(ratio) + ratio * np.sqrt(1 - ratio**2))  # F/(pi a^2) over E*
     return np.asarray(pressure / mean)
-
-
-def _limit(name: str, x: Array, y: Array) -> Series:
-    return Series(label=name, method=name, group="", x=tuple(x.tolist()), y=tuple(y.tolist()))

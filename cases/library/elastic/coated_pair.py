@@ -1,24 +1,5 @@
-"""Section 2.2 of Forsbach (2023): two coated bodies in contact, reduced to one indenter on one layer."""
+"""Section 2.2 of Forsbach (2023): two coated bodies in contact, reduced to one indenter on one layer.
 
-import numpy as np
-
-from cases.declare.case import Case, CaseScene
-from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.scaling_law import Twin
-from cases.library._compared import BEM_TOLERANCE, EVERY, FEM, MDR, TABLE_TOLERANCES, agreements
-from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, prescribed_radii
-from cases.measurements.cost.settings import elastic_costs
-from cases.results.records import Origin
-from contact import CoatedPair, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
-
-RADIUS = 1e-2  # m, of both bodies in the symmetric pair
-POISSONS_RATIO = 0.3
-RATIOS = (0.5, 2.0)
-THIN_RATIOS = (75.0, 150.0)
-UNEQUAL = (0.9 * THICKNESS, 1.1 * THICKNESS)
-
-TEXT = """
 Two rigid bodies with curvatures 1/R1 and 1/R2 carry equal coatings. They are equivalent to a rigid paraboloid of
 curvature 1/R1 + 1/R2, Eq. (23), on one layer with half the modulus, Eq. (24). For two equal bodies symmetry gives a
 check that does not use these equations: the plane between them stays plane, so each coating is pressed by a rigid plane
@@ -27,6 +8,26 @@ through half the approach, which is one body of radius R on one layer of the ful
 Coatings of slightly different thickness are replaced by their mean, Eq. (25). On thin compressible coatings this is
 exact: two Winkler beds in series.
 """
+
+import numpy as np
+
+from cases.declare.case import Case, CaseScene, text_of
+from cases.judgement.claims.approach import Approach
+from cases.library._claims import BEM_TOLERANCE, TABLE_TOLERANCES, agreements, names_of, scaling_law
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
+from cases.library._methods import EVERY, FEM, MDR
+from cases.library._reasons import reasons
+from cases.measurements.cost.settings import elastic_costs
+from contact import CoatedPair, ContactRadii, InvalidInput, Paraboloid, Scene
+
+WHY = reasons("coated_pair")
+
+# Radius [m] of both bodies in the symmetric pair.
+RADIUS = 1e-2
+POISSONS_RATIO = 0.3
+RATIOS = (0.5, 2.0)
+THIN_RATIOS = (75.0, 150.0)
+UNEQUAL = (0.9 * THICKNESS, 1.1 * THICKNESS)
 
 
 def pair(
@@ -75,20 +76,14 @@ def one_body_on_its_plane(scene: Scene) -> Scene:
     """Return one coated body pressed by a rigid plane: the full modulus, the body's own radius."""
     if not isinstance(scene.indenter, Paraboloid):
         raise InvalidInput(f"indenter = {type(scene.indenter).__name__}: a coated pair reduces to a paraboloid")
-    own = Layer(
-        thickness=THICKNESS,
-        youngs_modulus=YOUNGS_MODULUS,
-        poissons_ratio=POISSONS_RATIO,
-        support=scene.layer.support,
-    )
+    own = layer_of(POISSONS_RATIO, scene.layer.support)
     return scene.replace(layer=own, indenter=Paraboloid(radius_of_curvature=RADIUS))
 
 
 def beds_in_series(scene: Scene) -> float:
     """k_N = pi a^2 E~/(h1 + h2): two Winkler beds, one after the other."""
     a = float(prescribed_radii(scene)[0])
-    full = Layer(thickness=THICKNESS, youngs_modulus=YOUNGS_MODULUS, poissons_ratio=POISSONS_RATIO)
-    return np.pi * a**2 * confined_modulus(full) / sum(UNEQUAL)
+    return np.pi * a**2 * confined_modulus(layer_of(POISSONS_RATIO)) / sum(UNEQUAL)
 
 
 def thinness(scene: Scene) -> float:
@@ -96,50 +91,33 @@ def thinness(scene: Scene) -> float:
     return scene.layer.thickness / float(prescribed_radii(scene)[0])
 
 
-SYMMETRY = Reason(
-    because="the plane between two equal bodies stays plane",
-    derived_from="round-off; finite elements see the same contact in other units; boundary elements what their "
-    "iteration leaves",
-    origin=Origin.CLOSED_FORM,
-    source="mirror symmetry",
-)
-SERIES = Reason(
-    because="thin compressible coatings are Winkler beds, and beds add their compliances",
-    derived_from="accepted band [p_f - 0.2, p_f + 0.5] between a/h = 75 and 150",
-    origin=Origin.CLOSED_FORM,
-    source="Eqs. (16) and (25)",
-)
-
 CASE = Case(
     name="coated_pair",
     title="Two coated bodies",
     question="Are the reductions of curvature, modulus and thickness right?",
     equations=("Eq. (23)", "Eq. (24)", "Eq. (25)", "Fig. 2"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*SYMMETRIC, *THIN),
     methods=EVERY,
     claims=(
-        Twin(
-            name="half the approach on one body",
-            quantity="normal_force",
-            scenes=tuple(s.name for s in SYMMETRIC),
-            change=one_body_on_its_plane,
-            factors={"indentation_depth": 0.5, "normal_force": 1.0, "contact_stiffness": 2.0},
-            tolerance=1e-12,
+        scaling_law(
+            "half the approach on one body",
+            names_of(SYMMETRIC),
+            one_body_on_its_plane,
+            (0.5, 1.0, 2.0),
+            WHY["symmetry"],
             tolerances={"fem": 1e-9, "bem": 1e-7},
-            reason=SYMMETRY,
         ),
         Approach(
             name="thin unequal coatings are beds in series",
             quantity="contact_stiffness",
-            scenes=tuple(s.name for s in THIN),
+            scenes=names_of(THIN),
             parameter=thinness,
             limit=beds_in_series,
             formal_order=1.0,
             largest=0.05,
             tolerance=0.2,
-            reason=SERIES,
+            reason=WHY["series"],
         ),
         *agreements(
             SYMMETRIC,

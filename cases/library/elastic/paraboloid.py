@@ -1,38 +1,5 @@
-"""A paraboloid on layers: prescribed radii, depths and forces, five methods, and the fits of the literature."""
+"""A paraboloid on layers: prescribed radii, depths and forces, five methods, and the fits of the literature.
 
-import math
-
-import numpy as np
-
-from cases.declare.case import Case, CaseScene
-from cases.declare.task import Sampling
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact
-from cases.judgement.claims.field_agreement import FieldAgreement
-from cases.judgement.claims.scaling_law import Twin
-from cases.library._compared import (
-    BEM,
-    BEM_TOLERANCE,
-    EQUATION,
-    FEM,
-    FINITE_ELEMENTS,
-    MDR,
-    PUBLISHED_ROUTE,
-    TABLE,
-    TABLE_TOLERANCES,
-    agreements,
-    with_reason,
-)
-from cases.library._layers import LAYERS, THICKNESS, contact_modulus, edges, in_millimetres, layer, scene_name
-from cases.measurements.cost.settings import elastic_costs
-from cases.results.records import Origin
-from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
-
-RADIUS_OF_CURVATURE = 1e-2  # m
-RATIOS = (0.2, 1.0, 2.0, 5.0, 10.0)
-QUICK_RATIO = 1.0  # where every method finds the contact radius in the suite ci, too
-
-TEXT = """
 A rigid paraboloid f(r) = r^2/(2R) presses on bonded and unbonded layers. Depth and force at five contact radii are
 compared with a separate solution of the Fredholm equation to its printed digits, with the fit of Hermanowicz (2021) for
 the incompressible bonded layer, with finite elements, direct boundary elements, the direct integral equation, and MDR
@@ -40,7 +7,36 @@ on FFT flat-punch tables as published. The same states are then asked for by dep
 come back.
 """
 
-TABULATED: dict[str, dict[float, tuple[float, float]]] = {  # a/h: delta R/h^2, F R/(E* h^3)
+import math
+
+import numpy as np
+
+from cases.declare.case import Case, CaseScene, text_of
+from cases.declare.task import Sampling
+from cases.library._claims import (
+    BEM_TOLERANCE,
+    TABLE_TOLERANCES,
+    agreements,
+    exact,
+    pressure_agreements,
+    same_in_millimetres,
+)
+from cases.library._layers import LAYERS, THICKNESS, contact_modulus, edges, layer, scene_name
+from cases.library._methods import EVERY
+from cases.library._reasons import reasons
+from cases.measurements.cost.settings import elastic_costs
+from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
+
+WHY = reasons("paraboloid")
+
+RADIUS_OF_CURVATURE = 1e-2  # m
+RATIOS = (0.2, 1.0, 2.0, 5.0, 10.0)
+# At this a/h every method finds the contact radius in the suite ci, too.
+QUICK_RATIO = 1.0
+
+
+# By a/h: delta R/h^2 and F R/(E* h^3).
+TABULATED: dict[str, dict[float, tuple[float, float]]] = {
     "bonded nu=0.5": {
         0.2: (0.034253, 0.010733),
         1.0: (0.559415, 1.880667),
@@ -50,6 +46,7 @@ TABULATED: dict[str, dict[float, tuple[float, float]]] = {  # a/h: delta R/h^2, 
     },
     "unbonded": {1.0: (0.673981, 1.578123), 2.0: (2.360922, 17.83896), 5.0: (13.397682, 564.7204)},
 }
+PLACES = tuple((label, ratio) for label, rows in TABULATED.items() for ratio in rows)
 
 
 def depth(label: str, ratio: float) -> float:
@@ -78,16 +75,8 @@ def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScen
 BY_RADIUS = tuple(
     scene(label, ratio, ContactRadii(values=np.array([ratio * THICKNESS]))) for label in LAYERS for ratio in RATIOS
 )
-BY_DEPTH = tuple(
-    scene(label, ratio, IndentationDepths(values=np.array([depth(label, ratio)])), " by depth")
-    for label, rows in TABULATED.items()
-    for ratio in rows
-)
-BY_FORCE = tuple(
-    scene(label, ratio, NormalForces(values=np.array([force(label, ratio)])), " by force")
-    for label, rows in TABULATED.items()
-    for ratio in rows
-)
+BY_DEPTH = tuple(scene(*place, IndentationDepths(values=np.array([depth(*place)])), " by depth") for place in PLACES)
+BY_FORCE = tuple(scene(*place, NormalForces(values=np.array([force(*place)])), " by force") for place in PLACES)
 
 
 RESOLVED = tuple(s for s in BY_RADIUS if float(s.parameters["a_over_h"]) <= 2)
@@ -113,110 +102,57 @@ def fitted_forces() -> dict[str, tuple[float, ...]]:
     }
 
 
-SEPARATE_SOLUTION = Reason(
-    because="the Fredholm equation solved for the paraboloid, radius by radius",
-    derived_from="half a unit of the last printed digit over the smallest value, 0.0107; others add their own error",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="Nystrom solution of the integral equation, separate code",
-)
-COARSE_TABLE = with_reason(
-    PUBLISHED_ROUTE,
+COARSE_TABLE = (
     "three times what it states at a/h = 10, where a cell is a sixth of the thickness: depth 3e-3, force 1.5e-2, "
-    "stiffness 2e-3",
-)
-RETURN = with_reason(
-    SEPARATE_SOLUTION, "the digits of the prescribed depth and force, halved or less in the radius by their powers of a"
-)
-HERMANOWICZ_FIT = Reason(
-    because="the same Fredholm equations, solved numerically and fitted by Remez polynomials",
-    derived_from="the fit's own error of 0.08 % with a quarter on top",
-    origin=Origin.LITERATURE,
-    source="Hermanowicz, Int. J. Mech. Sci. 193 (2021) 106138, coefficients as printed in AtomicJ",
-)
-DIMENSIONS = Reason(
-    because="mechanics knows no metre",
-    derived_from="round-off of a factor that is no power of two; boundary elements what their iteration leaves, 1e-7",
-    origin=Origin.CLOSED_FORM,
-    source="dimensional analysis",
+    "stiffness 2e-3"
 )
 
 THIN_TABLE = {"indentation_depth": 1e-2, "normal_force": 5e-2, "contact_stiffness": 5e-3}
 LOOSER = {"fem": 4e-5, "bem": 1e-3, "mdr_table": 5e-3}
+SEARCHED = (*BY_DEPTH, *BY_FORCE)
 CLAIMS = (
-    Exact(
-        name="tabulated depth",
-        quantity="indentation_depth",
-        expected={
-            scene_name(label, ratio): (depth(label, ratio),) for label, rows in TABULATED.items() for ratio in rows
+    *exact(
+        WHY["printed"],
+        {"tabulated depth": ("indentation_depth", {scene_name(*place): (depth(*place),) for place in PLACES})},
+        tolerance=3e-5,
+        tolerances=LOOSER,
+    ),
+    *exact(
+        WHY["printed"],
+        {"tabulated force": ("normal_force", {scene_name(*place): (force(*place),) for place in PLACES})},
+        tolerance=5e-5,
+        tolerances=LOOSER | {"fem": 6e-5, "mdr_table": 1.5e-2},
+    ),
+    *exact(
+        WHY["return"],
+        {
+            f"the radius comes back {how}": (
+                "contact_radius",
+                {f"{scene_name(label, ratio)} {how}": (ratio * THICKNESS,) for label, ratio in PLACES},
+            )
+            for how in ("by depth", "by force")
         },
         tolerance=3e-5,
         tolerances=LOOSER,
-        reason=SEPARATE_SOLUTION,
     ),
-    Exact(
-        name="tabulated force",
-        quantity="normal_force",
-        expected={
-            scene_name(label, ratio): (force(label, ratio),) for label, rows in TABULATED.items() for ratio in rows
-        },
-        tolerance=5e-5,
-        tolerances=LOOSER | {"fem": 6e-5, "mdr_table": 1.5e-2},
-        reason=SEPARATE_SOLUTION,
-    ),
-    *(
-        Exact(
-            name=f"the radius comes back {how}",
-            quantity="contact_radius",
-            expected={
-                scene_name(label, ratio) + f" {how}": (ratio * THICKNESS,)
-                for label, rows in TABULATED.items()
-                for ratio in rows
-            },
-            tolerance=3e-5,
-            tolerances=LOOSER,
-            reason=RETURN,
-        )
-        for how in ("by depth", "by force")
-    ),
-    Exact(
-        name="fit of Hermanowicz",
-        quantity="normal_force",
-        expected=fitted_forces(),
+    *exact(
+        WHY["fitted"],
+        {"fit of Hermanowicz": ("normal_force", fitted_forces())},
         tolerance=1e-3,
         tolerances={"bem": 2e-3, "mdr_table": 1.5e-2},
-        reason=HERMANOWICZ_FIT,
     ),
     *agreements(BY_RADIUS, {"fem": 3e-6, "bem": BEM_TOLERANCE, "integral_equation": 1e-9}),
     *agreements(RESOLVED, {"mdr_table": TABLE_TOLERANCES}),
-    *agreements(COARSE, {"mdr_table": THIN_TABLE}, reason=COARSE_TABLE, suffix=", thin layers"),
-    *agreements((*BY_DEPTH, *BY_FORCE), {"bem": BEM_TOLERANCE, "integral_equation": 1e-9}, ("contact_radius",)),
+    *agreements(COARSE, {"mdr_table": THIN_TABLE}, derived_from=COARSE_TABLE, suffix=", thin layers"),
+    *agreements(SEARCHED, {"bem": BEM_TOLERANCE, "integral_equation": 1e-9}, ("contact_radius",)),
     *agreements(
-        (*BY_DEPTH, *BY_FORCE),
+        SEARCHED,
         {"fem": 2e-5},
         ("contact_radius",),
-        reason=with_reason(FINITE_ELEMENTS, "three times the error that finite elements state of a radius, 6e-6"),
+        derived_from="three times the error that finite elements state of a radius, 6e-6",
     ),
-    FieldAgreement(
-        name="pressure: MDR and fem",
-        quantity="pressure",
-        norm="weighted L2",
-        scenes=tuple(s.name for s in BY_RADIUS),
-        fast="mdr",
-        reference="fem",
-        refined=("mdr",),
-        tolerance=2e-4,
-        reason=with_reason(FINITE_ELEMENTS, "the root at r = a limits finite elements to about 2e-5, ten times"),
-    ),
-    Twin(
-        name="the unit system does not matter",
-        quantity="normal_force",
-        scenes=tuple(scene_name(label, 1.0) for label in ("bonded nu=0.5", "unbonded")),
-        change=in_millimetres,
-        factors={"indentation_depth": 1e3, "normal_force": 1.0},
-        tolerance=1e-9,
-        tolerances={"bem": 1e-7},
-        reason=DIMENSIONS,
-    ),
+    *pressure_agreements(BY_RADIUS, {"pressure: MDR and fem": "weighted L2"}, "the root at r = a limits"),
+    same_in_millimetres((scene_name(label, 1.0) for label in ("bonded nu=0.5", "unbonded")), (1e3, 1.0)),
 )
 
 CASE = Case(
@@ -224,10 +160,9 @@ CASE = Case(
     title="Indentation by a paraboloid",
     question="Do five methods agree on a smooth profile, whatever is prescribed?",
     equations=("Eq. (4)", "Eq. (8)", "Eq. (11)", "Eq. (12)", "Eq. (34)"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
-    methods=(MDR, FEM, BEM, EQUATION, TABLE),
+    methods=EVERY,
     claims=CLAIMS,
     work=elastic_costs(scene_name("bonded nu=0.5", 2.0), periodic=True),
 )

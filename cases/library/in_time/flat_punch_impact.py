@@ -1,19 +1,27 @@
-"""Section 4.3 of Forsbach (2023): impact of a flat punch on a Kelvin-Voigt layer, in closed form."""
+"""Section 4.3 of Forsbach (2023): impact of a flat punch on a Kelvin-Voigt layer, in closed form.
+
+A rigid flat punch hits an incompressible layer whose shear response is a spring and a dashpot in parallel. The contact
+radius is constant, so the motion is a damped oscillation, Eq. (48), and the coefficient of restitution depends on the
+damping ratio D = eta sqrt(2 a kbar/(M G)) only, Eqs. (49) and (50). Beyond D = 1 the arctangent continues as
+exp(-(2 D/s) artanh(s/D)), s = sqrt(D^2 - 1), through exp(-2) at D = 1.
+"""
 
 import math
 from collections.abc import Iterable, Iterator
 
-from cases.declare.case import Case, CaseScene
+from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact
-from cases.judgement.claims.residual import Residual
-from cases.library._compared import EVERY, FEM, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
+from cases.library._claims import agreements, energy_balance, exact
 from cases.library._figures import paper_figure
+from cases.library._figures._symbols import series
+from cases.library._methods import EVERY, FEM, MDR, TABLE
+from cases.library._reasons import reasons
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import impact_costs
-from cases.results.records import Figure, Origin, Series
+from cases.results.records.figure import Figure, Series
 from contact import FlatPunch, Impact, KelvinVoigt, Layer, Scene
+
+WHY = reasons("flat_punch_impact")
 
 SHEAR_MODULUS = 1e6  # Pa
 MASS = 0.02  # kg
@@ -21,12 +29,6 @@ VELOCITY = 0.1  # m/s
 RADIUS = 1e-3  # m
 DAMPING_RATIOS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.5, 2.0, 3.0)
 
-TEXT = """
-A rigid flat punch hits an incompressible layer whose shear response is a spring and a dashpot in parallel. The contact
-radius is constant, so the motion is a damped oscillation, Eq. (48), and the coefficient of restitution depends on the
-damping ratio D = eta sqrt(2 a kbar/(M G)) only, Eqs. (49) and (50). Beyond D = 1 the arctangent continues as
-exp(-(2 D/s) artanh(s/D)), s = sqrt(D^2 - 1), through exp(-2) at D = 1.
-"""
 
 KBAR = {("bonded", 1.0): 3.61873584896, ("bonded", 2.0): 9.14945045204, ("unbonded", 1.0): 2.19862136567}
 
@@ -85,6 +87,16 @@ HALF_SPACE = tuple(on_half_space(damping) for damping in DAMPING_RATIOS)
 ON_LAYERS = tuple(on_layer(support, ratio, 0.3) for support, ratio in KBAR)
 
 
+def half_space_restitutions() -> dict[str, tuple[float, ...]]:
+    """Return the restitution on the half-space by scene."""
+    return {s.name: (restitution(damping),) for damping, s in zip(DAMPING_RATIOS, HALF_SPACE, strict=True)}
+
+
+def layer_restitutions() -> dict[str, tuple[float, ...]]:
+    """Return the restitution on layers by scene; the damping ratio grows with the root of the stiffness."""
+    return {s.name: (restitution(0.3 * math.sqrt(k)),) for k, s in zip(KBAR.values(), ON_LAYERS, strict=True)}
+
+
 def figure_11(case: Case, answers: Answers) -> Iterator[Figure]:
     """Fig. 11: restitution over damping ratio on the half-space, and over a/h on layers; symbols: the whole motion."""
     yield paper_figure(11, _symbols(case, answers, HALF_SPACE), _symbols(case, answers, ON_LAYERS))
@@ -98,65 +110,42 @@ def _symbols(case: Case, answers: Answers, scenes: Iterable[CaseScene]) -> Itera
         for use in case.methods_of(scene):
             run = answers.of(case.task(scene, use))
             if run.solved:
-                yield Series(
-                    label=f"{use.label} {scene.name}",
-                    method="mdr, integrated in time" if use.label == "mdr" else use.label,
-                    group="any thickness" if layer.is_half_space else group,
-                    x=(float(at),),
-                    y=run.quantity("coefficient_of_restitution").values[:1],
+                yield series(
+                    f"{use.label} {scene.name}",
+                    "mdr, integrated in time" if use.label == "mdr" else use.label,
+                    "any thickness" if layer.is_half_space else group,
+                    (at,),
+                    run.quantity("coefficient_of_restitution").values[:1],
                     style="symbols",
                 )
 
 
-CLOSED_FORM = Reason(
-    because="the contact radius is constant: a damped oscillation with constant coefficients",
-    derived_from="MDR: its time integration to 1e-9, ten times; finite elements ten times their time and space error",
-    origin=Origin.CLOSED_FORM,
-    source="Eqs. (48)-(50); Argatov 2013; Willert 2020 for D >= 1",
-)
-ENERGY = Reason(
-    because="kinetic, stored and dissipated energy add up to the initial one",
-    derived_from="MDR: tolerance of its time integration; finite elements: 1e-5 by 500 time steps, ten times",
-    origin=Origin.CLOSED_FORM,
-    source="first law of thermodynamics",
-)
-
+ON_THE_WAY = ("coefficient_of_restitution", "peak_depth", "peak_force", "contact_time")
 CLAIMS = (
-    Exact(
-        name="restitution on the half-space",
-        quantity="coefficient_of_restitution",
-        expected={s.name: (restitution(d),) for d, s in zip(DAMPING_RATIOS, HALF_SPACE, strict=True)},
+    *exact(
+        WHY["closed form"],
+        {"restitution on the half-space": ("coefficient_of_restitution", half_space_restitutions())},
         tolerance=1e-6,
         tolerances={"fem": 1e-4},
-        reason=CLOSED_FORM,
     ),
-    Exact(
-        name="restitution on layers",
-        quantity="coefficient_of_restitution",
-        expected={s.name: (restitution(0.3 * math.sqrt(k)),) for k, s in zip(KBAR.values(), ON_LAYERS, strict=True)},
+    *exact(
+        WHY["closed form"],
+        {"restitution on layers": ("coefficient_of_restitution", layer_restitutions())},
         tolerance=1e-6,
         tolerances={"fem": 1e-4, "mdr_table": 3e-4},
-        reason=CLOSED_FORM,
     ),
-    Residual(
-        name="energy balance",
-        quantity="energy_residual",
-        scenes=tuple(s.name for s in ON_LAYERS),
-        tolerance=1e-7,
-        tolerances={"fem": 1e-4},
-        reason=ENERGY,
-    ),
+    energy_balance(ON_LAYERS, {"fem": 1e-4}, time_steps=500),
     *agreements(
         ON_LAYERS,
         {"fem": 1e-4},
-        ("coefficient_of_restitution", "peak_depth", "peak_force", "contact_time"),
-        reason=with_reason(FINITE_ELEMENTS, "what finite elements state for 500 time steps, at most 3e-5, three times"),
+        ON_THE_WAY,
+        derived_from="what finite elements state for 500 time steps, at most 3e-5, three times",
     ),
     *agreements(
         ON_LAYERS,
         {"mdr_table": 3e-4},
-        ("coefficient_of_restitution", "peak_depth", "peak_force", "contact_time"),
-        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table states for the stiffness, 8e-5"),
+        ON_THE_WAY,
+        derived_from="three times the error that the table states for the stiffness, 8e-5",
     ),
 )
 
@@ -165,8 +154,7 @@ CASE = Case(
     title="Impact of a flat punch on a viscoelastic layer",
     question="Is the one impact with a closed form reproduced, through critical damping and beyond?",
     equations=("Eq. (48)", "Eq. (49)", "Eq. (50)", "Fig. 11"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*HALF_SPACE, *ON_LAYERS),
     methods=EVERY,
     claims=CLAIMS,

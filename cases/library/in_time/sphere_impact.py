@@ -1,44 +1,47 @@
-"""Section 4.3 of Forsbach (2023): impact of a sphere on a standard-solid layer, Fig. 12."""
+"""Section 4.3 of Forsbach (2023): impact of a sphere on a standard-solid layer, Fig. 12.
 
-from collections.abc import Iterator
-
-import numpy as np
-from numpy.typing import NDArray
-
-from cases.declare.case import Case, CaseScene
-from cases.declare.methods import MethodUse
-from cases.declare.task import Answers
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact
-from cases.judgement.claims.residual import Residual
-from cases.judgement.claims.scaling_law import Twin
-from cases.library._compared import BEM, EQUATION, FINITE_ELEMENTS, MDR, PUBLISHED_ROUTE, TABLE, agreements, with_reason
-from cases.library._figures import paper_figure
-from cases.measurements.advice.effects import AblationStudy
-from cases.measurements.cost.settings import impact_costs
-from cases.results.records import Figure, Origin, SceneRun, Series
-from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
-
-Array = NDArray[np.float64]
-
-MAXWELL_MODULUS = 7.5e6  # Pa, G_1
-LONG_TERM_MODULUS = MAXWELL_MODULUS / 9  # G_inf/G_1 = 0.111..
-RELAXATION_TIME = 1e-3  # s
-MASS = 0.02  # kg
-RADIUS_OF_CURVATURE = 1e-2  # m
-VELOCITY = 1.27479e-3 / RADIUS_OF_CURVATURE  # m/s; only R v0 matters
-THICKNESSES = (1e-3, 2e-3, 3e-3)  # m
-
-FEM = MethodUse(label="fem")
-
-TEXT = """
 A rigid sphere of 20 g hits an incompressible layer of a standard solid, G_inf/G_1 = 1/9 and tau = 1 ms, and rebounds.
 The contact radius grows and shrinks, so there is no closed form; that MDR holds in the rebound from a layer was shown
 in the paper by explicit finite elements only. The thinner the layer the stiffer the contact and, with these data, the
 livelier the rebound. R and v0 enter only as a product. Kinetic, stored and dissipated energy must add up.
 """
 
-RESTITUTION = {0.0: 0.454573, 1e-3: 0.64341, 2e-3: 0.559244, 3e-3: 0.52344}  # by thickness, 0 for the half-space
+from collections.abc import Iterator
+
+import numpy as np
+
+from cases.declare.case import Case, CaseScene, text_of
+from cases.declare.methods import MethodUse
+from cases.declare.task import Answers
+from cases.judgement.claims.scaling_law import ScalingLaw
+from cases.library._claims import agreements, energy_balance, exact, names_of
+from cases.library._figures import paper_figure
+from cases.library._figures._symbols import series
+from cases.library._methods import BEM, EQUATION, MDR, TABLE
+from cases.library._reasons import reasons
+from cases.measurements.advice.effects import AblationStudy
+from cases.measurements.cost.settings import impact_costs
+from cases.results.records.figure import Figure, Series
+from cases.results.records.scene_run import SceneRun
+from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
+from contact.records.validation import FloatArray
+
+WHY = reasons("sphere_impact")
+
+MAXWELL_MODULUS = 7.5e6  # Pa, G_1
+LONG_TERM_MODULUS = MAXWELL_MODULUS / 9  # G_inf/G_1 = 0.111..
+RELAXATION_TIME = 1e-3  # s
+MASS = 0.02  # kg
+RADIUS_OF_CURVATURE = 1e-2  # m
+# Velocity [m/s]; only R v0 matters.
+VELOCITY = 1.27479e-3 / RADIUS_OF_CURVATURE
+THICKNESSES = (1e-3, 2e-3, 3e-3)  # m
+
+FEM = MethodUse(label="fem")
+
+
+# By thickness [m]; zero stands for the half-space.
+RESTITUTION = {0.0: 0.454573, 1e-3: 0.64341, 2e-3: 0.559244, 3e-3: 0.52344}
 PEAK_FORCE = {0.0: 3.02797, 2e-3: 4.69143}  # N
 
 
@@ -91,7 +94,8 @@ def twice_the_radius_at_half_the_speed(scene: Scene) -> Scene:
 
 def figure_12(case: Case, answers: Answers) -> Iterator[Figure]:
     """Fig. 12: force over depth, a/h over time, velocity over time; in units of the elastic half-space."""
-    from cases.library._figures.figure_12 import elastic_half_space  # noqa: PLC0415  # loads MDR, so only for the drawing
+    # This import loads MDR, so it waits until the figure is drawn.
+    from cases.library._figures.figure_12 import elastic_half_space  # noqa: PLC0415
 
     unit = elastic_half_space()
     loops: list[Series] = []
@@ -108,110 +112,67 @@ def figure_12(case: Case, answers: Answers) -> Iterator[Figure]:
     yield paper_figure(12, loops, ratios, speeds)
 
 
-def _symbols(scene: CaseScene, x: Array, y: Array) -> Series:
+def _symbols(scene: CaseScene, x: FloatArray, y: FloatArray) -> Series:
     group = f"h = {1e3 * scene.scene.layer.thickness:g} mm"
-    return Series(label=f"fem {scene.name}", method="fem", group=group, x=tuple(x.tolist()), y=tuple(y.tolist()))
+    return series(f"fem {scene.name}", "fem", group, x, y)
 
 
-def _samples(run: SceneRun, channel: str) -> tuple[Array, Array]:
+def _samples(run: SceneRun, channel: str) -> tuple[FloatArray, FloatArray]:
     """Return time and values, as many as symbols can show."""
     curve = run.curve(channel)
     shown = slice(None, None, max(1, len(curve.x) // 25))
     return np.array(curve.x)[shown], np.array(curve.y)[shown]
 
 
-SEPARATE_IMPACT = Reason(
-    because="the same springs and memory, integrated by a separate code on two resolutions",
-    derived_from="those two agree to 3e-5; finite elements what they state for 120 cells and 400 steps: 7e-5 in the "
-    "restitution, 3e-4 in the peak force",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="explicit integration over springs from a separate Fredholm solution",
-)
-SIX_DIGITS = Reason(
-    because="the half-space impact, integrated by a separate code to six digits",
-    derived_from="six digits of R v0 and of the result, five times",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="explicit integration over half-space springs",
-)
-ENERGY = Reason(
-    because="kinetic, stored and dissipated energy add up to the initial one",
-    derived_from="MDR: tolerance of its time integration; finite elements: 1e-5 by 400 time steps, ten times",
-    origin=Origin.CLOSED_FORM,
-    source="first law of thermodynamics",
-)
-SIMILARITY = Reason(
-    because="springs of g = m a^2/R scale so that only R v0 matters",
-    derived_from="ten times the tolerance of the time integration; finite elements add their error",
-    origin=Origin.CLOSED_FORM,
-    source="dimensional analysis of Eqs. (51) and (53); claimed in the text to Fig. 12",
-)
-
+# Agreement of MDR and finite elements: by quantities, the tolerance and where it comes from.
+BY_FINITE_ELEMENTS = {
+    ("coefficient_of_restitution", "peak_depth", "contact_time"): (
+        2e-4,
+        "what finite elements state for 120 cells and 400 steps, 8e-5, twice",
+    ),
+    ("peak_force",): (5e-4, "what finite elements state for 120 cells and 400 steps, 3e-4, twice"),
+    ("peak_contact_radius",): (4e-3, "a tenth of a cell and what halving the cells changes, 2e-3, twice"),
+}
 CLAIMS = (
-    Exact(
-        name="restitution on layers",
-        quantity="coefficient_of_restitution",
-        expected={name_of(h): (RESTITUTION[h],) for h in THICKNESSES},
+    *exact(
+        WHY["separate impact"],
+        {"restitution on layers": ("coefficient_of_restitution", {name_of(h): (RESTITUTION[h],) for h in THICKNESSES})},
         tolerance=3e-5,
         tolerances={"fem": 1e-4, "mdr_table": 3e-3},
-        reason=SEPARATE_IMPACT,
     ),
-    Exact(
-        name="restitution on the half-space",
-        quantity="coefficient_of_restitution",
-        expected={"half-space": (RESTITUTION[0.0],)},
+    *exact(
+        WHY["six digits"],
+        {"restitution on the half-space": ("coefficient_of_restitution", {"half-space": (RESTITUTION[0.0],)})},
         tolerance=5e-6,
-        reason=SIX_DIGITS,
     ),
-    Exact(
-        name="peak force",
-        quantity="peak_force",
-        expected={name_of(h): (force,) for h, force in PEAK_FORCE.items()},
+    *exact(
+        WHY["separate impact"],
+        {"peak force": ("peak_force", {name_of(h): (force,) for h, force in PEAK_FORCE.items()})},
         tolerance=3e-5,
         tolerances={"fem": 3e-4, "mdr_table": 3e-3},
-        reason=SEPARATE_IMPACT,
     ),
-    Residual(
-        name="energy balance",
-        quantity="energy_residual",
-        scenes=tuple(s.name for s in ON_LAYERS),
-        tolerance=1e-7,
-        tolerances={"fem": 1e-4, "mdr_table": 1e-4},
-        reason=ENERGY,
-    ),
-    Twin(
+    energy_balance(ON_LAYERS, {"fem": 1e-4, "mdr_table": 1e-4}, time_steps=400),
+    ScalingLaw(
         name="only R v0 matters",
         quantity="coefficient_of_restitution",
-        scenes=tuple(s.name for s in ON_LAYERS),
+        scenes=names_of(ON_LAYERS),
         change=twice_the_radius_at_half_the_speed,
         factors={"coefficient_of_restitution": 1.0, "contact_time": 1.0},
         tolerance=1e-7,
         tolerances={"fem": 1e-3},
         methods=("mdr",),
-        reason=SIMILARITY,
+        reason=WHY["similarity"],
     ),
-    *agreements(
-        ON_LAYERS,
-        {"fem": 2e-4},
-        ("coefficient_of_restitution", "peak_depth", "contact_time"),
-        reason=with_reason(FINITE_ELEMENTS, "what finite elements state for 120 cells and 400 steps, 8e-5, twice"),
-    ),
-    *agreements(
-        ON_LAYERS,
-        {"fem": 5e-4},
-        ("peak_force",),
-        reason=with_reason(FINITE_ELEMENTS, "what finite elements state for 120 cells and 400 steps, 3e-4, twice"),
-    ),
-    *agreements(
-        ON_LAYERS,
-        {"fem": 4e-3},
-        ("peak_contact_radius",),
-        reason=with_reason(FINITE_ELEMENTS, "a tenth of a cell and what halving the cells changes, 2e-3, twice"),
+    *(
+        claim
+        for quantities, (tolerance, derived_from) in BY_FINITE_ELEMENTS.items()
+        for claim in agreements(ON_LAYERS, {"fem": tolerance}, quantities, derived_from=derived_from)
     ),
     *agreements(
         ON_LAYERS,
         {"mdr_table": 8e-3},
         ("coefficient_of_restitution", "peak_force", "peak_depth"),
-        reason=with_reason(PUBLISHED_ROUTE, "three times the error that the table states, 2.6e-3"),
+        derived_from="three times the error that the table states, 2.6e-3",
     ),
 )
 
@@ -220,8 +181,7 @@ CASE = Case(
     title="Impact of a sphere on a viscoelastic layer",
     question="Does MDR hold in the rebound from a layer, where it was never proven?",
     equations=("Eq. (51)", "Eq. (52)", "Eq. (53)", "Fig. 12"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(HALF_SPACE, *ON_LAYERS),
     methods=(MDR, FEM, BEM, EQUATION, TABLE),
     claims=CLAIMS,

@@ -1,18 +1,23 @@
-"""Thick layers: closed forms on the half-space, and the rate at which layers approach them."""
+"""Thick layers: closed forms on the half-space, and the rate at which layers approach them.
+
+On the half-space flat punch, cone, paraboloid and power law have closed forms (Sneddon). Every method must give them.
+A thick layer is stiffer by kbar = 1 + alpha a/h + O((a/h)^2), where alpha = (2/pi) int (1 - chi) dq depends on the
+support only: 0.743303 unbonded, 0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in
+the limit, what is left must fall with the second order of a/h.
+"""
 
 from collections.abc import Callable
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene
+from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.declared import Reason
-from cases.judgement.claims.exact import Exact
-from cases.library._compared import EVERY
+from cases.library._claims import exact
 from cases.library._layers import LAYERS, THICKNESS, contact_modulus, half_space, layer, prescribed_radii, scene_name
+from cases.library._methods import EVERY
+from cases.library._reasons import reasons
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import elastic_costs
-from cases.results.records import Origin
 from contact import (
     Cone,
     ContactRadii,
@@ -26,18 +31,14 @@ from contact import (
     Scene,
 )
 
+WHY = reasons("half_space_limits")
+
 RADIUS = 1e-3  # m
 SLOPE = 0.1
 RADIUS_OF_CURVATURE = 1e-2  # m
 DEPTH = 1e-5  # m
 THICK_RATIOS = (0.02, 0.01)
 
-TEXT = """
-On the half-space flat punch, cone, paraboloid and power law have closed forms (Sneddon). Every method must give them.
-A thick layer is stiffer by kbar = 1 + alpha a/h + O((a/h)^2), where alpha = (2/pi) int (1 - chi) dq depends on the
-support only: 0.743303 unbonded, 0.876533, 1.034807 and 1.126955 bonded with nu = 0.3, 0.45 and 0.5. With that term in
-the limit, what is left must fall with the second order of a/h.
-"""
 
 ALPHA = {"unbonded": 0.743303, "bonded nu=0.3": 0.876533, "bonded nu=0.45": 1.034807, "bonded nu=0.5": 1.126955}
 
@@ -82,7 +83,8 @@ def depth(scene: Scene) -> list[float]:
         case Paraboloid(radius_of_curvature=radius):
             return [a**2 / radius]
         case PowerLaw(exponent=4.0, reference_radius=radius, reference_height=height):
-            return [8 / 3 * height * (a / radius) ** 4]  # a int_0^a 4 r^3/sqrt(a^2 - r^2) dr = (8/3) a^4
+            # The integral a int_0^a 4 r^3/sqrt(a^2 - r^2) dr is (8/3) a^4.
+            return [8 / 3 * height * (a / radius) ** 4]
     raise InvalidInput(f"indenter = {type(scene.indenter).__name__}: no closed form is written for it")
 
 
@@ -114,42 +116,24 @@ def confinement(scene: Scene) -> float:
     return scene.indenter.flat_radius / scene.layer.thickness
 
 
-SNEDDON = Reason(
-    because="linear elasticity on the half-space, solved by Sneddon",
-    derived_from="MDR and the integral equation: quadrature to 1e-12; finite elements three times their accuracy "
-    "of 1e-6; boundary elements what they state on 128 cells across the contact, 6e-4, rounded up",
-    origin=Origin.CLOSED_FORM,
-    source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
-)
-FIRST_ORDER_TERM = Reason(
-    because="kbar has a power series in a/h whose first coefficient is an integral of the kernel",
-    derived_from="accepted band [p_f - 0.2, p_f + 0.5]; alpha has six digits, so a/h stays above 0.01",
-    origin=Origin.CLOSED_FORM,
-    source="alpha = (2/pi) int_0^inf (1 - chi) dq",
-)
-
-LOOSER = {"fem": 3e-6, "bem": 1e-3}
 CLAIMS = (
-    *(
-        Exact(
-            name=f"Sneddon's {quantity.replace('_', ' ')}",
-            quantity=quantity,
-            scenes=tuple(s.name for s in CURVED),
-            expected=closed_form,
-            tolerance=1e-10,
-            tolerances=LOOSER,
-            reason=SNEDDON,
-        )
-        for quantity, closed_form in (("indentation_depth", depth), ("normal_force", force))
-    ),
-    Exact(
-        name="force of the flat punch",
-        quantity="normal_force",
-        scenes=(PUNCH.name,),
-        expected=punch_force,
+    *exact(
+        WHY["sneddon"],
+        {
+            "Sneddon's indentation depth": ("indentation_depth", depth),
+            "Sneddon's normal force": ("normal_force", force),
+        },
+        scenes=CURVED,
         tolerance=1e-10,
-        tolerances={"fem": 3e-6},  # boundary elements measure their disc of cells by this very force
-        reason=SNEDDON,
+        tolerances={"fem": 3e-6, "bem": 1e-3},
+    ),
+    # Boundary elements have no tolerance of their own here: they measure their disc of cells by this very force.
+    *exact(
+        WHY["sneddon"],
+        {"force of the flat punch": ("normal_force", punch_force)},
+        scenes=(PUNCH,),
+        tolerance=1e-10,
+        tolerances={"fem": 3e-6},
     ),
     *(
         Approach(
@@ -161,7 +145,7 @@ CLAIMS = (
             formal_order=2.0,
             largest=1e-3,
             tolerance=0.2,
-            reason=FIRST_ORDER_TERM,
+            reason=WHY["first order term"],
         )
         for label in LAYERS
     ),
@@ -172,8 +156,7 @@ CASE = Case(
     title="Limits of thick layers",
     question="Does every method give Sneddon's closed forms, and do layers approach them at the right rate?",
     equations=("Eq. (14)", "Eq. (15)", "Table 1"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*CURVED, PUNCH, *THICK),
     methods=EVERY,
     claims=CLAIMS,

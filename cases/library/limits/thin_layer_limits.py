@@ -1,35 +1,37 @@
-"""Thin layers: the closed forms of Table 1 and Eqs. (16)-(22), (36), (38), and the rate of approach."""
+"""Thin layers: the closed forms of Table 1 and Eqs. (16)-(22), (36), (38), and the rate of approach.
+
+When a >> h a compressible bonded layer and an unbonded layer become Winkler beds, and a bonded incompressible layer
+squeezes its material outwards. Stiffness and depth then have the closed forms of Table 1, the truncated cone those of
+Eqs. (36), (37) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the
+stiffness of the bonded incompressible layer still is 11 % off, so the limit itself is no substitute for the layer.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene
+from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.declared import Reason
-from cases.library._compared import BEM, EQUATION, FEM, MDR, TABLE, agreements
+from cases.library._claims import agreements
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
+from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
+from cases.library._reasons import reasons
 from cases.measurements.cost.settings import elastic_costs
-from cases.results.records import Origin
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
+
+WHY = reasons("thin_layer_limits")
 
 LABELS = ("unbonded", "bonded nu=0.3", "bonded nu=0.45", "bonded nu=0.5")
 RATIOS = (75.0, 150.0)
-CHECKED_RATIO = 40.0  # thin enough to see the limit, and affordable for every method
+# A layer of this a/h is thin enough to see the limit, and affordable for every method.
+CHECKED_RATIO = 40.0
 QUICK_LABEL = "bonded nu=0.5"  # finite elements walk to this limit in the suite ci, to all in the nightly one
 RADIUS_OF_CURVATURE = 10.0  # m
 SLOPE = 1e-3
 FLAT_FRACTION = 0.5
 
 FINER_TABLE = replace(TABLE, settings=dict(TABLE.settings) | {"cells": 192})
-
-TEXT = """
-When a >> h a compressible bonded layer and an unbonded layer become Winkler beds, and a bonded incompressible layer
-squeezes its material outwards. Stiffness and depth then have the closed forms of Table 1, the truncated cone those of
-Eqs. (36), (37) and (38). Layers approach them with the first order of h/a. The limits are far: at a/h = 50 the
-stiffness of the bonded incompressible layer still is 11 % off, so the limit itself is no substitute for the layer.
-"""
 
 
 def paraboloid(label: str, ratio: float) -> CaseScene:
@@ -104,23 +106,6 @@ def thinness(scene: Scene) -> float:
     return scene.layer.thickness / _radius(scene)
 
 
-TABLE_1 = Reason(
-    because="to leading order in h/a the layer is a Winkler bed, or squeezes its material outwards",
-    derived_from="accepted band [p_f - 0.2, p_f + 0.5] between a/h = 75 and 150",
-    origin=Origin.CLOSED_FORM,
-    source="Forsbach, Machines 11 (2023) 474, Table 1, Eqs. (16), (18), (21), (36), (37), (38)",
-)
-
-
-COARSE_GRIDS = Reason(
-    because="both solve the same layer; a grid of 128 or 192 cells across the contact has few cells in a thin layer",
-    derived_from="three times what grid and table state at a/h = 40, where a cell is half of the thickness: "
-    "depth 5e-3 and 1.3e-2, force 4e-3 and 6e-2, stiffness 4e-4 and 6.6e-3",
-    origin=Origin.INDEPENDENT_METHOD,
-    source="FFT boundary elements; share the layer kernel",
-)
-
-
 GRID_TOLERANCES = {"indentation_depth": 1.5e-2, "normal_force": 1.2e-2, "contact_stiffness": 1.5e-3}
 TABLE_TOLERANCES = {"indentation_depth": 4e-2, "normal_force": 1.8e-1, "contact_stiffness": 2e-2}
 
@@ -140,7 +125,7 @@ def approach(
             largest=0.1,
             tolerance=0.2,
             methods=("mdr", "fem"),
-            reason=TABLE_1,
+            reason=WHY["table 1"],
         )
         for label in LABELS
     )
@@ -156,8 +141,7 @@ CASE = Case(
     title="Limits of thin layers",
     question="Are the thin-layer formulas the limits of the layer, and how fast are they reached?",
     equations=("Eq. (16)", "Eq. (18)", "Eq. (21)", "Eq. (36)", "Eq. (37)", "Eq. (38)", "Table 1"),
-    text=TEXT.strip(),
-    suites=("ci", "nightly"),
+    text=text_of(__doc__),
     scenes=(*PARABOLOIDS, *CONES),
     methods=(MDR, FEM, BEM, EQUATION, FINER_TABLE),
     claims=(
@@ -166,7 +150,7 @@ CASE = Case(
         *approach("depth of the truncated cone", "indentation_depth", cone, cone_depth),
         *approach("force of the truncated cone", "normal_force", cone, cone_force),
         *agreements(CHECKED, {"fem": 3e-6, "integral_equation": 1e-9}),
-        *agreements(CHECKED, {"bem": GRID_TOLERANCES, "mdr_table": TABLE_TOLERANCES}, reason=COARSE_GRIDS),
+        *agreements(CHECKED, {"bem": GRID_TOLERANCES, "mdr_table": TABLE_TOLERANCES}, reason=WHY["coarse grids"]),
         *agreements(FAR, {"fem": 3e-6}, suffix=", far"),
     ),
     work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from cases.declare.case import Case
 from cases.declare.task import Answers, Task
 from cases.measurements.advice.ablation import NUMBERS, STATIC, parts_of, without
-from cases.results.records import EffectEntry, SceneRun
+from cases.results.records.cost import EffectEntry
+from cases.results.records.scene_run import SceneRun
 from contact import Adhesion, Detachment
 
 NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"

@@ -11,7 +11,8 @@ import numpy as np
 
 from bem.polynomials.gauss import legendre_rule
 from cases.declare.methods import build
-from cases.results.records import CaseResult, ErrorMap
+from cases.results.records.reliability import ErrorMap
+from cases.results.records.run import CaseResult
 from contact import ContactError, ContactPath, ContactRadii, Layer, Method, Paraboloid, Scene
 from contact.records.validation import FloatArray
 

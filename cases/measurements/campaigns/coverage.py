@@ -13,7 +13,9 @@ from cases.declare.methods import build
 from cases.measurements.campaigns.campaign import Check, Jury, Trial, coverage, trial
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
-from cases.results.records import CaseResult, Claim, CoverageRecord, Kind, Origin, Verdict
+from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.results.records.reliability import CoverageRecord
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch, Method, Scene
 

@@ -1,6 +1,6 @@
 """Work-precision records of many cases side by side: shortest times, and how much faster one method is."""
 
-from cases.results.records import CheapestRun, WorkPrecision
+from cases.results.records.cost import CheapestRun, WorkPrecision
 
 SHOWN = (1e-2, 1e-4, 1e-6, 1e-8)
 """Tolerances that an overview has room for."""

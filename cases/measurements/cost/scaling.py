@@ -12,7 +12,9 @@ from scipy.optimize import least_squares
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
 from cases.declare.methods import build
-from cases.results.records import CaseResult, Claim, Kind, Origin, ScalingFit, Verdict
+from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.results.records.cost import ScalingFit
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from cases.run.empty_caches import forget
 from contact import (

@@ -16,7 +16,8 @@ from cases.measurements.cost.cost_of_accuracy import (
     pareto_front,
     price_of_a_digit,
 )
-from cases.results.records import CheapestRun, DigitPrice, SceneRun, WorkPoint, WorkPrecision
+from cases.results.records.cost import CheapestRun, DigitPrice, WorkPoint, WorkPrecision
+from cases.results.records.scene_run import SceneRun
 from cases.run.timing import summed_up
 
 

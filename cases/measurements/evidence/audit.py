@@ -18,7 +18,8 @@ from cases.measurements.evidence.calibrate import FAMILIES, CoarseReference, err
 from cases.measurements.evidence.choice import solve, usable
 from cases.measurements.evidence.kinds import BANDS
 from cases.measurements.evidence.records import Evidence, Measurement, shipped
-from cases.results.records import CaseResult, Claim, Kind, Origin, Verdict
+from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from contact import ContactError, InvalidInput, NotConvergedError, Scene
 

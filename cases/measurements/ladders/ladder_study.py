@@ -7,7 +7,9 @@ from typing import Any, Final
 
 from cases.declare.methods import build
 from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits
-from cases.results.records import CaseResult, Claim, Kind, Ladder, Origin, Verdict
+from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.results.records.reliability import Ladder
+from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from contact import InvalidInput, Method
 

@@ -11,7 +11,7 @@ import numpy as np
 from cases.declare.methods import build
 from cases.measurements.campaigns.invariants import invariant_residuals
 from cases.measurements.ladders.repeats import repeated, shared_digits
-from cases.results.records import Ladder, Rung
+from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from contact import ContactError, Method, Scene, Solution
 

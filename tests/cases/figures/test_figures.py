@@ -121,7 +121,7 @@ def test_figure_12_values_and_loop():
     depth, force = series(12, "h = 1 mm")
     assert abs(depth[0]) + abs(force[0]) < 1e-14
     assert np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(depth)) > 0.0  # the loop takes energy
-    assert figure_12.scene(1e-3).layer.shear_modulus == pytest.approx(7.5e6 * 10.0 / 9.0, rel=1e-12, abs=0.0)
+    assert figure_12.scene_of(1e-3).layer.shear_modulus == pytest.approx(7.5e6 * 10.0 / 9.0, rel=1e-12, abs=0.0)
 
 
 def test_captions_give_the_numbers_behind_loose_statements():

@@ -7,12 +7,12 @@ from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.proposal import propose
-from cases.gate.write_permission import Circumstances
-from cases.results.records import Kind
+from cases.gate.write_permission import WriteConditions
+from cases.results.records.claim import Kind
 from tests.cases.example_run import example_run, passing_case
 
 CASE = "example_cone"
-NOW = Circumstances(revision="0" * 40, changed=(), in_ci=False, date="2026-01-01")
+NOW = WriteConditions(revision="0" * 40, changed=(), in_ci=False, date="2026-01-01")
 SPREAD = 1e-10  # tolerance 1e-9
 
 

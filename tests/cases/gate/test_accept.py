@@ -9,8 +9,8 @@ import pytest
 from cases.gate.accept import accept, refusals
 from cases.gate.baseline import read_baselines
 from cases.gate.history import read_history
-from cases.gate.write_permission import circumstances
-from cases.results.records import Kind
+from cases.gate.write_permission import write_conditions
+from cases.results.records.claim import Kind
 from cases.results.status import Status
 from contact import InvalidInput
 from reports.pages.report import write_report
@@ -198,24 +198,24 @@ def test_no_reason_is_refused(tmp_path):
 @pytest.mark.parametrize(("value", "in_ci"), [("true", True), ("1", True), ("", False), ("false", False)])
 def test_continuous_integration_is_known_by_its_variable(tmp_path, value, in_ci):
     repository(tmp_path)
-    assert circumstances(tmp_path, tmp_path / "baselines", {"CI": value}).in_ci is in_ci
+    assert write_conditions(tmp_path, tmp_path / "baselines", {"CI": value}).in_ci is in_ci
 
 
 def test_changed_and_new_files_are_seen_but_not_the_baselines_being_written(tmp_path):
     repository(tmp_path)
     folder = tmp_path / "baselines"
-    assert circumstances(tmp_path, folder, {}).changed == ()
+    assert write_conditions(tmp_path, folder, {}).changed == ()
     (folder / CASE).mkdir(parents=True)
     (folder / CASE / "mdr.json").write_text("{}", encoding="utf-8")
-    assert circumstances(tmp_path, folder, {}).changed == ()
+    assert write_conditions(tmp_path, folder, {}).changed == ()
     (tmp_path / "new.py").write_text("x = 1\n", encoding="utf-8")
     (tmp_path / "tracked.py").write_text("x = 2\n", encoding="utf-8")
-    assert set(circumstances(tmp_path, folder, {}).changed) == {"new.py", "tracked.py"}
+    assert set(write_conditions(tmp_path, folder, {}).changed) == {"new.py", "tracked.py"}
 
 
 def test_outside_a_repository_nothing_can_be_accepted(tmp_path):
     with pytest.raises(InvalidInput, match="git"):
-        circumstances(tmp_path, tmp_path / "baselines", {})
+        write_conditions(tmp_path, tmp_path / "baselines", {})
 
 
 def repository(folder):

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from cases.results.records import Kind
+from cases.results.records.claim import Kind
 from cases.results.status import ExitCode, Status, exit_code
 from reports.pages.annotations import MOST, annotation_lines
 from tests.cases.example_run import OTHER_SCENE, SCENE, fast_run, passing_case

@@ -7,7 +7,8 @@ import pytest
 from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.ladders import accept_ladders, read_ladders
-from cases.results.records import Kind, Ladder, Rung
+from cases.results.records.claim import Kind
+from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from contact import InvalidInput
 from tests.cases.example_run import example_run, passing_case

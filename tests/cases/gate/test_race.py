@@ -10,12 +10,12 @@ import pytest
 from cases.declare.case import Case
 from cases.gate.race import race as race_module
 from cases.gate.race import version
-from cases.gate.race.against import subjects, with_times_against
+from cases.gate.race.against import SOURCE, subjects, with_times_against
 from cases.gate.race.race import Race, judge_race, race
 from cases.gate.race.version import Subject, Version, subject
 from cases.gate.race.worktree import worktree
 from cases.gate.write_permission import git
-from cases.results.records import Kind
+from cases.results.records.claim import Kind
 from cases.results.status import Status
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
@@ -205,3 +205,8 @@ def test_a_subject_is_understood_without_the_library():
     assert mapping["indenter"]["kind"] == "paraboloid"
     assert (module, attribute, settings) == ("tests.cases.fake_method", "FakeHertz", {"stated": 1e-12})
     assert version.subject(case, case.scenes[0], case.methods[0]).label == "fake_hertz / half-space nu=0.3 / fast"
+
+
+def test_the_source_that_is_raced_and_accepted_holds_every_package():
+    packages = ("contact", "bem", "mdr", "fem_reference", "cases", "reports")
+    assert [name for name in packages if not (SOURCE / name / "__init__.py").is_file()] == []

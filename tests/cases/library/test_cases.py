@@ -3,7 +3,7 @@
 import pytest
 
 from cases.declare.registry import load_cases
-from cases.results.records import Kind, Origin
+from cases.results.records.claim import Kind, Origin
 
 CASES = load_cases()
 FAMILIES = {

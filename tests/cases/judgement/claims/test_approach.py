@@ -8,7 +8,8 @@ from cases.declare.case import CaseScene
 from cases.declare.task import Answers
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.declared import Reason
-from cases.results.records import Origin, Quantity, SceneRun
+from cases.results.records.claim import Origin
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 from tests.cases.fake_case import case_scene, fake_case, use
 from tests.cases.fake_method import FakeHertz

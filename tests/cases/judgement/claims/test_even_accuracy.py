@@ -4,7 +4,8 @@ import pytest
 
 from cases.judgement.claims.declared import Reason
 from cases.judgement.claims.even_accuracy import EvenAccuracy
-from cases.results.records import Origin, Quantity, SceneRun
+from cases.results.records.claim import Origin
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
 CLAIM = EvenAccuracy(

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cases.judgement.claims.incremental_stiffness import _judged, chebyshev_radii
-from cases.results.records import Quantity, SceneRun
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from cases.judgement.convergence.behaviour import behaviour
 from cases.judgement.convergence.spectral import digits_per_refinement
-from cases.results.records import ConvergenceClass
+from cases.results.records.convergence import ConvergenceClass
 from contact import InvalidInput
 
 

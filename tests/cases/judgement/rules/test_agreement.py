@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cases.judgement.rules.agreement import judge_agreement
-from cases.results.records import Verdict
+from cases.results.records.claim import Verdict
 from cases.results.status import Status
 from contact import InvalidInput
 

@@ -7,7 +7,8 @@ from cases.judgement.rules.invariant import judge_invariant
 from cases.judgement.rules.judgement import nothing_compared, passed_or_failed, worst_judgement
 from cases.judgement.rules.order import judge_digits, judge_order
 from cases.judgement.rules.regression import judge_counter, judge_regression
-from cases.results.records import ConvergenceClass, Verdict
+from cases.results.records.claim import Verdict
+from cases.results.records.convergence import ConvergenceClass
 from cases.results.status import Status
 from contact import InvalidInput
 

@@ -13,7 +13,7 @@ from cases.measurements.ladders.ladder_study import climbs, ladder_case, no_sile
 from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
 from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
 from cases.measurements.ladders.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
-from cases.results.records import Ladder, Rung
+from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from contact import InvalidInput, NotConvergedError, Supported
 from mdr import Mdr

@@ -1,0 +1,114 @@
+"""Where methods break and how well they state their errors: ladders, coverage, maps of errors."""
+
+from dataclasses import field
+from typing import Self
+
+from pydantic import model_validator
+from pydantic.dataclasses import dataclass
+
+from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative, Positive, Vector
+from cases.results.status import Status
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Rung:
+    """One step of a stability ladder.
+
+    Attributes:
+        value: of the hard parameter.
+        status: PASS when solved; otherwise the reason names the error.
+        reason: of a status other than PASS.
+        digits: significant digits that perturbed repeats share; None when nothing was solved.
+        iterations: of the hardest iteration; None for a method without any.
+        residuals: largest relative residual of each invariant, by name.
+    """
+
+    value: Positive
+    status: Status
+    reason: str = ""
+    digits: NotNegative | None
+    iterations: int | None = None
+    residuals: dict[str, NotNegative] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Ladder:
+    """A hard parameter walked in steps until something breaks.
+
+    Attributes:
+        name: unique within the case, for example "nearly incompressible".
+        parameter: what is walked, with its symbol, for example "1/2 - nu".
+        unit: "1" for a ratio.
+        method: label of the method that climbs.
+        quantity: whose digits are counted.
+        rungs: in the order of walking, from easy to hard.
+    """
+
+    name: str
+    parameter: str
+    unit: str
+    method: str
+    quantity: str
+    rungs: tuple[Rung, ...]
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class CoverageRecord:
+    """Stated against true errors of one quantity over random scenes.
+
+    Attributes:
+        method: name in the method table.
+        settings: numerical settings of the method.
+        family: kind of scenes.
+        quantity: whose errors.
+        scenes: how many were drawn.
+        refused: how many the method refused by name.
+        crashed: how many ended with an error that has no name.
+        checks: how many answers were compared with the referee's.
+        covered: share of them whose stated error holds.
+        decided: how many the referee could tell from its own uncertainty.
+        sharpness: median of stated over true error among those; None without any.
+        percentiles: stated over true error at 0, 2, .. 100 percent of those.
+    """
+
+    method: str
+    settings: Mapping
+    family: str
+    quantity: str
+    scenes: int
+    refused: int
+    crashed: int
+    checks: int
+    covered: NotNegative
+    decided: int
+    sharpness: NotNegative | None
+    percentiles: tuple[NotNegative, ...] = ()
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class ErrorMap:
+    """Signed relative errors over a/h and Poisson's ratio.
+
+    Attributes:
+        name: of the formula or method.
+        title: for readers.
+        quantity: whose error.
+        reference: what it is relative to.
+        ratios: a/h, shape (n,).
+        rows: Poisson's ratios as words, or "unbonded", shape (m,).
+        errors: shape (m, n); None where there is no answer.
+    """
+
+    name: str
+    title: str
+    quantity: str
+    reference: str
+    ratios: Vector
+    rows: tuple[str, ...]
+    errors: tuple[tuple[Finite | None, ...], ...]
+
+    @model_validator(mode="after")
+    def _full(self) -> Self:
+        if len(self.errors) != len(self.rows) or any(len(row) != len(self.ratios) for row in self.errors):
+            raise ValueError(f"{self.name}: a map needs one error for each row and ratio")
+        return self

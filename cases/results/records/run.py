@@ -1,0 +1,131 @@
+"""A whole run: its cases with all their records, where it was made, and what was accepted.
+
+A non-finite number cannot be stored: what could not be computed is ``None`` beside a status that says why.
+"""
+
+from dataclasses import field
+from typing import Literal
+
+from pydantic.dataclasses import dataclass
+
+from cases.results.records.claim import Claim
+from cases.results.records.convergence import ConvergenceStudy
+from cases.results.records.cost import EffectEntry, ScalingFit, WorkPrecision
+from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative
+from cases.results.records.figure import Figure
+from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
+from cases.results.records.scene_run import SceneRun
+from cases.results.status import Status, worst
+
+# Files of another version are refused.
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class SceneDescription:
+    """A scene of a case: its name, the parameters that set it apart, and the scene itself as canonical JSON."""
+
+    name: str
+    parameters: Mapping
+    canonical: str
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class CaseResult:
+    """A case: its text, what each method answered, and how its claims ended."""
+
+    name: str
+    title: str
+    question: str
+    equations: tuple[str, ...]
+    text: str
+    scenes: tuple[SceneDescription, ...]
+    runs: tuple[SceneRun, ...]
+    claims: tuple[Claim, ...]
+    convergence: tuple[ConvergenceStudy, ...] = ()
+    work_precision: tuple[WorkPrecision, ...] = ()
+    effects: tuple[EffectEntry, ...] = ()
+    ladders: tuple[Ladder, ...] = ()
+    coverage: tuple[CoverageRecord, ...] = ()
+    maps: tuple[ErrorMap, ...] = ()
+    scaling: tuple[ScalingFit, ...] = ()
+    figures: tuple[Figure, ...] = ()
+
+    @property
+    def status(self) -> Status:
+        """The status that decides for this case, of solutions that broke down and of claims."""
+        return worst([claim.status for claim in self.claims] + [run.status for run in self.runs])
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Acceptance:
+    """An entry of the baseline history: who accepted which change, and why; tolerances are relative."""
+
+    date: str
+    case: str
+    method: str
+    quantity: str
+    old: Finite | None
+    new: Finite | None
+    old_tolerance: NotNegative | None
+    new_tolerance: NotNegative | None
+    reason: str
+    revision: str
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class Stamp:
+    """Where and with what a run was made.
+
+    Attributes:
+        started: UTC, ISO 8601.
+        wall_seconds: duration of the run.
+        revision: commit of the source; "unknown" outside a repository.
+        dirty: whether the working tree had changes.
+        python: version.
+        platform: operating system and machine.
+        processor: model name.
+        cores: processors this run could use.
+        threads: threads of each numerical library really loaded, by name ("openblas 0.3.27 Haswell": 1).
+        versions: of the packages computed with.
+        mesh_hashes: by case, scene and method.
+    """
+
+    started: str
+    wall_seconds: NotNegative
+    revision: str
+    dirty: bool
+    python: str
+    platform: str
+    processor: str
+    cores: int
+    threads: dict[str, int]
+    versions: dict[str, str]
+    mesh_hashes: dict[str, str] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, kw_only=True, config=RECORD)
+class RunResult:
+    """A whole run; ``complete`` is False when it was interrupted, and its records are valid all the same."""
+
+    schema_version: Literal[1] = 1
+    suite: str
+    complete: bool
+    stamp: Stamp
+    cases: tuple[CaseResult, ...]
+    acceptances: tuple[Acceptance, ...] = ()
+
+    def case(self, name: str) -> CaseResult:
+        """Return the case called ``name``.
+
+        Raises:
+            KeyError: if the run has none of that name.
+        """
+        return {case.name: case for case in self.cases}[name]
+
+    @property
+    def statuses(self) -> tuple[Status, ...]:
+        """Every status of the run: of solutions and of claims."""
+        runs = [run.status for case in self.cases for run in case.runs]
+        claims = [claim.status for case in self.cases for claim in case.claims]
+        return tuple(runs + claims)

@@ -1,0 +1,24 @@
+"""The table of reasons: each is used by a claim of its case, and an incomplete entry is refused by its name."""
+
+import dataclasses
+
+import pytest
+
+from cases.declare.registry import load_cases
+from cases.library import _reasons
+from contact import InvalidInput
+
+OWN = [name for name in _reasons.TABLE if name != "shared"]
+
+
+@pytest.mark.parametrize("case", OWN)
+def test_every_reason_of_a_case_is_given_by_one_of_its_claims(case):
+    given = {dataclasses.astuple(claim.reason) for claim in load_cases()[case].claims}
+    unused = [name for name, reason in _reasons.reasons(case).items() if dataclasses.astuple(reason) not in given]
+    assert unused == []
+
+
+def test_an_entry_that_leaves_something_out_is_refused_by_its_name(monkeypatch):
+    monkeypatch.setitem(_reasons.TABLE, "made_up", {"half": {"because": "so", "origin": "closed form", "source": "me"}})
+    with pytest.raises(InvalidInput, match=r"made_up\.half has no entry 'tolerance'"):
+        _reasons.reasons("made_up")
