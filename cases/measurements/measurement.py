@@ -103,11 +103,6 @@ def median(values: Sequence[float]) -> float | None:
     return float(np.median(values)) if values else None
 
 
-def first_break(rows: Iterable[Measurement]) -> Measurement | None:
-    """The first row without an answer; None if there is none."""
-    return next((row for row in rows if row.status is not Status.PASS), None)
-
-
 def refusals(rows: Iterable[Measurement]) -> dict[str, int]:
     """How often each reason was given for a refusal, numbers left out, the most frequent first."""
     refused = (row.reason for row in rows if row.status is Status.INVALID)
