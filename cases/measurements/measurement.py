@@ -10,13 +10,19 @@ import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TypeVar
+from typing import Any, Final, Literal, TypeAlias, TypeVar, get_args
 
 import numpy as np
 
 from cases.results.status import Status
 
 K = TypeVar("K")
+
+End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
+ENDS: Final[tuple[End, ...]] = get_args(End)
+
+# Who judges a scene that was solved a second time, written down in another way: it says nothing about true errors.
+RESTATED: Final = "the same scene restated"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -83,9 +89,34 @@ def answers(rows: Iterable[Measurement]) -> list[Measurement]:
     return [row for row in rows if not row.quantity]
 
 
-def judged(rows: Iterable[Measurement], quantity: str = "") -> list[Measurement]:
-    """The rows of single quantities that somebody judged, of one quantity or of all."""
-    return [row for row in rows if row.quantity and quantity in ("", row.quantity)]
+def by_quantity(rows: Iterable[Measurement]) -> dict[str, list[Measurement]]:
+    """The rows of quantities that a reference judged."""
+    return grouped((row for row in rows if row.quantity and row.reference != RESTATED), lambda row: row.quantity)
+
+
+def end_of(rows: Sequence[Measurement]) -> tuple[End, str]:
+    """How one scene ended, and why.
+
+    "refused" by name, "crashed" with any other error, or with numbers "within" or "beyond" their stated errors.
+    """
+    whole, *found = rows
+    if whole.status is not Status.PASS:
+        return ("refused" if whole.status is Status.INVALID else "crashed"), whole.reason
+    wrong = [row for row in found if not row.holds]
+    message = "; ".join(f"{row.quantity} is off by {row.error:.1e}, stated {row.stated:.1e}" for row in wrong)
+    return ("beyond" if wrong else "within"), message
+
+
+def ends(rows: Iterable[Measurement]) -> dict[End, int]:
+    """How many scenes ended in each way."""
+    found = Counter(end_of(scene)[0] for scene in grouped(rows, lambda row: row.scene).values())
+    return {end: found[end] for end in ENDS}
+
+
+def defects(rows: Iterable[Measurement]) -> list[tuple[str, End, str]]:
+    """Scenes with a wrong number without a word, or a crash: which, how it ended, and why."""
+    found = [(scene, *end_of(own)) for scene, own in grouped(rows, lambda row: row.scene).items()]
+    return [defect for defect in found if defect[1] in ("beyond", "crashed")]
 
 
 def covered(rows: Sequence[Measurement]) -> float:
