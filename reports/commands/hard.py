@@ -115,6 +115,15 @@ def campaign(method: str, family: str, count: int, seed: int) -> int:
     from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.pressures import pressure_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.random_scenes import FAMILIES, Family  # noqa: PLC0415
+    from cases.measurements.measurement import (  # noqa: PLC0415
+        by_quantity,
+        covered,
+        defects,
+        ends,
+        median,
+        refusals,
+        sharpness,
+    )
 
     if family not in (*FAMILIES, "pressure"):
         raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, 'pressure'))}")
@@ -123,12 +132,14 @@ def campaign(method: str, family: str, count: int, seed: int) -> int:
     else:
         found = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=cast("Family", family))
     out = console()
-    out.print(", ".join(f"{end}: {number}" for end, number in found.counts.items()), markup=False)
-    for reason, number in found.refusals.items():
+    out.print(", ".join(f"{end}: {number}" for end, number in ends(found).items()), markup=False)
+    for reason, number in refusals(found).items():
         out.print(f"refused {number} times: {reason}", markup=False)
-    for quantity, coverage in found.coverage().items():
-        sharp = "" if coverage.sharpness is None else f", stated over true error {coverage.sharpness:.3g} in the median"
-        out.print(f"{quantity}: {100 * coverage.covered:.2f} % of {coverage.count} covered{sharp}", markup=False)
-    for trial in found.defects:
-        out.print(f"scene {trial.number} of seed {seed}: {trial.end}: {trial.message}", markup=False)
-    return FAILED if found.defects else 0
+    for quantity, rows in by_quantity(found).items():
+        ratio = median(sharpness(rows))
+        sharp = "" if ratio is None else f", stated over true error {ratio:.3g} in the median"
+        out.print(f"{quantity}: {100 * covered(rows):.2f} % of {len(rows)} covered{sharp}", markup=False)
+    wrong = defects(found)
+    for scene, end, why in wrong:
+        out.print(f"scene {scene} of seed {seed}: {end}: {why}", markup=False)
+    return FAILED if wrong else 0

@@ -7,7 +7,7 @@ from itertools import groupby
 from operator import attrgetter
 
 from cases.gate.accuracy_figures import AccuracyFigure, median_and_largest
-from cases.measurements.evidence.records import Evidence, Measurement
+from cases.measurements.evidence.records import Evidence, MeasuredSetting
 
 HEAD = """\
 # Accuracy
@@ -56,7 +56,7 @@ def _figure_row(row: AccuracyFigure) -> list[str]:
     return [row.method, row.quantity, str(len(row.stated)), stated or "none", apart or "not compared", within]
 
 
-def _measured_row(m: Measurement) -> list[str]:
+def _measured_row(m: MeasuredSetting) -> list[str]:
     settings = ", ".join(f"{name} = {value}" for name, value in sorted(m.settings.items()))
     counts = [str(len(m.bounds)), str(m.refused)]
     return [m.kind, f"{m.band:g}", m.method, settings, *counts, _range(m.bounds), f"{m.seconds:.2g}"]

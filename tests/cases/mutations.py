@@ -69,7 +69,7 @@ def stored_task(folder: Path) -> Stored:
 
 def stored_evidence(folder: Path) -> Stored:
     measured = [
-        records.Measurement(
+        records.MeasuredSetting(
             kind="elastic", band=band, method="mdr", settings={"nodes": 16}, bounds=(1e-9, 2e-8), seconds=0.01
         )
         for band in (1.0, 10.0)

@@ -3,7 +3,7 @@
 The quantity is the force of a paraboloid at a prescribed contact radius, relative to the fast method's.
 """
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
@@ -11,6 +11,7 @@ import numpy as np
 
 from bem.polynomials.gauss import legendre_rule
 from cases.declare.methods import build
+from cases.measurements.study import Say, silent, study_case, told
 from cases.results.records.reliability import ErrorMap
 from cases.results.records.run import CaseResult
 from contact import ContactError, ContactPath, ContactRadii, Layer, Method, Paraboloid, Scene
@@ -114,36 +115,28 @@ METHODS: Final = tuple(
 )
 
 
-def map_case(
-    plans: Iterable[MapPlan] = (*FORMULAS, *METHODS), progress: Callable[[str], None] = lambda _: None
-) -> CaseResult:
+def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *METHODS), progress: Say = silent) -> CaseResult:
     """Draw up the maps; ``progress`` is told of each."""
-    return CaseResult(
-        name=NAME,
-        title="Where closed forms and methods are good",
-        question="Over which a/h and Poisson's ratios is each formula right to one percent, and what do methods leave?",
+    return study_case(
+        NAME,
+        "Where closed forms and methods are good",
+        "Over which a/h and Poisson's ratios is each formula right to one percent, and what do methods leave?",
+        TEXT,
         equations=("Eq. (17)", "Eq. (20)", "Eq. (22)"),
-        text=TEXT.strip(),
-        scenes=(),
-        runs=(),
-        claims=(),
-        maps=tuple(_maps(plans, progress)),
+        maps=tuple(told(map(_map, plans), summary, progress)),
     )
 
 
-def _maps(plans: Iterable[MapPlan], progress: Callable[[str], None]) -> Iterator[ErrorMap]:
-    for plan in plans:
-        found = ErrorMap(
-            name=plan.name,
-            title=plan.title,
-            quantity="normal_force",
-            reference="the fast method (24 nodes)",
-            ratios=plan.ratios,
-            rows=plan.rows,
-            errors=tuple(_row(plan, row) for row in plan.rows),
-        )
-        progress(summary(found))
-        yield found
+def _map(plan: MapPlan) -> ErrorMap:
+    return ErrorMap(
+        name=plan.name,
+        title=plan.title,
+        quantity="normal_force",
+        reference="the fast method (24 nodes)",
+        ratios=plan.ratios,
+        rows=plan.rows,
+        errors=tuple(_row(plan, row) for row in plan.rows),
+    )
 
 
 def _row(plan: MapPlan, row: str) -> tuple[float | None, ...]:

@@ -8,13 +8,9 @@ is also solved in other units, where it must give the same answer, and with its 
 
 from __future__ import annotations
 
-import re
-import time
-import warnings
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Literal, TypeAlias
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,8 +20,9 @@ from cases.measurements.campaigns.referee import LARGEST_RATIO, adhesive_states,
 from cases.measurements.campaigns.restated import changes_when_restated
 from cases.measurements.campaigns.spring_by_spring import spring_by_spring
 from cases.measurements.campaigns.units import Units, in_units
+from cases.measurements.driver import measured
+from cases.measurements.measurement import RESTATED, Measurement
 from contact import (
-    ContactError,
     ContactPath,
     DepthHistory,
     DetachmentPath,
@@ -38,11 +35,6 @@ from contact import (
 )
 from contact.records.validation import FloatArray
 from contact.scene.effects import Viscoelasticity
-
-End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
-Referee: TypeAlias = Literal[
-    "second opinion", "spring by spring", "refinement", "another method", "other units", "none"
-]
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
 IMPACT_NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
@@ -61,125 +53,6 @@ _UNLISTED_MOST = 1e-2  # a quantity without a stated error still may not be this
 HUNDRED_ROUNDINGS = 100 * float(np.finfo(float).eps)
 
 
-@dataclass(frozen=True, kw_only=True)
-class Check:
-    """One quantity of one scene at its worst step, everything relative.
-
-    Attributes:
-        quantity: Its name.
-        error: Distance from the referee.
-        stated: Error that the method stated.
-        allowance: The referee's own uncertainty.
-        sharpness: Stated over true error at the step where the true error is largest; None where that is within the
-            referee's uncertainty or a hundred roundings.
-    """
-
-    quantity: str
-    error: float
-    stated: float
-    allowance: float
-    sharpness: float | None = None
-
-    @property
-    def holds(self) -> bool:
-        """Whether the stated error covers the distance."""
-        return self.error <= self.stated + self.allowance
-
-
-@dataclass(frozen=True, kw_only=True)
-class Trial:
-    """One scene and how it ended.
-
-    Attributes:
-        number: Its number; with family and seed it repeats the scene.
-        family: Kind of scene.
-        method: Who answered.
-        end: "within" the stated error, "refused" by name, "beyond" the stated error, or "crashed".
-        message: Of the refusal or the crash, or what is beyond.
-        referee: Who checked.
-        checks: One for each quantity.
-        seconds: Processor time of the answer [s].
-    """
-
-    number: int
-    family: Family | Literal["pressure"]
-    method: str
-    end: End
-    message: str
-    referee: Referee
-    checks: tuple[Check, ...] = ()
-    seconds: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class CampaignResult:
-    """A campaign.
-
-    Attributes:
-        seed: Of its scenes.
-        trials: In order.
-    """
-
-    seed: int
-    trials: tuple[Trial, ...]
-    counts: Mapping[str, int] = field(init=False)
-
-    def __post_init__(self) -> None:
-        """Count the ends."""
-        ends = [trial.end for trial in self.trials]
-        object.__setattr__(self, "counts", {end: ends.count(end) for end in ("within", "refused", "beyond", "crashed")})
-
-    @property
-    def defects(self) -> tuple[Trial, ...]:
-        """Trials that gave a wrong number without a word, or crashed."""
-        return tuple(trial for trial in self.trials if trial.end in ("beyond", "crashed"))
-
-    @property
-    def refusals(self) -> dict[str, int]:
-        """How often each reason was given, numbers left out."""
-        reasons = [re.sub(r"[-+.\d]+(e[-+]?\d+)?", "..", t.message) for t in self.trials if t.end == "refused"]
-        return dict(Counter(reasons).most_common())
-
-    def coverage(self) -> dict[str, Coverage]:
-        """By quantity, how well stated errors cover true ones."""
-        checks: dict[str, list[Check]] = {}
-        for trial in self.trials:
-            for check in trial.checks:
-                checks.setdefault(check.quantity, []).append(check)
-        return {quantity: coverage(found) for quantity, found in checks.items()}
-
-
-@dataclass(frozen=True, kw_only=True)
-class Coverage:
-    """How stated errors compare with true ones.
-
-    Attributes:
-        count: Checks made.
-        covered: Share whose stated error covers the distance from the referee.
-        decided: How many of them are above the referee's uncertainty and a hundred roundings.
-        sharpness: Median of stated over true error among the decided ones; 1 would be perfect, None without any.
-        ratios: Stated over true error of the decided ones.
-    """
-
-    count: int
-    covered: float
-    decided: int
-    sharpness: float | None
-    ratios: tuple[float, ...]
-
-
-def coverage(checks: Sequence[Check]) -> Coverage:
-    """Coverage and sharpness of stated errors; `checks` must not be empty."""
-    ratios = tuple(c.sharpness for c in checks if c.sharpness is not None)
-    return Coverage(
-        count=len(checks),
-        covered=sum(c.holds for c in checks) / len(checks),
-        decided=len(ratios),
-        sharpness=float(np.median(ratios)) if ratios else None,
-        ratios=ratios,
-    )
-
-
 def campaign(
     method: Method,
     *,
@@ -190,7 +63,7 @@ def campaign(
     numbers: Iterable[int] | None = None,
     referee: Method | None = None,
     other_units: bool = True,
-) -> CampaignResult:
+) -> list[Measurement]:
     """Draw scenes, let the method answer, and check each answer.
 
     Args:
@@ -205,87 +78,71 @@ def campaign(
     """
     scenes = random_scenes(seed, count, family, ratio)
     chosen = range(count) if numbers is None else numbers
-    jury = Jury(referee=referee, other_units=other_units)
-    return CampaignResult(seed=seed, trials=tuple(trial(method, scenes[n], n, family, jury) for n in chosen))
+    return [
+        row
+        for n in chosen
+        for row in measured(
+            partial(method.solve, scenes[n]),
+            partial(_judged, method, number=n, other=referee, restated=other_units),
+            of=Measurement(method=method.name, scene=f"{n}", parameters={"family": family}, seed=seed),
+        )
+    ]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Jury:
-    """Who checks: another method beside the second opinion, and whether other units are tried."""
-
-    referee: Method | None = None
-    other_units: bool = True
-
-
-def trial(method: Method, scene: Scene, number: int = 0, family: Family = "elastic", jury: Jury | None = None) -> Trial:
-    """Let the method answer one scene and check the answer; a warning counts as a crash."""
-    start, jury = time.process_time(), jury or Jury()
-    referee: Referee = "none"
-    checks: tuple[Check, ...] = ()
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            answer = method.solve(scene)
-            seconds = time.process_time() - start
-            referee, checks = _refereed(method, answer, number, jury.referee)
-            elsewhere = _restated(method, answer) if jury.other_units else ()
-            wrong = [c for c in (*checks, *elsewhere) if not c.holds]
-        end: End = "beyond" if wrong else "within"
-        message = "; ".join(f"{c.quantity} is off by {c.error:.1e}, stated {c.stated:.1e}" for c in wrong)
-    except ContactError as error:
-        end, message, seconds = "refused", f"{type(error).__name__}: {error!s:.300}", time.process_time() - start
-    except Exception as error:  # any other exception is what a campaign looks for
-        end, message, seconds = "crashed", f"{type(error).__name__}: {error!s:.300}", time.process_time() - start
-    return Trial(
-        number=number,
-        family=family,
-        method=method.name,
-        end=end,
-        message=message,
-        referee=referee,
-        checks=checks,
-        seconds=seconds,
-    )
+def _judged(
+    method: Method, answer: Solution, *, number: int, other: Method | None, restated: bool
+) -> list[Measurement]:
+    """Rows of the best referee there is and, if wanted, of the same scene restated."""
+    again = _restated(method, answer) if restated else ()
+    return [*refereed(method, answer, number, other), *(replace(row, reference=RESTATED) for row in again)]
 
 
-def _refereed(method: Method, answer: Solution, number: int, other: Method | None) -> tuple[Referee, tuple[Check, ...]]:
-    """Checks by the best referee there is."""
+def refereed(method: Method, answer: Solution, number: int, other: Method | None) -> Iterator[Measurement]:
+    """Rows of the best referee there is, none of thin layers that are not looked at.
+
+    Args:
+        method: Who answered.
+        answer: The answer.
+        number: Of the scene.
+        other: Another method that checks what the second opinion cannot; the refined method itself if None.
+    """
     scene = answer.scene
     if isinstance(answer, ContactPath) and not scene.effects:
-        reach = LARGEST_RATIO * scene.layer.thickness
-        if answer.contact_radius.max() <= reach:
+        if answer.contact_radius.max() <= LARGEST_RATIO * scene.layer.thickness:
             opinion = second_opinion(answer)
-            checks = (_check(answer, q, value, opinion.uncertainty) for q, value in opinion.values.items())
-            return "second opinion", tuple(checks)
+            for quantity, value in opinion.values.items():
+                yield _check(answer, quantity, value, opinion.uncertainty, reference="second opinion")
+            return
         if number % _THIN_LAYERS_REFINED:
-            return "other units", ()
+            return
     if other is None and isinstance(answer, HistoryPath) and _is_followed_by_springs(scene):
-        return "spring by spring", (_against_springs(answer),)
-    on_branch = _branch_checks(answer) if isinstance(answer, DetachmentPath) else ()
+        yield _against_springs(answer)
+        return
+    if isinstance(answer, DetachmentPath):
+        yield from _branch_checks(answer)
     try:
         finer = (other or method.refined()).solve(scene)
     except NotConvergedError:
-        return "none", on_branch
-    elsewhere = other is not None and other.name != method.name
-    return "another method" if elsewhere else "refinement", on_branch + tuple(
-        _check(answer, q, _values(finer, q), np.atleast_1d(finer.error_estimate.get(q, 0.0)))
-        for q in _comparable(answer, finer)
-        if q in answer.error_estimate
-    )
+        return
+    reference = "another method" if other is not None and other.name != method.name else "refinement"
+    for q in _comparable(answer, finer):
+        if q in answer.error_estimate:
+            allowance = np.atleast_1d(finer.error_estimate.get(q, 0.0))
+            yield _check(answer, q, _values(finer, q), allowance, reference=reference)
 
 
 def _is_followed_by_springs(scene: Scene) -> bool:
     return isinstance(scene.loading, DepthHistory) and scene.effect(Viscoelasticity) is not None
 
 
-def _against_springs(answer: HistoryPath) -> Check:
+def _against_springs(answer: HistoryPath) -> Measurement:
     """The force at its worst instant."""
     opinion = spring_by_spring(answer.scene, float(answer.contact_radius.max()))
     allowance = np.full(answer.normal_force.shape, opinion.uncertainty) / _scale(answer, "normal_force")
-    return _check(answer, "normal_force", opinion.force, allowance)
+    return _check(answer, "normal_force", opinion.force, allowance, reference="spring by spring")
 
 
-def _branch_checks(answer: DetachmentPath) -> tuple[Check, ...]:
+def _branch_checks(answer: DetachmentPath) -> tuple[Measurement, ...]:
     """Some states of a branch, as far as the second opinion reaches, each at its own contact radius."""
     scene = answer.scene
     first = np.flatnonzero(answer.contact_radius == answer.contact_radius[0])[-1]  # before it a punch's front is held
@@ -295,7 +152,8 @@ def _branch_checks(answer: DetachmentPath) -> tuple[Check, ...]:
         return ()
     opinion = adhesive_states(scene, radii)
     return tuple(
-        _check(answer, quantity, value, opinion.uncertainty, chosen) for quantity, value in opinion.values.items()
+        _check(answer, quantity, value, opinion.uncertainty, chosen, reference="second opinion")
+        for quantity, value in opinion.values.items()
     )
 
 
@@ -322,7 +180,9 @@ def _check(
     expected: FloatArray,
     allowance: FloatArray,
     chosen: NDArray[np.intp] | slice = _ALL,
-) -> Check:
+    *,
+    reference: str,
+) -> Measurement:
     """The step, among those chosen, with the largest excess of distance over what is allowed."""
     scale = np.maximum(answer.scale(quantity), np.finfo(float).tiny)
     values = _values(answer, quantity)
@@ -330,11 +190,13 @@ def _check(
     stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), values.shape)[chosen]
     allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
     worst = int(np.argmax(error - stated - allowance))
-    return Check(
+    return Measurement(
+        method=answer.method,
         quantity=quantity,
+        reference=reference,
         error=float(error[worst]),
         stated=float(stated[worst]),
-        allowance=float(allowance[worst]),
+        uncertainty=float(allowance[worst]),
         sharpness=_sharpness(error, stated, allowance),
     )
 
@@ -351,7 +213,7 @@ def _fitted(values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
     return np.array(values) if np.shape(values) == shape else np.full(shape, np.max(values))
 
 
-def _restated(method: Method, answer: Solution) -> tuple[Check, ...]:
+def _restated(method: Method, answer: Solution) -> tuple[Measurement, ...]:
     """The same scene in other units and, where there is relaxation, with that written down in other ways."""
     elsewhere = _in_other_units(method, answer)
     if not isinstance(answer, HistoryPath | ImpactHistory) or answer.scene.effect(Viscoelasticity) is None:
@@ -361,12 +223,12 @@ def _restated(method: Method, answer: Solution) -> tuple[Check, ...]:
     found = changes_when_restated(method, answer, quantities)
     allowed = 0.0 if exact else 2.0 * max(_largest_stated(answer, quantity) for quantity in quantities)
     return elsewhere + tuple(
-        Check(quantity=name, error=change, stated=RESTATED_AGREEMENT, allowance=allowed)
+        Measurement(method=answer.method, quantity=name, error=change, stated=RESTATED_AGREEMENT, uncertainty=allowed)
         for name, change in found.items()
     )
 
 
-def _in_other_units(method: Method, answer: Solution) -> tuple[Check, ...]:
+def _in_other_units(method: Method, answer: Solution) -> tuple[Measurement, ...]:
     """The same scene with lengths, stresses and times in other units.
 
     Roundings differ there, and each of the two answers may miss the true one by what it states: they may be twice as
@@ -374,13 +236,14 @@ def _in_other_units(method: Method, answer: Solution) -> tuple[Check, ...]:
     """
     other = method.solve(in_units(answer.scene, OTHER_UNITS))
     return tuple(
-        Check(
+        Measurement(
+            method=answer.method,
             quantity=f"{q} in other units",
             error=float(
                 np.max(np.abs(_values(answer, q) - _values(other, q) / OTHER_UNITS.factor(q)) / _scale(answer, q))
             ),
             stated=UNITS_AGREEMENT,
-            allowance=_largest_stated(answer, q) + _largest_stated(other, q),
+            uncertainty=_largest_stated(answer, q) + _largest_stated(other, q),
         )
         for q in _comparable(answer, other)
     )

@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from itertools import count as counting
 from typing import Any, Final
 
 import numpy as np
 
 from cases.declare.methods import build
-from cases.measurements.campaigns.campaign import Check, Jury, Trial, coverage, trial
+from cases.measurements.campaigns.campaign import refereed
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
-from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.measurements.driver import measured
+from cases.measurements.measurement import Measurement, answers, by_quantity, covered, median, sharpness
+from cases.measurements.study import Say, silent, study_case, told, within_limit
+from cases.results.records.claim import Claim
 from cases.results.records.reliability import CoverageRecord
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
@@ -88,9 +92,7 @@ QUICK_PLANS: Final = (
 )
 
 
-def coverage_case(
-    plans: Iterable[CoveragePlan] = PLANS, seed: int = SEED, progress: Callable[[str], None] = lambda _: None
-) -> CaseResult:
+def coverage_case(plans: Iterable[CoveragePlan] = PLANS, seed: int = SEED, progress: Say = silent) -> CaseResult:
     """Measure all plans and claim that stated errors cover true ones and are sharp.
 
     Args:
@@ -98,36 +100,32 @@ def coverage_case(
         seed: Of the scenes.
         progress: Called with one line a record.
     """
-    records: list[CoverageRecord] = []
-    for plan in plans:
-        found = list(records_of(plan, seed))
-        for record in found:
-            progress(summary(record))
-        records += found
-    return CaseResult(
-        name=NAME,
-        title="Error bars that hold and are sharp",
-        question="How often does the true error lie within the stated one, and how much is given away?",
-        equations=(),
-        text=TEXT.strip(),
-        scenes=(),
-        runs=(),
+    found = (record for plan in plans for record in records_of(plan, seed))
+    records = tuple(told(found, summary, progress))
+    return study_case(
+        NAME,
+        "Error bars that hold and are sharp",
+        "How often does the true error lie within the stated one, and how much is given away?",
+        TEXT,
         claims=tuple(claim(record) for record in records for claim in (errors_are_covered, errors_are_sharp)),
-        coverage=tuple(records),
+        coverage=records,
     )
 
 
 def records_of(plan: CoveragePlan, seed: int) -> Iterator[CoverageRecord]:
     """One record for each quantity the plan's method states an error for."""
-    method = build(plan.method, plan.settings)
-    jury = Jury(referee=build("mdr", {"nodes": 32, "accuracy": 1e-12}), other_units=False)
-    trials = [trial(method, scene, n, plan.family, jury) for n, scene in enumerate(_scenes(plan, seed, method))]
-    checks: dict[str, list[Check]] = {}
-    for done in trials:
-        for check in done.checks:
-            checks.setdefault(check.quantity, []).append(check)
-    for quantity, found in checks.items():
-        yield _record(plan, quantity, found, trials)
+    rows = list(rows_of(plan, seed))
+    for quantity, found in by_quantity(rows).items():
+        yield _record(plan, quantity, found, answers(rows))
+
+
+def rows_of(plan: CoveragePlan, seed: int) -> Iterator[Measurement]:
+    """Every scene of the plan, answered and judged by the fast method at its finest where no second opinion reaches."""
+    method, finest = build(plan.method, plan.settings), build("mdr", {"nodes": 32, "accuracy": 1e-12})
+    of = Measurement(method=plan.method, settings=plan.settings, parameters={"family": plan.family}, seed=seed)
+    for n, scene in enumerate(_scenes(plan, seed, method)):
+        judge = partial(refereed, method, number=n, other=finest)
+        yield from measured(partial(method.solve, scene), judge, of=replace(of, scene=f"{n}"))
 
 
 def _scenes(plan: CoveragePlan, seed: int, method: Method) -> Iterator[Scene]:
@@ -146,24 +144,24 @@ def _needs_no_search(scene: Scene) -> bool:
     return isinstance(scene.loading, ContactRadii) or isinstance(scene.indenter, FlatPunch)
 
 
-def _record(plan: CoveragePlan, quantity: str, checks: Sequence[Check], trials: Sequence[Trial]) -> CoverageRecord:
-    found = coverage(checks)
-    ends = [done.end for done in trials]
+def _record(
+    plan: CoveragePlan, quantity: str, rows: Sequence[Measurement], whole: Sequence[Measurement]
+) -> CoverageRecord:
+    ratios, ends = sharpness(rows), [row.status for row in whole]
+    shown = np.minimum(ratios, _LARGEST_SHOWN)
     return CoverageRecord(
         method=plan.method,
         settings=dict(plan.settings),
         family=plan.family,
         quantity=quantity,
-        scenes=len(trials),
-        refused=ends.count("refused"),
-        crashed=ends.count("crashed"),
-        checks=found.count,
-        covered=found.covered,
-        decided=found.decided,
-        sharpness=found.sharpness,
-        percentiles=tuple(np.percentile(np.minimum(found.ratios, _LARGEST_SHOWN), PERCENTILES).tolist())
-        if found.ratios
-        else (),
+        scenes=len(whole),
+        refused=ends.count(Status.INVALID),
+        crashed=ends.count(Status.FAIL),
+        checks=len(rows),
+        covered=covered(rows),
+        decided=len(ratios),
+        sharpness=median(ratios),
+        percentiles=tuple(np.percentile(shown, PERCENTILES).tolist()) if ratios else (),
     )
 
 
@@ -181,26 +179,26 @@ def summary(record: CoverageRecord) -> str:
 def errors_are_covered(record: CoverageRecord) -> Claim:
     """The claim that at most one stated error in twenty is exceeded, and nothing crashed."""
     uncovered, limit = 1.0 - record.covered, 1.0 - LEAST_COVERED
-    holds = uncovered <= limit and record.crashed == 0
-    return Claim(
-        name=f"stated errors hold, {record.quantity.replace('_', ' ')}",
-        kind=Kind.INVARIANT,
-        scene=f"{record.family} scenes{_words(record.settings)}",
-        methods=(record.method,),
-        quantity=record.quantity,
-        unit="1",
-        status=Status.PASS if holds else Status.FAIL,
-        verdict=Verdict.PASS if holds else Verdict.FAIL,
-        observed=uncovered,
-        expected=0.0,
-        tolerance=limit,
-        fraction=uncovered / limit,
-        origin=Origin.INDEPENDENT_METHOD,
-        source="an integral equation of its own, or the fast method at its finest",
+    return within_limit(
+        f"stated errors hold, {record.quantity.replace('_', ' ')}",
+        uncovered,
+        limit,
+        holds=uncovered <= limit and record.crashed == 0,
         because="a stated error is meant as a bound that holds in at least 95 % of all scenes",
         derived_from="five percent of the scenes",
-        message=summary(record),
+        **_told_of(record),
     )
+
+
+def _told_of(record: CoverageRecord) -> dict[str, Any]:
+    """What both claims say of a record."""
+    return {
+        "scene": f"{record.family} scenes{_words(record.settings)}",
+        "methods": (record.method,),
+        "quantity": record.quantity,
+        "source": "an integral equation of its own, or the fast method at its finest",
+        "message": summary(record),
+    }
 
 
 def at_90(record: CoverageRecord) -> float:
@@ -214,27 +212,15 @@ def errors_are_sharp(record: CoverageRecord) -> Claim:
     Without true errors above a hundred roundings there is nothing to give away; a few leave the verdict open.
     """
     fraction = max((record.sharpness or 0.0) / LARGEST_MEDIAN, at_90(record) / LARGEST_AT_90)
-    status, verdict = (Status.PASS, Verdict.PASS) if fraction <= 1.0 else (Status.FAIL, Verdict.FAIL)
-    if 0 < record.decided < FEWEST_RATIOS:
-        status, verdict = Status.INCONCLUSIVE, Verdict.INCONCLUSIVE
-    return Claim(
-        name=f"stated errors are sharp, {record.quantity.replace('_', ' ')}",
-        kind=Kind.INVARIANT,
-        scene=f"{record.family} scenes{_words(record.settings)}",
-        methods=(record.method,),
-        quantity=record.quantity,
-        unit="1",
-        status=status,
-        verdict=verdict,
-        observed=fraction,
+    return within_limit(
+        f"stated errors are sharp, {record.quantity.replace('_', ' ')}",
+        fraction,
+        1.0,
+        undecided=0 < record.decided < FEWEST_RATIOS,
         expected=None,
-        tolerance=1.0,
-        fraction=fraction,
-        origin=Origin.INDEPENDENT_METHOD,
-        source="an integral equation of its own, or the fast method at its finest",
         because="a bar that states a thousand times the true error says nothing that helps to choose a setting",
         derived_from=f"median over {LARGEST_MEDIAN:g} or 90 % quantile over {LARGEST_AT_90:g}, whichever is larger",
-        message=summary(record),
+        **_told_of(record),
     )
 
 

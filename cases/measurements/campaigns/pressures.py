@@ -10,21 +10,19 @@ Each field is one contact in random units. Four checks need no other method's co
 
 from __future__ import annotations
 
-import time
-import warnings
 from collections.abc import Callable, Iterable, Mapping
 from itertools import pairwise
 from typing import Final, Literal
 
 import numpy as np
 
-from cases.measurements.campaigns.campaign import CampaignResult, Check, End, Referee, Trial
 from cases.measurements.campaigns.pressure_referee import reference_pressure
 from cases.measurements.campaigns.random_scenes import UNITS, log_uniform, poissons_ratio, tabulated
 from cases.measurements.campaigns.referee import CHEAP_RATIO, smallest_eigenvalue
+from cases.measurements.driver import measured
+from cases.measurements.measurement import Measurement
 from contact import (
     Cone,
-    ContactError,
     ContactPath,
     ContactRadii,
     FlatPunch,
@@ -37,6 +35,7 @@ from contact import (
     PowerLaw,
     Profile,
     Scene,
+    Solution,
     Sphere,
     Tabulated,
     TruncatedCone,
@@ -64,7 +63,9 @@ _FORCE_NODES: Final = 16
 _ROUNDINGS: Final = 30 * _EPS
 
 
-def pressure_campaign(method: Method, *, seed: int, count: int, numbers: Iterable[int] | None = None) -> CampaignResult:
+def pressure_campaign(
+    method: Method, *, seed: int, count: int, numbers: Iterable[int] | None = None
+) -> list[Measurement]:
     """Draw contacts, let the method answer, and check each pressure field.
 
     Args:
@@ -74,50 +75,26 @@ def pressure_campaign(method: Method, *, seed: int, count: int, numbers: Iterabl
         numbers: Only these of the scenes; all if None.
     """
     chosen = range(count) if numbers is None else numbers
-    scenes = ((n, random_contact(np.random.default_rng([seed, n]))) for n in chosen)
-    return CampaignResult(seed=seed, trials=tuple(pressure_trial(method, scene, n) for n, scene in scenes))
+    return [row for n in chosen for row in _contact_rows(method, seed, n)]
 
 
-def pressure_trial(method: Method, scene: Scene, number: int = 0) -> Trial:
-    """Let the method answer one scene and check its pressure; a warning counts as a crash."""
-    start = time.process_time()
-    checks: tuple[Check, ...] = ()
-    referee: Referee = "none"
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            path = method.solve(scene)
-            assert isinstance(path, ContactPath)
-            referee, checks = pressure_checks(path)
-        wrong = [check for check in checks if not check.holds]
-        end: End = "beyond" if wrong else "within"
-        message = "; ".join(f"{c.quantity} is off by {c.error:.1e}, stated {c.stated:.1e}" for c in wrong)
-    except ContactError as error:
-        end, message = "refused", f"{type(error).__name__}: {error!s:.300}"
-    except Exception as error:  # any other exception is what a campaign looks for
-        end, message = "crashed", f"{type(error).__name__}: {error!s:.300}"
-    return Trial(
-        number=number,
-        family="pressure",
-        method=method.name,
-        end=end,
-        message=message,
-        referee=referee,
-        checks=checks,
-        seconds=time.process_time() - start,
-    )
+def _contact_rows(method: Method, seed: int, number: int) -> list[Measurement]:
+    of = Measurement(method=method.name, scene=f"{number}", parameters={"family": "pressure"}, seed=seed)
+    scene = random_contact(np.random.default_rng([seed, number]))
+    return measured(lambda: method.solve(scene), pressure_checks, of=of)
 
 
-def pressure_checks(path: ContactPath, step: int = 0) -> tuple[Referee, tuple[Check, ...]]:
+def pressure_checks(path: Solution, step: int = 0) -> tuple[Measurement, ...]:
     """All checks of one step; the referee speaks where the contact radius was prescribed, and on flat punches."""
+    assert isinstance(path, ContactPath)
     properties = (alone_check(path, step), force_check(path, step))
     loading, indenter = path.scene.loading, path.scene.indenter
     if not isinstance(loading, ContactRadii) and not isinstance(indenter, FlatPunch):
-        return "none", properties
-    return "second opinion", (*referee_checks(path, step), *properties)
+        return properties
+    return (*referee_checks(path, step), *properties)
 
 
-def referee_checks(path: ContactPath, step: int) -> tuple[Check, Check]:
+def referee_checks(path: ContactPath, step: int) -> tuple[Measurement, Measurement]:
     """The weighted norm of the distance from the referee, and its largest value at one radius."""
     scene, a = path.scene, float(path.contact_radius[step])
     layer, indenter, punch = scene.layer, scene.indenter, isinstance(scene.indenter, FlatPunch)
@@ -132,8 +109,8 @@ def referee_checks(path: ContactPath, step: int) -> tuple[Check, Check]:
     stated, allowance = _stated(path, step), referee_rounding(scene, a)
     worst = float(np.max(np.abs(found - expected) / size))
     return (
-        Check(quantity="pressure", error=error, stated=stated, allowance=allowance),
-        Check(quantity="pressure at a radius", error=worst, stated=_POINTWISE * stated, allowance=10 * allowance),
+        _row("pressure", path, error, stated, allowance),
+        _row("pressure at a radius", path, worst, _POINTWISE * stated, 10 * allowance),
     )
 
 
@@ -142,17 +119,17 @@ def referee_rounding(scene: Scene, a: float) -> float:
     return _ROUNDINGS + 2 * _EPS / smallest_eigenvalue(scene.layer, a)
 
 
-def alone_check(path: ContactPath, step: int) -> Check:
+def alone_check(path: ContactPath, step: int) -> Measurement:
     """Pressures at single radii against the same radii in a list, which should be the same numbers."""
     radius, _ = _compared_radii(path.scene.indenter, float(path.contact_radius[step]))
     listed = path.pressure(radius, step)
     chosen = np.linspace(0, radius.size - 1, _ALONE).round().astype(int)
     alone = np.array([path.pressure(radius[[n]], step)[0] for n in chosen])
     error = float(np.max(np.abs(alone / listed[chosen] - 1)))
-    return Check(quantity="pressure alone", error=error, stated=0.0, allowance=_ROUNDINGS)
+    return _row("pressure alone", path, error, 0.0, _ROUNDINGS)
 
 
-def force_check(path: ContactPath, step: int) -> Check:
+def force_check(path: ContactPath, step: int) -> Measurement:
     """The integral of the pressure over the contact against the normal force.
 
     Radii are rounded: beside a rim or edge a pressure changes from one floating-point number to the next, and between
@@ -172,12 +149,13 @@ def force_check(path: ContactPath, step: int) -> Check:
         blur = _EPS * stop / np.minimum(radius - start + _EPS * stop * (start == 0), stop - radius)
         blurred += float(np.abs(weight * pressure) @ np.minimum(blur, 1.0))
     scale = float(path.scale("normal_force")[step])
-    return Check(
-        quantity="force of the pressure",
-        error=abs(total - force) / scale,
-        stated=_stated(path, step) + float(np.broadcast_to(path.error_estimate["normal_force"], (len(path),))[step]),
-        allowance=_ROUNDINGS + 2 * blurred / scale,
-    )
+    of_force = float(np.broadcast_to(path.error_estimate["normal_force"], (len(path),))[step])
+    allowance = _ROUNDINGS + 2 * blurred / scale
+    return _row("force of the pressure", path, abs(total - force) / scale, _stated(path, step) + of_force, allowance)
+
+
+def _row(quantity: str, path: ContactPath, error: float, stated: float, allowance: float) -> Measurement:
+    return Measurement(method=path.method, quantity=quantity, error=error, stated=stated, uncertainty=allowance)
 
 
 def _stated(path: ContactPath, step: int) -> float:

@@ -1,27 +1,31 @@
 """Error against seconds: all ranking uses the bound U = e + u_ref, and nothing is interpolated."""
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from typing import Protocol, TypeVar
 
 from contact import InvalidInput
 
 TOLERANCES = tuple(10.0**-k for k in range(1, 11))
 
 
-@dataclass(frozen=True, kw_only=True)
-class TimedRun:
-    """A setting that gave an answer.
+class Ranked(Protocol):
+    """What has a bound U of its relative error and a time: a measurement, or a setting with its median time."""
 
-    Attributes:
-        label: names method and setting.
-        bound: U = e + u_ref, relative.
-        seconds: median time.
-    """
+    @property
+    def method(self) -> str:
+        """Who answered."""
 
-    label: str
-    bound: float
-    seconds: float
+    @property
+    def bound(self) -> float | None:
+        """U, None where there is no answer."""
+
+    @property
+    def seconds(self) -> float:
+        """Time [s]."""
+
+
+R = TypeVar("R", bound=Ranked)
 
 
 def error_bound(error: float, reference_uncertainty: float) -> float:
@@ -35,45 +39,47 @@ def error_bound(error: float, reference_uncertainty: float) -> float:
     return error + reference_uncertainty
 
 
-def reference_is_fine_enough(reference_uncertainty: float, smallest_tolerance: float) -> bool:
-    """Whether u_ref <= tau_min / 10: a reference only twice as fine turns order 2.00 into 2.32."""
-    return reference_uncertainty <= smallest_tolerance / 10
+def bound_of(run: Ranked) -> float:
+    """The bound of a run, infinite without an answer."""
+    return math.inf if run.bound is None else run.bound
 
 
-def pareto_front(runs: Sequence[TimedRun], null_spread: float) -> tuple[bool, ...]:
-    """Return for each run whether it is on the front.
+def pareto_front(runs: Sequence[R], null_spread: float) -> list[R]:
+    """Return the runs on the front, in their order.
 
     Run k is dropped iff some j has U_j <= U_k and T_j < T_k (1 - d), d the null spread of repeated times.
     """
-    return tuple(
-        not any(j.bound <= k.bound and j.seconds < k.seconds * (1 - null_spread) for j in runs if j is not k)
-        for k in runs
-    )
+    solved = [run for run in runs if run.bound is not None]
+    return [
+        k
+        for k in solved
+        if not any(bound_of(j) <= bound_of(k) and j.seconds < k.seconds * (1 - null_spread) for j in solved)
+    ]
 
 
-def cheapest(runs: Sequence[TimedRun], tolerance: float) -> TimedRun | None:
+def cheapest(runs: Iterable[R], tolerance: float) -> R | None:
     """Return the run behind T*(tau), the smallest time with U <= tau; None when the tolerance was not reached."""
-    return min((run for run in runs if run.bound <= tolerance), key=lambda run: run.seconds, default=None)
+    return min((run for run in runs if bound_of(run) <= tolerance), key=lambda run: run.seconds, default=None)
 
 
-def crossover(fast: Sequence[TimedRun], other: Sequence[TimedRun], tolerances: Sequence[float]) -> float | None:
+def crossover(fast: Sequence[Ranked], other: Sequence[Ranked], tolerances: Sequence[float]) -> float | None:
     """Return the smallest tolerance where the fast method still wins; None where it never does."""
     return min((tau for tau in tolerances if _wins(cheapest(fast, tau), cheapest(other, tau))), default=None)
 
 
-def _wins(fast: TimedRun | None, other: TimedRun | None) -> bool:
+def _wins(fast: Ranked | None, other: Ranked | None) -> bool:
     return fast is not None and (other is None or fast.seconds < other.seconds)
 
 
-def price_of_a_digit(cheap: TimedRun, accurate: TimedRun) -> float:
+def price_of_a_digit(cheap: Ranked, accurate: Ranked) -> float:
     """Return d log10(T) / d DoA between neighbours on the front: decades of time per digit of accuracy.
 
     Raises:
         InvalidInput: unless the second run is the more accurate one.
     """
-    gained = degree_of_accuracy(accurate.bound) - degree_of_accuracy(cheap.bound)
+    gained = degree_of_accuracy(bound_of(accurate)) - degree_of_accuracy(bound_of(cheap))
     if not gained > 0:
-        raise InvalidInput(f"{accurate.label} is not more accurate than {cheap.label}")
+        raise InvalidInput(f"{accurate.method} is not more accurate than {cheap.method}")
     return (math.log10(accurate.seconds) - math.log10(cheap.seconds)) / gained
 
 

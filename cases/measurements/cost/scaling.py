@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
 from scipy.optimize import least_squares
-from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
 from cases.declare.methods import build
-from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.measurements.driver import first_solution
+from cases.measurements.study import Say, silent, study_case, told, within_limit
+from cases.results.records.claim import Claim, Origin
 from cases.results.records.cost import ScalingFit
 from cases.results.records.run import CaseResult
-from cases.results.status import Status
-from cases.run.empty_caches import forget
 from contact import (
     ContactRadii,
     Cost,
@@ -24,10 +23,10 @@ from contact import (
     Impact,
     InvalidInput,
     Layer,
-    Method,
     Paraboloid,
     PronySeries,
     Scene,
+    Solution,
 )
 from contact.records.validation import FloatArray
 
@@ -39,6 +38,7 @@ SLACK: Final = 0.1
 FEWEST: Final = 5  # sizes
 LEAST_GROWTH: Final = 2.0  # of the seconds, above which a fixed cost can be told from what grows
 STEEPEST: Final = 6.0
+SHORTEST: Final = 1e-9  # seconds: the clock may not have ticked, and a logarithm is taken
 
 TEXT: Final = """
 One size grows and everything else stays: seconds of processor time of first solutions, each size in turn and all of
@@ -189,31 +189,25 @@ PLANS: Final = (
 )
 
 
-def scaling_case(plans: Iterable[ScalingPlan] = PLANS, progress: Callable[[str], None] = lambda _: None) -> CaseResult:
+def scaling_case(plans: Iterable[ScalingPlan] = PLANS, progress: Say = silent) -> CaseResult:
     """Measure all plans; ``progress`` is told of each."""
-    fits = []
-    for plan in plans:
-        fits.append(fitted(plan))
-        progress(summary(fits[-1]))
-    return CaseResult(
-        name=NAME,
-        title="Cost against size",
-        question="How does the time grow with the problem, and is that what theory expects?",
-        equations=(),
-        text=TEXT.strip(),
-        scenes=(),
-        runs=(),
+    fits = tuple(told(map(fitted, plans), summary, progress))
+    return study_case(
+        NAME,
+        "Cost against size",
+        "How does the time grow with the problem, and is that what theory expects?",
+        TEXT,
         claims=tuple(map(grows_no_faster, fits)),
-        scaling=tuple(fits),
+        scaling=fits,
     )
 
 
 def fitted(plan: ScalingPlan) -> ScalingFit:
     """Time every size, round by round, and fit the exponent."""
     sizes, tasks = np.array(plan.sizes), [_task(plan, size) for size in plan.sizes]
-    _first_solution(*tasks[0])  # loads what the method imports on demand
-    rounds = [[_first_solution(*task) for task in tasks] for _ in range(plan.repeats)]
-    samples = np.array([[seconds for seconds, _ in found] for found in rounds])
+    first_solution(tasks[0])  # loads what the method imports on demand
+    rounds = [[first_solution(task) for task in tasks] for _ in range(plan.repeats)]
+    samples = np.array([[max(seconds, SHORTEST) for _, seconds in found] for found in rounds])
     exponent, half_width = exponent_of(sizes, samples)
     growth = _growth(sizes, samples.min(axis=0))
     return ScalingFit(
@@ -227,20 +221,12 @@ def fitted(plan: ScalingPlan) -> ScalingFit:
         because=plan.because,
         fixed=growth.fixed,
         growing=growth.growing,
-        counters=counter_exponents(sizes, [cost for _, cost in rounds[0]]),
+        counters=counter_exponents(sizes, [answer.cost for answer, _ in rounds[0]]),
     )
 
 
-def _task(plan: ScalingPlan, size: float) -> tuple[Method, Scene]:
-    return build(plan.method, plan.settings(size)), plan.scene(size)
-
-
-def _first_solution(method: Method, scene: Scene) -> tuple[float, Cost]:
-    forget()
-    with threadpool_limits(limits=1):
-        start = time.process_time()
-        answer = method.solve(scene)
-        return max(time.process_time() - start, 1e-9), answer.cost
+def _task(plan: ScalingPlan, size: float) -> Callable[[], Solution]:
+    return partial(build(plan.method, plan.settings(size)).solve, plan.scene(size))
 
 
 def exponent_of(sizes: FloatArray, samples: FloatArray) -> tuple[float, float]:
@@ -317,21 +303,13 @@ def summary(fit: ScalingFit) -> str:
 
 def grows_no_faster(fit: ScalingFit) -> Claim:
     """The claim that the exponent, less its uncertainty, is no larger than in theory."""
-    excess = max(0.0, fit.exponent - fit.half_width - fit.theory)
-    holds = excess <= SLACK
-    return Claim(
-        name="grows no faster than in theory",
-        kind=Kind.INVARIANT,
+    return within_limit(
+        "grows no faster than in theory",
+        max(0.0, fit.exponent - fit.half_width - fit.theory),
+        SLACK,
         scene=fit.size,
         methods=(fit.method,),
         quantity="seconds",
-        unit="1",
-        status=Status.PASS if holds else Status.FAIL,
-        verdict=Verdict.PASS if holds else Verdict.FAIL,
-        observed=excess,
-        expected=0.0,
-        tolerance=SLACK,
-        fraction=excess / SLACK,
         uncertainty={fit.method: fit.half_width},
         origin=Origin.CLOSED_FORM,
         source=fit.because,

@@ -9,7 +9,7 @@ from cases.declare.methods import MethodUse
 from cases.declare.task import Answers, Task
 from cases.measurements.cost.cost_of_accuracy import (
     TOLERANCES,
-    TimedRun,
+    bound_of,
     cheapest,
     crossover,
     error_bound,
@@ -66,10 +66,8 @@ class WorkStudy:
         points = [
             self._point(use, answers.of(self._task(case, use, timed=True)), expected, u_ref) for use in self.ladder
         ]
-        spread = max((_spread(point) for point in points if point.bound is not None), default=0.0)
-        timed = {_name(point): _timed(point) for point in points if point.bound is not None}
-        front = dict(zip(timed, pareto_front(list(timed.values()), spread), strict=True))
-        by_method = _grouped(points)
+        spread = max((summed_up(point.samples).spread for point in points if point.bound is not None), default=0.0)
+        front = pareto_front(points, spread)
         yield WorkPrecision(
             scene=self.scene,
             quantity=self.quantity,
@@ -78,12 +76,10 @@ class WorkStudy:
             baseline_method=self.baseline_method,
             fast_method=self.fast_method,
             null_spread=spread,
-            points=tuple(replace(point, on_front=front.get(_name(point), False)) for point in points),
+            points=tuple(replace(point, on_front=point in front) for point in points),
             cheapest=tuple(self._cheapest(points)),
-            prices=tuple(_prices(by_method, spread)),
-            crossover=crossover(
-                by_method.get(self.fast_method, []), by_method.get(self.baseline_method, []), TOLERANCES
-            ),
+            prices=tuple(_prices(points, spread)),
+            crossover=crossover(_of(points, self.fast_method), _of(points, self.baseline_method), TOLERANCES),
         )
 
     def _task(self, case: Case, use: MethodUse, *, timed: bool) -> Task:
@@ -129,11 +125,10 @@ class WorkStudy:
         )
 
     def _cheapest(self, points: list[WorkPoint]) -> Iterator[CheapestRun]:
-        methods = sorted({point.method for point in points})
         for tolerance in TOLERANCES:
-            baseline = _cheapest_point(points, self.baseline_method, tolerance)
-            for method in methods:
-                yield _cheapest_row(points, method, tolerance, baseline)
+            baseline = cheapest(_of(points, self.baseline_method), tolerance)
+            for method in sorted({point.method for point in points}):
+                yield _cheapest_row(_of(points, method), method, tolerance, baseline)
 
 
 def _value_and_uncertainty(run: SceneRun, name: str) -> tuple[float, float]:
@@ -142,51 +137,28 @@ def _value_and_uncertainty(run: SceneRun, name: str) -> tuple[float, float]:
     return value, quantity.uncertainty[-1] / abs(value)
 
 
-def _name(point: WorkPoint) -> str:
-    return f"{point.method}: {point.label}"
+def _of(points: list[WorkPoint], method: str) -> list[WorkPoint]:
+    """The settings of one method that gave an answer."""
+    return [point for point in points if point.method == method and point.bound is not None]
 
 
-def _timed(point: WorkPoint) -> TimedRun:
-    return TimedRun(label=_name(point), bound=point.bound or 0.0, seconds=point.seconds)
-
-
-def _spread(point: WorkPoint) -> float:
-    return summed_up(point.samples).spread
-
-
-def _grouped(points: list[WorkPoint]) -> Mapping[str, list[TimedRun]]:
-    groups: dict[str, list[TimedRun]] = {}
-    for point in points:
-        if point.bound is not None:
-            groups.setdefault(point.method, []).append(_timed(point))
-    return groups
-
-
-def _prices(groups: Mapping[str, list[TimedRun]], spread: float) -> Iterator[DigitPrice]:
+def _prices(points: list[WorkPoint], spread: float) -> Iterator[DigitPrice]:
     """Between neighbours on each method's own front."""
-    for method, runs in groups.items():
-        kept = [run for run, on_front in zip(runs, pareto_front(runs, spread), strict=True) if on_front]
-        ordered = sorted(kept, key=lambda run: -run.bound)
+    for method in dict.fromkeys(point.method for point in points):
+        ordered = sorted(pareto_front(_of(points, method), spread), key=bound_of, reverse=True)
         for cheap, accurate in pairwise(ordered):
-            if accurate.bound < cheap.bound:
+            if bound_of(accurate) < bound_of(cheap):
                 yield DigitPrice(
                     method=method,
-                    from_label=cheap.label,
-                    to_label=accurate.label,
+                    from_label=f"{method}: {cheap.label}",
+                    to_label=f"{method}: {accurate.label}",
                     decades_per_digit=price_of_a_digit(cheap, accurate),
                 )
 
 
-def _cheapest_point(points: list[WorkPoint], method: str, tolerance: float) -> WorkPoint | None:
-    own = {_name(p): p for p in points if p.method == method and p.bound is not None}
-    best = cheapest([_timed(point) for point in own.values()], tolerance)
-    return None if best is None else own[best.label]
-
-
-def _cheapest_row(points: list[WorkPoint], method: str, tolerance: float, baseline: WorkPoint | None) -> CheapestRun:
-    best = _cheapest_point(points, method, tolerance)
-    solved = [point for point in points if point.method == method and point.bound is not None]
-    shown = best or min(solved, key=lambda point: point.bound or 0.0, default=None)
+def _cheapest_row(own: list[WorkPoint], method: str, tolerance: float, baseline: WorkPoint | None) -> CheapestRun:
+    best = cheapest(own, tolerance)
+    shown = best or min(own, key=bound_of, default=None)
     return CheapestRun(
         tolerance=tolerance,
         method=method,

@@ -8,6 +8,6 @@
 """
 
 from cases.measurements.evidence.choice import Choice, Outcome, choose, solve
-from cases.measurements.evidence.records import Evidence, Measurement, shipped
+from cases.measurements.evidence.records import Evidence, MeasuredSetting, shipped
 
-__all__ = ["Choice", "Evidence", "Measurement", "Outcome", "choose", "shipped", "solve"]
+__all__ = ["Choice", "Evidence", "MeasuredSetting", "Outcome", "choose", "shipped", "solve"]

@@ -3,27 +3,26 @@
 from __future__ import annotations
 
 import platform
-import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache, partial
 from itertools import islice
-from typing import Final, TypeVar
+from typing import Final
 
 import numpy as np
-from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
 from cases.declare.methods import build
 from cases.measurements.campaigns.campaign import IMPACT_NUMBERS
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import second_opinion
+from cases.measurements.driver import CoarseReference, measured
 from cases.measurements.evidence.kinds import BANDS, band_above, kind_of, rough_radius
-from cases.measurements.evidence.records import Evidence, Measurement
-from cases.run.empty_caches import forget
+from cases.measurements.evidence.records import Evidence, MeasuredSetting
+from cases.measurements.measurement import Measurement
+from cases.measurements.study import Say, silent
+from cases.results.status import Status
 from contact import ContactError, ContactPath, ImpactHistory, Scene, Solution
 from contact.records.validation import FloatArray
-
-A = TypeVar("A")
 
 FAMILIES: Final[Mapping[str, Family]] = {
     "radii": "elastic",
@@ -35,6 +34,8 @@ FAMILIES: Final[Mapping[str, Family]] = {
 }
 SMALLEST_RATIO: Final = 1e-3
 SAMPLE: Final = 16
+# The quantity of a row that stands for the worst of all.
+WORST: Final = "worst quantity"
 _FINE_REFERENCE: Final = 1e-10
 _LEAST_BOUND: Final = 1e-15
 _MOST_DRAWS: Final = 60  # for each scene of a sample
@@ -74,17 +75,13 @@ CANDIDATES: Final[tuple[Candidate, ...]] = (
 )
 
 
-class CoarseReference(Exception):
-    """The reference knows a scene too poorly to measure anything with it, as where a contact hardly leaves its flat."""
-
-
 def calibrate(
     *,
     seed: int,
     candidates: Iterable[Candidate] = CANDIDATES,
     bands: tuple[float, ...] = BANDS,
     revision: str = "unknown",
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Say = silent,
 ) -> Evidence:
     """Measure each candidate on samples of scenes; seconds are processor time of a first solution.
 
@@ -106,7 +103,7 @@ def calibrate(
     return Evidence(machine=machine, revision=revision, seed=seed, measurements=tuple(found))
 
 
-def _line(found: Measurement) -> str:
+def _line(found: MeasuredSetting) -> str:
     """What was measured, for a reader."""
     where = f"{found.method} {found.settings} {found.kind} a/h <= {found.band:g}"
     return f"{where}: {found.best:.1e} to {found.worst:.1e}, {found.typical:.1e} in the median; {found.refused} refused"
@@ -121,39 +118,35 @@ def sample_of(seed: int, kind: str, band: float, count: int) -> list[Scene]:
     return list(islice(like, count))
 
 
-def measure(candidate: Candidate, kind: str, band: float, scenes: list[Scene]) -> Measurement | None:
-    """U, or the stated error where it is larger, of each scene, and the median time; None if all were refused."""
-    bounds, seconds, refused = [], [], 0
-    for scene in scenes:
-        try:
-            answer, spent = timed_first(partial(build(candidate.method, candidate.settings).solve, scene))
-            stated = largest_stated_error(answer)  # what a user sees
-            bounds.append(max(error_bound(answer), stated, _LEAST_BOUND))
-            seconds.append(spent)
-        except ContactError:
-            refused += 1
-        except CoarseReference:
-            continue
-    if not bounds:
+def measure(candidate: Candidate, kind: str, band: float, scenes: list[Scene]) -> MeasuredSetting | None:
+    """U, or the stated error where it is larger, of each scene, and the median time; None if all were refused.
+
+    Raises:
+        RuntimeError: If a solution crashed: nothing measured with such a method counts.
+    """
+    of = Measurement(method=candidate.method, settings=candidate.settings, parameters={"kind": kind, "band": band})
+    solver = build(candidate.method, candidate.settings)
+    rows = [row for s in scenes for row in measured(partial(solver.solve, s), judged_by_reference, of=of, first=True)]
+    if crash := next((row for row in rows if row.status is Status.FAIL), None):
+        raise RuntimeError(f"{candidate.method} {dict(candidate.settings)}: {crash.reason}")
+    found = [row for row in rows if row.quantity]
+    if not found:
         return None
-    return Measurement(
+    return MeasuredSetting(
         kind=kind,
         band=band,
         method=candidate.method,
         settings=dict(candidate.settings),
-        bounds=tuple(sorted(bounds)),
-        seconds=float(np.median(seconds)),
-        refused=refused,
+        bounds=tuple(sorted(max(row.bound, row.stated, _LEAST_BOUND) for row in found)),
+        seconds=float(np.median([row.seconds for row in found])),
+        refused=sum(row.status is Status.INVALID for row in rows),
     )
 
 
-def timed_first(solve: Callable[[], A]) -> tuple[A, float]:
-    """Answer and processor time [s] without anything cached from earlier scenes."""
-    forget()
-    with threadpool_limits(limits=1):  # processor time of several threads would count their waiting
-        start = time.process_time()
-        answer = solve()
-        return answer, time.process_time() - start
+def judged_by_reference(answer: Solution) -> list[Measurement]:
+    """One row for the worst quantity: its bound U, and the largest error that a user sees stated."""
+    error, stated = error_bound(answer), largest_stated_error(answer)
+    return [Measurement(method=answer.method, quantity=WORST, error=error, stated=stated)]
 
 
 def largest_stated_error(answer: Solution) -> float:

@@ -13,7 +13,7 @@ from typing_extensions import TypeVar
 from cases.declare.methods import build, method_names
 from cases.measurements.evidence.calibrate import largest_stated_error
 from cases.measurements.evidence.kinds import band_of, kind_of
-from cases.measurements.evidence.records import Evidence, Measurement, shipped
+from cases.measurements.evidence.records import Evidence, MeasuredSetting, shipped
 from contact import (
     ContactPath,
     Detachment,
@@ -52,7 +52,7 @@ class Choice:
     expected_error: float
     expected_seconds: float
     reached: int
-    evidence: Measurement
+    evidence: MeasuredSetting
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,7 +107,7 @@ def choices(
     return [_choice(m, accuracy) for m in _ever_finer(ordered)]
 
 
-def _choice(measurement: Measurement, accuracy: float) -> Choice:
+def _choice(measurement: MeasuredSetting, accuracy: float) -> Choice:
     return Choice(
         method=measurement.method,
         settings=measurement.settings,
@@ -118,7 +118,7 @@ def _choice(measurement: Measurement, accuracy: float) -> Choice:
     )
 
 
-def _ever_finer(measurements: Iterable[Measurement]) -> Iterable[Measurement]:
+def _ever_finer(measurements: Iterable[MeasuredSetting]) -> Iterable[MeasuredSetting]:
     """Without those that are no finer on their sample than an earlier one of the same method."""
     finest: dict[str, float] = {}
     for m in measurements:
@@ -187,7 +187,7 @@ def _tried(choice: Choice, scene: Scene) -> tuple[Solution | None, str]:
         return None, str(error)
 
 
-def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measurement]:
+def usable(scene: Scene, measurements: Iterable[MeasuredSetting]) -> Iterable[MeasuredSetting]:
     """Measurements of scenes like this one, by methods that support it."""
     kind, band = kind_of(scene), band_of(scene)
     for m in measurements:
@@ -195,7 +195,7 @@ def usable(scene: Scene, measurements: Iterable[Measurement]) -> Iterable[Measur
             yield m
 
 
-def _reachable(scene: Scene, usable: list[Measurement], accuracy: float, within: float | None) -> str:
+def _reachable(scene: Scene, usable: list[MeasuredSetting], accuracy: float, within: float | None) -> str:
     wanted = f"accuracy = {accuracy:g}" + ("" if within is None else f" within {within:g} s")
     if not usable:
         able = [name for name in method_names() if build(name, {}).supports(scene)]
@@ -209,6 +209,6 @@ def _reachable(scene: Scene, usable: list[Measurement], accuracy: float, within:
     )
 
 
-def _reached(found: Measurement) -> str:
+def _reached(found: MeasuredSetting) -> str:
     answered = f"{len(found.bounds)} of {found.scenes}"
     return f"{SAFETY * found.worst:.1e} in {answered} ({found.method}, {found.seconds:.2g} s)"

@@ -22,7 +22,7 @@ _Positive = Annotated[float, Field(allow_inf_nan=False, gt=0)]
 
 
 @dataclass(frozen=True, kw_only=True, config=_RECORD)
-class Measurement:
+class MeasuredSetting:
     """One setting on a sample of scenes.
 
     Attributes:
@@ -87,7 +87,7 @@ class Evidence:
     machine: str
     revision: str
     seed: int
-    measurements: tuple[Measurement, ...]
+    measurements: tuple[MeasuredSetting, ...]
 
 
 _ADAPTER: TypeAdapter[Evidence] = TypeAdapter(Evidence)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from cases.declare.methods import build
 from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits
-from cases.results.records.claim import Claim, Kind, Origin, Verdict
+from cases.measurements.study import Say, silent, study_case, told, within_limit
+from cases.results.records.claim import Claim
 from cases.results.records.reliability import Ladder
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
@@ -35,7 +36,7 @@ number beyond its stated error, a warning or a crash is a failure.
 def ladder_case(
     plans: Iterable[LadderPlan],
     climbers: Mapping[str, Mapping[str, Any]] = CLIMBERS,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Say = silent,
 ) -> CaseResult:
     """Walk every plan by every climber that supports it.
 
@@ -45,23 +46,17 @@ def ladder_case(
         progress: called with one line a ladder.
     """
     methods = {name: build(name, settings) for name, settings in climbers.items()}
-    ladders = []
-    for plan in plans:
-        for name, method in methods.items():
-            if climbs(plan, name, method):
-                ladders.append(climb(plan, method, name))
-                for line in (summary(ladders[-1]), *refusals(ladders[-1])):
-                    progress(line)
-    return CaseResult(
-        name=NAME,
-        title="Hard parameters, walked until something breaks",
-        question="Where does each method give up, how many digits are left, and does it say so?",
-        equations=(),
-        text=TEXT.strip(),
-        scenes=(),
-        runs=(),
-        claims=tuple(no_silent_failure(ladder) for ladder in ladders),
-        ladders=tuple(ladders),
+    walks = (
+        climb(plan, method, name) for plan in plans for name, method in methods.items() if climbs(plan, name, method)
+    )
+    ladders = tuple(told(walks, lambda ladder: "\n".join((summary(ladder), *refusals(ladder))), progress))
+    return study_case(
+        NAME,
+        "Hard parameters, walked until something breaks",
+        "Where does each method give up, how many digits are left, and does it say so?",
+        TEXT,
+        claims=tuple(map(no_silent_failure, ladders)),
+        ladders=ladders,
     )
 
 
@@ -88,20 +83,13 @@ def no_silent_failure(ladder: Ladder) -> Claim:
     """The claim that every rung was climbed or refused by name; observed is the number of rungs that were not."""
     failed = [rung for rung in ladder.rungs if rung.status is Status.FAIL]
     worst = f"; {ladder.parameter} = {failed[0].value:g}: {failed[0].reason}" if failed else ""
-    return Claim(
-        name="no silent failure",
-        kind=Kind.INVARIANT,
+    return within_limit(
+        "no silent failure",
+        float(len(failed)),
+        0.5,
         scene=ladder.name,
         methods=(ladder.method,),
         quantity=ladder.quantity,
-        unit="1",
-        status=Status.FAIL if failed else Status.PASS,
-        verdict=Verdict.FAIL if failed else Verdict.PASS,
-        observed=float(len(failed)),
-        expected=0.0,
-        tolerance=0.5,
-        fraction=2.0 * len(failed),
-        origin=Origin.INDEPENDENT_METHOD,
         source="laws of mechanics, repeats, an integral equation of its own, and the fast method",
         because="a method may refuse a scene by name, but a number it gives has to lie within the error it states",
         derived_from="half a rung: not one may fail",

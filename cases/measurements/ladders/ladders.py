@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from cases.declare.methods import build
 from cases.measurements.campaigns.invariants import invariant_residuals
-from cases.measurements.ladders.repeats import repeated, shared_digits
+from cases.measurements.driver import measured
+from cases.measurements.ladders.repeats import digits_of, relative_spread, repeated
+from cases.measurements.measurement import Measurement
 from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from contact import ContactError, Method, Scene, Solution
 
 _OWN_ERROR = "stated error"
+_REPEATS = "spread of repeats"
 _JUDGES = ("second opinion", "fast method")  # residuals that may not exceed the stated error
 _FAST = "mdr"
 _LARGEST_EXCESS = 1e-12  # of an invariant residual over the stated error: rounding of the check itself
@@ -50,43 +54,50 @@ class LadderPlan:
 
 def climb(plan: LadderPlan, method: Method, label: str | None = None) -> Ladder:
     """Walk the whole ladder; a rung that fails by name does not stop the walk, so that a hole in the middle is seen."""
-    rungs = tuple(_rung(plan, plan.method(method, value), value) for value in plan.values)
     return Ladder(
         name=plan.name,
         parameter=plan.parameter,
         unit=plan.unit,
         method=label or method.name,
         quantity=plan.quantity,
-        rungs=rungs,
+        rungs=tuple(_rung(value, rung_rows(plan, plan.method(method, value), value)) for value in plan.values),
     )
 
 
-def _rung(plan: LadderPlan, method: Method, value: float) -> Rung:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            return _climbed(plan, method, value)
-    except ContactError as error:
-        return Rung(value=value, status=Status.INVALID, reason=f"{type(error).__name__}: {error!s:.200}", digits=None)
-    except Exception as error:  # a crash is no named refusal; the report has to show it
-        return Rung(
-            value=value, status=Status.FAIL, reason=f"crash: {type(error).__name__}: {error!s:.200}", digits=None
+def rung_rows(plan: LadderPlan, method: Method, value: float) -> list[Measurement]:
+    """One rung measured: the answer, the spread of its repeats, and every residual."""
+    of = Measurement(method=method.name, scene=plan.name, parameters={plan.parameter: value})
+    return measured(lambda: method.solve(plan.scene(value)), partial(_judged, plan.quantity, method), of=of)
+
+
+def _judged(quantity: str, method: Method, answer: Solution) -> Iterator[Measurement]:
+    """Only distances from other answers can break the rung; digits and laws of mechanics are shown."""
+    stated = _stated(answer, quantity)
+    residuals = invariant_residuals(method, answer) | _beside_the_fast_method(method, answer, quantity)
+    for name, residual in residuals.items():
+        allowed = stated if name in _JUDGES else math.inf
+        yield Measurement(
+            method=method.name, quantity=name, error=residual, stated=allowed, uncertainty=_LARGEST_EXCESS
         )
+    spread = relative_spread(list(repeated(method, answer.scene, quantity)))
+    yield Measurement(method=method.name, quantity=_OWN_ERROR, error=stated, stated=math.inf)
+    yield Measurement(method=method.name, quantity=_REPEATS, error=spread, stated=math.inf)
 
 
-def _climbed(plan: LadderPlan, method: Method, value: float) -> Rung:
-    scene = plan.scene(value)
-    answer = method.solve(scene)
-    stated = _stated(answer, plan.quantity)
-    residuals = invariant_residuals(method, answer) | _beside_the_fast_method(method, answer, plan.quantity)
-    wrong = max(residuals.get(judge, 0.0) for judge in _JUDGES) > stated + _LARGEST_EXCESS
+def _rung(value: float, rows: list[Measurement]) -> Rung:
+    whole, *found = rows
+    if whole.status is not Status.PASS:
+        crash = "crash: " if whole.status is Status.FAIL else ""
+        return Rung(value=value, status=whole.status, reason=crash + whole.reason, digits=None)
+    wrong = not all(row.holds for row in found)
+    residuals = {row.quantity: row.error for row in found}
     return Rung(
         value=value,
         status=Status.FAIL if wrong else Status.PASS,
         reason="beyond its stated error of an independent answer" if wrong else "",
-        digits=shared_digits(list(repeated(method, scene, plan.quantity))),
-        iterations=answer.cost.counters.get("iterations"),
-        residuals=residuals | {_OWN_ERROR: stated},
+        digits=digits_of(residuals.pop(_REPEATS)),
+        iterations=whole.counters.get("iterations"),
+        residuals=residuals,
     )
 
 

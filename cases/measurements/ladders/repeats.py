@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Iterator, Sequence
 from typing import Any, Final, TypeVar
 
@@ -38,13 +39,16 @@ def repeated(method: Method, scene: Scene, quantity: str) -> Iterator[float]:
         yield _last(method.solve(scene), quantity)
 
 
-def shared_digits(values: Sequence[float]) -> float:
-    """Significant digits on which repeats agree, at most what doubles carry."""
+def relative_spread(values: Sequence[float]) -> float:
+    """Largest distance from the median over the median; zero where all agree."""
     middle = float(np.median(values))
     spread = float(np.max(np.abs(np.asarray(values) - middle)))
-    if spread == 0.0:
-        return DOUBLE_DIGITS
-    return float(np.clip(-np.log10(spread / abs(middle)), 0.0, DOUBLE_DIGITS)) if middle else 0.0
+    return 0.0 if spread == 0.0 else spread / abs(middle) if middle else math.inf
+
+
+def digits_of(spread: float) -> float:
+    """Significant digits that values with this relative spread share, at most what doubles carry."""
+    return float(np.clip(-np.log10(spread), 0.0, DOUBLE_DIGITS)) if spread else DOUBLE_DIGITS
 
 
 def nudged(scene: Scene, draw: np.random.Generator) -> Scene:

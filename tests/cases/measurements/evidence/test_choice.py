@@ -7,9 +7,10 @@ import pytest
 
 from bem.layer_equation.method import IntegralEquationMethod
 from cases.measurements.campaigns.referee import second_opinion
-from cases.measurements.evidence import Evidence, Measurement, choose, shipped, solve
+from cases.measurements.driver import CoarseReference
+from cases.measurements.evidence import Evidence, MeasuredSetting, choose, shipped, solve
 from cases.measurements.evidence import calibrate as calibration
-from cases.measurements.evidence.calibrate import Candidate, CoarseReference, calibrate, error_bound, sample_of
+from cases.measurements.evidence.calibrate import Candidate, calibrate, error_bound, sample_of
 from cases.measurements.evidence.choice import choices
 from cases.measurements.evidence.kinds import BANDS, band_of, kind_of, rough_radius
 from cases.measurements.evidence.records import read, write
@@ -40,7 +41,7 @@ def measured(bound, seconds, *, nodes, bad=0, refused=0, band=1.0):
     """On ten scenes: one bound, but a useless one in the bad scenes and none in the refused ones."""
     bounds = (bound,) * (10 - bad - refused) + (1e-1,) * bad
     settings = {"nodes": nodes}
-    return Measurement(
+    return MeasuredSetting(
         kind="radii", band=band, method="mdr", settings=settings, bounds=bounds, seconds=seconds, refused=refused
     )
 
@@ -144,7 +145,7 @@ def test_where_settings_give_no_answer_the_next_ones_solve(monkeypatch):
 
     monkeypatch.setattr(IntegralEquationMethod, "solve", failing)
     kind = {"kind": "radii", "band": 1.0, "method": "integral_equation"}
-    rows = [Measurement(settings={"nodes": n}, seconds=1e-3 * n, bounds=(1e-7 / n,), **kind) for n in (12, 24)]
+    rows = [MeasuredSetting(settings={"nodes": n}, seconds=1e-3 * n, bounds=(1e-7 / n,), **kind) for n in (12, 24)]
     assert solve(SCENE, accuracy=1e-6, evidence=evidence_of(*rows)).choice.settings == {"nodes": 24}
     with pytest.raises(NotConvergedError, match=r"no answer \(too coarse"):
         solve(SCENE, accuracy=1e-6, evidence=evidence_of(rows[0]))

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from cases.measurements.campaigns import campaign as campaign_module
-from cases.measurements.campaigns.campaign import Check, campaign, coverage
+from cases.measurements.campaigns.campaign import campaign
+from cases.measurements.measurement import Measurement, by_quantity, covered, defects, ends, median, sharpness
 from contact import NotConvergedError
 from mdr import Mdr
 
@@ -55,50 +56,54 @@ def slice_of(mistake):
 
 def test_the_fast_method_is_within_its_stated_errors():
     found = campaign(Mdr(), seed=1, count=60, ratio=(1e-3, 20.0))
-    assert found.defects == ()
-    assert found.counts["within"] >= 55
-    assert {trial.referee for trial in found.trials if trial.end == "within"} == {"second opinion"}
+    assert defects(found) == []
+    assert ends(found)["within"] >= 55
+    assert {row.reference for rows in by_quantity(found).values() for row in rows} == {"second opinion"}
 
 
 def test_a_millionth_too_much_is_seen():
     found = slice_of(factor)
-    assert found.counts["within"] == 0
-    assert all("normal_force is off by 1.0e-06" in trial.message for trial in found.defects)
+    assert ends(found)["within"] == 0
+    assert all("normal_force is off by 1.0e-06" in why for _, _, why in defects(found))
 
 
 def test_an_answer_that_depends_on_units_is_seen():
-    assert any("in other units" in trial.message for trial in slice_of(unit_of_length).defects)
+    assert any("in other units" in why for _, _, why in defects(slice_of(unit_of_length)))
 
 
 def test_a_warning_is_a_crash():
-    assert slice_of(warns).counts["crashed"] == 6
+    assert ends(slice_of(warns))["crashed"] == 6
 
 
 def test_a_refusal_is_counted_as_one():
     found = slice_of(refuses)
-    assert found.counts["refused"] == 6
-    assert found.trials[0].message == "NotConvergedError: planted"
+    assert ends(found)["refused"] == 6
+    assert found[0].reason == "NotConvergedError: planted"
+
+
+def judged(**found):
+    return Measurement(method="m", quantity="q", **found)
 
 
 def test_coverage_and_sharpness():
     checks = [
-        Check(quantity="q", error=1e-6, stated=2e-6, allowance=1e-9, sharpness=2.0),
-        Check(quantity="q", error=1e-6, stated=8e-6, allowance=1e-9, sharpness=8.0),
-        Check(quantity="q", error=1e-6, stated=1e-7, allowance=1e-9, sharpness=0.1),
-        Check(quantity="q", error=1e-10, stated=1e-12, allowance=1e-9),  # below what the referee can tell
+        judged(error=1e-6, stated=2e-6, uncertainty=1e-9, sharpness=2.0),
+        judged(error=1e-6, stated=8e-6, uncertainty=1e-9, sharpness=8.0),
+        judged(error=1e-6, stated=1e-7, uncertainty=1e-9, sharpness=0.1),
+        judged(error=1e-10, stated=1e-12, uncertainty=1e-9),  # below what the referee can tell
     ]
-    found = coverage(checks)
-    assert (found.count, found.covered, found.decided, found.ratios) == (4, 0.75, 3, (2.0, 8.0, 0.1))
-    assert found.sharpness == pytest.approx(2.0, rel=1e-12, abs=0.0)
+    assert covered(checks) == 0.75
+    assert sharpness(checks) == [2.0, 8.0, 0.1]
+    assert median(sharpness(checks)) == pytest.approx(2.0, rel=1e-12, abs=0.0)
 
 
 @pytest.mark.parametrize(("excess", "holds"), [(-1e-9, True), (1e-9, False), (0.5, False), (1.0, False)])
 def test_a_true_error_beyond_the_stated_one_is_never_covered(excess, holds):
     """Also not when it is less than twice as large."""
     stated, allowance = 1e-6, 1e-9
-    check = Check(quantity="q", error=(1 + excess) * (stated + allowance), stated=stated, allowance=allowance)
+    check = judged(error=(1 + excess) * (stated + allowance), stated=stated, uncertainty=allowance)
     assert check.holds is holds
-    assert coverage([check]).covered == float(holds)
+    assert covered([check]) == float(holds)
 
 
 def half_too_much(path):
@@ -114,8 +119,8 @@ def half_too_much(path):
 def test_answers_half_as_wrong_again_as_they_state_are_not_covered():
     """Seen to fail with a rule that lets true errors be twice the stated ones."""
     found = slice_of(half_too_much)
-    assert not found.counts["within"]
-    assert found.coverage()["contact_stiffness"].covered == 0.0
+    assert not ends(found)["within"]
+    assert covered(by_quantity(found)["contact_stiffness"]) == 0.0
 
 
 SHARPNESS = [

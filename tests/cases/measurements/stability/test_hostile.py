@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns import hostile
-from cases.measurements.campaigns.hostile import KINDS, hostile_trial, hostile_trials
+from tests.cases import hostile
+from tests.cases.hostile import KINDS, hostile_trial, hostile_trials
 
 ROOT = Path(__file__).resolve().parents[4]
 DEFECTS = ("altered", "crashed")
@@ -33,7 +33,7 @@ def test_damaged_input_is_refused_by_name(kind):
 @pytest.mark.slow
 def test_two_thousand_hostile_inputs_within_bounded_memory_and_time():
     code = (
-        "from cases.measurements.campaigns.hostile import hostile_trials\n"
+        "from tests.cases.hostile import hostile_trials\n"
         "print([t for t in hostile_trials(7, 2000) if t.end in ('altered', 'crashed')])"
     )
     start = time.monotonic()

@@ -12,7 +12,7 @@ from cases.measurements.ladders import ladders
 from cases.measurements.ladders.ladder_study import climbs, ladder_case, no_silent_failure
 from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
 from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
-from cases.measurements.ladders.repeats import DOUBLE_DIGITS, nudged, repeated, shared_digits
+from cases.measurements.ladders.repeats import DOUBLE_DIGITS, digits_of, nudged, relative_spread, repeated
 from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from contact import InvalidInput, NotConvergedError, Supported
@@ -57,10 +57,14 @@ def crashing(path):
     raise ZeroDivisionError("planted")
 
 
+def digits_of_values(values):
+    return digits_of(relative_spread(values))
+
+
 def test_digits_of_values_that_differ_in_the_ninth_place():
-    assert shared_digits([1.0, 1.0 + 1e-9, 1.0]) == pytest.approx(9.0, abs=0.01)
-    assert shared_digits([2.5, 2.5]) == DOUBLE_DIGITS
-    assert shared_digits([1.0, -1.0, 3.0]) == 0.0
+    assert digits_of_values([1.0, 1.0 + 1e-9, 1.0]) == pytest.approx(9.0, abs=0.01)
+    assert digits_of_values([2.5, 2.5]) == DOUBLE_DIGITS
+    assert digits_of_values([1.0, -1.0, 3.0]) == 0.0
 
 
 def test_a_nudge_moves_numbers_by_one_unit_in_the_last_place_and_nothing_else():
