@@ -11,10 +11,9 @@ import numpy as np
 from pydantic import Field
 
 from bem.grid.equilibrium import Boundary, Prescribed, Press, PressedState
-from bem.grid.flat_punch import grid_punch
+from bem.grid.flat_punch import cell_pressure, grid_punch, punch_stiffness
 from bem.grid.quadrant import LEAST_CELLS, Grid, UnresolvedLayer
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
-from bem.kernels.moduli import contact_modulus
 from contact import (
     Adhesion,
     ContactPath,
@@ -227,7 +226,7 @@ class Bem(Record):
         with log.stage("contact"):
             punch, disc = grid_punch(scene.layer, a, self.points)
             coarse, _ = grid_punch(scene.layer, a, self.points // 2)
-        stiffness = 2.0 * contact_modulus(scene.layer) * a * punch.stiffness  # Eq. (10)
+        stiffness = punch_stiffness(scene.layer, a, punch)
         depth = value if kind == "depth" else value / stiffness
         scale = depth * stiffness / (np.pi * a**2)  # p = k_N delta / (pi a^2) p_bar, Eq. (10)
         cell_size = a / disc.radius
@@ -238,7 +237,7 @@ class Bem(Record):
             pressure_scale=scale,
             shape=punch.shape,
             grid=Grid(2 * len(punch.pressure), cell_size),
-            cell_pressure=punch.pressure * (contact_modulus(scene.layer) * depth / cell_size),
+            cell_pressure=cell_pressure(scene.layer, depth, cell_size, punch),
         )
         error = abs(coarse.stiffness / punch.stiffness - 1.0)
         values = {"contact_radius": a, "indentation_depth": depth, "normal_force": stiffness * depth}

@@ -1,4 +1,8 @@
-"""The method of dimensionality reduction: layers and half-spaces as beds of independent springs."""
+"""The method of dimensionality reduction: layers and half-spaces as beds of independent springs.
+
+Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `dispatch`, `springs.assembly` and
+`elastic`; coefficients of stated errors stand in `error_model`.
+"""
 
 from mdr.method import Mdr
 from mdr.springs.assembly import SeveralContacts, equivalent_system

@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 Progress: TypeAlias = Callable[[int, int], None]
 
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
-_CHUNK = 512  # scenes between two reports of progress
+# Scenes between two reports of progress; chosen.
+_CHUNK = 512
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -26,7 +26,9 @@ from contact.records.validation import FloatArray, in_range
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.equivalent_system import EquivalentSystem
 
-_THINNEST = 0.05  # of the mean: a thinner coating needs finer panels than its partner
+# Least share of the mean thickness that a coating of a pair may have: a thinner one needs finer panels than its
+# partner.
+_THINNEST = 0.05
 
 
 @record
@@ -52,7 +54,8 @@ class PairedCoatings(Record):
                 f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_FACTORISED_RATIO:g}"
             )
         rung = next(rung for rung in RUNGS if rung >= max_ratio)
-        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0  # no influence on an unbonded coating
+        # Poisson's ratio has no influence on an unbonded coating.
+        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
         return _solution(self, layer.support, nu, rung)
 
     def refined(self) -> Self:

@@ -25,6 +25,7 @@ from contact.scene.effects import Viscoelasticity
 
 _EQUILIBRIA = (ContactRadii, IndentationDepths, NormalForces)
 _IN_TIME = (Impact, DepthHistory, ForceHistory)
+# Poisson's ratio of an incompressible layer, to which viscoelastic scenes are restricted.
 _INCOMPRESSIBLE = 0.5
 
 

@@ -12,19 +12,13 @@ from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import contact_fields, pressure_error
+from mdr.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
+from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors, pressure_errors
-
-# Least stated error of a pressure: forty roundings of the quadrature over the profile's slope.
-PRESSURE_ROUNDING = 40 * float(np.finfo(float).eps)
-# The same of a profile whose slope is taken from 32 samples on each stretch: differentiation magnifies roundings by up
-# to 32^2 at a stretch's ends. Measured at most 127 roundings in the norm over all tabulated profiles of the command
-# `contact-verify campaign pressure --count 2000 --seed 15` (2026-11-22).
-SAMPLED_ROUNDING = 256 * float(np.finfo(float).eps)
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -147,7 +141,7 @@ def _errors(
         linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         depth_given = given == "IndentationDepths"
         return linear | {
-            "pressure": pressure_error(system.flat_punch, ratio, stiffness) + PRESSURE_ROUNDING,
+            "pressure": system.flat_punch.contact_pressure_error(ratio, stiffness) + PRESSURE_ROUNDING,
             "indentation_depth": exact if depth_given else stiffness,
             "normal_force": stiffness if depth_given else exact,
         }
@@ -165,7 +159,7 @@ def _errors(
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
         "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
-        "pressure": pressure_error(system.flat_punch, ratio, errors["indentation_depth"]) + moved + rounding,
+        "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"]) + moved + rounding,
     }
 
 

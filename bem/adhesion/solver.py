@@ -11,11 +11,12 @@ import numpy as np
 from bem.adhesion.beside_contact import refuse_touching_beside
 from bem.adhesion.branch import AdhesiveBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
+from bem.adhesion.fields import AdheringFields
 from bem.adhesion.sequence import Held, at_radii, followed
 from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
 from bem.grid.quadrant import refuse_thin_layer
-from bem.grid.surface_fields import AdheringFields, FieldSequence
+from bem.grid.surface_fields import FieldSequence
 from contact import (
     ContactPath,
     ContactRadii,

@@ -10,6 +10,7 @@ import numpy as np
 from bem.grid.calibrated_disc import THIN, PixelDisc, PunchSolution, measured_disc
 from bem.kernels.moduli import contact_modulus
 from contact import Layer, NotConvergedError
+from contact.records.validation import FloatArray
 
 RADIUS_TOLERANCE: Final = 1e-7  # relative, of the stiffness
 LARGEST_EXPONENT: Final = 4.0  # of k_N over a, on a thin incompressible layer
@@ -35,7 +36,17 @@ def stiffness_exponent(ratio: float) -> float:
 def contact_stiffness(layer: Layer, radius: float, cells: int) -> float:
     """k_N(a) [N/m], Eq. (10)."""
     punch, _ = grid_punch(layer, radius, cells)
+    return punch_stiffness(layer, radius, punch)
+
+
+def punch_stiffness(layer: Layer, radius: float, punch: PunchSolution) -> float:
+    """k_N [N/m] of a punch of this radius [m], Eq. (10)."""
     return 2.0 * contact_modulus(layer) * radius * punch.stiffness
+
+
+def cell_pressure(layer: Layer, depth: float, cell_size: float, punch: PunchSolution) -> FloatArray:
+    """p [Pa] on the cells of the quadrant under a depth [m]."""
+    return np.asarray(punch.pressure * (contact_modulus(layer) * depth / cell_size))
 
 
 def radius_of_stiffness(layer: Layer, stiffness: float, near: float, cells: int) -> float:

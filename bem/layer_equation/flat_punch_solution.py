@@ -12,9 +12,12 @@ from bem.kernels.layer import Support
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
+from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.equal_panels import EqualPanels
 from bem.polynomials.gauss_panels import gauss_nodes, partial_panel_interpolation
-from contact import InvalidInput
+from bem.polynomials.mapped import MappedFunction
+from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
 EPS = float(np.finfo(float).eps)
@@ -35,7 +38,7 @@ SPRING_GROWTH = 1.0
 
 
 @dataclass(frozen=True)
-class IntegralEquationSolution:
+class IntegralEquationSolution(FlatPunchSolution):
     """The flat punch on one layer, every radius up to `max_ratio`.
 
     Attributes:
@@ -115,6 +118,57 @@ class IntegralEquationSolution:
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """In g = yg/y1 each edge value has half the relative error of c_bar = y1^2, mostly of the same sign."""
         return self._edge_error(self._covered(ratio), PROFILE_SAFETY)
+
+    @property
+    def nodes(self) -> int:
+        """As many as the factor has on a panel, since loads go through its matrices."""
+        return self.factor.count
+
+    def panel_ends(self, ratio: float) -> FloatArray:
+        """Of the factor's panels."""
+        return self.factor.panel_width * np.arange(1.0, np.ceil(ratio / self.factor.panel_width))
+
+    def profile_of(
+        self, indenter: Profile, unit: float, load: MappedFunction, springs: FloatArray
+    ) -> tuple[MappedFunction, float]:
+        """g = yg/y1 from the edge values of the densities under g_hs and under 1, Eq. (8)."""
+        edge = edge_values(self.factor, load, indenter.flat_radius / unit)
+        return MappedFunction(load.grid, edge / np.sqrt(springs), load.lead), 0.0
+
+    def contact_density(
+        self, load: MappedFunction | None, flat_radius: float, ratio: float, depth: float
+    ) -> ContactDensity:
+        """Solved for under W = delta - g_hs."""
+        averages = np.full((int(np.ceil(ratio / self.factor.panel_width)), self.factor.count), depth)
+        if load is not None:
+            averages -= contact_averages(self.factor, load, flat_radius)
+        return self.density(ratio, averages)
+
+    def contact_pressure_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+        """From the relative errors of the depth and of the density that is solved for.
+
+        psi, the layer's share of the density, is even and varies over a thickness: for small ratios a/h its slope,
+        which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all.
+        """
+        share = (1 - 1 / self.normalized_contact_stiffness(ratio)) * ratio**2 / (1 + ratio**2)
+        return np.asarray(share * (depth_error + self._slope_truncation))
+
+    @property
+    def _slope_truncation(self) -> float:
+        """What m Gauss nodes on panels of H thicknesses leave of the slope of psi, which is analytic for |Im t| < 2.
+
+        Interpolation leaves rho^-m on the ellipse of Bernstein through 2i, its derivative m times as much, if the
+        density stays there below its values in the contact.
+        """
+        distance = 4 / self.factor.panel_width
+        m = self.factor.count
+        return float(m * (distance + np.hypot(1, distance)) ** -m)
+
+    @property
+    def panel_error(self) -> float:
+        """The largest `spring_error` at ends and middles of all panels."""
+        ratios = self.max_ratio * np.arange(1.0, 2 * self.factor.panels + 1) / (2 * self.factor.panels)
+        return float(self.spring_error(ratios).max())
 
     def _edge_error(self, ratio: FloatArray, safety: float) -> FloatArray:
         rounded = 2 * ROUNDED + SPRING_GROWTH * self.normalized_contact_stiffness(ratio)

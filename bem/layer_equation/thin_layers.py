@@ -22,9 +22,12 @@ from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fourier_energy import energy_matrix
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.profiles.thin_layers import LAST_TERMS, WidePanels
+from bem.layer_equation.protocol import FITTED_SHARE, FlatPunchSolution
 from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.gauss_panels import gauss_nodes
-from contact import InvalidInput
+from bem.polynomials.mapped import MappedFunction, apart
+from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
 LARGEST_RATIO = 1000.0
@@ -37,11 +40,10 @@ DENSITY_TRUNCATION = 3e-8  # 1.618^-36: densities are analytic within 2 of panel
 RITZ_DENSITIES = 4
 RADII = 42
 DEGREE = 26  # of ln k_bar in ln(a/h): nearly incompressible layers turn from film to bed within the range
-LAST_TERMS = 2  # of the fit, by which it is judged
 
 
 @dataclass(frozen=True, eq=False)
-class LargeRatioSolution:
+class LargeRatioSolution(FlatPunchSolution):
     """k_bar and c_bar up to a/h = 1000, made when first asked for.
 
     Attributes:
@@ -83,9 +85,37 @@ class LargeRatioSolution:
         stiffness: FloatArray = self._stiffness(ratio) * (1 + self.log_stiffness.deriv()(np.log(ratio)))
         return stiffness
 
-    def reach(self, ratio: float) -> float:
-        """The smallest ratio with a known density that is not below the given one."""
-        return min(known for known in self.densities if known >= ratio * (1 - 1e-12))
+    def profile_source(self, ratio: float, last_break: float) -> tuple[FlatPunchSolution, float]:
+        """Itself, up to the next ratio with a known density; the wide panels alone for breakpoints far out."""
+        if last_break > FIRST_RATIO / 2:
+            return self.wide_alone, ratio
+        return self, min(known for known in self.densities if known >= ratio * (1 - 1e-12))
+
+    @property
+    def nodes(self) -> int:
+        """As many as `near` has on a panel."""
+        return self.near.nodes
+
+    @property
+    def fitted_from(self) -> float:
+        """Where `near` ends."""
+        return self.near.max_ratio
+
+    def panel_ends(self, ratio: float) -> FloatArray:
+        """Of the narrow panels, its own end included, and of the wide ones."""
+        narrow = self.near.panel_ends(self.near.max_ratio * (1 + ROUNDING))
+        return np.sort(np.append(narrow, apart(np.arange(PANEL_WIDTH, ratio, PANEL_WIDTH), narrow)))
+
+    def profile_of(
+        self, indenter: Profile, unit: float, load: MappedFunction, springs: FloatArray
+    ) -> tuple[MappedFunction, float]:
+        """From `near` within its reach, and fitted to the known densities beyond."""
+        panels = WidePanels(self.near, self.densities, self.wide_spring_stiffness, PANEL_WIDTH, FIRST_RATIO)
+        return panels.profile(load, indenter.flat_radius / unit)
+
+    def contact_pressure_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+        """As where all is fitted, with what the density solved for has lost."""
+        return np.asarray(FITTED_SHARE * (depth_error + self.density_error(ratio)))
 
     @property
     def densities(self) -> dict[float, FloatArray]:

@@ -21,6 +21,8 @@ from contact.records.validation import FloatArray
 
 MAX_SPLITS = 60
 EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+# Two points closer than this, relative to their distance from the start, are one: rounding set them apart.
+GAP = 1e-12
 # Roundings of the largest coefficient that a sum of polynomials adds up to.
 ROUNDINGS = 4.0
 
@@ -199,6 +201,15 @@ def _slopes_from_nodes(count: int) -> FloatArray:
     """Matrix from values at the Gauss nodes of [0, 1] to derivatives there."""
     at_nodes = np.polynomial.chebyshev.chebvander(2 * gauss_nodes(count)[0] - 1, count - 1)
     return np.asarray(at_nodes @ _slope_of_chebyshev(count) @ chebyshev_from_nodes(count))
+
+
+def apart(points: FloatArray, others: FloatArray) -> FloatArray:
+    """Points that do not coincide with others."""
+    if not others.size:
+        return points
+    distance = np.min(np.abs(points[:, None] - others), axis=1, initial=np.inf)
+    distinct: FloatArray = points[distance > GAP * np.abs(points)]
+    return distinct
 
 
 def resolve(

@@ -11,14 +11,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, RectBivariateSpline, make_interp_spline
 
 from bem.kernels.layer import Support
-from contact import InvalidInput
+from bem.layer_equation.protocol import FlatPunchSolution
+from bem.polynomials.mapped import MappedFunction
+from bem.tables.published_transform import published_profile
+from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
 LEAST_ROWS: Final = 6  # a quintic spline needs six
@@ -31,7 +34,7 @@ STIFFNESS_FLOOR: Final = 5e-13
 
 
 @dataclass(frozen=True, eq=False)
-class FlatPunchTable:
+class FlatPunchTable(FlatPunchSolution):
     """Flat punches on one layer at tabulated ratios and radii; a `FlatPunchSolution`.
 
     Attributes:
@@ -63,6 +66,8 @@ class FlatPunchTable:
     mean_error: FloatArray
     provenance: dict[str, str | int | float] = field(default_factory=dict)
     variants: tuple[tuple[float, FlatPunchTable], ...] = ()
+    nodes: ClassVar[int] = 12
+    superposed: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         """Refuse what is not a table."""
@@ -127,6 +132,20 @@ class FlatPunchTable:
         xi, rho = np.broadcast_arrays(self._checked(ratio), np.asarray(start, dtype=np.float64))
         pairs = [(i, j) for i in _neighbours(self.ratios, xi) for j in _neighbours(self.radii, rho)]
         return np.asarray(np.max([self.mean_error[i, j] for i, j in pairs], axis=0))
+
+    def panel_ends(self, ratio: float) -> FloatArray:
+        """Octaves of the ratio from 1/32 on, below which the table's functions are linear to its accuracy."""
+        return np.exp2(np.arange(-5, np.ceil(np.log2(ratio)), dtype=np.float64))
+
+    def profile_of(
+        self, indenter: Profile, unit: float, load: MappedFunction, springs: FloatArray
+    ) -> tuple[MappedFunction, float]:
+        """g by Eq. (11)."""
+        return published_profile(self, indenter, unit, load), 0.0
+
+    def noise(self, ratio: float) -> float:
+        """As much as profiles may err."""
+        return float(self.profile_error(ratio))
 
     def _larger_neighbour(self, error: FloatArray, ratio: ArrayLike) -> FloatArray:
         """The larger of the errors of the two rows around each ratio."""

@@ -23,10 +23,14 @@ from mdr.adhesion.solver import balance_radius, solve_detachment, work_of_adhesi
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.shared_tables import Reference, power_law, reference
 
-_KEPT = 32  # tables
-_SURVEY = 400  # points on which the lowest depth or force is looked for
+# Most spring tables that are kept in memory; chosen.
+_KEPT = 32
+# Points on which the lowest depth or force is looked for before it is refined; chosen.
+_SURVEY = 400
+# Most steps of the refinement: bisection from neighbouring points needs about 40.
 _ROOT_STEPS = 40
-_FIRST_WAY = 2.0  # in units of the radius at which height and elongation are equal
+# First trial excess, in units of the radius at which height and critical elongation are equal; chosen.
+_FIRST_WAY = 2.0
 
 
 @dataclass(frozen=True)

@@ -20,10 +20,14 @@ from bem.polynomials.adaptive import NODES, Panel, Piecewise, resolved_panels
 from contact.records.validation import FloatArray
 
 DEPTH, FORCE = 0, 1
-_TIP = 1e-5  # of the largest y: below it, depth and force have left the tip with a known sign
-_EDGE = 1e-6  # how far outside its panel a root may lie; whether it is one is decided by the signs beside it
-_NEWTON_STEPS, _ROUNDING = 60, 1e-13  # a Newton step this short has squared its error already
-_Y_ROUNDING = float(np.finfo(float).eps)  # of a position and of the middle of its panel, half of it each
+# Share of the largest y below which depth and force have left the tip with a known sign; chosen.
+_TIP = 1e-5
+# How far outside its panel a root may lie; whether it is one is decided by the signs beside it. Chosen.
+_EDGE = 1e-6
+# Most Newton steps to a fold, and the relative step that ends them: a step this short has squared its error already.
+_NEWTON_STEPS, _ROUNDING = 60, 1e-13
+# Relative rounding of a position: half of its own, half of the middle of its panel.
+_Y_ROUNDING = float(np.finfo(float).eps)
 
 
 class AdheringSprings(Protocol):
@@ -52,7 +56,7 @@ def critical_elongation(springs: AdheringSprings, radius: FloatArray, work_of_ad
 
 
 @dataclass(frozen=True)
-class AdhesiveBranch:
+class MdrAdhesiveBranch:
     """Depth and force of all equilibria up to a largest radius.
 
     Attributes:
@@ -94,7 +98,8 @@ class AdhesiveBranch:
         """For each target the smallest y on a stable part of the branch with that depth or force; NaN where none."""
         ends = np.concatenate([[0.0], self.folds(quantity), self.section_ends[-1:]])
         found = np.full(target.shape, np.nan)
-        for low, high in zip(ends[-2::-1], ends[:0:-1], strict=True):  # the smallest is written last
+        # From the outermost section inwards, so that the smallest is written last.
+        for low, high in zip(ends[-2::-1], ends[:0:-1], strict=True):
             if self.slopes(np.array([0.5 * (low + high)]))[quantity, 0] > 0.0:
                 reach = self.values(np.array([low, high]))[quantity]
                 inside = (target >= reach[0]) & (target <= reach[1])
@@ -119,9 +124,8 @@ class AdhesiveBranch:
         roots = series.chebroots(series.chebtrim(coefficients, 1e-15 * size))
         z = roots.real[(np.abs(roots.imag) < _EDGE) & (np.abs(roots.real) < 1.0 + _EDGE)]
         slope = series.chebder(coefficients)
-        with np.errstate(
-            divide="ignore", invalid="ignore"
-        ):  # a double root is no change of sign; where it stays is idle
+        # A double root has no slope: it is no change of sign and stays where it is.
+        with np.errstate(divide="ignore", invalid="ignore"):
             polished = z - series.chebval(z, coefficients) / series.chebval(z, slope)
         z = np.where(np.abs(polished - z) < _EDGE, polished, z)
         return np.asarray(self.functions.centres[panel] + z / self.functions.scales[panel])
@@ -157,7 +161,7 @@ def adhesive_branch(
     radius: float,
     work_of_adhesion: float,
     error: float = 0.0,
-) -> AdhesiveBranch:
+) -> MdrAdhesiveBranch:
     """All equilibria with contact radii in (0, radius].
 
     Args:
@@ -179,7 +183,7 @@ def adhesive_branch(
     derivative = chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
     slopes = values @ derivative
     rows = np.transpose(np.concatenate([values, slopes, slopes @ derivative], axis=1), (2, 1, 0))
-    return AdhesiveBranch(
+    return MdrAdhesiveBranch(
         functions=Piecewise.of(panels, rows),
         coefficients=rows[:, 2:4],
         section_ends=ends,

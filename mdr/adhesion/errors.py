@@ -14,12 +14,14 @@ import numpy as np
 
 from bem.polynomials.adaptive import NODES
 from contact.records.validation import FloatArray
-from mdr.adhesion.branch import DEPTH, FORCE, AdhesiveBranch
+from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.table_errors import adhesive_errors
 
-RADIUS = 2  # row behind those of DEPTH and FORCE
-_SAMPLES = 24  # of the bounds along a branch
+# Row behind those of DEPTH and FORCE.
+RADIUS = 2
+# Radii along a branch at which bounds are computed: they vary slowly. Chosen.
+_SAMPLES = 24
 
 
 def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
@@ -46,7 +48,7 @@ class BranchErrors:
     """
 
     system: EquivalentSystem
-    branch: AdhesiveBranch
+    branch: MdrAdhesiveBranch
 
     def of_states(self, y: FloatArray, shift: FloatArray) -> FloatArray:
         """Errors of delta, F and a where y itself is uncertain by a shift, shape (3, n)."""
@@ -65,7 +67,7 @@ class BranchErrors:
         """How far a state moves that is looked for by its depth or force, on either side of a fold."""
         error = self._at_radius(y)[quantity] + of_target
         slope, curvature = (np.abs(rows(y)[quantity]) for rows in (self.branch.slopes, self.branch.curvatures))
-        # the root of slope d - curvature d^2 / 2 = error, or twice sqrt(error / curvature) if the fold is that near
+        # The root d of slope d - curvature d^2/2 = error, or twice sqrt(error/curvature) if a fold is that near.
         root = slope + np.sqrt(np.maximum(slope**2 - 2.0 * curvature * error, 0.0))
         return np.asarray(2.0 * error / np.maximum(root, np.sqrt(curvature * error)))
 

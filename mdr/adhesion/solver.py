@@ -27,7 +27,7 @@ from contact import (
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.adhesion.branch import DEPTH, FORCE, AdhesiveBranch, adhesive_branch, critical_elongation
+from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.withdrawal import CONTROLS, Route
 from mdr.elastic import PathFields, solve_elastic
@@ -37,16 +37,22 @@ from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import FIRST_RATIO
 from mdr.springs.shared_tables import bisected, growing_radii, power_law, upper
 
-POINTS = 200  # states of a detachment path
-_PINNED = POINTS // 5  # of them with the front at a punch's edge
-_FIRST_WAY = 2.0  # beyond the flat end, in units of the way to where height and elongation are equal
+# States of a detachment path.
+POINTS = 200
+# States of them with the front at a punch's edge.
+_PINNED = POINTS // 5
+# First trial excess over the flat end, in units of the way to where height and critical elongation are equal; chosen.
+_FIRST_WAY = 2.0
 
 # a/h beyond which the half-space's radius is no guide to the layer's: the largest that one factorisation covers.
 _THIN = LARGEST_FACTORISED_RATIO
 
-_CONFINED = 0.45  # Poisson's ratio from which a punch's pressure may have a second maximum in its centre
-_THINNEST = 50.0  # a/h beyond which the pressure inside no longer changes its shape
-_INSIDE = 0.1  # of the contact radius: where the pressure is compared with its value in the centre
+# Poisson's ratio from which a punch's pressure may have a second maximum in its centre.
+_CONFINED = 0.45
+# a/h beyond which the pressure inside no longer changes its shape.
+_THINNEST = 50.0
+# Share of the contact radius at which the pressure is compared with its value in the centre; chosen.
+_INSIDE = 0.1
 
 
 def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> DetachmentPath:
@@ -161,13 +167,13 @@ def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) 
     return Route(branch, float(start[0]), pinned=False), bounds, uncertain
 
 
-def _strength(branch: AdhesiveBranch) -> float:
+def _strength(branch: MdrAdhesiveBranch) -> float:
     """Largest tension of the branch [N]: pressing as hard shows all of the way back."""
     folds = branch.folds(FORCE)
     return -float(branch.values(folds)[FORCE].min(initial=0.0)) if folds.size else np.inf
 
 
-def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, AdhesiveBranch]:
+def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, MdrAdhesiveBranch]:
     """Springs and equilibria up to a radius [m]."""
     system = equivalent_system(scene.layer, scene.indenter, radius, flat_punch)
     breakpoints = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
@@ -181,8 +187,8 @@ def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[E
 
 
 def _reaching(
-    scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[AdhesiveBranch], bool]
-) -> tuple[EquivalentSystem, AdhesiveBranch]:
+    scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[MdrAdhesiveBranch], bool]
+) -> tuple[EquivalentSystem, MdrAdhesiveBranch]:
     """A branch that is long enough, or ends at the indenter's rim."""
     for radius in growing_radii(scene.indenter, _first_radius(scene)):
         try:
@@ -248,7 +254,7 @@ def _prescribed(
     return system, branch.radius(y), depth, _errors_on_branch(system, branch, quantity, y)
 
 
-def _errors_on_branch(system: EquivalentSystem, branch: AdhesiveBranch, quantity: int, y: FloatArray) -> FloatArray:
+def _errors_on_branch(system: EquivalentSystem, branch: MdrAdhesiveBranch, quantity: int, y: FloatArray) -> FloatArray:
     """Errors of depth, force and radius of states with a prescribed quantity, which is exact."""
     errors = BranchErrors(system, branch)
     spread = errors.of_states(y, errors.shift(quantity, y))
@@ -274,7 +280,7 @@ def _on_punch(
     return system, np.where(held, radius, branch.radius(y)), depth, errors
 
 
-def _refuse_missing(y: FloatArray, values: FloatArray, branch: AdhesiveBranch, quantity: int) -> None:
+def _refuse_missing(y: FloatArray, values: FloatArray, branch: MdrAdhesiveBranch, quantity: int) -> None:
     missing = np.flatnonzero(np.isnan(y))
     if not missing.size:
         return
@@ -311,7 +317,8 @@ def _notes(scene: Scene, system: EquivalentSystem, radius: float) -> tuple[str, 
     layer = scene.layer
     if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio < _CONFINED:
         return ()
-    ratio = min(radius / layer.thickness, system.flat_punch.max_ratio)  # the branch's first radius carries rounding
+    # The branch's first radius may lie a rounding beyond the data.
+    ratio = min(radius / layer.thickness, system.flat_punch.max_ratio)
     asked = min(ratio, _THINNEST)
     smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, asked))
     pressure = smooth / np.sqrt(1.0 - np.array([0.0, _INSIDE]) ** 2)

@@ -12,10 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact import CriticalPoint
-from mdr.adhesion.branch import DEPTH, FORCE, AdhesiveBranch
+from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch
 
-CONTROLS = ("displacement", "force")  # what each prescribes is DEPTH and FORCE, in this order
-_ASIDE = 1e-6  # relative distance at which the sign beside a fold is looked up
+# What is controlled in a withdrawal: these prescribe DEPTH and FORCE, in this order.
+CONTROLS = ("displacement", "force")
+# Relative distance at which the sign of a slope beside a fold is looked up; chosen.
+_ASIDE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -28,7 +30,7 @@ class Route:
         pinned: Whether the front rests at a sharp edge until the branch's depth is reached (flat punch).
     """
 
-    branch: AdhesiveBranch
+    branch: MdrAdhesiveBranch
     start: float
     pinned: bool
 

@@ -15,7 +15,8 @@ from bem.polynomials.gauss_panels import gauss_nodes
 from contact import InvalidInput, Layer, Profile
 from contact.records.validation import FloatArray
 
-NODES = 32  # between two breakpoints of the profile
+# Gauss nodes between two breakpoints of the profile; chosen.
+NODES = 32
 
 
 def is_film(layer: Layer) -> bool:

@@ -8,7 +8,8 @@ from numpy.typing import ArrayLike
 from contact import InvalidInput
 from contact.records.validation import FloatArray
 
-_NEAR_ONE = 1e-3  # |1 - D| below which the series is exact to rounding
+# |1 - D| below which the series is used: its seven terms are exact to rounding there.
+_NEAR_ONE = 1e-3
 _SERIES = tuple((-1.0) ** n / (2 * n + 1) for n in range(7))
 
 
@@ -33,10 +34,12 @@ def kelvin_voigt_restitution(damping: ArrayLike) -> FloatArray:
     if not np.all(np.isfinite(ratio) & (ratio >= 0.0)):
         raise InvalidInput(f"damping = {ratio.min():g}: the damping ratio must be finite and not negative")
     near = np.abs(1.0 - ratio) < _NEAR_ONE
-    root = np.sqrt(np.abs(1.0 - ratio)) * np.sqrt(1.0 + ratio)  # |1 - D^2| itself could overflow
-    with np.errstate(divide="ignore", invalid="ignore"):  # at D = 1 another branch is taken
+    # The two roots are taken apart since D^2 could overflow; at D = 1 the series below is taken.
+    root = np.sqrt(np.abs(1.0 - ratio)) * np.sqrt(1.0 + ratio)
+    with np.errstate(divide="ignore", invalid="ignore"):
         under = ratio / root * np.arctan2(root, ratio)
-        over = ratio / root * np.log(ratio + root)  # artanh(s/D) = ln(D + s), which loses no digits for large D
+        # artanh(s/D) = ln(D + s) loses no digits for large D.
+        over = ratio / root * np.log(ratio + root)
     close = np.where(near, ratio, 1.0)
     tangent = (1.0 - close) * (1.0 + close) / close**2
     series = sum(coefficient * tangent**n for n, coefficient in enumerate(_SERIES))

@@ -36,7 +36,8 @@ def thin_cone_pressure(layer: Layer, cone: TruncatedCone, contact_radius: float,
         return foundation_modulus(layer) * (cone.height(a) - cone.height(r)) / h  # Eqs. (17), (22)
     rho, beta = r / a, cone.flat_radius / a
     within = 2 - beta**3 * (2 - 6 * np.log(beta)) - 3 * (2 - 3 * beta + beta**3) * rho**2
-    safe = np.maximum(rho, beta)  # the second line is not asked for inside b
+    # Inside b the second line is not asked for.
+    safe = np.maximum(rho, beta)
     beyond = 2 + beta**3 * (6 * np.log(safe) + 3) - 3 * (2 + beta**3) * rho**2 + 4 * rho**3
     bracket = np.where(r < cone.flat_radius, within, beyond)
     return layer.youngs_modulus * cone.slope / 36 * (a / h) ** 3 * bracket  # Eq. (39)

@@ -16,12 +16,14 @@ from numpy.typing import NDArray
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
 
+# A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
-_NEEDED = 3  # springs of one section, to extrapolate in y
+# Number of springs of one section from which the place of the front is extrapolated, by a parabola.
+_NEEDED = 3
 
 
 @dataclass(frozen=True)
-class Bed:
+class SpringBed:
     """Springs at equal distances of the front coordinate y within each section between breakpoints of the profile.
 
     Attributes:
@@ -54,7 +56,7 @@ class Bed:
         return float(self.y[start + 1] - self.y[start])
 
 
-def released_front(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray) -> float:
+def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray) -> float:
     """y of the outermost contact where the spring force falls to zero, seen from inside."""
     last = int(np.flatnonzero(touching)[-1])
     if last + 1 == bed.y.size:
@@ -66,7 +68,7 @@ def released_front(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray) ->
     return float(bed.y[last] + _way_to_zero(inner, bed.step(last)))
 
 
-def touched_front(bed: Bed, state: BedState) -> float:
+def touched_front(bed: SpringBed, state: BedState) -> float:
     """y of the outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
     first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
@@ -74,7 +76,8 @@ def touched_front(bed: Bed, state: BedState) -> float:
     gaps, stop = state.surface + bed.profile - state.depth, bed.section(first).stop
     if stop - first >= _NEEDED or stop == bed.y.size:
         return float(bed.y[first] - _way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
-    if not state.surface[first:stop].any():  # where nothing has been pressed, the gap goes on inside the contact
+    # Where nothing has been pressed, the gap goes on inside the contact.
+    if not state.surface[first:stop].any():
         last = slice(stop - _NEEDED, stop)
         zero = _zero(bed.y[last], bed.profile[last] - state.depth)
         return float(min(max(zero, bed.y[first - 1]), bed.y[first]))
@@ -87,7 +90,7 @@ def _zero(y: FloatArray, values: FloatArray) -> float:
     return float(a * q * r / ((p - q) * (p - r)) + b * p * r / ((q - p) * (q - r)) + c * p * q / ((r - p) * (r - q)))
 
 
-def _by_radius(bed: Bed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
+def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
     """y where values of two springs on both sides of a breakpoint vanish: across it they are smooth in a, not in y."""
     (a, b), (u, v) = bed.radius[list(pair)], values[list(pair)]
     low, high = bed.radius[last], bed.radius[last + 1]
@@ -99,7 +102,8 @@ def _by_radius(bed: Bed, last: int, pair: tuple[int, int], values: FloatArray) -
 
 def _way_to_zero(values: FloatArray, step: float) -> float:
     """How far before the first of up to three equidistant values their polynomial vanishes, at most one step."""
-    if not np.isfinite(values).all():  # beyond a flat punch's rim the gap is infinite
+    # Beyond a flat punch's rim the gap is infinite.
+    if not np.isfinite(values).all():
         return step
     if values.size < 3:
         slope = (values[1] - values[0]) / step if values.size == 2 else values[0] / step
@@ -112,7 +116,7 @@ def _way_to_zero(values: FloatArray, step: float) -> float:
     return float(min(max(way, 0.0), step))
 
 
-def total_force(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray, y: float, at_front: float) -> float:
+def total_force(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float, at_front: float) -> float:
     """Force of all springs within the front at y, `at_front` the spring force there."""
     last = int(np.flatnonzero(touching)[-1])
     own, load = bed.section(last), bed.density * forces
@@ -131,7 +135,7 @@ def _integral(load: FloatArray, step: float) -> float:
     return float(inner)
 
 
-def _beyond(bed: Bed, load: FloatArray, last: int, y: float, at_front: float) -> float:
+def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: float) -> float:
     """Integral from the last spring in contact to the front, by a parabola through its inner neighbour."""
     own, way, step = bed.section(last), y - float(bed.y[last]), bed.step(last)
     if way <= 0.0:
@@ -142,12 +146,12 @@ def _beyond(bed: Bed, load: FloatArray, last: int, y: float, at_front: float) ->
     return float(load[last] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
-def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[float, float]:
+def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tuple[float, float]:
     """Force [N] and front coordinate, which is negative where nothing touches."""
     if not state.touching.any():
         return 0.0, -1.0
     forces = law.force(state.surface, state.strains, speed)
-    if bed.y.size < _FEW:  # a flat punch has no flank
+    if bed.y.size < _FEW:
         return bed.core * float(forces[0]), 0.0
     if law.viscosity == 0.0 or speed <= 0.0:
         y = released_front(bed, state.touching, forces)
@@ -156,7 +160,7 @@ def carried(law: SpringLaw, bed: Bed, state: BedState, speed: float) -> tuple[fl
     return total_force(bed, state.touching, forces, y, _continued(bed, state.touching, forces, y)), y
 
 
-def _continued(bed: Bed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:
+def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:
     """The spring force at the front, from those inside."""
     last = int(np.flatnonzero(touching)[-1])
     if last - bed.section(last).start < _NEEDED - 1:

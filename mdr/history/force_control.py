@@ -10,14 +10,19 @@ import numpy as np
 
 from contact import NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.history.contact_edge import Bed, carried
+from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, released_at_once, undeformed
 
+# Most iterations for the depth that carries a force: bisection alone needs about 50.
 _ITERATIONS = 60
-_TOLERANCE = 1e-12  # of the target
-_ACCEPTABLE = 1e-6  # of an interval's larger force: what the springs' finite number may leave
-_REACH = 4.0  # how much longer than the last step the next may be
-_LEAST = 1e-9  # of an interval's larger force: below, an indenter that is let go is taken to be free at the end
+# Relative difference to the target force at which the depth is found.
+_TOLERANCE = 1e-12
+# Share of an interval's larger force that may be missed, since a finite number of springs may leave a jump; chosen.
+_ACCEPTABLE = 1e-6
+# How many times longer than the last step the next may be; chosen.
+_REACH = 4.0
+# Share of an interval's larger force below which an indenter that is let go counts as free at the end; chosen.
+_LEAST = 1e-9
 
 
 @dataclass(frozen=True)
@@ -35,7 +40,7 @@ class Ramp:
     duration: float
 
 
-def to_force(law: SpringLaw, bed: Bed, state: BedState, ramp: Ramp, substeps: int) -> tuple[BedState, float]:
+def to_force(law: SpringLaw, bed: SpringBed, state: BedState, ramp: Ramp, substeps: int) -> tuple[BedState, float]:
     """Follow a ramp of force.
 
     Substeps grow quadratically, since a layer creeps fastest after a change of rate; they shrink with the third power
@@ -70,17 +75,18 @@ def _graded(s: FloatArray, *, fades: bool) -> FloatArray:
     return np.asarray(s**2 * (6.0 - 8.0 * s + 3.0 * s**2) if fades else s**2)
 
 
-def pressed_at_once(law: SpringLaw, bed: Bed, force: float) -> BedState:
+def pressed_at_once(law: SpringLaw, bed: SpringBed, force: float) -> BedState:
     """The undeformed bed under a force that is there from the start."""
 
     def excess(depth: float) -> float:
         return carried(law, bed, undeformed(law, bed.profile, depth), 0.0)[0] - force
 
-    guess = float(bed.profile[np.isfinite(bed.profile)].max()) or force / bed.core  # a punch is as stiff from the start
+    # A flat punch is as stiff from the start.
+    guess = float(bed.profile[np.isfinite(bed.profile)].max()) or force / bed.core
     return undeformed(law, bed.profile, _root(excess, 0.0, guess, (force, force)))
 
 
-def _depth(law: SpringLaw, bed: Bed, state: BedState, target: tuple[float, float], time: float) -> float:
+def _depth(law: SpringLaw, bed: SpringBed, state: BedState, target: tuple[float, float], time: float) -> float:
     """Depth after a time, under which the bed then carries the first of two forces; see `_root`."""
 
     def excess(depth: float) -> float:
@@ -90,7 +96,7 @@ def _depth(law: SpringLaw, bed: Bed, state: BedState, target: tuple[float, float
     return _root(excess, state.depth, state.depth + _first_move(law, bed, state, excess(state.depth), time), target)
 
 
-def _first_move(law: SpringLaw, bed: Bed, state: BedState, excess: float, time: float) -> float:
+def _first_move(law: SpringLaw, bed: SpringBed, state: BedState, excess: float, time: float) -> float:
     """Newton's first step, with the stiffness that the springs in contact have over this time."""
     modulus = law.long_term + law.viscosity / time
     modulus += float((law.weights * law.times * -np.expm1(-time / law.times)).sum()) / time

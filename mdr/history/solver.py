@@ -27,7 +27,8 @@ from contact import (
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.history.contact_edge import Bed, carried
+from mdr.error_model import EXCESS_ERRORS, HISTORY_SAFETY, LARGEST_HISTORY_ERROR, SPRING_SHARES, SPRINGS_TO_MOTION
+from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.force_control import Ramp, pressed_at_once, to_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
 from mdr.impact.units import is_flat, relaxation_of
@@ -36,26 +37,28 @@ from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.shared_tables import bisected, growing_radii, own_table, upper
 from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 
-ACCURACY = 1e-9  # of the method's time integration, for which the next two numbers stand; one digit more doubles both
-_GAPS = 640  # between springs
-_FINENESS = 400  # substeps of a whole force history, at least four an interval
-_LEVELS = (4, 2, 1)  # times the fewest substeps
-_FEWEST, _MOST = -2, 2  # how often they may be doubled
-_FEWEST_GAPS = 16  # of a section between breakpoints
-_SHARES = (1.0, 0.7, 0.5)  # of the springs: where the front lies between two of them, fewer may err as much by chance
-# Errors fall at least with the square of the springs' number: on a share of them a history errs this much more than on
-# all, beyond what all err by. Each change over its number bounds the error on all, and the largest counts.
-_MORE = tuple(share**-2 - 1.0 for share in _SHARES[1:])
-# Multiplies that bound, where the front lies between two springs. Of 56 forces and radii of random histories, against
-# four times as many springs, the bound itself covers 94 %, and is 3 to 7 times the error in the median (2026-11-22).
-_CAUTION = 1.3
-_SEARCHED = 64  # points of each section, among which the largest front is looked for
-_MARGIN = 1.01  # of the way to the largest front: a few springs stay outside
-_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
-_ROUNDING = _GAPS * float(np.finfo(float).eps)  # of sums over as many springs
-_HELD = 1e-12  # of the largest force: what is held by less is no contact
-_LARGEST_ERROR = 1e-3  # beyond, the estimate itself is none: all numbers of springs miss the same kinks of a profile
-_BEND = 1e-6  # of the largest spring force: an outward rise that counts
+# Accuracy of the method's time integration for which the next two numbers stand; one digit more doubles both.
+ACCURACY = 1e-9
+# Distances between springs within the largest front; an error of fourth order where spring forces are smooth.
+_GAPS = 640
+# Substeps of a whole force history, at least four in each interval.
+_FINENESS = 400
+# The same history with these multiples of the fewest substeps, whose differences tell the error of time integration.
+_LEVELS = (4, 2, 1)
+# Bounds of the doublings of springs and substeps that an accuracy may ask for.
+_FEWEST, _MOST = -2, 2
+# Least number of distances between springs in a section between breakpoints; chosen.
+_FEWEST_GAPS = 16
+# Points of each section among which the largest front is looked for; chosen.
+_SEARCHED = 64
+# Multiplies the way to the largest front, so that a few springs stay outside the contact; chosen.
+_MARGIN = 1.01
+# Relative rounding of a sum over as many springs.
+_ROUNDING = _GAPS * float(np.finfo(float).eps)
+# Share of the largest force below which what is held is no contact; chosen, far above the rounding of the sum.
+_HELD = 1e-12
+# Share of the largest spring force by which spring forces must rise outwards for the answer to carry a note; chosen.
+_BEND = 1e-6
 
 
 @dataclass(frozen=True)
@@ -124,9 +127,9 @@ def _errors(scene: Scene, table: SpringTable | None, found: _Found, springs: flo
         [_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs]
         for pairs in (found.by_springs, found.by_steps)
     )
-    known = _SPRINGS_TO_MOTION * springs + _ROUNDING
+    known = SPRINGS_TO_MOTION * springs + _ROUNDING
     moved = _on_all_springs(by_springs) + sum(by_steps) + known
-    if found.error > _LARGEST_ERROR:
+    if found.error > LARGEST_HISTORY_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
     error = np.full(found.track.y.size, found.error + known)
     return {"indentation_depth": error, "normal_force": error, "contact_radius": np.full(error.size, moved)}
@@ -169,7 +172,7 @@ class _Found:
 
 
 def _followed(
-    law: SpringLaw, beds: list[Bed], loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
+    law: SpringLaw, beds: list[SpringBed], loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
 ) -> _Found:
     """The history on the first bed, and how much it changes on the others and with fewer substeps.
 
@@ -196,7 +199,7 @@ def _error_of_springs(pairs: list[tuple[_Track, _Track]]) -> float:
 
 def _on_all_springs(changes: list[float]) -> float:
     """The error on all springs, from what changes with each of the smaller numbers of them."""
-    return _CAUTION * max(change / more for change, more in zip(changes, _MORE, strict=False))
+    return HISTORY_SAFETY * max(change / more for change, more in zip(changes, EXCESS_ERRORS, strict=False))
 
 
 def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -221,15 +224,15 @@ def _radius(scene: Scene, table: SpringTable | None, y: FloatArray) -> FloatArra
 
 def _beds(
     scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
-) -> tuple[SpringTable | None, list[Bed], float]:
-    """Springs out to the largest radius that the history can reach, in each of the `_SHARES`, and their own error."""
+) -> tuple[SpringTable | None, list[SpringBed], float]:
+    """Springs out to the largest radius that the history can reach, by `SPRING_SHARES`, and their own error."""
     prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     _refuse_idle(loading, prescribed)
     if is_flat(scene):
         end = scene.indenter.max_radius
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
-        bed = Bed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
+        bed = SpringBed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
         return None, [bed, bed], system.relative_error["contact_stiffness"]
     largest = float(prescribed.max())
     for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
@@ -242,25 +245,27 @@ def _beds(
         raise InvalidInput(f"loading: {largest:g} presses the indenter in beyond its rim at {radius:g} m")
     end = _farther(table, float(np.interp(largest, reached, y)), _MARGIN)
     pointed = scene.indenter.flat_radius == 0.0
-    beds = [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in _SHARES]
+    beds = [_bed_up_to(table, end, share * gaps, round(share * _FEWEST_GAPS), pointed) for share in SPRING_SHARES]
     return table, beds, table.error
 
 
 def _farther(table: SpringTable, y: float, times: float) -> float:
     """A front so many times as far along the sections, each as long as the root of the radii it spans; in the table."""
-    lengths = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(table.section_radii)))])  # y begins as a radius
+    # y begins as a radius.
+    lengths = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(table.section_radii)))])
     return float(np.interp(times * np.interp(y, table.section_ends, lengths), lengths, table.section_ends))
 
 
-def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed: bool) -> Bed:
+def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed: bool) -> SpringBed:
     """Springs up to y = end, each section between breakpoints with its share of the gaps."""
     ends = np.append(table.section_ends[table.section_ends < end], end)
-    lengths = np.sqrt(np.diff(table.radius(ends)))  # y itself is a radius before the first breakpoint
+    # Before the first breakpoint y itself is a radius.
+    lengths = np.sqrt(np.diff(table.radius(ends)))
     shares = [max(round(gaps * part), fewest) for part in lengths / lengths.sum()]
     places = [np.linspace(low, high, share + 1) for (low, high), share in zip(pairwise(ends), shares, strict=True)]
     rows = np.concatenate([table.evaluate(y, section=i) for i, y in enumerate(places)], axis=1)
     radius = np.concatenate([table.radius_within(y, i) for i, y in enumerate(places)])
-    return Bed(
+    return SpringBed(
         y=np.concatenate(places),
         radius=radius,
         profile=np.maximum(rows[PROFILE], 0.0),
@@ -304,7 +309,7 @@ def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHis
     return np.asarray(softest * (rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]))
 
 
-def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
+def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
     time = loading.time
     states = (
@@ -322,7 +327,7 @@ def _follow(law: SpringLaw, bed: Bed, loading: DepthHistory | ForceHistory, subs
     return _Track(depth, force, y, bent)
 
 
-def _by_depth(law: SpringLaw, bed: Bed, loading: DepthHistory) -> Iterator[tuple[BedState, float]]:
+def _by_depth(law: SpringLaw, bed: SpringBed, loading: DepthHistory) -> Iterator[tuple[BedState, float]]:
     """The bed and the speed of the depth at each instant."""
     state = undeformed(law, bed.profile, float(loading.depth[0]))
     yield state, 0.0
@@ -333,7 +338,7 @@ def _by_depth(law: SpringLaw, bed: Bed, loading: DepthHistory) -> Iterator[tuple
 
 
 def _by_force(
-    law: SpringLaw, bed: Bed, loading: ForceHistory, substeps: NDArray[np.intp]
+    law: SpringLaw, bed: SpringBed, loading: ForceHistory, substeps: NDArray[np.intp]
 ) -> Iterator[tuple[BedState, float]]:
     """The same under prescribed force."""
     force, durations = loading.force, np.diff(loading.time)

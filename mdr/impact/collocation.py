@@ -19,19 +19,23 @@ from mdr.impact.collocation_step import (
     STAGES,
     SWEEP_TOLERANCE,
     Chain,
+    CollocationStep,
     Course,
     Derivative,
     Landing,
     Lanes,
-    Step,
     Task,
     newton_step,
     swept_step,
 )
 
+# Safety factor on the next step that the error allows, and the bounds of its change; usual in step control, chosen.
 _SAFETY, _SHRINK, _GROW = 0.85, 0.5, 1.5
-_ALMOST = 1.1  # an event that lies so little beyond a step is landed on at once
-_STIFF = 0.02  # a step this short should converge by sweeps; where it does not, Newton's method takes over
+# An event that lies less than a tenth of a step beyond it is landed on at once, without a short last step.
+_ALMOST = 1.1
+# A step that is shorter than this (in the variable of the problem) should converge by sweeps; where it does not,
+# Newton's method takes over. Chosen.
+_STIFF = 0.02
 
 
 class Problem(Protocol):
@@ -46,7 +50,7 @@ class Problem(Protocol):
 
 
 @dataclass(frozen=True)
-class Event:
+class EndCondition:
     """A lane ends where `direction * (state[component] - target)` rises to zero.
 
     Attributes:
@@ -106,7 +110,7 @@ class Trajectory:
 def integrate(
     problem: Problem,
     state: FloatArray,
-    events: tuple[Event, ...],
+    events: tuple[EndCondition, ...],
     *,
     tolerance: FloatArray,
     first_step: FloatArray,
@@ -147,7 +151,7 @@ class _Walk:
         self,
         problem: Problem,
         state: FloatArray,
-        events: tuple[Event, ...],
+        events: tuple[EndCondition, ...],
         *,
         tolerance: FloatArray,
         first_step: FloatArray,
@@ -169,7 +173,8 @@ class _Walk:
 
     def step(self) -> None:
         """One trial step of every active lane, onto an event where the step is expected to reach one."""
-        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):  # a wild trial has no finite error
+        # A trial step far too long has no finite error.
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             start, size = self.state[:, self.active], self.size[self.active]
             course = self._course(start)
             due = self.due[self.active]
@@ -179,7 +184,7 @@ class _Walk:
             task = Task(start, course.aimed(size, landing), precision, landing, self.problem.chain)
             self._settle(self._tried(task, course), due)
 
-    def _settle(self, trial: Step, due: Lanes) -> None:
+    def _settle(self, trial: CollocationStep, due: Lanes) -> None:
         """Keep what is good and ends where it should; set the size of each lane's next trial.
 
         After a failure the next trial is shorter than this one was anywhere, so that failures come to an end.
@@ -218,7 +223,7 @@ class _Walk:
         target = self.targets[event, self.active]
         return Landing(due >= 0, component, target - start[component, np.arange(component.size)])
 
-    def _tried(self, task: Task, course: Course) -> Step:
+    def _tried(self, task: Task, course: Course) -> CollocationStep:
         """A step by sweeps, and by Newton's method for lanes that turn out to be stiff."""
         lanes = self.active
         trial = swept_step(self.derivative, task, course)
@@ -244,7 +249,7 @@ class _Walk:
         share = np.where(reached, gap / np.where(reached, travel, 1.0), np.inf)
         return np.where(reached.any(axis=0), share.argmin(axis=0), -1)
 
-    def _keep(self, trial: Step, end: FloatArray, kept: NDArray[np.bool_]) -> None:
+    def _keep(self, trial: CollocationStep, end: FloatArray, kept: NDArray[np.bool_]) -> None:
         if np.count_nonzero(kept):
             lanes = self.active[kept]
             self.pieces.append((lanes, trial.task.start[:, kept], trial.polynomial()[:, :, kept]))

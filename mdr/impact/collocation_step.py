@@ -21,28 +21,42 @@ from contact.records.validation import FloatArray
 
 Lanes: TypeAlias = NDArray[np.intp]
 Derivative: TypeAlias = Callable[[FloatArray], FloatArray]
-Chain: TypeAlias = tuple[int, int, int | None]  # rows of a quantity, of its speed, and of the clock of that speed
+# Rows of a quantity, of its speed, and of the clock of that speed.
+Chain: TypeAlias = tuple[int, int, int | None]
 
+# Gauss points on each step: order 20 at its end.
 STAGES = 10
-SWEEP_TOLERANCE = 0.05  # of the tolerance of a step
-_SWEEPS = 24  # a step that needs more is too long
-_PATIENCE, _SLOW = 6, 0.6  # after six sweeps, a lane whose change shrinks by less than this factor is given up
-_CARRIED = 8  # Legendre polynomials that go on into the next step, where higher ones magnify rounding
-_AIMS = 3  # Newton steps towards an event on the polynomial of the step before
-_NEAREST = 0.01  # share of a step at which an event is first looked for
-_LEAST, _MOST = 0.5, 1.5  # a sweep may change a length by
-_DIFFERENCE = 1e-7  # of a state: to differentiate its slopes
+# Sweeps stop at this share of the tolerance of a step, so that they add little to its error; chosen.
+SWEEP_TOLERANCE = 0.05
+# A step that needs more sweeps is too long.
+_SWEEPS = 24
+# After six sweeps, a lane whose change shrinks by less than this factor is given up; chosen.
+_PATIENCE, _SLOW = 6, 0.6
+# Only 8 Legendre terms of the last step are extrapolated; higher ones amplify rounding.
+_CARRIED = 8
+# Newton steps towards an event on the polynomial of the step before: a start only, which sweeps correct.
+_AIMS = 3
+# Share of a step at which an event is first looked for; chosen.
+_NEAREST = 0.01
+# A sweep may change the length of a step by these factors at most; chosen.
+_LEAST, _MOST = 0.5, 1.5
+# Relative change of a state by which its slopes are differentiated: about the root of a rounding times seven.
+_DIFFERENCE = 1e-7
 _NUMBERS = np.arange(1.0, STAGES + 1.0)[:, None]
 
 POINTS, _GAUSS_WEIGHTS = legendre_rule(STAGES)
 _ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
 _INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ _ANALYSIS
-TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS  # from slopes to states, for a unit step
+# Matrix from slopes to states, for a unit step.
+TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS
 TO_END = 0.5 * _GAUSS_WEIGHTS
-_AT_END = np.ones(STAGES) @ _ANALYSIS  # the slope there: all Legendre polynomials are 1
+# The slope at the end of the step, where all Legendre polynomials are 1.
+_AT_END = np.ones(STAGES) @ _ANALYSIS
 _POWERS = np.stack([np.pad(legendre.leg2poly(u), (0, STAGES - i)) for i, u in enumerate(np.eye(STAGES + 1))], axis=1)
-CHANGE = 0.5 * _POWERS @ _INTEGRALS  # from slopes to powers of z of the change of state
-_WITHIN = _POWERS[:STAGES, :STAGES] @ _ANALYSIS  # from slopes to powers of z of themselves
+# Matrix from slopes to powers of z of the change of state.
+CHANGE = 0.5 * _POWERS @ _INTEGRALS
+# Matrix from slopes to powers of z of themselves.
+_WITHIN = _POWERS[:STAGES, :STAGES] @ _ANALYSIS
 _ONWARD = _POWERS[:STAGES, :_CARRIED] @ _ANALYSIS[:_CARRIED]
 
 
@@ -108,7 +122,7 @@ class Course:
         """Replace some lanes."""
         self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes] = other.slopes, other.size, other.origin
 
-    def follow(self, step: Step, lanes: Lanes, *, ended: NDArray[np.bool_]) -> None:
+    def follow(self, step: CollocationStep, lanes: Lanes, *, ended: NDArray[np.bool_]) -> None:
         """Remember a step of some lanes, ended or to be repeated; one that came to nothing says nothing."""
         slopes = _ONWARD @ step.slopes
         if np.count_nonzero(ended) < ended.size:
@@ -138,7 +152,8 @@ class Course:
             ladder = powers(z, STAGES + 1)
             way = 0.5 * self.size * np.add.reduce(means * (ladder[1:] - from_start))
             at = 0.5 * self.size * (z - self.origin)
-            if attempt == 0:  # in proportion, then by Newton's method
+            # The first attempt is in proportion, the others are Newton's.
+            if attempt == 0:
                 share = landing.span / way
                 at = at * np.minimum(np.maximum(np.where(share > 0.0, share, 1.0), _NEAREST), 1.0)
             else:
@@ -180,14 +195,14 @@ class Task:
             state[row] = self.start[row] + size * (TO_STAGES @ rate)
         return np.asarray(state)
 
-    def found(self, size: FloatArray, slopes: FloatArray, failed: NDArray[np.bool_], sweeps: int) -> Step:
+    def found(self, size: FloatArray, slopes: FloatArray, failed: NDArray[np.bool_], sweeps: int) -> CollocationStep:
         """The step with its error: the part that the last two of its polynomials have."""
         tail = _largest(_ANALYSIS[-2:] @ slopes, self.precision / size)
-        return Step(self, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweeps)
+        return CollocationStep(self, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweeps)
 
 
 @dataclass
-class Step:
+class CollocationStep:
     """A trial step of some lanes.
 
     Attributes:
@@ -217,13 +232,13 @@ class Step:
         """Powers of z in [-1, 1] of the change of state, shape (m, 11, lanes)."""
         return np.asarray(CHANGE @ (self.size * self.slopes))
 
-    def put(self, lanes: Lanes, other: Step) -> None:
+    def put(self, lanes: Lanes, other: CollocationStep) -> None:
         """Replace some lanes."""
         self.size = self.size.copy()
         self.size[lanes], self.slopes[:, :, lanes], self.error[lanes] = other.size, other.slopes, other.error
 
 
-def swept_step(derivative: Derivative, task: Task, course: Course) -> Step:
+def swept_step(derivative: Derivative, task: Task, course: Course) -> CollocationStep:
     """Sweep until no stage moves; a lane that has converged is left alone, so that no lane feels its neighbours.
 
     Args:
@@ -251,7 +266,7 @@ def swept_step(derivative: Derivative, task: Task, course: Course) -> Step:
     return task.found(size, slopes, failed, sweep)
 
 
-def newton_step(derivative: Derivative, task: Task) -> Step:
+def newton_step(derivative: Derivative, task: Task) -> CollocationStep:
     """The same step by simplified Newton iteration, for slopes that answer fast: Gauss collocation is A-stable."""
     components, lanes = task.start.shape
     base, size, count = task.start[:, None], task.size, components * STAGES
@@ -266,7 +281,8 @@ def newton_step(derivative: Derivative, task: Task) -> Step:
         move = np.linalg.solve(np.eye(count) - coupling, np.moveaxis(residual, 2, 0).reshape(lanes, count, 1))
         update = np.moveaxis(move.reshape(lanes, components, STAGES), 0, 2)
         change = _largest(update, task.precision / size)
-        slopes = np.where(failed, slopes + update, slopes)  # a lane that has converged is left alone
+        # A lane that has converged is left alone.
+        slopes = np.where(failed, slopes + update, slopes)
         if task.landing is not None:
             size, missed = _corrected(task, task.landing, size, slopes, failed)
             change = np.maximum(change, missed)

@@ -12,18 +12,20 @@ from bem.polynomials.chebyshev import powers
 from contact.records.validation import FloatArray
 from mdr.impact.collocation import Trajectory
 from mdr.impact.collocation_step import CHANGE, POINTS, STAGES, TO_END, TO_STAGES
-from mdr.impact.equations import ImpactLanes, force, missing, outline, remembered
+from mdr.impact.equations import ImpactBatch, force, missing, outline, remembered
 from mdr.impact.memory import Memory
 from mdr.impact.motion import Leg
 from mdr.springs.table import MOMENT, PROFILE, SECOND_MOMENT, STIFFENING, STIFFNESS
 
-_SAMPLES = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))  # on each step, both ends among them
+# Places of the samples on each step, z in [-1, 1], both ends among them.
+_SAMPLES = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))
 _POWERS = powers(np.concatenate([POINTS, _SAMPLES]), STAGES + 1)
 _RATES = np.arange(1.0, STAGES + 1.0)[:, None] * powers(POINTS, STAGES)
-_INTEGRALS = 2.0 * CHANGE.T @ _POWERS  # from derivatives by z at the Gauss points to the change since z = -1
+# Matrix from derivatives by z at the Gauss points to the change since z = -1.
+_INTEGRALS = 2.0 * CHANGE.T @ _POWERS
 
 
-def samples(lanes: ImpactLanes, way_in: list[Leg], way_out: list[Leg]) -> FloatArray:
+def samples(lanes: ImpactBatch, way_in: list[Leg], way_out: list[Leg]) -> FloatArray:
     """Rows t, delta, v, force, y, stored and dissipated energy of a single lane, shape (7, n)."""
     squares, lost = np.zeros(lanes.branches), np.zeros(1)
     memories: dict[int, Memory] = {}
@@ -39,19 +41,19 @@ def samples(lanes: ImpactLanes, way_in: list[Leg], way_out: list[Leg]) -> FloatA
     return np.concatenate(found, axis=1)
 
 
-def dissipation(lanes: ImpactLanes, k: FloatArray, v: FloatArray, strain: FloatArray) -> FloatArray:
+def dissipation(lanes: ImpactBatch, k: FloatArray, v: FloatArray, strain: FloatArray) -> FloatArray:
     """Power lost in the dashpots; `strain` holds the integrals of s_j^2."""
     branches = np.add.reduce(lanes.rates / lanes.weights * strain)
     return np.asarray(lanes.inertia * (lanes.viscosity * k * v**2 + branches))
 
 
-def stored(lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, strain: FloatArray) -> FloatArray:
+def stored(lanes: ImpactBatch, springs: FloatArray, delta: FloatArray, strain: FloatArray) -> FloatArray:
     """Energy of the springs in contact, in units of M v0^2."""
     long_term = (springs[STIFFNESS] * delta - 2.0 * springs[MOMENT]) * delta + springs[SECOND_MOMENT]
     return np.asarray(0.5 * lanes.inertia * (lanes.long_term * long_term + np.add.reduce(strain / lanes.weights)))
 
 
-def _pressing(lanes: ImpactLanes, leg: Leg, squares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _pressing(lanes: ImpactBatch, leg: Leg, squares: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The rows but the last on the way in, the power lost, and the slopes of N_j, the latter two at Gauss points."""
     state, rate = _points(leg.trajectory), _rates(leg.trajectory)
     shared, memory = outline(lanes.branches)
@@ -66,7 +68,7 @@ def _pressing(lanes: ImpactLanes, leg: Leg, squares: FloatArray) -> tuple[FloatA
     return rows, _at_gauss(dissipation(lanes, k, state[2], strain)) * rate[1], slopes
 
 
-def _receding(lanes: ImpactLanes, leg: Leg, squares: Memory | None) -> tuple[FloatArray, FloatArray]:
+def _receding(lanes: ImpactBatch, leg: Leg, squares: Memory | None) -> tuple[FloatArray, FloatArray]:
     """The same on the way out, where springs that let go lose what they hold."""
     state, rate, own = _points(leg.trajectory), _rates(leg.trajectory), np.arange(1)
     springs = lanes.springs(state[0], leg.section, 6)

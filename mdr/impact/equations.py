@@ -3,8 +3,10 @@
 Springs of one layer share their history S_j: a spring x that was touched at t_c(x) carries
 s_j = S_j(t) - E_j S_j(t_c), E_j = exp(-(t - t_c)/tau_j). All springs in contact together carry k S_j - M_j, with one
 integral M_j = int E_j S_j(t_c) dk per branch. While the front recedes, M_j(t) = E_j M_j(t_c(a)):
-what the front once passed it passes again. The state holds what relaxation has taken from the instantaneous response,
-g_j delta - S_j and g_j P - M_j: the stiffest part of the force then follows from the depth alone.
+unloading visits the same radii in reverse, so M_j is looked up by radius. The state holds the relaxed part,
+g_j delta - S_j and g_j P - M_j: it is small, so the stiff elastic part of the force stays exact.
+
+Many impacts are integrated together; a lane is the last index of an array, the number of an impact.
 
 Depth is measured in D, time in D/v0, stiffness in k_e, force in k_e D; kappa = k_e D^2 / (M v0^2). The independent
 variable sigma has dt = g_y d(sigma): then dy = v d(sigma) while pressing, and nothing is singular at first touch, at
@@ -24,7 +26,7 @@ from mdr.springs.table import MOMENT, PROFILE, SLOPE, STIFFNESS, SpringTable
 
 
 @dataclass(frozen=True)
-class ImpactLanes:
+class ImpactBatch:
     """Dimensionless impacts that share a spring table and a number of Prony branches.
 
     Attributes:
@@ -55,11 +57,11 @@ class ImpactLanes:
         """Number of Prony branches."""
         return int(self.weights.shape[0])
 
-    def take(self, lanes: Lanes) -> ImpactLanes:
+    def take(self, lanes: Lanes) -> ImpactBatch:
         """Some of the lanes."""
         if lanes.size == self.count and np.array_equal(lanes, np.arange(self.count)):
             return self
-        return ImpactLanes(
+        return ImpactBatch(
             self.table,
             self.units[:, lanes],
             self.long_term[lanes],
@@ -88,7 +90,7 @@ def outline(branches: int) -> tuple[slice, slice]:
 class Pressing:
     """From first touch to the turn. State: y, t, v, and per branch what has relaxed of S_j and of M_j."""
 
-    lanes: ImpactLanes
+    lanes: ImpactBatch
     section: int
 
     @property
@@ -123,7 +125,7 @@ class Pressing:
 class Receding:
     """From the turn to the loss of contact. State: y, t, delta, v, and per branch what has relaxed of S_j."""
 
-    lanes: ImpactLanes
+    lanes: ImpactBatch
     section: int
     memory: Memory | None
     step: int
@@ -148,7 +150,8 @@ class Receding:
             slowed = slowing * force(own, springs, delta, v, missing(own, springs, state[branches], memory))
             change = _change_in_front(own, v, slowed, front)
             slopes = np.empty_like(state)
-            slopes[0] = change / (own.long_term + np.add.reduce(own.weights * fading))  # the force there stays zero
+            # The front moves so that the force of the outermost spring stays zero.
+            slopes[0] = change / (own.long_term + np.add.reduce(own.weights * fading))
             slopes[1] = g_y
             slopes[2] = v * g_y
             slopes[3] = slowed * g_y
@@ -158,13 +161,13 @@ class Receding:
         return rhs
 
 
-def _change_in_front(own: ImpactLanes, v: FloatArray, slowed: FloatArray, front: FloatArray) -> FloatArray:
+def _change_in_front(own: ImpactBatch, v: FloatArray, slowed: FloatArray, front: FloatArray) -> FloatArray:
     """d/dt of the outermost spring's force."""
     change = own.long_term * v + own.viscosity * slowed
     return np.asarray(change + np.add.reduce(own.weights * v - own.rates * front))
 
 
-def drift(own: ImpactLanes, memory: Memory | None, end: FloatArray) -> FloatArray:
+def drift(own: ImpactBatch, memory: Memory | None, end: FloatArray) -> FloatArray:
     """The time from the end of a motion to where the last spring's force is zero, by Newton's method, shape (lanes,).
 
     While the front recedes that force is kept at zero by its derivative, as well as steps are; a layer that is soft in
@@ -177,29 +180,31 @@ def drift(own: ImpactLanes, memory: Memory | None, end: FloatArray) -> FloatArra
     slowed = -own.inertia * force(own, springs, delta, v, missing(own, springs, state[4:], faded))
     left = own.long_term * (delta - springs[PROFILE]) + own.viscosity * v + np.add.reduce(front)
     change = _change_in_front(own, v, slowed, front)
-    later = np.divide(-left, change, out=np.zeros_like(left), where=v < 0.0)  # at rest there is no end
+    # A body at rest has no end of contact.
+    later = np.divide(-left, change, out=np.zeros_like(left), where=v < 0.0)
     return np.asarray(later[0])
 
 
 def remembered(
-    recall: Derivative | None, own: ImpactLanes, state: FloatArray, springs: FloatArray
+    recall: Derivative | None, own: ImpactBatch, state: FloatArray, springs: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """Per branch while the front recedes: S, the outermost spring's s, M, and E."""
     n = own.branches
     history = own.weights * state[2] - state[4 : 4 + n]
     if recall is None:
-        return history, history, history, history  # no branches: four empty arrays
+        # Without branches these are four empty arrays.
+        return history, history, history, history
     past = recall(state[0])
     fading = np.exp((past[0] - state[1]) * own.rates)
     front = history - fading * (own.weights * springs[PROFILE] - past[1 : 1 + n])
     return history, front, fading * (own.weights * springs[MOMENT] - past[1 + n :]), fading
 
 
-def missing(own: ImpactLanes, springs: FloatArray, relaxed: FloatArray, memory: FloatArray) -> FloatArray:
+def missing(own: ImpactBatch, springs: FloatArray, relaxed: FloatArray, memory: FloatArray) -> FloatArray:
     """What gaps and relaxation take from k delta while the front recedes."""
     return np.asarray(own.long_term * springs[MOMENT] + np.add.reduce(springs[STIFFNESS] * relaxed + memory))
 
 
-def force(lanes: ImpactLanes, springs: FloatArray, delta: FloatArray, v: FloatArray, taken: FloatArray) -> FloatArray:
+def force(lanes: ImpactBatch, springs: FloatArray, delta: FloatArray, v: FloatArray, taken: FloatArray) -> FloatArray:
     """Normal force, Eqs. (47) and (51); `taken` is what gaps and relaxation take from k delta."""
     return np.asarray(springs[STIFFNESS] * (delta + lanes.viscosity * v) - taken)

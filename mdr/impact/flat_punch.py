@@ -12,24 +12,26 @@ from bem.polynomials import chebyshev
 from contact import ImpactHistory, Scene, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.impact.collocation import Event, Trajectory, integrate, states
+from mdr.impact.collocation import EndCondition, Trajectory, integrate, states
 from mdr.impact.collocation_step import STAGES
-from mdr.impact.flat_punch_equations import FlatPunchLanes
+from mdr.impact.flat_punch_equations import FlatPunchBatch
 from mdr.impact.history import distinct, estimates
 from mdr.impact.motion import COARSER
 from mdr.impact.results import ImpactResults, fine_and_change, refuse_rest
 from mdr.impact.units import impact_of, relaxation_of
 from mdr.springs.assembly import equivalent_system
 
-_FIRST_STEP = 1.4  # of the unit of time, for a tolerance of one
-_Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))  # samples on each step, both ends among them
+# First step for a tolerance of one, in units of time; with the tolerance it goes as its tenth root. Chosen.
+_FIRST_STEP = 1.4
+# Places of the samples on each step, z in [-1, 1], both ends among them.
+_Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))
 
 
 @dataclass(frozen=True)
 class _Problem:
     """Flat punches in units of depth v0 T, T the shorter of the elastic 1/omega and the dashpot's M/c."""
 
-    lanes: FlatPunchLanes
+    lanes: FlatPunchBatch
     time: FloatArray
     stiffness: FloatArray
     velocity: FloatArray
@@ -100,7 +102,7 @@ def _problem(scenes: Sequence[Scene], flat_punch: FlatPunchSource) -> _Problem:
     modulus = np.array([r.instantaneous_modulus for r in relaxations])
     lag = np.array([r.viscosity for r in relaxations]) / modulus
     time = 1.0 / (np.sqrt(stiffness / mass) + lag * stiffness / mass)
-    lanes = FlatPunchLanes(
+    lanes = FlatPunchBatch(
         long_term=np.array([r.long_term_modulus for r in relaxations]) / modulus,
         viscosity=lag / time,
         weights=np.stack([r.moduli for r in relaxations], axis=1)[:, None] / modulus,
@@ -117,7 +119,7 @@ def _motion(problem: _Problem, tolerance: float) -> Trajectory:
     count = problem.mass.size
     lanes = problem.lanes.take(np.tile(np.arange(count), 2))
     tolerances = np.repeat([tolerance, COARSER * tolerance], count)
-    released = Event(0, np.zeros(2 * count), -1)
+    released = EndCondition(0, np.zeros(2 * count), -1)
     return integrate(
         lanes, lanes.start(), (released,), tolerance=tolerances, first_step=_FIRST_STEP * tolerances ** (1.0 / STAGES)
     )

@@ -11,7 +11,7 @@ from mdr.impact.collocation_step import Chain, Derivative, Lanes
 
 
 @dataclass(frozen=True)
-class FlatPunchLanes:
+class FlatPunchBatch:
     """Flat-punch impacts, each in its own unit of time T and depth v0 T. State: f, t, delta, v, s_j, dissipated energy.
 
     f is the force over the stiffness; it is a component of the state so that its return to zero is an event.
@@ -35,9 +35,9 @@ class FlatPunchLanes:
         """d(delta) = v dt."""
         return 2, 3, None
 
-    def take(self, lanes: Lanes) -> FlatPunchLanes:
+    def take(self, lanes: Lanes) -> FlatPunchBatch:
         """Some of the lanes."""
-        return FlatPunchLanes(
+        return FlatPunchBatch(
             self.long_term[lanes],
             self.viscosity[lanes],
             self.weights[..., lanes],

@@ -15,7 +15,8 @@ from mdr.impact.motion import Impacts
 from mdr.impact.results import ImpactResults, results
 from mdr.impact.units import ScaledImpacts
 
-_SHORTEST = 1e-12  # of the contact time: between two samples
+# Least time between two samples, in contact times: closer ones are one instant with rounding.
+_SHORTEST = 1e-12
 _SERIES = ("time", "indentation_depth", "velocity", "normal_force", "contact_radius")
 _OUTCOMES = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 

@@ -14,7 +14,8 @@ from mdr.impact.collocation_step import STAGES, Derivative, Lanes
 _NODES = 16
 _NEWTON_STEPS = 5
 _POWERS_FROM_VALUES = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
-_FAR = 100.0  # where a way in ends without a turn, in units of the whole way
+# Where a way in is taken to end that stopped without a turn, in units of the whole way.
+_FAR = 100.0
 
 
 @dataclass(frozen=True)
@@ -66,7 +67,8 @@ class Memory:
         by_lane = np.ascontiguousarray(powers.transpose(2, 1, 0))
 
         def rows(y: FloatArray) -> FloatArray:
-            left = np.sqrt(np.maximum(end - y / way, 0.0))  # a front beyond its turn is a rounding error
+            # A front beyond its turn is a rounding error.
+            left = np.sqrt(np.maximum(end - y / way, 0.0))
             ladder = chebyshev.powers(shift - scale * left, _NODES)
             return (by_lane @ ladder.transpose(2, 0, 1)).transpose(1, 2, 0)
 
@@ -77,7 +79,8 @@ def memory_of(trajectory: Trajectory, rows: list[int], *, turning_event: int) ->
     """Invert y(z) on every step of the way in, and keep the named rows of the state as functions of y."""
     counts, steps = trajectory.counts, trajectory.steps
     present = np.arange(steps.shape[2])[:, None] < counts
-    way = np.where(present, steps[:, 0].sum(axis=0), 0.0)  # all powers are 1 at the end
+    # All powers of z are 1 at the end of a step.
+    way = np.where(present, steps[:, 0].sum(axis=0), 0.0)
     to_turn = np.cumsum(way[::-1], axis=0)[::-1] - way + np.where(trajectory.ended_by == turning_event, 0.0, _FAR)
     way = np.where(present, way, 1.0)
     rest = to_turn / way

@@ -8,18 +8,22 @@ import numpy as np
 
 from contact import NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.impact.collocation import Event, Problem, Trajectory, integrate
+from mdr.impact.collocation import EndCondition, Problem, Trajectory, integrate
 from mdr.impact.collocation_step import STAGES, Course, Lanes
-from mdr.impact.equations import ImpactLanes, Pressing, Receding, drift, outline
+from mdr.impact.equations import ImpactBatch, Pressing, Receding, drift, outline
 from mdr.impact.memory import Memory, memory_of
 
-TURN, SECTION_END = 0, 1  # the events that end a section of the way in
+# Events that end a section of the way in.
+TURN, SECTION_END = 0, 1
 
 
-_FIRST_STEP = 1.5  # of the way that an elastic impact of the same energy goes, for a tolerance of one
+# First step for a tolerance of one, in units of the way that an elastic impact of the same energy goes; chosen.
+_FIRST_STEP = 1.5
 
-_AFTER_TURN = 0.4  # of the step before it; the front leaves its turn faster than it came
-COARSER = 5.0  # the tolerance of the second run of each impact, from which the error of the first is known
+# First step of the way out over the last one of the way in: the front leaves its turn faster than it came. Chosen.
+_AFTER_TURN = 0.4
+# Each impact is integrated a second time with this multiple of its tolerance; the difference tells the error.
+COARSER = 5.0
 
 
 class TableTooShort(NotConvergedError):
@@ -59,7 +63,7 @@ class Impacts:
         drift: Time from there to where the last spring's force is zero, shape (2 n,).
     """
 
-    lanes: ImpactLanes
+    lanes: ImpactBatch
     way_in: tuple[Leg, ...]
     way_out: tuple[Leg, ...]
     turn: FloatArray
@@ -68,7 +72,7 @@ class Impacts:
     drift: FloatArray
 
 
-def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
+def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
     """Integrate all lanes.
 
     Args:
@@ -92,7 +96,7 @@ def impacts(lanes: ImpactLanes, *, tolerance: float) -> Impacts:
 class _Run:
     """Lanes under way; `size` is each lane's next trial step."""
 
-    def __init__(self, lanes: ImpactLanes, tolerance: FloatArray) -> None:
+    def __init__(self, lanes: ImpactBatch, tolerance: FloatArray) -> None:
         self.lanes, self.tolerance = lanes, tolerance
         self.size = _FIRST_STEP * tolerance ** (1.0 / STAGES)
         self.course = Course.unknown(0, self.size)
@@ -106,7 +110,7 @@ class _Run:
         turned_in, going, legs = np.full(lanes.count, ends.size - 1), np.arange(lanes.count), []
         for section in range(ends.size - 1):
             own = lanes.take(going)
-            events = Event(2, np.zeros(going.size), -1), Event(0, ends[section + 1] / own.units[6], +1)
+            events = EndCondition(2, np.zeros(going.size), -1), EndCondition(0, ends[section + 1] / own.units[6], +1)
             trajectory = self._integrate(Pressing(own, section), state, going, events)
             legs.append(Leg(going, section, trajectory, self._memory(trajectory)))
             turned_in[going[trajectory.ended_by == TURN]] = section
@@ -137,10 +141,12 @@ class _Run:
         memory = leg.memory.take(there) if leg.memory else None
         target = memory.low[step] if memory else self.lanes.table.section_ends[leg.section] / own.units[6]
         problem = Receding(own, leg.section, memory, step)
-        trajectory = self._integrate(problem, state, going, (Event(0, target, -1),))
+        trajectory = self._integrate(problem, state, going, (EndCondition(0, target, -1),))
         return Leg(going, leg.section, trajectory, memory, step)
 
-    def _integrate(self, problem: Problem, state: FloatArray, going: Lanes, events: tuple[Event, ...]) -> Trajectory:
+    def _integrate(
+        self, problem: Problem, state: FloatArray, going: Lanes, events: tuple[EndCondition, ...]
+    ) -> Trajectory:
         """Advance some lanes to their events, in place."""
         trajectory = integrate(
             problem,

@@ -10,33 +10,28 @@ from numpy.typing import NDArray
 from bem.polynomials import chebyshev
 from contact import NotConvergedError
 from contact.records.validation import FloatArray
+from mdr.error_model import (
+    AGREEMENT_SHARES,
+    COARSER_POWER,
+    FINEST_ACCURACY,
+    IMPACT_ROUNDING,
+    LEAVING_SHARE,
+    PROFILE_ROUNDING,
+    SPRINGS_TO_MOTION,
+    WITHIN_STEPS_SHARE,
+)
 from mdr.impact.collocation import states
-from mdr.impact.equations import ImpactLanes, force, outline
+from mdr.impact.equations import ImpactBatch, force, outline
 from mdr.impact.motion import Impacts, Leg
 from mdr.impact.units import ScaledImpacts
 from mdr.springs.table import MOMENT, PROFILE, STIFFNESS
 
-# Rounding of g on a panel, of the panel's largest value. Seen: 4.2 roundings, where a stiff dashpot stops a blunt cone
-# at 1e-10 of what its table spans (tests/verification/test_impact.py, against the closed form of a damped oscillator).
-_PROFILE_ROUNDING = 8.0 * float(np.finfo(float).eps)
-ROUNDING = 1e-14  # of results in units of the impact, added to what the tolerance changes
-_SPRINGS_TO_MOTION = 3.0  # relative errors of g, c_N and k_N add up
-# Shares of the accuracy _FINEST that are always stated of the five outcomes, since two runs may agree by chance. They
-# are three to ten times the median of the true errors of 218 random impacts (seeds 9 and 31, 2026-11-22).
-_CHANCE = np.array([[0.031], [0.009], [0.013], [0.006], [0.003]])
-# Accuracy to which these shares belong, the default one.
-_FINEST = 1e-9
-# The shares grow like this power of the accuracy: ends of collocated steps converge faster than the errors within them
-# that choose the step. Measured on the same impacts: 97 to 100 % of the errors are covered at 1e-5, 1e-6 and 1e-9, and
-# 81 to 86 % at 1e-5 with shares that do not grow.
-_COARSER = 0.46
-# Share of the largest error of a peak that counts in the contact time, by the way left and the speed.
-_LEAVING = 0.25
-# Share of the errors within steps that counts in times: half of the same errors are below 0.0002 of them.
-_OPEN = 0.0003
-_REST = 1e-10  # of the approach speed
-_TIME = 1  # row of the contact time
-_NODES = 14  # of the force on each step
+# An indenter whose final speed is below this share of the approach speed has come to rest; chosen.
+_REST = 1e-10
+# Row of the contact time among the five outcomes.
+_TIME = 1
+# Chebyshev nodes of the force on each step: more than the state's degree of ten, since the force is a function of it.
+_NODES = 14
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,9 +76,11 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
         peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
     radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
     both = np.stack([-impacts.end[3], impacts.end[1] + impacts.drift, peak, depth, radius])
-    values, change = fine_and_change(both, accuracy, impacts.within, ROUNDING + _depth_rounding(scaled.lanes, depth))
-    change += _SPRINGS_TO_MOTION * lanes.table.error
-    change[_TIME] += _SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
+    values, change = fine_and_change(
+        both, accuracy, impacts.within, IMPACT_ROUNDING + _depth_rounding(scaled.lanes, depth)
+    )
+    change += SPRINGS_TO_MOTION * lanes.table.error
+    change[_TIME] += SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
     return ImpactResults(
         coefficient_of_restitution=values[0],
         contact_time=values[1] * scaled.time,
@@ -94,14 +91,14 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
     )
 
 
-def _depth_rounding(lanes: ImpactLanes, depth: FloatArray) -> FloatArray:
+def _depth_rounding(lanes: ImpactBatch, depth: FloatArray) -> FloatArray:
     """Rounding of g on the first panel of the table over the peak depth: a stiff dashpot stops a body far below it."""
     first = lanes.table.evaluate(lanes.table.functions.edges[1:2], 1)[PROFILE]
-    return np.asarray(_PROFILE_ROUNDING * first / (lanes.units[0] * depth[: lanes.count]))
+    return np.asarray(PROFILE_ROUNDING * first / (lanes.units[0] * depth[: lanes.count]))
 
 
 def fine_and_change(
-    both: FloatArray, accuracy: float, within: FloatArray, rounding: FloatArray | float = ROUNDING
+    both: FloatArray, accuracy: float, within: FloatArray, rounding: FloatArray | float = IMPACT_ROUNDING
 ) -> tuple[FloatArray, FloatArray]:
     """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
 
@@ -116,10 +113,12 @@ def fine_and_change(
         rounding: Relative, shape (n,).
     """
     fine, coarse = np.split(both, 2, axis=1)
-    chance = _CHANCE * accuracy * max(accuracy / _FINEST, 1.0) ** _COARSER
+    chance = AGREEMENT_SHARES * accuracy * max(accuracy / FINEST_ACCURACY, 1.0) ** COARSER_POWER
     change = np.abs(fine - coarse) / np.abs(fine) + chance
     of_peaks = change[_TIME + 1 :].max(axis=0)
-    change[_TIME] += _LEAVING * of_peaks * leaving(fine) + _OPEN * within[: fine.shape[1]] / fine[_TIME]
+    change[_TIME] += (
+        LEAVING_SHARE * of_peaks * leaving(fine) + WITHIN_STEPS_SHARE * within[: fine.shape[1]] / fine[_TIME]
+    )
     return fine, change + rounding
 
 
@@ -147,7 +146,7 @@ def refuse_rest(final_velocity: FloatArray, long_term: FloatArray) -> None:
         raise NotConvergedError(f"impact {first} does not rebound: {why}")
 
 
-def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:
+def force_on_way_in(lanes: ImpactBatch, leg: Leg, z: FloatArray) -> FloatArray:
     """Dimensionless force at z in [-1, 1] on every step, shape (len(z), steps, lanes)."""
     own = lanes.take(leg.lanes)
     state = states(leg.trajectory, z)
@@ -158,7 +157,7 @@ def force_on_way_in(lanes: ImpactLanes, leg: Leg, z: FloatArray) -> FloatArray:
     return force(own, springs, springs[PROFILE], flat[2], taken).reshape(state.shape[1:])
 
 
-def _peak_force(lanes: ImpactLanes, leg: Leg) -> FloatArray:
+def _peak_force(lanes: ImpactBatch, leg: Leg) -> FloatArray:
     """Largest force of each lane. A viscous layer relaxes at the turn, so it never comes after it."""
     values = force_on_way_in(lanes, leg, chebyshev.nodes(_NODES))
     matrix = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)

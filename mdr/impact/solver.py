@@ -24,7 +24,8 @@ from mdr.springs.beside_contact import refuse_touching_at
 
 ACCURACY = 1e-9
 _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
-_CHUNK = 256  # lanes advanced together: enough to hide the interpreter, few enough to stay in the cache
+# Impacts integrated together: enough to hide the interpreter, few enough to stay in the cache; chosen.
+_CHUNK = 256
 
 Progress: TypeAlias = Callable[[int, int], None]
 _Solver: TypeAlias = Callable[[list[int]], ImpactResults]
@@ -134,7 +135,8 @@ def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: floa
         problem = scaled([scenes[i] for i in chunk], [shaped[i][0] for i in chunk], shaped[chunk[0]][1])
         try:
             return results(problem, impacts(problem.lanes, tolerance=tolerance), accuracy)
-        except TableTooShort:  # one of them softens more than expected
+        # One of the layers softens more than expected.
+        except TableTooShort:
             alone = [_pressed(scenes[i], flat_punch, StageLog(), tolerance) for i in chunk]
             return joined([results(*found, accuracy) for found in alone], np.arange(len(chunk)))
 

@@ -12,7 +12,7 @@ from bem.layer_equation.protocol import FlatPunchSource
 from contact import FlatPunch, Impact, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
-from mdr.impact.equations import ImpactLanes
+from mdr.impact.equations import ImpactBatch
 from mdr.springs.shared_tables import (
     Reference,
     contact_scale,
@@ -22,7 +22,9 @@ from mdr.springs.shared_tables import (
 )
 from mdr.springs.table import PROFILE, STIFFNESS, SpringTable
 
-SOFTEST = (0.02, 1e-3, 1e-5)  # of the instantaneous modulus: how soft a layer may become during the way in
+# Long-term shares of the instantaneous modulus to which a layer is assumed to soften on the way in. A table made for
+# the first is made anew for the next if the front runs beyond it.
+SOFTEST = (0.02, 1e-3, 1e-5)
 
 
 @dataclass(frozen=True)
@@ -39,7 +41,7 @@ class ScaledImpacts:
         mass: M [kg].
     """
 
-    lanes: ImpactLanes
+    lanes: ImpactBatch
     length: FloatArray
     depth: FloatArray
     time: FloatArray
@@ -111,7 +113,7 @@ def scaled(scenes: Sequence[Scene], references: Sequence[Reference], table: Spri
     g, k = rows[PROFILE], rows[STIFFNESS]
     units = np.stack([g, g / y, k, k / y, k * g, k * g**2, y])
     time = depth * g / velocity
-    lanes = ImpactLanes(
+    lanes = ImpactBatch(
         table=table,
         units=units,
         long_term=np.array([r.long_term_modulus for r in relaxations]) / modulus,

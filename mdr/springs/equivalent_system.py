@@ -17,11 +17,14 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
+from mdr.error_model import SPRING_ROUNDING
 
+# Most Newton steps to a contact radius. Bisection alone gains one binary digit a step and needs about 50.
 NEWTON_STEPS = 60
+# A radius is found when the step, or the bracket, is smaller than this share of it: ninety roundings.
 NEWTON_TOLERANCE = 2e-14
-NOISE_TOLERANCE = 1e-11  # accepted after all steps, where rounding in the curve hides its root
-ROUNDING = 16 * np.finfo(float).eps
+# A relative bracket that is accepted after all steps, where rounding in the curve hides its root; chosen.
+NOISE_TOLERANCE = 1e-11
 # Radii, beside the profile's nodes, at which the largest error is looked for: errors change from panel to panel.
 _SAMPLES = 96
 
@@ -43,7 +46,6 @@ class EquivalentSystem:
         moment: 2 int_0^x c_bar g dx over the excess x - b, lengths in units of length_unit.
         position_rounding: Relative error of g by rounded positions, at radii [m].
         profile_error: Relative error of g and of the moment at fitted radii, beyond those of flat-punch data and grid.
-        fitted_from: Radius above which g is fitted, in units of length_unit.
         variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
             error (`table_errors`); none with other flat-punch data.
     """
@@ -57,7 +59,6 @@ class EquivalentSystem:
     moment: MappedFunction
     profile_error: float = 0.0
     position_rounding: Callable[[FloatArray], FloatArray] = np.zeros_like
-    fitted_from: float = np.inf
     variants: tuple[tuple[float, EquivalentSystem], ...] = ()
 
     def spring_stiffness(self, x: ArrayLike) -> FloatArray:
@@ -134,13 +135,14 @@ class EquivalentSystem:
             from mdr.springs import table_errors  # noqa: PLC0415 - other flat-punch data do not need it
 
             return table_errors.relative_errors(self, contact_radius)
-        stiffness = self.flat_punch.relative_error(ratio) + ROUNDING
-        springs = self.flat_punch.spring_error(ratio) + ROUNDING
-        data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + ROUNDING
+        stiffness = self.flat_punch.relative_error(ratio) + SPRING_ROUNDING
+        springs = self.flat_punch.spring_error(ratio) + SPRING_ROUNDING
+        data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + SPRING_ROUNDING
         own = self.profile_truncation(contact_radius) + self.position_rounding(np.asarray(contact_radius))
-        depth = data + np.where(ratio > self.fitted_from, self.profile_error, 0.0) + own
+        depth = data + np.where(ratio > self.flat_punch.fitted_from, self.profile_error, 0.0) + own
+        # That of the radius holds where depth or force are prescribed, since g rises at least about linearly.
         return {
-            "contact_radius": depth,  # when depth or force are prescribed; g rises at least about linearly
+            "contact_radius": depth,
             "indentation_depth": depth,
             "normal_force": depth + stiffness,
             "contact_stiffness": stiffness,
@@ -162,7 +164,7 @@ class EquivalentSystem:
 
     def _ratio(self, x: ArrayLike) -> FloatArray:
         x = np.asarray(x, dtype=float)
-        covered = (x >= 0) & (x <= self.max_radius * (1 + ROUNDING))
+        covered = (x >= 0) & (x <= self.max_radius * (1 + SPRING_ROUNDING))
         if not np.all(covered):
             worst = x[~covered].flat[0]
             raise InvalidInput(f"radius = {worst:g} m: this equivalent system covers [0, {self.max_radius:g}] m")
@@ -199,7 +201,7 @@ class EquivalentSystem:
         grid = self.profile.grid
         pieces = np.arange(len(grid.left))
         ends = curve.value(pieces, np.ones(pieces.size))
-        covered = (target >= 0) & (target <= ends[-1] * (1 + ROUNDING))
+        covered = (target >= 0) & (target <= ends[-1] * (1 + SPRING_ROUNDING))
         if not np.all(covered):
             worst = target[~covered].flat[0] * unit
             raise InvalidInput(f"{name} = {worst:g}: this equivalent system covers [0, {ends[-1] * unit:g}]")

@@ -18,7 +18,8 @@ from bem.polynomials.gauss_panels import gauss_nodes
 from contact import Cone, FlatPunch, Paraboloid, PowerLaw, Profile, Sphere, TruncatedCone, TruncatedParaboloid
 from contact.records.validation import FloatArray
 
-NODES = 48  # on each analytic stretch of the profile
+# Gauss nodes on each stretch of the profile between breakpoints; chosen.
+NODES = 48
 
 
 @singledispatch

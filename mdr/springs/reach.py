@@ -22,9 +22,13 @@ from mdr.springs.assembly import SeveralContacts, equivalent_system
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.half_space_profile import half_space_profile
 
-FIRST_RATIO = 10.0  # a/h beyond which the half-space says nothing about the radius on a layer
-LEAST_EXCESS = 1e-12  # over the flat end, relative to it; the next floating-point numbers tell no radii apart
-TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)  # in units of a length made of the loading
+# First trial radius: the half-space's, capped at this a/h, beyond which that is no guide any more; chosen.
+FIRST_RATIO = 10.0
+# Least first excess over a flat end, relative to its radius: closer floating-point numbers tell no radii apart.
+LEAST_EXCESS = 1e-12
+# Radii, in units of a length made of the loading, on which the half-space's answer is tabulated: neighbours differ by
+# a fifth.
+TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)
 
 
 def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSystem:
@@ -78,7 +82,8 @@ def _reached(system: EquivalentSystem, loading: Loading) -> tuple[float, float]:
 def _furthest(indenter: Profile, radius: float) -> float:
     """Largest next radius: the indenter's end, or half way to an end where it stands upright, as a sphere does."""
     end = indenter.max_radius
-    with np.errstate(divide="ignore"):  # an infinite depth is what is looked for
+    # An infinite depth is what is looked for.
+    with np.errstate(divide="ignore"):
         upright = np.isfinite(end) and not np.isfinite(
             half_space_profile(indenter, np.array(end - indenter.flat_radius))
         )
@@ -103,13 +108,12 @@ def _first_radius(scene: Scene) -> float:
     is_force = isinstance(scene.loading, NormalForces)
     scale = np.sqrt(wanted / contact_modulus(scene.layer)) if is_force else wanted
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
-    limit = (
-        min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.thickness, 1.5 * flat)) - flat
-    )  # a sphere's end is upright
+    # A little short of the end, where a sphere is upright.
+    limit = min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.thickness, 1.5 * flat)) - flat
     excess = np.minimum(scale * TRIAL_RADII, limit)
     depth, force = _half_space_answer(scene.indenter, excess)
     answer = contact_modulus(scene.layer) * force if is_force else depth
-    guess = np.interp(wanted, answer, excess)  # between neighbouring trial radii, which differ by a fifth
+    guess = np.interp(wanted, answer, excess)
     return flat + max(min(1.02 * float(guess), limit), LEAST_EXCESS * flat)
 
 

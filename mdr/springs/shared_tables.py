@@ -20,14 +20,17 @@ from contact.records.validation import FloatArray
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.table import SpringTable, spring_table
 
-_KEPT = 64  # tables
-_NEAR_RIM = 0.7  # of the rim's radius: beyond, trial radii no longer double
+# Most spring tables that are kept in memory; chosen.
+_KEPT = 64
+# Trial radii double up to this share of the radius of an upright rim; chosen.
+_NEAR_RIM = 0.7
 
 # First trial radius [m] of a pointed profile, from which radii double until they are large enough. A profile with a
 # flat end starts there instead: its trial radii, and so its springs, do not depend on the unit of length.
 _SMALL = 1e-9
 
-_UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)  # of the rim's radius that trial radii stay away from it
+# Beyond it, trial radii stay away from the rim by these shares of its radius; chosen.
+_UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)
 
 
 @dataclass(frozen=True)
@@ -185,5 +188,6 @@ def coordinate_at(held: FloatArray, table: SpringTable, target: FloatArray) -> F
         table: The springs.
         target: What they shall hold.
     """
-    usable = held > 1e-14 * held[-1]  # below, the difference of moments is rounding
+    # Below this share the difference of moments is rounding.
+    usable = held > 1e-14 * held[-1]
     return np.asarray(np.exp(np.interp(np.log(target), np.log(held[usable]), np.log(table.survey.y[usable]))))

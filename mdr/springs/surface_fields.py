@@ -27,6 +27,7 @@ from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 from mdr.springs.half_space_profile import half_space_profile
 
+# Gauss nodes on each piece of the integrals over displacements; as many as the layer's panels have by default.
 NODES = 24
 # Samples of g_hs on each stretch of a profile without a closed form; neighbouring breakpoints lie outside the stretch
 # by its own length or so, where the error of n samples is below 2.6^-n.

@@ -20,11 +20,13 @@ from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Panel, Piecewise, relative_tail, resolved_panels
 from contact.records.validation import FloatArray
 
-PROFILE, SLOPE, STIFFNESS, STIFFENING, MOMENT, SECOND_MOMENT = range(6)  # g, dg/dy, k, dk/dy, P, Q
-_SURVEY = np.geomspace(1e-7, 1.0, 281)  # of a table's range
+# Rows of a table: g, dg/dy, k, dk/dy, P, Q.
+PROFILE, SLOPE, STIFFNESS, STIFFENING, MOMENT, SECOND_MOMENT = range(6)
+# Shares of a table's range at which energies and forces are tabulated to look them up, forty to a decade; chosen.
+_SURVEY = np.geomspace(1e-7, 1.0, 281)
 
 
-class Springs(Protocol):
+class SpringData(Protocol):
     """What a table asks of an equivalent system."""
 
     def spring_stiffness(self, x: FloatArray) -> FloatArray:
@@ -103,7 +105,7 @@ class SpringTable:
 
 
 def spring_table(
-    springs: Springs, *, flat_radius: float, breakpoints: tuple[float, ...], radius: float, error: float = 0.0
+    springs: SpringData, *, flat_radius: float, breakpoints: tuple[float, ...], radius: float, error: float = 0.0
 ) -> SpringTable:
     """Sample an equivalent system up to a radius [m] until its springs are resolved.
 
@@ -138,7 +140,7 @@ def _radius(start: FloatArray, way: FloatArray) -> FloatArray:
     return np.asarray(np.where(start > 0.0, start + way**2, way))
 
 
-def _section(springs: Springs, start: float, ends: tuple[float, float], error: float) -> list[Panel]:
+def _section(springs: SpringData, start: float, ends: tuple[float, float], error: float) -> list[Panel]:
     """c_N, g and da/dy between two breakpoints, the first of them the radius `start`."""
     (low, high), beginning = ends, springs.mdr_profile(np.array([start]))
 
@@ -148,7 +150,8 @@ def _section(springs: Springs, start: float, ends: tuple[float, float], error: f
         rise = springs.mdr_profile(x) - beginning
         if start == 0.0:
             return np.stack([springs.spring_stiffness(x), rise, np.ones_like(y)])
-        rounded = np.sqrt(x - start)  # the way that a rounded radius stands for; beside a kink g rises with it
+        # This is the way that a rounded radius stands for; beside a kink g rises with it.
+        rounded = np.sqrt(x - start)
         share = np.divide(way, rounded, out=np.ones_like(way), where=rounded > 0.0)
         return np.stack([springs.spring_stiffness(x), beginning + rise * share, 2.0 * way])
 
@@ -164,7 +167,8 @@ def _coefficients(panels: list[Panel], start: float) -> list[FloatArray]:
         rates = np.stack([stiffening, stiffening * profile, stiffening * profile**2], axis=1)
         integrals = panel.half * chebyshev.integration(NODES) @ analysis @ rates
         integrals[0] += carried
-        carried = integrals.sum(axis=0)  # all Chebyshev polynomials are 1 at the panel's end
+        # All Chebyshev polynomials are 1 at the panel's end.
+        carried = integrals.sum(axis=0)
         height = _longer(analysis @ profile)
         slope = chebyshev.differentiation(NODES + 1) @ height / panel.half
         columns = [height, slope, integrals[:, 0], _longer(analysis @ stiffening), integrals[:, 1], integrals[:, 2]]

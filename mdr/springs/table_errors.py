@@ -15,18 +15,9 @@ import numpy as np
 from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR, FlatPunchTable
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
+from mdr.error_model import STIFFNESS_SHARE
 from mdr.springs.equivalent_system import EquivalentSystem
 
-# What k_N alone takes of the shares: it converges faster than the pressure, from which the profile comes. Differences
-# to half as many cells were 2 to 18 times its true error, those of the profile 0.7 to 6 times (70 scenes, a/h to 60,
-# seed 1, 64 cells, 2026-11-22).
-STIFFNESS_SHARE: Final = 0.5
-# The same for the pressure under a profile: punches of all smaller radii are superposed, whose errors partly cancel.
-# Twice this share was 3 to 29 times the true error (80 scenes, seed 3, 64 cells, 2026-11-22).
-PRESSURE_SHARE: Final = 0.3
-# Of the pressure under a profile, whose slope magnifies what is left in it: up to 8e-8 on thick layers (seeds 1 and 3,
-# 64 cells, 60 rows, a/h below 0.1, 2026-11-22).
-PRESSURE_FLOOR: Final = 1e-7
 # Radii at which pressures are compared.
 RINGS: Final = 24
 

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+import bem.layer_equation.profiles.thin_layers
 import bem.layer_equation.thin_layers
-import mdr.springs.thin_layer_profile
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
@@ -70,7 +70,7 @@ def test_the_stated_error_covers_what_more_terms_change(nu, flat_radius, end, mo
     system, x = equivalent_system(layer, indenter, end, SOURCE), np.linspace(161.0, end, 200)
     monkeypatch.setattr(bem.layer_equation.thin_layers, "RADII", 60)
     monkeypatch.setattr(bem.layer_equation.thin_layers, "DEGREE", 36)
-    monkeypatch.setattr(mdr.springs.thin_layer_profile, "DEGREE", 32)
+    monkeypatch.setattr(bem.layer_equation.profiles.thin_layers, "DEGREE", 32)
     other, bound = equivalent_system(layer, indenter, end, AnewBeyondNear()), system.relative_error
     np.testing.assert_allclose(other.mdr_profile(x), system.mdr_profile(x), rtol=bound["indentation_depth"])
     np.testing.assert_allclose(other.elastic_force(x), system.elastic_force(x), rtol=bound["normal_force"])

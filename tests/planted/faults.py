@@ -473,7 +473,7 @@ TIME_STEPPING = [
     Fault(
         "no floor under the stated error of an impact",
         "time stepping",
-        set_to("mdr.impact.results:_CHANCE", 0.0),
+        set_to("mdr.impact.results:AGREEMENT_SHARES", 0.0),
         Test("verification.test_impact_errors:test_two_runs_that_agree_by_chance_still_state_an_error", (11, 1e-6)),
     ),
     Fault(
@@ -500,7 +500,7 @@ TIME_STEPPING = [
     Fault(
         "release at zero depth in place of zero force",
         "time stepping",
-        lambda patch: patch.setattr("mdr.impact.flat_punch.Event", released_at_zero_depth(_event())),
+        lambda patch: patch.setattr("mdr.impact.flat_punch.EndCondition", released_at_zero_depth(_event())),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
@@ -525,9 +525,9 @@ TIME_STEPPING = [
 
 
 def _event():
-    from mdr.impact.collocation import Event
+    from mdr.impact.collocation import EndCondition
 
-    return Event
+    return EndCondition
 
 
 # -- comparators -----------------------------------------------------------------------------------------------------

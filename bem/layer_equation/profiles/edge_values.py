@@ -19,7 +19,8 @@ from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
 from bem.polynomials.mapped import MappedFunction
 from contact.records.validation import FloatArray
 
-WHOLE = 1e-12  # relative: what rounding makes of the width of a piece that fills its panel
+# Relative difference that rounding may make between the width of a piece that fills its panel and the panel's.
+WHOLE = 1e-12
 
 
 def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
@@ -37,13 +38,14 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
     position = (grid.nodes + flat_radius) / H - panel[:, None]
     whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=WHOLE, atol=0.0)
-    whole[0] = (
-        False  # values near first touch are tiny and keep their relative accuracy only if integrated by themselves
-    )
+    # Values near first touch are tiny and keep their relative accuracy only if integrated by themselves.
+    whole[0] = False
     averages = panel_averages(load, panel, position, np.full(panel[-1] + 1, H))
-    averages[panel[whole]] = load.node_values[whole]  # by moments, a width off by e would cost e / (last Gauss weight)
+    # By moments, a width that is off by e would cost e over the last Gauss weight.
+    averages[panel[whole]] = load.node_values[whole]
     _, inherited = factor.eliminate(averages)
-    values = factor.edge_values(averages + inherited)[panel]  # right as it stands where a piece fills its panel
+    # These are right as they stand where a piece fills its panel.
+    values = factor.edge_values(averages + inherited)[panel]
     polynomial = factor.edge_values(inherited)
     for piece in np.flatnonzero(~whole):
         smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]

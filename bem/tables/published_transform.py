@@ -21,7 +21,8 @@ from bem.polynomials.mapped import MappedFunction
 from contact import Profile
 from contact.records.validation import FloatArray
 
-NODES = 32  # between two breakpoints of the profile
+# Gauss nodes between two breakpoints of the profile; chosen.
+NODES = 32
 
 
 def published_profile(
@@ -38,8 +39,9 @@ def published_profile(
     grid, flat = half_space.grid, indenter.flat_radius / unit
     x = flat + grid.nodes
     layer, plain = _weighted_heights(solution, indenter, unit, x)
-    at_edge = 2 * np.asarray(solution.smooth_pressure(np.ones_like(x), x))  # the quotient as the risen part vanishes
-    risen = np.divide(layer, plain, out=at_edge, where=plain > 0)  # 0/0 where x is no larger than b in floating point
+    # As the risen part vanishes the quotient becomes its value at the edge; it is 0/0 where x is rounded to b.
+    at_edge = 2 * np.asarray(solution.smooth_pressure(np.ones_like(x), x))
+    risen = np.divide(layer, plain, out=at_edge, where=plain > 0)
     share = MappedFunction(grid, solution.normalized_contact_stiffness(x) * risen, 0.0)
     moment = half_space.integral()
     slope = share.derivative(grid.nodes)

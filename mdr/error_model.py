@@ -1,0 +1,86 @@
+"""Coefficients of the errors that MDR states, each with the error it shapes and the measurement behind it.
+
+What comes from flat-punch data is stated by these themselves (`bem.layer_equation.protocol`). Coverage and sharpness of
+the results are measured by `contact-verify coverage`.
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+
+from contact.records.validation import FloatArray
+
+EPS: Final = float(np.finfo(float).eps)
+
+# Elastic contacts and their springs (`mdr.springs`, `mdr.elastic`).
+
+# Relative rounding of springs, stiffness and profile, added to what flat-punch data state; chosen. The same number is
+# how far beyond its range a rounded radius may be asked for.
+SPRING_ROUNDING: Final = 16 * EPS
+# Roundings of a position that reach the profile near an upright end. Measured against 40-digit arithmetic over 60
+# spheres with 1 - a/R from 1e-9 to 1e-2: at most 1.95, 0.58 in the median (seed 3, 2026-11-22).
+POSITION_ROUNDINGS: Final = 2.0
+# Least stated error of a pressure: forty roundings of the quadrature over the profile's slope.
+PRESSURE_ROUNDING: Final = 40 * EPS
+# The same of a profile whose slope is taken from 32 samples on each stretch: differentiation magnifies roundings by up
+# to 32^2 at a stretch's ends. Measured at most 127 roundings in the norm over all tabulated profiles of the command
+# `contact-verify campaign pressure --count 2000 --seed 15` (2026-11-22).
+SAMPLED_ROUNDING: Final = 256 * EPS
+
+# Flat-punch tables (`mdr.springs.table_errors`).
+
+# Share of the difference between tables that counts in k_N alone, which converges faster than the pressure, from which
+# the profile comes. Differences to half as many cells were 2 to 18 times its true error, those of the profile 0.7 to 6
+# times (70 scenes, a/h to 60, seed 1, 64 cells, 2026-11-22).
+STIFFNESS_SHARE: Final = 0.5
+# The same for the pressure under a profile: punches of all smaller radii are superposed, whose errors partly cancel.
+# Twice this share was 3 to 29 times the true error (80 scenes, seed 3, 64 cells, 2026-11-22).
+PRESSURE_SHARE: Final = 0.3
+# Added to the error of the pressure under a profile, whose slope magnifies what is left in it: up to 8e-8 on thick
+# layers (seeds 1 and 3, 64 cells, 60 rows, a/h below 0.1, 2026-11-22).
+PRESSURE_FLOOR: Final = 1e-7
+
+# Impacts and histories.
+
+# Multiplies the relative error of the springs and gives that of a motion: the errors of g, c_N and k_N add up.
+SPRINGS_TO_MOTION: Final = 3.0
+
+# Histories (`mdr.history.solver`).
+
+# Each history is computed with all springs and with these shares of them; the coarser two estimate the error. One would
+# not do: if the contact edge falls alike between springs, the difference is small by accident.
+SPRING_SHARES: Final = (1.0, 0.7, 0.5)
+# A history on a share of the springs errs this much more than on all, beyond what all err by, since errors fall at
+# least with the square of the number of springs. Each change over its number bounds the error on all, and the largest
+# bound counts.
+EXCESS_ERRORS: Final = tuple(share**-2 - 1.0 for share in SPRING_SHARES[1:])
+# Safety factor on that bound. Of 56 forces and radii of random histories, against four times as many springs, the bound
+# itself covers 94 %, and is 3 to 7 times the error in the median (2026-11-22).
+HISTORY_SAFETY: Final = 1.3
+# Largest error that a history states; beyond, the method refuses. The estimate is none there: all numbers of springs
+# miss the same kinks of a profile.
+LARGEST_HISTORY_ERROR: Final = 1e-3
+
+# Impacts (`mdr.impact.results`).
+
+# Rounding of g on a panel, of the panel's largest value. Seen: 4.2 roundings, where a stiff dashpot stops a blunt cone
+# at 1e-10 of what its table spans (tests/verification/test_impact.py, against the closed form of a damped oscillator).
+PROFILE_ROUNDING: Final = 8.0 * EPS
+# Least relative error of all outcomes of an impact; chosen.
+IMPACT_ROUNDING: Final = 1e-14
+# Shares of the accuracy `FINEST_ACCURACY` that are always stated of the five outcomes, since two runs may agree by
+# accident. They are three to ten times the median of the true errors of 218 random impacts (seeds 9 and 31,
+# 2026-11-22).
+AGREEMENT_SHARES: Final[FloatArray] = np.array([[0.031], [0.009], [0.013], [0.006], [0.003]])
+# Accuracy to which these shares belong, the default one.
+FINEST_ACCURACY: Final = 1e-9
+# The shares grow like this power of the accuracy: ends of collocated steps converge faster than the errors within them
+# that choose the step. Measured on the same impacts: 97 to 100 % of the errors are covered at 1e-5, 1e-6 and 1e-9, and
+# 81 to 86 % at 1e-5 with shares that do not grow.
+COARSER_POWER: Final = 0.46
+# Share of the largest error of a peak that counts in the contact time, times the way left over the leaving speed.
+LEAVING_SHARE: Final = 0.25
+# Share of the errors within steps that counts in the contact time: half of the true errors are below 0.0002 of them.
+WITHIN_STEPS_SHARE: Final = 0.0003
