@@ -31,11 +31,11 @@ from contact import (
     Viscoelasticity,
 )
 from contact.answer.one_thread import one_thread
+from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.elastic.beside_contact import refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (

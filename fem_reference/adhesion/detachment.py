@@ -73,10 +73,7 @@ def detachment_path(
     critical = [*_start(scene, branch), *_turning_points(branch, radius)]
     pull_off = _pull_off(branch, radius, loading.control, critical)
     modulus = contact_modulus(scene.layer)
-    passed = radius >= pull_off.contact_radius
-    sampled = _point(branch, float(radius[passed][np.argmin(force[passed])]), loading.control, "strongest")
-    turned = (point for point in critical if point.contact_radius >= pull_off.contact_radius)
-    strongest = min(sampled, pull_off, *turned, key=lambda point: point.normal_force)
+    strongest = _strongest_pull(branch, radius, loading.control, pull_off, critical)
     depth_error, force_error = errors_along(branch, radius)
     error = {
         "contact_radius": np.zeros_like(radius),
@@ -105,6 +102,16 @@ def detachment_path(
         pull_off_contact_radius=pull_off.contact_radius,
         critical_points=tuple(_in_newtons(point, modulus) for point in critical),
     )
+
+
+def _strongest_pull(
+    branch: InterpolatedBranch, radius: FloatArray, control: str, pull_off: CriticalPoint, critical: list[CriticalPoint]
+) -> CriticalPoint:
+    """Where the force is least until pull-off: at a sample, at a turning point or at pull-off itself."""
+    passed = radius[radius >= pull_off.contact_radius]
+    sampled = _point(branch, float(passed[np.argmin(branch.force(passed))]), control, "strongest")
+    turned = (point for point in critical if point.contact_radius >= pull_off.contact_radius)
+    return min(sampled, pull_off, *turned, key=lambda point: point.normal_force)
 
 
 def _branch_to_pull_off(

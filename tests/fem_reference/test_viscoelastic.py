@@ -21,7 +21,7 @@ from contact import (
     StandardSolid,
 )
 from fem_reference import Fem
-from fem_reference.elastic.adaptive import solve_history_to_accuracy
+from fem_reference.adaptive import solve_history_to_accuracy
 from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.impact import MAX_STEPS, Body, simulate_impact
 from fem_reference.in_time.relaxation_step import relaxation_step
