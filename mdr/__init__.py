@@ -1,7 +1,7 @@
 """The method of dimensionality reduction: layers and half-spaces as beds of independent springs.
 
 Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, then `dispatch`, `springs.assembly` and
-`elastic`; coefficients of stated errors stand in `error_model`.
+`elastic`; coefficients of stated errors stand in `springs.error_model`.
 """
 
 from mdr.method import Mdr

@@ -27,13 +27,19 @@ from contact import (
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.error_model import EXCESS_ERRORS, HISTORY_SAFETY, LARGEST_HISTORY_ERROR, SPRING_SHARES, SPRINGS_TO_MOTION
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.force_control import Ramp, pressed_at_once, to_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
 from mdr.impact.units import is_flat, relaxation_of
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
+from mdr.springs.error_model import (
+    EXCESS_ERRORS,
+    HISTORY_SAFETY,
+    LARGEST_HISTORY_ERROR,
+    SPRING_SHARES,
+    SPRINGS_TO_MOTION,
+)
 from mdr.springs.shared_tables import bisected, growing_radii, own_table, upper
 from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 

@@ -10,7 +10,11 @@ from numpy.typing import NDArray
 from bem.polynomials import chebyshev
 from contact import NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.error_model import (
+from mdr.impact.collocation import states
+from mdr.impact.equations import ImpactBatch, force, outline
+from mdr.impact.motion import Impacts, Leg
+from mdr.impact.units import ScaledImpacts
+from mdr.springs.error_model import (
     AGREEMENT_SHARES,
     COARSER_POWER,
     FINEST_ACCURACY,
@@ -20,10 +24,6 @@ from mdr.error_model import (
     SPRINGS_TO_MOTION,
     WITHIN_STEPS_SHARE,
 )
-from mdr.impact.collocation import states
-from mdr.impact.equations import ImpactBatch, force, outline
-from mdr.impact.motion import Impacts, Leg
-from mdr.impact.units import ScaledImpacts
 from mdr.springs.table import MOMENT, PROFILE, STIFFNESS
 
 # An indenter whose final speed is below this share of the approach speed has come to rest; chosen.

@@ -15,8 +15,8 @@ from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
 from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
-from mdr.error_model import EPS, POSITION_ROUNDINGS
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
 from mdr.springs.half_space_profile import half_space_profile
 from mdr.springs.surface_fields import ContactFields
 

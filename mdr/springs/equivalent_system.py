@@ -17,7 +17,7 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
-from mdr.error_model import SPRING_ROUNDING
+from mdr.springs.error_model import SPRING_ROUNDING
 
 # Most Newton steps to a contact radius. Bisection alone gains one binary digit a step and needs about 50.
 NEWTON_STEPS = 60

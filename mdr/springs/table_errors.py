@@ -15,8 +15,8 @@ import numpy as np
 from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR, FlatPunchTable
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
-from mdr.error_model import STIFFNESS_SHARE
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.error_model import STIFFNESS_SHARE
 
 # Radii at which pressures are compared.
 RINGS: Final = 24
