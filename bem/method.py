@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from bem.grid.equilibrium import Boundary, Prescribed, Press, PressedState
+from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import grid_punch
 from bem.grid.quadrant import LEAST_CELLS, Grid, UnresolvedLayer
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
@@ -40,21 +41,13 @@ from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 
 PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
-# A kink of the profile nearer than so many cells to the edge, on either side of it, costs up to this part of a cell.
-KINK_CELLS: Final = 6.0
-KINK_ERROR: Final = 0.1
-# Times (s/a)^2, added to the difference of two grids, which may be small by chance: 0.01 was needed at most (200 steps
-# of smooth profiles on 128 cells, seeds 1 and 5, 2026-11-22).
-SECOND_ORDER: Final = 0.05
-# Times the difference of two grids' pressures where the profile has a kink under pressure: its logarithm, or the root
-# close to a flat end, is resolved with order one half, so that the error is 1/(sqrt(2) - 1) = 2.4 times the difference.
-KINK_DIFFERENCE: Final = 3.0
-# Largest growth of a contact's pressure with its radius: p of a thin incompressible layer goes with a^4, F with a^6.
-PRESSURE_EXPONENT: Final = 6.0
-
+# Numbers of points that are tried in turn for an accuracy.
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
+# The finest accuracy that may be asked for. On 2048 points `DIRECT.slope_scatter` alone makes 3e-6 of smooth contacts,
+# so that only flat punches may reach it.
 FINEST_ACCURACY: Final = 1e-6
-BEST_GAIN: Final = 4.0  # of twice as many points: second order
+# Twice as many points divide errors by four at best, since the method is of second order.
+BEST_GAIN: Final = 4.0
 
 
 @record
@@ -215,10 +208,10 @@ class Bem(Record):
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
         errors = _errors(kind, fine, coarse, _unresolved(scene, fine))
-        reached = fine.contact_radius + KINK_CELLS * fine.grid.cell_size
-        times = KINK_DIFFERENCE if any(kink < reached for kink in scene.indenter.kinks) else 1.0
+        reached = fine.contact_radius + DIRECT.kink_cells * fine.grid.cell_size
+        times = DIRECT.kink_difference if any(kink < reached for kink in scene.indenter.kinks) else 1.0
         errors["pressure"] = times * _pressure_difference(fields, other, fine)
-        errors["pressure"] += PRESSURE_EXPONENT * fine.radius_scatter / fine.contact_radius
+        errors["pressure"] += DIRECT.pressure_exponent * fine.radius_scatter / fine.contact_radius
         return Step({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
 
     def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
@@ -270,8 +263,8 @@ def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
 def _unresolved(scene: Scene, state: PressedState) -> float:
     """Relative error by a kink of the profile that lies within a few cells of the edge."""
     cells = [(state.contact_radius - kink) / state.grid.cell_size for kink in scene.indenter.kinks]
-    near = any(abs(distance) < KINK_CELLS for distance in cells)
-    return KINK_ERROR * state.grid.cell_size / state.contact_radius if near else 0.0
+    near = any(abs(distance) < DIRECT.kink_cells for distance in cells)
+    return DIRECT.kink_error * state.grid.cell_size / state.contact_radius if near else 0.0
 
 
 def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: float) -> dict[str, float]:
@@ -284,7 +277,7 @@ def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: flo
         by_slope = {"indentation_depth": fine.stiffness_exponent, "normal_force": fine.stiffness_exponent}
     else:
         by_slope = {"contact_radius": 1.0, "contact_stiffness": fine.stiffness_exponent}
-    own = SECOND_ORDER * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved
+    own = DIRECT.second_order * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved
     scatter = fine.radius_scatter / fine.contact_radius
     errors = {
         name: difference if kind == "radius" and name == "contact_stiffness" else difference + own

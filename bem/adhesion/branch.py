@@ -20,15 +20,22 @@ from bem.layer_equation.one_radius import half_space_load
 from contact import Adhesion, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
 
-NODES: Final = 16  # contact radii solved on each piece of the branch,
-BROKEN_NODES: Final = 32  # and on one with breakpoints, whose kinks a layer leaves in higher derivatives
+# Contact radii solved on each piece of the branch, and on one with breakpoints, whose kinks a layer leaves in higher
+# derivatives. What these polynomials leave out is stated as an error.
+NODES: Final = 16
+BROKEN_NODES: Final = 32
+# Cells across the coarse grid on which the largest radius is looked for.
 SCOUT_CELLS: Final = 64
-KNOTS: Final = 2000  # of a measured profile's values on the half-space
-SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
+# Knots of the spline through a measured profile's values on the half-space.
+KNOTS: Final = 2000
+# Radii of each piece between which turning points and crossings are looked for.
+SAMPLES: Final = 400
 # Relative distance from the rim of a flat end, within which a state found by minimisation is one at the rim itself.
 RIM: Final = 1e-7
-GROWTH: Final = 1.6  # of the largest radius while the branch is too short
-FIRST_RATIO: Final = 4.0  # a/h beyond which the half-space says nothing about the radius on a layer
+# Factor by which the largest radius grows while the branch is too short.
+GROWTH: Final = 1.6
+# The first trial radius is the half-space's, but at most this times the thickness, where it is no guide any more.
+FIRST_RATIO: Final = 4.0
 
 Quantity = Literal["indentation_depth", "normal_force"]
 
@@ -89,7 +96,8 @@ def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray],
 
     phi under a unit depth is 1, of the profile g_hs [m]; k_N/E* is 2 a [m], and the moment 2 int_0^a g_hs da [m^2].
     """
-    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4  # relative to themselves as dense at the axis
+    # The fourth power makes the knots dense at the axis, where g_hs is small.
+    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4
     g_hs = CubicSpline(knots, half_space_load(indenter, knots))
     moment = g_hs.antiderivative()
     return lambda a: np.array([np.ones_like(a), g_hs(a), 2.0 * a, 2.0 * moment(a)])

@@ -25,17 +25,19 @@ import numpy as np
 from bem.grid.calibrated_disc import PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import EDGE_CELLS, Grid
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Layer, Profile
 from contact.records.validation import FloatArray
 
-NEAREST: Final = 2.5  # cells inside the edge from which the quotient is regular again
-FARTHEST: Final = 20.0  # cells inside the edge up to which it is fitted,
-LARGEST_SHARE: Final = 0.3  # but no more than this part of the radius
-CUBIC_FROM: Final = 16.0  # cells that carry a third degree
-TOLERANCE: Final = 1e-8  # of the displacement under the contact; an edge value is off by some ten times that
+# The quotient is fitted up to so many cells inside the edge, but no farther than this part of the radius.
+FARTHEST: Final = 20.0
+LARGEST_SHARE: Final = 0.3
+# Width of the ring, in cells, from which on the fitted polynomial has a third degree.
+CUBIC_FROM: Final = 16.0
+# Largest error of the displacement under the contact; an edge value is off by some ten times that.
+TOLERANCE: Final = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,8 +117,8 @@ class AdheringDisc:
         """The quotient as a polynomial of (a^2 - r^2)/a^2 near the edge, at the edge."""
         rho = self.grid.radius[self.disc.contact] / self.contact_radius
         inside = (1.0 - rho) * self.disc.radius
-        reach = min(FARTHEST, max(LARGEST_SHARE * self.disc.radius, 3.0 * NEAREST))
-        ring = (inside > NEAREST) & (inside < reach)
+        reach = min(FARTHEST, max(LARGEST_SHARE * self.disc.radius, 3.0 * EDGE_CELLS))
+        ring = (inside > EDGE_CELLS) & (inside < reach)
         degree = 3 if reach >= CUBIC_FROM else 2
         fit = np.polynomial.polynomial.polyfit(1.0 - rho[ring] ** 2, self.quotient(pressure)[ring], degree)
         return float(fit[0])

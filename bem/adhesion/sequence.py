@@ -66,7 +66,8 @@ def state(branch: AdhesiveBranch, quantity: Quantity, value: float, radius: floa
     stiffness = float(branch.stiffness(a)[0])
     if quantity == "indentation_depth":
         return Held(radius, value, float(branch.force(a, np.array([value]))[0]), stiffness)
-    unpressed = float(branch.force(a, np.zeros(1))[0])  # what holds the profile at no depth
+    # The force that holds the profile at no depth.
+    unpressed = float(branch.force(a, np.zeros(1))[0])
     return Held(radius, (value - unpressed) / stiffness, value, stiffness)
 
 
@@ -76,7 +77,8 @@ def _next_radius(branch: AdhesiveBranch, quantity: Quantity, value: float, radiu
     if radius == 0.0:
         if value < 0.0:
             return 0.0
-        radius = indenter.flat_radius  # touches at once
+        # A flat end touches at once.
+        radius = indenter.flat_radius
     if radius > 0.0 and value < float(branch.value(quantity, np.array([radius]))[0]):
         return branch.crossing(quantity, value, (0.0, radius), inmost=False) or 0.0
     wider = branch.crossing(quantity, value, (radius, end), inmost=True)

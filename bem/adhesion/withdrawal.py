@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
 from bem.adhesion.branch import RIM, AdhesiveBranch, Quantity
 from contact import CriticalPoint, FlatPunch
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 
 Control = Literal["displacement", "force"]
 QUANTITIES: Final[dict[Control, Quantity]] = {"displacement": "indentation_depth", "force": "normal_force"}
-STEP: Final = 1e-5  # of the radius: over which a slope's sign is read
 
 
 @dataclass(frozen=True)
@@ -90,9 +88,9 @@ def _scalars(branch: AdhesiveBranch, lost: float, strongest: float) -> dict[str,
     }
 
 
-def stable(branch: AdhesiveBranch, quantity: Quantity, radius: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether the quantity grows with the radius."""
-    return np.asarray(branch.value(quantity, radius) > branch.value(quantity, radius * (1.0 - STEP)))
+def stable(branch: AdhesiveBranch, quantity: Quantity, radius: FloatArray) -> BoolArray:
+    """Whether the quantity grows with the radius, over the last 1e-5 of it."""
+    return np.asarray(branch.value(quantity, radius) > branch.value(quantity, radius * (1.0 - 1e-5)))
 
 
 def strength(branch: AdhesiveBranch) -> float:

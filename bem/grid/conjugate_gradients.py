@@ -21,13 +21,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from bem.grid.operators import Operator
 from contact import InvalidInput, NotConvergedError
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from contact.records.validation import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
@@ -149,7 +146,8 @@ def solve_contact(
 def complementarity_residual(pressure: FloatArray, gap: FloatArray, depth: float) -> float:
     """max |min(p/p_max, g/delta)|: zero exactly where p >= 0, g >= 0 and p g = 0 in every cell."""
     peak = float(np.max(pressure))
-    shares = pressure / peak if peak > 0.0 else pressure  # a step may lift the indenter off for one iteration
+    # A step may lift the indenter off for one iteration.
+    shares = pressure / peak if peak > 0.0 else pressure
     return float(np.max(np.abs(np.minimum(shares, gap / depth))))
 
 

@@ -11,7 +11,8 @@ import numpy as np
 
 from bem.grid.calibrated_disc import FILL as DISC_FILL
 from bem.grid.conjugate_gradients import Equilibrium, solve_contact
-from bem.grid.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius, slope
+from bem.grid.contact_edge import STEP, area_radius, slope
+from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.grid.quadrant import Grid, first_radius, grid_sequence, prolonged, refuse_thin_layer
@@ -22,23 +23,36 @@ from contact.records.validation import FloatArray
 Boundary = Literal["free", "periodic"]
 Prescribed = Literal["radius", "depth", "force"]
 
+# Cells across the coarse grid of first guesses, and the tolerance of its complementarity problem.
 COARSE_CELLS: Final = 64
-FIRST_BOX: Final = (
-    1.0973  # over the radius where f equals the depth; no round number: no cell centre lies on that radius
-)
-FILL: Final = 0.88  # contact radius over half the box
-IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
-STIFFNESS_CELLS: Final = 256  # of the flat punch behind k_N: its own error is below 1e-5 for a < 5 h
-STIFFNESS_LAYER: Final = 2.0  # cells that the layer under that punch is thick, if the grid has as many
-LEAST_LAYER: Final = 1.0  # cells; layers thinner than one are all the same to a grid
-CLOSE: Final = 1e-3  # of ln(k_N): from here on one step of the secant is enough
-NEAR: Final = 3e-2  # of a first guess
-NOISE: Final = 5e-3  # of ln(k_N): smaller changes say nothing on the exponent
 COARSE_TOLERANCE: Final = 1e-5
-LARGEST_FILL: Final = 0.92  # contact radius over half a coarse box: room for a deeper contact
-LEAST_RADIUS: Final = 3.0  # cells
-RAGGED: Final = 2.0  # cells inside a circle's edge where every cell is pressed
-END_SHARE: Final = 0.02  # of the indenter's end: over which it is continued by its last slope
+# The first coarse box holds a contact of this times the radius where f equals the depth. Not round on purpose: a cell
+# centre exactly on that radius would let rounding decide whether it touches.
+FIRST_BOX: Final = 1.0973
+# Contact radius over half the box, and its largest value in a coarse box, which leaves room for a deeper contact.
+FILL: Final = 0.88
+LARGEST_FILL: Final = 0.92
+# Thicknesses between periodic images, which act on each other by exp(-0.739 * 16) = 7e-6.
+IMAGE_GAP: Final = 16.0
+# Least number of cells across the flat punch behind k_N: its own error is then below 1e-5 for a < 5 h.
+STIFFNESS_CELLS: Final = 256
+# Cells that the layer under that punch is thick, if the grid has as many.
+STIFFNESS_LAYER: Final = 2.0
+# A layer thinner than so many cells is refused: every wavenumber of the grid then sees the same limit of thin layers.
+LEAST_LAYER: Final = 1.0
+# Secant iterations take one last step when ln(k_N) is missed by less than this, since they converge faster than
+# linearly.
+CLOSE: Final = 1e-3
+# First guesses are good enough when the logarithm of stiffness or force is missed by less than this.
+NEAR: Final = 3e-2
+# Changes of that logarithm below this are the grid's noise and do not update the secant's exponent.
+NOISE: Final = 5e-3
+# A contact that spans fewer cells in its radius is refused.
+LEAST_RADIUS: Final = 3.0
+# From so many cells inside the edge on, every cell of one full circle is pressed.
+RAGGED: Final = 2.0
+# The indenter is continued beyond its end by its slope over this last part of its radius.
+END_SHARE: Final = 0.02
 
 
 @dataclass(frozen=True, eq=False)
@@ -226,7 +240,8 @@ class Press:
             bed = self._bed(radius, COARSE_CELLS, "periodic" if thin else "free", COARSE_TOLERANCE)
             try:
                 answer = bed.at_depth(depth, None)
-            except NotConvergedError:  # a box that is all contact may have no equilibrium (bonded, nu = 1/2)
+            except NotConvergedError:
+                # A box that is all contact may have no equilibrium (bonded, nu = 1/2).
                 radius *= 1.3
                 continue
             if area_radius(answer.pressure, bed.grid.cell_size) < LARGEST_FILL * bed.grid.cell_size * COARSE_CELLS / 2:
@@ -250,7 +265,8 @@ class Press:
             )
         punch_cell = self._punch_cell(bed.grid.cells, radius)
         scatter = (
-            SLOPE_SCATTER * bed.grid.cell_size + THIN_SCATTER * punch_cell * (punch_cell / self.layer.thickness) ** 2
+            DIRECT.slope_scatter * bed.grid.cell_size
+            + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.thickness) ** 2
         )
         exponent = stiffness_exponent(radius / self.layer.thickness)
         return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness, exponent)

@@ -16,7 +16,7 @@ from scipy.interpolate import PchipInterpolator
 
 from bem.grid.equilibrium import PressedState
 from bem.grid.influence import REACH, correction_function
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import EDGE_CELLS, Grid
 from bem.kernels.moduli import contact_modulus
 from contact import Layer, Profile, Scene
 from contact.records.validation import FloatArray
@@ -24,9 +24,8 @@ from contact.records.validation import FloatArray
 if TYPE_CHECKING:
     from bem.adhesion.disc import AdheringDisc
 
-EDGE_CELLS: Final = 2.5  # cells inside the edge that the grid does not resolve
-RINGS_PER_CELL: Final = 1.0
-CHUNK: Final = 64  # radii summed at a time beyond the box: bounds the memory
+# Radii summed at a time beyond the box, which bounds the memory.
+CHUNK: Final = 64
 
 
 class AxisymmetricFields(Protocol):
@@ -235,8 +234,8 @@ def _point_response(layer: Layer, distance: FloatArray) -> FloatArray:
 
 
 def _ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PchipInterpolator:
-    """Means over rings of cells, interpolated in r and continued as they end."""
-    ring = np.floor(RINGS_PER_CELL * radius / cell_size).astype(np.intp)
+    """Means over rings as wide as a cell, interpolated in r and continued as they end."""
+    ring = np.floor(radius / cell_size).astype(np.intp)
     count = np.bincount(ring)
     kept = count > 0
     mean_radius = np.bincount(ring, radius)[kept] / count[kept]

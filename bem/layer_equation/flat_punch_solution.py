@@ -8,7 +8,6 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.kernels.layer import Support
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
@@ -16,6 +15,7 @@ from bem.polynomials.equal_panels import EqualPanels
 from bem.polynomials.gauss_panels import gauss_nodes, partial_panel_interpolation
 from contact import InvalidInput
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 EPS = float(np.finfo(float).eps)
 # These multiply what the decay of coefficients lets expect of the orders left out. Over 5 layers, 20 pairs of nodes and

@@ -8,7 +8,6 @@ from typing import Annotated, Final, Self
 import numpy as np
 from pydantic import Field
 
-from bem.kernels.layer import Support
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
@@ -17,6 +16,7 @@ from contact import InvalidInput, Layer
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import positive
+from contact.scene.layer import Support
 
 LARGEST_FACTORISED_RATIO: Final = 160.0  # the dense factor for it takes 110 MB and two seconds
 RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)  # answers do not depend on history

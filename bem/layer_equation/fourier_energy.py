@@ -18,11 +18,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from bem.kernels.layer import Support, compliance_kernel
+from bem.kernels.layer import compliance_kernel
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from contact.records.validation import FloatArray
-
-ComplexArray = NDArray[np.complex128]
+from contact.scene.layer import Support
 
 LARGEST_WAVENUMBER = 40.0
 NODES = 28  # of a unit panel in t: cos(40 t) to 1e-13
@@ -76,13 +75,13 @@ def _transform(unit: FloatArray, offset: float, turns: int, size: int) -> FloatA
 
 
 @cache
-def _phases(size: int) -> ComplexArray:
+def _phases(size: int) -> NDArray[np.complex128]:
     """exp(ik node) over the first period of k, shape (NODES, size)."""
     return np.exp(2j * np.pi / size * np.multiply.outer(gauss_nodes(NODES)[0], np.arange(size)))
 
 
 @cache
-def _turns(turns: int) -> ComplexArray:
+def _turns(turns: int) -> NDArray[np.complex128]:
     """exp(2 pi i turn node), shape (turns, NODES)."""
     return np.exp(2j * np.pi * np.multiply.outer(np.arange(turns), gauss_nodes(NODES)[0]))
 

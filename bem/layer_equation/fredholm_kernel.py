@@ -18,17 +18,16 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from bem.kernels.layer import Support, one_minus_kernel
+from bem.kernels.layer import one_minus_kernel
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 RAY_ANGLE: Final = np.radians(25.0)
 FINEST_PANEL: Final = -13  # panels [2^j, 2^(j+1)] in t start here: resolves exp(-z s) up to the largest distance
 COARSEST_PANEL: Final = 4  # and end at t = 32, where 1 - chi has fallen to 1e-22
 PANEL_NODES: Final = 20
 LARGEST_DISTANCE: Final = 2.0**13
-
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -40,8 +39,8 @@ class FredholmKernel:
         weights: w_j, shape (terms,).
     """
 
-    rates: ComplexArray
-    weights: ComplexArray
+    rates: NDArray[np.complex128]
+    weights: NDArray[np.complex128]
 
     @classmethod
     def of_layer(cls, support: Support, poissons_ratio: float) -> FredholmKernel:

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 
-from bem.kernels.layer import Support
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fourier_energy import energy_matrix
 from bem.layer_equation.fredholm_kernel import FredholmKernel
@@ -26,6 +25,7 @@ from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import InvalidInput
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 LARGEST_RATIO = 1000.0
 ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above it

@@ -6,22 +6,22 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from bem.adhesion.branch import SCOUT_CELLS, AdhesiveBranch, long_enough
 from bem.adhesion.cell_by_cell.indenter import FOLD, LOST, AdheringIndenter, AdheringState, strength
 from bem.adhesion.withdrawal import Withdrawal
 from bem.grid.calibrated_disc import FILL, disc, measured_disc
-from bem.grid.contact_edge import AREA_SCATTER
+from bem.grid.error_model import CELLS
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import Grid
 from bem.kernels.moduli import contact_modulus
 from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, Scene, StageLog
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 
-AHEAD: Final = 1.2  # start radius over that of the least force; nearer, and the grid would resolve it better still
-LARGEST_EXPONENT: Final = 4.0  # of k_N over a, on a thin incompressible layer
-ROOM: Final = 1.05  # radius of the grid's disc over the largest contact
+# Radius at the start of a detachment over that of the least force. A smaller one would resolve that force better still.
+AHEAD: Final = 1.2
+# Radius of the grid's disc over that of the largest contact.
+ROOM: Final = 1.05
 PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "contact_radius": "pull_off_contact_radius"}
 
 
@@ -110,13 +110,13 @@ class CellHistory:
     def errors(self, coarse: CellHistory) -> dict[str, FloatArray]:
         """Differences of two grids and the cell by which the rim may lag, relative to the largest magnitudes."""
         radius, force = self.contact_radius, self.normal_force
-        lag = 2.0 * self.cell_size / np.maximum(np.max(radius), self.cell_size) * (radius > 0.0)
+        lag = CELLS.lag * self.cell_size / np.maximum(np.max(radius), self.cell_size) * (radius > 0.0)
         shrunk = np.abs(radius - coarse.contact_radius) / max(float(np.max(radius)), self.cell_size) + lag
         largest = float(np.max(np.abs(force))) or 1.0
         return {
             "indentation_depth": np.zeros(radius.size),
             "contact_radius": shrunk,
-            "contact_stiffness": LARGEST_EXPONENT * shrunk,
+            "contact_stiffness": CELLS.largest_exponent * shrunk,
             "normal_force": np.abs(force - coarse.normal_force) / largest + lag,
         }
 
@@ -167,9 +167,9 @@ def least_force(branch: AdhesiveBranch) -> float:
 
 def branch_errors(fine: Branch, coarse: Branch, control: str) -> dict[str, FloatArray | float]:
     """Differences of two grids at equal contact radii, relative to the largest magnitude on the path."""
-    cell = fine.cell_size / fine.contact_radius  # the rim lags by up to about a cell
+    cell = fine.cell_size / fine.contact_radius
     errors: dict[str, FloatArray | float] = {
-        "contact_radius": (AREA_SCATTER + 1.0)
+        "contact_radius": (CELLS.area_scatter + 1.0)
         * fine.cell_size
         / fine.contact_radius[0]
         * np.ones(len(fine.contact_radius))
@@ -178,15 +178,15 @@ def branch_errors(fine: Branch, coarse: Branch, control: str) -> dict[str, Float
     for name in ("indentation_depth", "normal_force"):
         values, other = getattr(fine, name), getattr(coarse, name)
         same_radius = np.interp(fine.contact_radius, coarse.contact_radius[order], other[order])
-        errors[name] = np.abs(same_radius - values) / np.max(np.abs(values)) + 2.0 * cell
+        errors[name] = np.abs(same_radius - values) / np.max(np.abs(values)) + CELLS.lag * cell
     i, j = fine.pull_off(control), coarse.pull_off(control)
     force, other_force = fine.normal_force[fine.least_force], coarse.normal_force[coarse.least_force]
-    force_error = float(abs(other_force / force - 1.0) + 2.0 * cell[fine.least_force])
+    force_error = float(abs(other_force / force - 1.0) + CELLS.lag * cell[fine.least_force])
     errors["pull_off_force"] = force_error
     for name in ("indentation_depth", "contact_radius"):
         values, reached = getattr(fine, name), getattr(coarse, name)[j]
         spread = _spread(values, fine.normal_force, force_error) if control == "force" else FOLD
-        errors[PULL_OFF[name]] = abs(reached / values[i] - 1.0) + 2.0 * cell[i] + spread
+        errors[PULL_OFF[name]] = abs(reached / values[i] - 1.0) + CELLS.lag * cell[i] + spread
     return errors
 
 
@@ -197,7 +197,7 @@ def _spread(values: FloatArray, force: FloatArray, force_error: float) -> float:
     return float(np.max(np.abs(near / values[least] - 1.0)))
 
 
-def stable_under_force(branch: Branch) -> npt.NDArray[np.bool_]:
+def stable_under_force(branch: Branch) -> BoolArray:
     """Under force control the branch is stable up to its least force."""
     return np.arange(len(branch.normal_force)) <= branch.least_force
 
@@ -206,7 +206,8 @@ def _on_grid(
     scene: Scene, radius: float, cells: int, threads: int, log: StageLog
 ) -> tuple[AdheringIndenter, AdheringState]:
     """The indenter on a grid that a disc of this radius fills, and that contact as it begins to let go."""
-    measured = measured_disc(cells, False).radius  # a disc of cells acts as a punch of this radius, in cell sizes
+    # A disc of cells acts as a punch of this radius, in cell sizes.
+    measured = measured_disc(cells, False).radius
     grid = Grid(cells, radius / measured)
     adhesion = scene.effect(Adhesion)
     work = adhesion.work_of_adhesion if adhesion is not None else 0.0
