@@ -10,10 +10,10 @@ from typing import ClassVar, Final, Literal, Self, overload
 import numpy as np
 from pydantic import Field
 
-from bem.grid.equilibrium import Boundary, Prescribed, Press, PressedState
+from bem.grid.equilibrium import Boundary, CircularContact, ContactSearch, Prescribed
 from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import grid_punch
-from bem.grid.quadrant import LEAST_CELLS, Grid, UnresolvedLayer
+from bem.grid.quadrant import LEAST_CELLS, QuadrantGrid, UnresolvedLayer
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from bem.kernels.moduli import contact_modulus
 from contact import (
@@ -62,14 +62,15 @@ class Bem(Record):
         tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
         threads: Threads of FFTW.
         adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, whose intensity the half-space
-            measures (`adhering_disc`), or single "cells" beyond a stress that depends on their size (`detachment`).
+            measures (`bem.adhesion.disc`), or single "cells" beyond a stress that depends on their size
+            (`bem.adhesion.cell_by_cell`).
 
     Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
     what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. Depth and force
     converge with second order in the cell size. A flat punch is a disc of cells measured by the half-space
-    (`pixel_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on discs
-    converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are followed
-    in their order, from out of contact (`adhesive_history`).
+    (`calibrated_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on
+    discs converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are
+    followed in their order, from out of contact (`bem.adhesion.sequence`).
 
     Raises:
         InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, the tolerance is not
@@ -202,8 +203,8 @@ class Bem(Record):
         )
         return refuse_touching_path(path)
 
-    def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
-        press = Press(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
+    def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
+        press = ContactSearch(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
         fine, coarse = press.reach(kind, value, self.points)
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
@@ -212,9 +213,9 @@ class Bem(Record):
         times = DIRECT.kink_difference if any(kink < reached for kink in scene.indenter.kinks) else 1.0
         errors["pressure"] = times * _pressure_difference(fields, other, fine)
         errors["pressure"] += DIRECT.pressure_exponent * fine.radius_scatter / fine.contact_radius
-        return Step({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
+        return PathStep({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
 
-    def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
+    def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
         """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""
         a = scene.indenter.max_radius
         with log.stage("contact"):
@@ -230,7 +231,7 @@ class Bem(Record):
             indentation_depth=depth,
             pressure_scale=scale,
             shape=punch.shape,
-            grid=Grid(2 * len(punch.pressure), cell_size),
+            grid=QuadrantGrid(2 * len(punch.pressure), cell_size),
             cell_pressure=punch.pressure * (contact_modulus(scene.layer) * depth / cell_size),
         )
         error = abs(coarse.stiffness / punch.stiffness - 1.0)
@@ -240,11 +241,11 @@ class Bem(Record):
         shorter = np.zeros(len(punch.shape))
         shorter[: len(coarse.shape)] = coarse.shape
         errors["pressure"] = float(np.sum(np.abs(punch.shape - shorter)) / np.max(np.abs(punch.shape)))
-        return Step(values | {"contact_stiffness": stiffness}, errors, fields)
+        return PathStep(values | {"contact_stiffness": stiffness}, errors, fields)
 
 
 @dataclass(frozen=True)
-class Step:
+class PathStep:
     """One equilibrium as a path keeps it."""
 
     values: dict[str, float]
@@ -260,14 +261,14 @@ def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
     return PRESCRIBED[type(loading)], loading.values
 
 
-def _unresolved(scene: Scene, state: PressedState) -> float:
+def _unresolved(scene: Scene, state: CircularContact) -> float:
     """Relative error by a kink of the profile that lies within a few cells of the edge."""
     cells = [(state.contact_radius - kink) / state.grid.cell_size for kink in scene.indenter.kinks]
     near = any(abs(distance) < DIRECT.kink_cells for distance in cells)
     return DIRECT.kink_error * state.grid.cell_size / state.contact_radius if near else 0.0
 
 
-def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: float) -> dict[str, float]:
+def _errors(kind: str, fine: CircularContact, coarse: CircularContact, unresolved: float) -> dict[str, float]:
     """Relative errors: the difference to the coarser grid, and what the slope that tells the radius may be off.
 
     Where the radius is prescribed, k_N is that of a flat punch, whose own two grids show all of its error.
@@ -288,7 +289,7 @@ def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: flo
     return errors | {prescribed: 0.0}
 
 
-def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: PressedState) -> float:
+def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: CircularContact) -> float:
     """2 pi r-weighted L2 norm of the difference of two grids' pressures, relative to that of the pressure."""
     r: FloatArray = state.contact_radius * (np.arange(200) + 0.5) / 200
     p, q = fine.pressure(r), coarse.pressure(r)

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhesion.disc import AdheringDisc
-from bem.grid.quadrant import first_radius
+from bem.grid.quadrant import COARSE_CELLS, first_radius
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Adhesion, FlatPunch, Profile, Scene
@@ -24,8 +24,6 @@ from contact.records.validation import FloatArray
 # derivatives. What these polynomials leave out is stated as an error.
 NODES: Final = 16
 BROKEN_NODES: Final = 32
-# Cells across the coarse grid on which the largest radius is looked for.
-SCOUT_CELLS: Final = 64
 # Knots of the spline through a measured profile's values on the half-space.
 KNOTS: Final = 2000
 # Radii of each piece between which turning points and crossings are looked for.
@@ -41,7 +39,7 @@ Quantity = Literal["indentation_depth", "normal_force"]
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class BranchPiece:
     """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
 
     In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
@@ -63,7 +61,9 @@ class Piece:
     scales: FloatArray
 
     @classmethod
-    def through(cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]) -> Piece:
+    def through(
+        cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]
+    ) -> BranchPiece:
         """Through solutions at Chebyshev points."""
         broken = any(inner < r < outer for r in indenter.breakpoints)
         half_space = half_space_values(indenter, outer) if broken else _zeros
@@ -104,7 +104,7 @@ def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray],
 
 
 @dataclass(frozen=True, eq=False)
-class AdhesiveBranch:
+class DiscBranch:
     """delta and F_N of the equilibria, Eq. (40), on 0 < a <= `largest_radius`.
 
     Attributes:
@@ -115,10 +115,10 @@ class AdhesiveBranch:
 
     scene: Scene
     cells: int
-    pieces: tuple[Piece, ...]
+    pieces: tuple[BranchPiece, ...]
 
     @classmethod
-    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> AdhesiveBranch:
+    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> DiscBranch:
         """The branch from the axis to a radius [m]."""
 
         def solve(a: float) -> AdheringDisc:
@@ -126,14 +126,16 @@ class AdhesiveBranch:
 
         flat = scene.indenter.flat_radius
         ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
-        return cls(scene, cells, tuple(Piece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)))
+        return cls(
+            scene, cells, tuple(BranchPiece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends))
+        )
 
     @property
     def largest_radius(self) -> float:
         """Where the branch ends [m]."""
         return self.pieces[-1].outer
 
-    def cut(self) -> AdhesiveBranch:
+    def cut(self) -> DiscBranch:
         """The branch without the last quarter of its orders: how far turning points move shows what is left out.
 
         Beside breakpoints the orders decay like a power, so that the last ones say less than the sum of those beyond.
@@ -225,7 +227,7 @@ def adhesive_length(scene: Scene) -> float:
     return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
 
 
-def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], bool]) -> float:
+def long_enough(scene: Scene, threads: int, enough: Callable[[DiscBranch], bool]) -> float:
     """A largest radius [m] with which a branch is long enough, or the indenter's end; looked for on a coarse grid.
 
     It grows from where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*), or from some
@@ -236,7 +238,7 @@ def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], b
         return indenter.radius
     radius = GROWTH * max(min(_balance_radius(scene), FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
     while radius < indenter.max_radius:
-        if enough(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads)):
+        if enough(DiscBranch.up_to(radius, scene, COARSE_CELLS, threads)):
             return radius
         radius *= GROWTH
     return indenter.max_radius

@@ -9,14 +9,15 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import AdhesiveBranch, Quantity, long_enough
+from bem.adhesion.branch import DiscBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
-from bem.adhesion.sequence import Held, at_radii, followed
+from bem.adhesion.fields import AdheringFields
+from bem.adhesion.sequence import FollowedState, at_radii, followed
 from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
 from bem.grid.error_model import DISCS
 from bem.grid.quadrant import refuse_thin_layer
-from bem.grid.surface_fields import AdheringFields, FieldSequence
+from bem.grid.surface_fields import FieldSequence
 from contact import (
     ContactPath,
     ContactRadii,
@@ -120,10 +121,10 @@ class AdheringDiscs:
         }
         errors["pull_off_contact_radius"] += DISCS.radius_floor
         truncated = DISCS.truncation * fine.truncation(radius)
-        hanging = np.abs(depth) + fine.elongation(radius)
+        displaced = np.abs(depth) + fine.elongation(radius)
         for name, values, others, terms in (
-            ("indentation_depth", depth, coarse.depth(radius), hanging),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * hanging),
+            ("indentation_depth", depth, coarse.depth(radius), displaced),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced),
         ):
             rounding = (DISCS.floor + self._by_ring(radius)) * terms / np.max(np.abs(values))
             nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
@@ -146,13 +147,13 @@ class AdheringDiscs:
             pull_off_contact_radius=pull_off["pull_off_contact_radius"],
         )
 
-    def _branches(self) -> tuple[AdhesiveBranch, AdhesiveBranch]:
+    def _branches(self) -> tuple[DiscBranch, DiscBranch]:
         """On the fine and on the coarse grid."""
         with self.log.stage("first_guess"):
             radius = self._largest_radius()
         with self.log.stage("adhesion"):
-            fine = AdhesiveBranch.up_to(radius, self.scene, self.points, self.threads)
-            coarse = AdhesiveBranch.up_to(radius, self.scene, self.points // 2, self.threads)
+            fine = DiscBranch.up_to(radius, self.scene, self.points, self.threads)
+            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads)
         return fine, coarse
 
     def _largest_radius(self) -> float:
@@ -163,7 +164,7 @@ class AdheringDiscs:
             return loading.initial_contact_radius
         return long_enough(self.scene, self.threads, self._reaches)
 
-    def _reaches(self, branch: AdhesiveBranch) -> bool:
+    def _reaches(self, branch: DiscBranch) -> bool:
         """Whether the branch holds all prescribed values, or all of a withdrawal."""
         loading, end = self.scene.loading, np.array([branch.largest_radius])
         if isinstance(loading, IndentationDepths | NormalForces):
@@ -171,7 +172,7 @@ class AdheringDiscs:
             return bool(branch.value(_quantity(loading), end)[0] > 1.1 * largest)
         return bool(branch.force(end)[0] > strength(branch))
 
-    def _start(self, branch: AdhesiveBranch) -> float:
+    def _start(self, branch: DiscBranch) -> float:
         """Where a withdrawal starts [m]: as given, at the punch's edge, or pressed as hard as the contact can pull."""
         end, loading = branch.largest_radius, self.scene.loading
         given = isinstance(loading, Detachment) and loading.initial_contact_radius is not None
@@ -179,7 +180,7 @@ class AdheringDiscs:
             return end
         return branch.crossing("normal_force", strength(branch), (0.0, end), inmost=False) or end
 
-    def _states(self, branch: AdhesiveBranch) -> list[Held]:
+    def _states(self, branch: DiscBranch) -> list[FollowedState]:
         loading = self.scene.loading
         with self.log.stage("history"):
             if isinstance(loading, ContactRadii):
@@ -197,7 +198,7 @@ class AdheringDiscs:
         width = FARTHEST * radius / measured_disc(self.points, False).radius
         return np.asarray(DISCS.ring * np.minimum(width / self.scene.layer.thickness, 1.0) ** 3)
 
-    def _fields(self, held: Held) -> AdheringFields:
+    def _fields(self, held: FollowedState) -> AdheringFields:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, self.points, self.threads)
 
 

@@ -24,7 +24,7 @@ from typing import Final, Self, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from bem.grid.conjugate_gradients import Equilibrium, solve_on_contact
+from bem.grid.conjugate_gradients import GridSolution, solve_on_contact
 from bem.grid.operators import BandLimitedHalfSpace, FreeSpaceOperator, PeriodicOperator
 from bem.grid.transforms import fast_period
 from contact import Layer
@@ -68,7 +68,7 @@ class PixelDisc:
 
     cells: int
     periodic: bool
-    half_space: Equilibrium
+    half_space: GridSolution
 
     @classmethod
     def measured(cls, cells: int, *, periodic: bool) -> Self:
@@ -148,7 +148,7 @@ def disc(cells: int, radius: float) -> BoolArray:
     return np.asarray(np.hypot(centre[:, None], centre) < radius)
 
 
-def _stiffness(answer: Equilibrium) -> float:
+def _stiffness(answer: GridSolution) -> float:
     """Force over depth for unit depth: `p (2 - K p)`, stationary at the solution; four quadrants."""
     return 4.0 * float(np.vdot(answer.pressure, 2.0 - answer.displacement))
 

@@ -28,7 +28,7 @@ from contact.records.validation import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class GridSolution:
     """A pressure with its evidence.
 
     Attributes:
@@ -54,7 +54,7 @@ def solve_on_contact(
     start: FloatArray | None = None,
     tolerance: float = 1e-8,
     max_iterations: int = 200,
-) -> Equilibrium:
+) -> GridSolution:
     """Linear problem of a known contact: K p = displacement on `contact`, p = 0 elsewhere; p may pull.
 
     Args:
@@ -79,7 +79,7 @@ def solve_on_contact(
     for iteration in range(max_iterations + 1):
         if (residual := float(np.max(np.abs(r))) / scale) <= tolerance:
             u = operator.displacement(p)
-            return Equilibrium(p, u, scale, iteration, residual)
+            return GridSolution(p, u, scale, iteration, residual)
         z = _restricted(operator.precondition(r), contact)
         rz_before, rz = rz, float(np.vdot(r, z))
         v = z + rz / rz_before * v
@@ -98,7 +98,7 @@ def solve_contact(
     start: FloatArray | None = None,
     tolerance: float = 1e-7,
     max_iterations: int = 200,
-) -> Equilibrium:
+) -> GridSolution:
     """The complementarity problem of a rigid indenter, either at a prescribed depth or under a prescribed load.
 
     Args:
@@ -126,7 +126,7 @@ def solve_contact(
         gap = u + height - delta
         residual = complementarity_residual(p, gap, delta)
         if residual <= tolerance:
-            return Equilibrium(p, u, delta, iteration, residual)
+            return GridSolution(p, u, delta, iteration, residual)
         contact = (p > 0.0) | (gap < 0.0)
         r = _restricted(-gap, contact)
         z = _restricted(operator.precondition(r), contact)

@@ -13,6 +13,8 @@ import numpy as np
 from contact import Layer, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
+# Cells across the coarse grids on which first guesses and largest radii are looked for.
+COARSE_CELLS: Final = 64
 # Cells inside a contact's edge that the grid does not resolve: from there inwards the quotient of two pressures is
 # regular again.
 EDGE_CELLS: Final = 2.5
@@ -21,7 +23,7 @@ LEAST_CELLS: Final = 48
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class QuadrantGrid:
     """The quadrant x, y > 0 of a square box.
 
     Attributes:

@@ -9,20 +9,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final, Protocol
+from typing import Final, Protocol
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from bem.grid.equilibrium import PressedState
+from bem.grid.equilibrium import CircularContact
 from bem.grid.influence import REACH, correction_function
-from bem.grid.quadrant import EDGE_CELLS, Grid
+from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
-from contact import Layer, Profile, Scene
+from contact import Layer, Profile
 from contact.records.validation import FloatArray
-
-if TYPE_CHECKING:
-    from bem.adhesion.disc import AdheringDisc
 
 # Radii summed at a time beyond the box, which bounds the memory.
 CHUNK: Final = 64
@@ -61,7 +58,7 @@ class SmoothIndenterFields:
 
     layer: Layer
     indenter: Profile
-    state: PressedState
+    state: CircularContact
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """p(r) [Pa], zero outside the contact."""
@@ -89,14 +86,14 @@ class SmoothIndenterFields:
         inside = state.grid.radius < max(a - EDGE_CELLS * s, 0.6 * a)
         r = state.grid.radius[inside]
         ratio = state.equilibrium.pressure[inside] / np.sqrt(a**2 - r**2)
-        return _ring_interpolator(r, ratio, s)
+        return ring_interpolator(r, ratio, s)
 
     @cached_property
     def _beside(self) -> PchipInterpolator:
         state = self.state
         a, s = state.contact_radius, state.grid.cell_size
         ring = (state.grid.radius > a + s) & (state.grid.radius < self._box + s)
-        mean = _ring_interpolator(state.grid.radius[ring], state.equilibrium.displacement[ring], s)
+        mean = ring_interpolator(state.grid.radius[ring], state.equilibrium.displacement[ring], s)
         edge = state.indentation_depth - float(self.indenter.height(np.array([a]))[0])
         return PchipInterpolator(np.concatenate([[a], mean.x]), np.concatenate([[edge], mean(mean.x)]))
 
@@ -110,7 +107,7 @@ class FlatPunchFields:
     indentation_depth: float
     pressure_scale: float
     shape: FloatArray
-    grid: Grid
+    grid: QuadrantGrid
     cell_pressure: FloatArray
 
     def pressure(self, radius: FloatArray) -> FloatArray:
@@ -130,62 +127,11 @@ class FlatPunchFields:
 
 
 @dataclass(frozen=True, eq=False)
-class AdheringFields:
-    """Fields of an adhering contact of radius a (zero: none) under a depth, solved when they are first asked for."""
-
-    scene: Scene
-    contact_radius: float
-    indentation_depth: float
-    cells: int
-    threads: int
-
-    def pressure(self, radius: FloatArray) -> FloatArray:
-        """p(r) [Pa]; at the edge itself, where it is infinite, the value half a cell inside stands."""
-        a = self.contact_radius
-        if a == 0.0:
-            return np.zeros(radius.shape)
-        last = a - 0.5 * self._disc.grid.cell_size
-        r = np.where(radius < a, radius, last)
-        density = contact_modulus(self.scene.layer) / np.pi * self._density(np.minimum(r, last))
-        return np.where(radius <= a, density / np.sqrt((a - r) * (a + r)), 0.0)
-
-    def surface_displacement(self, radius: FloatArray) -> FloatArray:
-        """w(r) [m]: delta - f under the indenter, direct summation outside; without contact none."""
-        if self.contact_radius == 0.0:
-            return np.zeros(radius.shape)
-        a, layer, outside = self.contact_radius, self.scene.layer, radius > self.contact_radius
-        w = np.asarray(self.indentation_depth - self.scene.indenter.height(np.minimum(radius, a)))
-        edge = self.indentation_depth - float(self.scene.indenter.height(a))
-        rim = Rim(layer, self._disc.grid, contact_modulus(layer) * self._pressure, a, edge)
-        w[outside] = rim.displacement_outside(radius[outside])
-        return w
-
-    @cached_property
-    def _disc(self) -> AdheringDisc:
-        from bem.adhesion.disc import AdheringDisc  # noqa: PLC0415 - adhering scenes alone load it
-
-        return AdheringDisc.solved(self.scene.layer, self.scene.indenter, self.contact_radius, self.cells, self.threads)
-
-    @property
-    def _pressure(self) -> FloatArray:
-        """p/E* on the quadrant."""
-        return np.asarray(self.indentation_depth * self._disc.flat - self._disc.risen)
-
-    @cached_property
-    def _density(self) -> PchipInterpolator:
-        """p over that of the half-space under a unit depth [m]: smooth up to the edge."""
-        disc = self._disc
-        r, quotient = disc.grid.radius[disc.disc.contact], disc.quotient(self._pressure)
-        inside = r < self.contact_radius - EDGE_CELLS * disc.grid.cell_size
-        return _ring_interpolator(r[inside], quotient[inside], disc.grid.cell_size)
-
-
-@dataclass(frozen=True, eq=False)
 class Rim:
     """The edge of a contact with a singular pressure, and what causes displacements beyond it."""
 
     layer: Layer
-    grid: Grid
+    grid: QuadrantGrid
     pressure: FloatArray
     radius: float
     displacement: float
@@ -200,7 +146,7 @@ class Rim:
         return w
 
 
-def summed_displacement(layer: Layer, grid: Grid, pressure: FloatArray, radius: FloatArray) -> FloatArray:
+def summed_displacement(layer: Layer, grid: QuadrantGrid, pressure: FloatArray, radius: FloatArray) -> FloatArray:
     """w(r) [m] outside the contact: each cell acts as a point force at its centre, mirrored into four quadrants.
 
     Args:
@@ -233,7 +179,7 @@ def _point_response(layer: Layer, distance: FloatArray) -> FloatArray:
     return np.where(rho < REACH, 1.0 / distance + smooth(np.minimum(rho, REACH)) / layer.thickness, 0.0)
 
 
-def _ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PchipInterpolator:
+def ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PchipInterpolator:
     """Means over rings as wide as a cell, interpolated in r and continued as they end."""
     ring = np.floor(radius / cell_size).astype(np.intp)
     count = np.bincount(ring)

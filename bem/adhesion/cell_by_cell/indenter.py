@@ -36,7 +36,7 @@ import numpy as np
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.contact_edge import AREA_SHIFT
 from bem.grid.operators import Operator
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import QuadrantGrid
 from contact import NotConvergedError, StageLog
 from contact.records.validation import BoolArray, FloatArray
 
@@ -85,7 +85,7 @@ class AdheringIndenter:
     """
 
     operator: Operator
-    grid: Grid
+    grid: QuadrantGrid
     height: FloatArray
     strength: float
     log: StageLog
