@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from bem.grid.surface_fields import AdheringFields
+from bem.adhesion.fields import AdheringFields
 from contact import Scene
 from contact.answer.one_circle import Circle, refuse_touching
 from contact.records.validation import FloatArray
