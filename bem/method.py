@@ -10,7 +10,7 @@ from typing import ClassVar, Final, Literal, Self, overload
 import numpy as np
 from pydantic import Field
 
-from bem.grid.equilibrium import Boundary, CircularContact, ContactSearch, Prescribed
+from bem.grid.equilibrium import Boundary, CircularContact, GridContactSearch, Prescribed
 from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import grid_punch
 from bem.grid.quadrant import LEAST_CELLS, QuadrantGrid, UnresolvedLayer
@@ -204,7 +204,7 @@ class Bem(Record):
         return refuse_touching_path(path)
 
     def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
-        press = ContactSearch(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
+        press = GridContactSearch(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
         fine, coarse = press.reach(kind, value, self.points)
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)

@@ -39,7 +39,7 @@ Quantity = Literal["indentation_depth", "normal_force"]
 
 
 @dataclass(frozen=True, eq=False)
-class BranchPiece:
+class DiscBranchPiece:
     """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
 
     In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
@@ -63,7 +63,7 @@ class BranchPiece:
     @classmethod
     def through(
         cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]
-    ) -> BranchPiece:
+    ) -> DiscBranchPiece:
         """Through solutions at Chebyshev points."""
         broken = any(inner < r < outer for r in indenter.breakpoints)
         half_space = half_space_values(indenter, outer) if broken else _zeros
@@ -115,7 +115,7 @@ class DiscBranch:
 
     scene: Scene
     cells: int
-    pieces: tuple[BranchPiece, ...]
+    pieces: tuple[DiscBranchPiece, ...]
 
     @classmethod
     def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> DiscBranch:
@@ -127,7 +127,9 @@ class DiscBranch:
         flat = scene.indenter.flat_radius
         ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
         return cls(
-            scene, cells, tuple(BranchPiece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends))
+            scene,
+            cells,
+            tuple(DiscBranchPiece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)),
         )
 
     @property

@@ -129,7 +129,7 @@ class CircularContact:
 
 
 @dataclass(frozen=True)
-class ContactSearch:
+class GridContactSearch:
     """What is pressed into what, how it is discretised, and the log of what was done.
 
     Attributes:

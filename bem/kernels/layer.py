@@ -40,7 +40,8 @@ def compliance_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> 
         chi in the shape of q: 0 at q = 0, tending to 1 for large q.
     """
     q = _floating(q)
-    return q * compliance_over_wavenumber(q, support, poissons_ratio)
+    chi: NDArray[Any] = q * compliance_over_wavenumber(q, support, poissons_ratio)
+    return chi
 
 
 def compliance_over_wavenumber(q: ArrayLike, support: Support, poissons_ratio: float) -> NDArray[Any]:
@@ -53,7 +54,8 @@ def compliance_over_wavenumber(q: ArrayLike, support: Support, poissons_ratio: f
         return chi_over_q
     # In 2 kappa sinh 2q - 4q = 2 (kappa - 1) sinh 2q + 2 (sinh 2q - 2q) both terms are positive.
     numerator: NDArray[Any] = 2 * (1 - 2 * _same_precision(poissons_ratio, q)) * S * (1 + D) + _shear_bracket_over_q(q)
-    return numerator / _bonded_denominator(q, poissons_ratio)
+    quotient: NDArray[Any] = numerator / _bonded_denominator(q, poissons_ratio)
+    return quotient
 
 
 def one_minus_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> NDArray[Any]:
@@ -67,7 +69,8 @@ def one_minus_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> N
     kappa = 3 - 4 * _same_precision(poissons_ratio, q)
     # The product D (1 + 2q)^2 is formed as one square, because q^2 alone could overflow.
     numerator: NDArray[Any] = D * kappa * (kappa + 2 * D) + ((1 + 2 * q) * np.exp(-q)) ** 2
-    return numerator / _bonded_denominator(q, poissons_ratio)
+    quotient: NDArray[Any] = numerator / _bonded_denominator(q, poissons_ratio)
+    return quotient
 
 
 def zero_mode(support: Support, poissons_ratio: float) -> float:
