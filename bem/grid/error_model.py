@@ -2,7 +2,7 @@
 
 Stated errors are differences of grids, multiplied by shares that the order of convergence explains, and floors for what
 two grids do not show. How well the results cover and how sharp they are is measured by ``contact-verify coverage`` and
-asserted in ``tests/verification/test_boundary_elements.py`` and ``tests/mdr/test_table_errors.py``.
+asserted in ``tests/verification/test_boundary_elements.py`` and ``tests/bem/test_flat_punch_table.py``.
 """
 
 from __future__ import annotations
