@@ -10,9 +10,10 @@ from typing import ClassVar, Final, Literal, Self, overload
 import numpy as np
 from pydantic import Field
 
-from bem.grid.equilibrium import Boundary, Prescribed, Press, PressedState
+from bem.grid.equilibrium import Boundary, CircularContact, GridContactSearch, Prescribed
+from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import cell_pressure, grid_punch, punch_stiffness
-from bem.grid.quadrant import LEAST_CELLS, Grid, UnresolvedLayer
+from bem.grid.quadrant import LEAST_CELLS, QuadrantGrid, UnresolvedLayer
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from contact import (
     Adhesion,
@@ -39,21 +40,13 @@ from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 
 PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
-# A kink of the profile nearer than so many cells to the edge, on either side of it, costs up to this part of a cell.
-KINK_CELLS: Final = 6.0
-KINK_ERROR: Final = 0.1
-# Times (s/a)^2, added to the difference of two grids, which may be small by chance: 0.01 was needed at most (200 steps
-# of smooth profiles on 128 cells, seeds 1 and 5, 2026-11-22).
-SECOND_ORDER: Final = 0.05
-# Times the difference of two grids' pressures where the profile has a kink under pressure: its logarithm, or the root
-# close to a flat end, is resolved with order one half, so that the error is 1/(sqrt(2) - 1) = 2.4 times the difference.
-KINK_DIFFERENCE: Final = 3.0
-# Largest growth of a contact's pressure with its radius: p of a thin incompressible layer goes with a^4, F with a^6.
-PRESSURE_EXPONENT: Final = 6.0
-
+# Numbers of points that are tried in turn for an accuracy.
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
+# The finest accuracy that may be asked for. On 2048 points `DIRECT.slope_scatter` alone makes 3e-6 of smooth contacts,
+# so that only flat punches may reach it.
 FINEST_ACCURACY: Final = 1e-6
-BEST_GAIN: Final = 4.0  # of twice as many points: second order
+# Twice as many points divide errors by four at best, since the method is of second order.
+BEST_GAIN: Final = 4.0
 
 
 @record
@@ -68,14 +61,15 @@ class Bem(Record):
         tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
         threads: Threads of FFTW.
         adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, whose intensity the half-space
-            measures (`adhering_disc`), or single "cells" beyond a stress that depends on their size (`detachment`).
+            measures (`bem.adhesion.disc`), or single "cells" beyond a stress that depends on their size
+            (`bem.adhesion.cell_by_cell`).
 
     Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
     what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. Depth and force
     converge with second order in the cell size. A flat punch is a disc of cells measured by the half-space
-    (`pixel_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on discs
-    converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are followed
-    in their order, from out of contact (`adhesive_history`).
+    (`calibrated_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on
+    discs converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are
+    followed in their order, from out of contact (`bem.adhesion.sequence`).
 
     Raises:
         InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, the tolerance is not
@@ -208,19 +202,19 @@ class Bem(Record):
         )
         return refuse_touching_path(path)
 
-    def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
-        press = Press(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
+    def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
+        press = GridContactSearch(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
         fine, coarse = press.reach(kind, value, self.points)
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
         errors = _errors(kind, fine, coarse, _unresolved(scene, fine))
-        reached = fine.contact_radius + KINK_CELLS * fine.grid.cell_size
-        times = KINK_DIFFERENCE if any(kink < reached for kink in scene.indenter.kinks) else 1.0
+        reached = fine.contact_radius + DIRECT.kink_cells * fine.grid.cell_size
+        times = DIRECT.kink_difference if any(kink < reached for kink in scene.indenter.kinks) else 1.0
         errors["pressure"] = times * _pressure_difference(fields, other, fine)
-        errors["pressure"] += PRESSURE_EXPONENT * fine.radius_scatter / fine.contact_radius
-        return Step({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
+        errors["pressure"] += DIRECT.pressure_exponent * fine.radius_scatter / fine.contact_radius
+        return PathStep({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
 
-    def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> Step:
+    def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
         """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""
         a = scene.indenter.max_radius
         with log.stage("contact"):
@@ -236,7 +230,7 @@ class Bem(Record):
             indentation_depth=depth,
             pressure_scale=scale,
             shape=punch.shape,
-            grid=Grid(2 * len(punch.pressure), cell_size),
+            grid=QuadrantGrid(2 * len(punch.pressure), cell_size),
             cell_pressure=cell_pressure(scene.layer, depth, cell_size, punch),
         )
         error = abs(coarse.stiffness / punch.stiffness - 1.0)
@@ -246,11 +240,11 @@ class Bem(Record):
         shorter = np.zeros(len(punch.shape))
         shorter[: len(coarse.shape)] = coarse.shape
         errors["pressure"] = float(np.sum(np.abs(punch.shape - shorter)) / np.max(np.abs(punch.shape)))
-        return Step(values | {"contact_stiffness": stiffness}, errors, fields)
+        return PathStep(values | {"contact_stiffness": stiffness}, errors, fields)
 
 
 @dataclass(frozen=True)
-class Step:
+class PathStep:
     """One equilibrium as a path keeps it."""
 
     values: dict[str, float]
@@ -266,14 +260,14 @@ def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:
     return PRESCRIBED[type(loading)], loading.values
 
 
-def _unresolved(scene: Scene, state: PressedState) -> float:
+def _unresolved(scene: Scene, state: CircularContact) -> float:
     """Relative error by a kink of the profile that lies within a few cells of the edge."""
     cells = [(state.contact_radius - kink) / state.grid.cell_size for kink in scene.indenter.kinks]
-    near = any(abs(distance) < KINK_CELLS for distance in cells)
-    return KINK_ERROR * state.grid.cell_size / state.contact_radius if near else 0.0
+    near = any(abs(distance) < DIRECT.kink_cells for distance in cells)
+    return DIRECT.kink_error * state.grid.cell_size / state.contact_radius if near else 0.0
 
 
-def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: float) -> dict[str, float]:
+def _errors(kind: str, fine: CircularContact, coarse: CircularContact, unresolved: float) -> dict[str, float]:
     """Relative errors: the difference to the coarser grid, and what the slope that tells the radius may be off.
 
     Where the radius is prescribed, k_N is that of a flat punch, whose own two grids show all of its error.
@@ -283,7 +277,7 @@ def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: flo
         by_slope = {"indentation_depth": fine.stiffness_exponent, "normal_force": fine.stiffness_exponent}
     else:
         by_slope = {"contact_radius": 1.0, "contact_stiffness": fine.stiffness_exponent}
-    own = SECOND_ORDER * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved
+    own = DIRECT.second_order * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved
     scatter = fine.radius_scatter / fine.contact_radius
     errors = {
         name: difference if kind == "radius" and name == "contact_stiffness" else difference + own
@@ -294,7 +288,7 @@ def _errors(kind: str, fine: PressedState, coarse: PressedState, unresolved: flo
     return errors | {prescribed: 0.0}
 
 
-def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: PressedState) -> float:
+def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: CircularContact) -> float:
     """2 pi r-weighted L2 norm of the difference of two grids' pressures, relative to that of the pressure."""
     r: FloatArray = state.contact_radius * (np.arange(200) + 0.5) / 200
     p, q = fine.pressure(r), coarse.pressure(r)

@@ -18,12 +18,13 @@ from bem.grid.calibrated_disc import PixelDisc, disc
 from bem.grid.conjugate_gradients import solve_contact, solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import prolonged
-from bem.kernels.layer import Support, compliance_kernel
+from bem.kernels.layer import compliance_kernel
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.method import Bem
 from bem.tables.from_grid import FftTable
 from contact import Adhesion, ContactRadii, Detachment, Layer, Paraboloid, Profile, Scene, TruncatedCone
 from contact.answer.stages import peak_memory_bytes
+from contact.scene.layer import Support
 from mdr import Mdr
 
 KERNELS: tuple[tuple[Support, float], ...] = (("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.3))

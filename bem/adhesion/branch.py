@@ -14,27 +14,32 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhesion.disc import AdheringDisc
-from bem.grid.quadrant import first_radius
+from bem.grid.quadrant import COARSE_CELLS, first_radius
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Adhesion, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
 
-NODES: Final = 16  # contact radii solved on each piece of the branch,
-BROKEN_NODES: Final = 32  # and on one with breakpoints, whose kinks a layer leaves in higher derivatives
-SCOUT_CELLS: Final = 64
-KNOTS: Final = 2000  # of a measured profile's values on the half-space
-SAMPLES: Final = 400  # of each piece, between which turning points and crossings are looked for
+# Contact radii solved on each piece of the branch, and on one with breakpoints, whose kinks a layer leaves in higher
+# derivatives. What these polynomials leave out is stated as an error.
+NODES: Final = 16
+BROKEN_NODES: Final = 32
+# Knots of the spline through a measured profile's values on the half-space.
+KNOTS: Final = 2000
+# Radii of each piece between which turning points and crossings are looked for.
+SAMPLES: Final = 400
 # Relative distance from the rim of a flat end, within which a state found by minimisation is one at the rim itself.
 RIM: Final = 1e-7
-GROWTH: Final = 1.6  # of the largest radius while the branch is too short
-FIRST_RATIO: Final = 4.0  # a/h beyond which the half-space says nothing about the radius on a layer
+# Factor by which the largest radius grows while the branch is too short.
+GROWTH: Final = 1.6
+# The first trial radius is the half-space's, but at most this times the thickness, where it is no guide any more.
+FIRST_RATIO: Final = 4.0
 
 Quantity = Literal["indentation_depth", "normal_force"]
 
 
 @dataclass(frozen=True, eq=False)
-class Piece:
+class DiscBranchPiece:
     """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
 
     In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
@@ -56,7 +61,9 @@ class Piece:
     scales: FloatArray
 
     @classmethod
-    def through(cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]) -> Piece:
+    def through(
+        cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]
+    ) -> DiscBranchPiece:
         """Through solutions at Chebyshev points."""
         broken = any(inner < r < outer for r in indenter.breakpoints)
         half_space = half_space_values(indenter, outer) if broken else _zeros
@@ -89,14 +96,15 @@ def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray],
 
     phi under a unit depth is 1, of the profile g_hs [m]; k_N/E* is 2 a [m], and the moment 2 int_0^a g_hs da [m^2].
     """
-    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4  # relative to themselves as dense at the axis
+    # The fourth power makes the knots dense at the axis, where g_hs is small.
+    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4
     g_hs = CubicSpline(knots, half_space_load(indenter, knots))
     moment = g_hs.antiderivative()
     return lambda a: np.array([np.ones_like(a), g_hs(a), 2.0 * a, 2.0 * moment(a)])
 
 
 @dataclass(frozen=True, eq=False)
-class AdhesiveBranch:
+class DiscBranch:
     """delta and F_N of the equilibria, Eq. (40), on 0 < a <= `largest_radius`.
 
     Attributes:
@@ -107,10 +115,10 @@ class AdhesiveBranch:
 
     scene: Scene
     cells: int
-    pieces: tuple[Piece, ...]
+    pieces: tuple[DiscBranchPiece, ...]
 
     @classmethod
-    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> AdhesiveBranch:
+    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> DiscBranch:
         """The branch from the axis to a radius [m]."""
 
         def solve(a: float) -> AdheringDisc:
@@ -118,14 +126,18 @@ class AdhesiveBranch:
 
         flat = scene.indenter.flat_radius
         ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
-        return cls(scene, cells, tuple(Piece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)))
+        return cls(
+            scene,
+            cells,
+            tuple(DiscBranchPiece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)),
+        )
 
     @property
     def largest_radius(self) -> float:
         """Where the branch ends [m]."""
         return self.pieces[-1].outer
 
-    def cut(self) -> AdhesiveBranch:
+    def cut(self) -> DiscBranch:
         """The branch without the last quarter of its orders: how far turning points move shows what is left out.
 
         Beside breakpoints the orders decay like a power, so that the last ones say less than the sum of those beyond.
@@ -217,7 +229,7 @@ def adhesive_length(scene: Scene) -> float:
     return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
 
 
-def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], bool]) -> float:
+def long_enough(scene: Scene, threads: int, enough: Callable[[DiscBranch], bool]) -> float:
     """A largest radius [m] with which a branch is long enough, or the indenter's end; looked for on a coarse grid.
 
     It grows from where f equals the critical elongation of the half-space, sqrt(2 pi dgamma a/E*), or from some
@@ -228,7 +240,7 @@ def long_enough(scene: Scene, threads: int, enough: Callable[[AdhesiveBranch], b
         return indenter.radius
     radius = GROWTH * max(min(_balance_radius(scene), FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
     while radius < indenter.max_radius:
-        if enough(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads)):
+        if enough(DiscBranch.up_to(radius, scene, COARSE_CELLS, threads)):
             return radius
         radius *= GROWTH
     return indenter.max_radius

@@ -3,7 +3,8 @@
 Near the edge of an adhering contact the pressure is singular, p = (E*/pi) phi / sqrt(a^2 - r^2), and the energy that a
 retreating edge sets free for each unit of area is G = E* phi^2 / (2 pi a). A grid resolves no singularity, but every
 layer has the same one: so the *same cells* are pressed flat into the half-space, where phi is the depth. The quotient
-of the two computed pressures is a smooth function of r^2, and its value at the edge is phi (compare `pixel_disc`).
+of the two computed pressures is a smooth function of r^2, and its value at the edge is phi (compare
+`bem.grid.calibrated_disc`).
 
 By Griffith the edge rests where G equals the work of adhesion: phi = -sqrt(2 pi dgamma a/E*). Kendall's flat punch on
 the half-space is the measure here and hence exact; other contacts are of about order 1.5 in the cell size.
@@ -25,17 +26,19 @@ import numpy as np
 from bem.grid.calibrated_disc import PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Layer, Profile
 from contact.records.validation import FloatArray
 
-NEAREST: Final = 2.5  # cells inside the edge from which the quotient is regular again
-FARTHEST: Final = 20.0  # cells inside the edge up to which it is fitted,
-LARGEST_SHARE: Final = 0.3  # but no more than this part of the radius
-CUBIC_FROM: Final = 16.0  # cells that carry a third degree
-TOLERANCE: Final = 1e-8  # of the displacement under the contact; an edge value is off by some ten times that
+# The quotient is fitted up to so many cells inside the edge, but no farther than this part of the radius.
+FARTHEST: Final = 20.0
+LARGEST_SHARE: Final = 0.3
+# Width of the ring, in cells, from which on the fitted polynomial has a third degree.
+CUBIC_FROM: Final = 16.0
+# Largest error of the displacement under the contact; an edge value is off by some ten times that.
+TOLERANCE: Final = 1e-8
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,7 +57,7 @@ class AdheringDisc:
 
     layer: Layer
     disc: PixelDisc
-    grid: Grid
+    grid: QuadrantGrid
     flat: FloatArray
     risen: FloatArray
     measured: FloatArray
@@ -64,7 +67,7 @@ class AdheringDisc:
     def solved(cls, layer: Layer, indenter: Profile, radius: float, cells: int, threads: int) -> AdheringDisc:
         """Solve both on the disc of this radius [m]."""
         disc = measured_disc(cells, False)
-        grid = Grid(cells, radius / disc.radius)
+        grid = QuadrantGrid(cells, radius / disc.radius)
         operator = FreeSpaceOperator(layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
         height = np.where(disc.contact, indenter.height(np.minimum(grid.radius, indenter.max_radius)), 0.0)
         flat, risen = (
@@ -115,8 +118,8 @@ class AdheringDisc:
         """The quotient as a polynomial of (a^2 - r^2)/a^2 near the edge, at the edge."""
         rho = self.grid.radius[self.disc.contact] / self.contact_radius
         inside = (1.0 - rho) * self.disc.radius
-        reach = min(FARTHEST, max(LARGEST_SHARE * self.disc.radius, 3.0 * NEAREST))
-        ring = (inside > NEAREST) & (inside < reach)
+        reach = min(FARTHEST, max(LARGEST_SHARE * self.disc.radius, 3.0 * EDGE_CELLS))
+        ring = (inside > EDGE_CELLS) & (inside < reach)
         degree = 3 if reach >= CUBIC_FROM else 2
         fit = np.polynomial.polynomial.polyfit(1.0 - rho[ring] ** 2, self.quotient(pressure)[ring], degree)
         return float(fit[0])

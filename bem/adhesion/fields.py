@@ -9,7 +9,8 @@ import numpy as np
 from scipy.interpolate import PchipInterpolator
 
 from bem.adhesion.disc import AdheringDisc
-from bem.grid.surface_fields import EDGE_CELLS, Rim, ring_interpolator
+from bem.grid.quadrant import EDGE_CELLS
+from bem.grid.surface_fields import Rim, ring_interpolator
 from bem.kernels.moduli import contact_modulus
 from contact import Scene
 from contact.records.validation import FloatArray

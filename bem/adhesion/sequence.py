@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bem.adhesion.branch import AdhesiveBranch, Quantity
+from bem.adhesion.branch import DiscBranch, Quantity
 from contact import FlatPunch, InvalidInput
 from contact.records.validation import FloatArray
 
 
 @dataclass(frozen=True)
-class Held:
+class FollowedState:
     """One state of the history; a radius of zero is out of contact.
 
     Attributes:
@@ -34,7 +34,7 @@ class Held:
     contact_stiffness: float
 
 
-def followed(branch: AdhesiveBranch, quantity: Quantity, values: FloatArray) -> list[Held]:
+def followed(branch: DiscBranch, quantity: Quantity, values: FloatArray) -> list[FollowedState]:
     """The states at the values, one after the other.
 
     Raises:
@@ -52,31 +52,33 @@ def followed(branch: AdhesiveBranch, quantity: Quantity, values: FloatArray) -> 
     return states
 
 
-def at_radii(branch: AdhesiveBranch, radii: FloatArray) -> list[Held]:
+def at_radii(branch: DiscBranch, radii: FloatArray) -> list[FollowedState]:
     """The equilibria with these contact radii [m], stable or not."""
     columns = (radii, branch.depth(radii), branch.force(radii), branch.stiffness(radii))
-    return [Held(*row) for row in np.column_stack(columns).tolist()]
+    return [FollowedState(*row) for row in np.column_stack(columns).tolist()]
 
 
-def state(branch: AdhesiveBranch, quantity: Quantity, value: float, radius: float) -> Held:
+def state(branch: DiscBranch, quantity: Quantity, value: float, radius: float) -> FollowedState:
     """The state with this radius under the prescribed value; a flat punch may be held below its critical tension."""
     if radius == 0.0:
-        return Held(0.0, value, 0.0, 0.0)
+        return FollowedState(0.0, value, 0.0, 0.0)
     a = np.array([radius])
     stiffness = float(branch.stiffness(a)[0])
     if quantity == "indentation_depth":
-        return Held(radius, value, float(branch.force(a, np.array([value]))[0]), stiffness)
-    unpressed = float(branch.force(a, np.zeros(1))[0])  # what holds the profile at no depth
-    return Held(radius, (value - unpressed) / stiffness, value, stiffness)
+        return FollowedState(radius, value, float(branch.force(a, np.array([value]))[0]), stiffness)
+    # The force that holds the profile at no depth.
+    unpressed = float(branch.force(a, np.zeros(1))[0])
+    return FollowedState(radius, (value - unpressed) / stiffness, value, stiffness)
 
 
-def _next_radius(branch: AdhesiveBranch, quantity: Quantity, value: float, radius: float) -> float:
+def _next_radius(branch: DiscBranch, quantity: Quantity, value: float, radius: float) -> float:
     """The edge's next place [m], from where it is."""
     indenter, end = branch.scene.indenter, branch.largest_radius
     if radius == 0.0:
         if value < 0.0:
             return 0.0
-        radius = indenter.flat_radius  # touches at once
+        # A flat end touches at once.
+        radius = indenter.flat_radius
     if radius > 0.0 and value < float(branch.value(quantity, np.array([radius]))[0]):
         return branch.crossing(quantity, value, (0.0, radius), inmost=False) or 0.0
     wider = branch.crossing(quantity, value, (radius, end), inmost=True)

@@ -9,12 +9,13 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import AdhesiveBranch, Quantity, long_enough
+from bem.adhesion.branch import DiscBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
 from bem.adhesion.fields import AdheringFields
-from bem.adhesion.sequence import Held, at_radii, followed
+from bem.adhesion.sequence import FollowedState, at_radii, followed
 from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
+from bem.grid.error_model import DISCS
 from bem.grid.quadrant import refuse_thin_layer
 from bem.grid.surface_fields import FieldSequence
 from contact import (
@@ -32,23 +33,10 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 
-LEAST_LAYER: Final = 12.0  # cells, so that the ring of the coarse grid begins within half the layer's thickness
-# Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error, and where depth or force cross over
-# from one order to another up to 2.2 was needed (30 detachments on 128 cells, a/h to 5, seed 1, 2026-11-22).
-DIFFERENCE: Final = 2.5
-# Times what the last two orders of the branch's polynomials contribute: those beyond, of profiles that begin with an
-# odd power, added up to three times as much (the same scenes).
-TRUNCATION: Final = 4.0
-# Relative error of depth and force by the linear solutions, which are solved to 1e-8,
-FLOOR: Final = 2e-8
-# and of a radius at which minimisation finds a function least: up to 2.3e-8 at rims (the same scenes).
-RADIUS_FLOOR: Final = 5e-8
-# Factor in the contact radius either way over which the largest difference counts along a branch.
-NEARBY: Final = 1.5
-STATES: Final = 100  # of a detachment
-# Times (w/h)^3: what a fit over a ring of cells of width w leaves of an edge value that changes over the thickness h,
-# where two grids agree by chance. A flat punch at a/h = 1 left 0.11 of it (2026-11-22).
-RING: Final = 0.12
+# Least thickness of the layer in cells: with it the ring of the coarse grid begins within half the layer's thickness.
+LEAST_LAYER: Final = 12.0
+# States along a detachment.
+STATES: Final = 100
 PRESCRIBED: Final = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
 
 
@@ -87,8 +75,10 @@ class AdheringDiscs:
         radius = values["contact_radius"]
         self._refuse_thin_layer(float(radius.max()))
         refuse_touching_beside(self.scene, radius, values["indentation_depth"], self.points, self.threads)
-        floor = FLOOR + TRUNCATION * fine.truncation(radius) + self._by_ring(radius)
-        errors = {name: DIFFERENCE * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS}
+        floor = DISCS.floor + DISCS.truncation * fine.truncation(radius) + self._by_ring(radius)
+        errors = {
+            name: DISCS.difference * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS
+        }
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -121,22 +111,24 @@ class AdheringDiscs:
         depth, force = fine.depth(radius), fine.force(radius)
         refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)
         lost_at = np.array(pull_off["pull_off_contact_radius"])
-        own = float(FLOOR + TRUNCATION * fine.truncation(lost_at) + self._by_ring(lost_at))
+        own = float(DISCS.floor + DISCS.truncation * fine.truncation(lost_at) + self._by_ring(lost_at))
         share = dict.fromkeys(pull_off, own) | {"pull_off_depth": own * _swing(depth, pull_off["pull_off_depth"])}
         errors = {
-            name: np.array([DIFFERENCE * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]])
+            name: np.array(
+                [DISCS.difference * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]]
+            )
             for name, value in pull_off.items()
         }
-        errors["pull_off_contact_radius"] += RADIUS_FLOOR
-        truncated = TRUNCATION * fine.truncation(radius)
-        hanging = np.abs(depth) + fine.elongation(radius)
+        errors["pull_off_contact_radius"] += DISCS.radius_floor
+        truncated = DISCS.truncation * fine.truncation(radius)
+        displaced = np.abs(depth) + fine.elongation(radius)
         for name, values, others, terms in (
-            ("indentation_depth", depth, coarse.depth(radius), hanging),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * hanging),
+            ("indentation_depth", depth, coarse.depth(radius), displaced),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced),
         ):
-            rounding = (FLOOR + self._by_ring(radius)) * terms / np.max(np.abs(values))
+            rounding = (DISCS.floor + self._by_ring(radius)) * terms / np.max(np.abs(values))
             nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
-            errors[name] = DIFFERENCE * nearby + truncated + rounding
+            errors[name] = DISCS.difference * nearby + truncated + rounding
         return DetachmentPath(
             scene=self.scene,
             method="bem",
@@ -155,13 +147,13 @@ class AdheringDiscs:
             pull_off_contact_radius=pull_off["pull_off_contact_radius"],
         )
 
-    def _branches(self) -> tuple[AdhesiveBranch, AdhesiveBranch]:
+    def _branches(self) -> tuple[DiscBranch, DiscBranch]:
         """On the fine and on the coarse grid."""
         with self.log.stage("first_guess"):
             radius = self._largest_radius()
         with self.log.stage("adhesion"):
-            fine = AdhesiveBranch.up_to(radius, self.scene, self.points, self.threads)
-            coarse = AdhesiveBranch.up_to(radius, self.scene, self.points // 2, self.threads)
+            fine = DiscBranch.up_to(radius, self.scene, self.points, self.threads)
+            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads)
         return fine, coarse
 
     def _largest_radius(self) -> float:
@@ -172,7 +164,7 @@ class AdheringDiscs:
             return loading.initial_contact_radius
         return long_enough(self.scene, self.threads, self._reaches)
 
-    def _reaches(self, branch: AdhesiveBranch) -> bool:
+    def _reaches(self, branch: DiscBranch) -> bool:
         """Whether the branch holds all prescribed values, or all of a withdrawal."""
         loading, end = self.scene.loading, np.array([branch.largest_radius])
         if isinstance(loading, IndentationDepths | NormalForces):
@@ -180,7 +172,7 @@ class AdheringDiscs:
             return bool(branch.value(_quantity(loading), end)[0] > 1.1 * largest)
         return bool(branch.force(end)[0] > strength(branch))
 
-    def _start(self, branch: AdhesiveBranch) -> float:
+    def _start(self, branch: DiscBranch) -> float:
         """Where a withdrawal starts [m]: as given, at the punch's edge, or pressed as hard as the contact can pull."""
         end, loading = branch.largest_radius, self.scene.loading
         given = isinstance(loading, Detachment) and loading.initial_contact_radius is not None
@@ -188,7 +180,7 @@ class AdheringDiscs:
             return end
         return branch.crossing("normal_force", strength(branch), (0.0, end), inmost=False) or end
 
-    def _states(self, branch: AdhesiveBranch) -> list[Held]:
+    def _states(self, branch: DiscBranch) -> list[FollowedState]:
         loading = self.scene.loading
         with self.log.stage("history"):
             if isinstance(loading, ContactRadii):
@@ -202,11 +194,11 @@ class AdheringDiscs:
         refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:
-        """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `RING`."""
+        """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""
         width = FARTHEST * radius / measured_disc(self.points, False).radius
-        return np.asarray(RING * np.minimum(width / self.scene.layer.thickness, 1.0) ** 3)
+        return np.asarray(DISCS.ring * np.minimum(width / self.scene.layer.thickness, 1.0) ** 3)
 
-    def _fields(self, held: Held) -> AdheringFields:
+    def _fields(self, held: FollowedState) -> AdheringFields:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, self.points, self.threads)
 
 
@@ -220,8 +212,8 @@ def _swing(depth: FloatArray, lost_at: float) -> float:
 
 
 def _largest_nearby(share: FloatArray, radius: FloatArray) -> FloatArray:
-    """The largest value within a factor of `NEARBY` of each radius, shape (n,): differences of grids cross zero."""
-    near = np.abs(np.log(radius[:, None] / radius)) <= log(NEARBY)
+    """The largest value within a factor of `DISCS.nearby` of each radius, shape (n,)."""
+    near = np.abs(np.log(radius[:, None] / radius)) <= log(DISCS.nearby)
     return np.asarray(np.max(np.where(near, share, 0.0), axis=1))
 
 

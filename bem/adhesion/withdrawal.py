@@ -6,15 +6,13 @@ from dataclasses import dataclass
 from typing import Final, Literal
 
 import numpy as np
-import numpy.typing as npt
 
-from bem.adhesion.branch import RIM, AdhesiveBranch, Quantity
+from bem.adhesion.branch import RIM, DiscBranch, Quantity
 from contact import CriticalPoint, FlatPunch
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 
 Control = Literal["displacement", "force"]
 QUANTITIES: Final[dict[Control, Quantity]] = {"displacement": "indentation_depth", "force": "normal_force"}
-STEP: Final = 1e-5  # of the radius: over which a slope's sign is read
 
 
 @dataclass(frozen=True)
@@ -26,7 +24,7 @@ class Withdrawal:
         start: Contact radius [m] to begin with.
     """
 
-    branch: AdhesiveBranch
+    branch: DiscBranch
     start: float
 
     def loss(self, control: Control) -> float:
@@ -51,7 +49,7 @@ class Withdrawal:
         """The scalars of a detachment path."""
         return _scalars(self.branch, self.loss(control), self.strongest(control))
 
-    def compared(self, other: AdhesiveBranch, control: Control) -> dict[str, float]:
+    def compared(self, other: DiscBranch, control: Control) -> dict[str, float]:
         """The same scalars of another grid's branch; lost at the rim of a flat end, where both are, at the same radii.
 
         Just beyond a rim a coarse grid may not see yet that the profile rises, and make up states of its own.
@@ -81,7 +79,7 @@ class Withdrawal:
         )
 
 
-def _scalars(branch: AdhesiveBranch, lost: float, strongest: float) -> dict[str, float]:
+def _scalars(branch: DiscBranch, lost: float, strongest: float) -> dict[str, float]:
     """Force at one radius [m], depth at another, and that."""
     return {
         "pull_off_force": float(branch.force(np.array([strongest]))[0]),
@@ -90,11 +88,11 @@ def _scalars(branch: AdhesiveBranch, lost: float, strongest: float) -> dict[str,
     }
 
 
-def stable(branch: AdhesiveBranch, quantity: Quantity, radius: FloatArray) -> npt.NDArray[np.bool_]:
-    """Whether the quantity grows with the radius."""
-    return np.asarray(branch.value(quantity, radius) > branch.value(quantity, radius * (1.0 - STEP)))
+def stable(branch: DiscBranch, quantity: Quantity, radius: FloatArray) -> BoolArray:
+    """Whether the quantity grows with the radius, over the last 1e-5 of it."""
+    return np.asarray(branch.value(quantity, radius) > branch.value(quantity, radius * (1.0 - 1e-5)))
 
 
-def strength(branch: AdhesiveBranch) -> float:
+def strength(branch: DiscBranch) -> float:
     """The largest tension of the branch [N]."""
     return -float(np.min(branch.force(branch.samples())))

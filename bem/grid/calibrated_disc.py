@@ -24,22 +24,25 @@ from typing import Final, Self, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from bem.grid.conjugate_gradients import Equilibrium, solve_on_contact
+from bem.grid.conjugate_gradients import GridSolution, solve_on_contact
 from bem.grid.operators import BandLimitedHalfSpace, FreeSpaceOperator, PeriodicOperator
 from bem.grid.transforms import fast_period
-from bem.kernels.layer import Support
 from contact import Layer
+from contact.records.validation import BoolArray, FloatArray
+from contact.scene.layer import Support
 
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
 Scalar = TypeVar("Scalar", bound=np.generic)
 
-THIN: Final = 8.0  # a/h above which images at a distance are cheaper than zero padding
-GAP: Final = 28.0  # h between images: exp(-0.739 GAP) = 1e-9, the slowest decay (bonded, nu = 1/2)
-FILL: Final = 0.97  # disc radius over half the grid
-TOLERANCE: Final = 1e-10  # of the displacement; q may be off by three times that, the stiffness by its square
-MODULUS: Final = 1.0  # E*
-LARGEST_DEGREE: Final = 20  # of q in 2 rho^2 - 1
+# Ratio a/h above which the periodic operator with a gap between images is cheaper than padding by zeros.
+THIN: Final = 8.0
+# Thicknesses between those images. The slowest decay, bonded with nu = 1/2, makes them count by exp(-0.739 GAP) = 1e-9.
+GAP: Final = 28.0
+# Radius of the disc over half the grid, so that its edge stays a few cells inside.
+FILL: Final = 0.97
+# Largest error of the displacement under the disc; q may be off by three times that, the stiffness by its square.
+TOLERANCE: Final = 1e-10
+# Largest degree of q in 2 rho^2 - 1 (`shape_degree`).
+LARGEST_DEGREE: Final = 20
 
 
 @dataclass(frozen=True)
@@ -65,13 +68,13 @@ class PixelDisc:
 
     cells: int
     periodic: bool
-    half_space: Equilibrium
+    half_space: GridSolution
 
     @classmethod
     def measured(cls, cells: int, *, periodic: bool) -> Self:
         """Press the disc of a grid of `cells` x `cells` into the half-space."""
         contact = disc(cells, FILL * cells / 2)
-        half_space = Layer.half_space(youngs_modulus=MODULUS, poissons_ratio=0.0)
+        half_space = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.0)
         kind = BandLimitedHalfSpace if periodic else FreeSpaceOperator
         operator = kind(half_space, cell_size=1.0, cells=cells, quarter=True)
         return cls(cells, periodic, solve_on_contact(operator, contact, 1.0, tolerance=TOLERANCE))
@@ -79,7 +82,7 @@ class PixelDisc:
     @cached_property
     def radius(self) -> float:
         """Effective radius a: the half-space's k = 2 E* a, Eq. (10) with k_bar = 1."""
-        return _stiffness(self.half_space) / (2.0 * MODULUS)
+        return _stiffness(self.half_space) / 2.0
 
     @cached_property
     def contact(self) -> BoolArray:
@@ -88,7 +91,7 @@ class PixelDisc:
 
     def solve(self, ratio: float, support: Support, poissons_ratio: float, start: FloatArray | None) -> PunchSolution:
         """Flat punch on a layer with a/h = `ratio`."""
-        youngs_modulus = MODULUS * (1.0 - poissons_ratio**2)
+        youngs_modulus = 1.0 - poissons_ratio**2
         thickness = self.radius / ratio
         layer = Layer(
             thickness=thickness, youngs_modulus=youngs_modulus, poissons_ratio=poissons_ratio, support=support
@@ -100,7 +103,7 @@ class PixelDisc:
         first = None if start is None else _resized(start, cells // 2)
         answer = solve_on_contact(operator, contact, 1.0, start=first, tolerance=TOLERANCE)
         return PunchSolution(
-            stiffness=_stiffness(answer) / (2.0 * MODULUS * self.radius),
+            stiffness=_stiffness(answer) / (2.0 * self.radius),
             shape=self._shape(answer.pressure[contact], ratio),
             pressure=answer.pressure,
             iterations=answer.iterations,
@@ -145,7 +148,7 @@ def disc(cells: int, radius: float) -> BoolArray:
     return np.asarray(np.hypot(centre[:, None], centre) < radius)
 
 
-def _stiffness(answer: Equilibrium) -> float:
+def _stiffness(answer: GridSolution) -> float:
     """Force over depth for unit depth: `p (2 - K p)`, stationary at the solution; four quadrants."""
     return 4.0 * float(np.vdot(answer.pressure, 2.0 - answer.displacement))
 

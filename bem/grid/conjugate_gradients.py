@@ -21,17 +21,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 
 from bem.grid.operators import Operator
 from contact import InvalidInput, NotConvergedError
-
-FloatArray = npt.NDArray[np.float64]
-BoolArray = npt.NDArray[np.bool_]
+from contact.records.validation import BoolArray, FloatArray
 
 
 @dataclass(frozen=True)
-class Equilibrium:
+class GridSolution:
     """A pressure with its evidence.
 
     Attributes:
@@ -57,7 +54,7 @@ def solve_on_contact(
     start: FloatArray | None = None,
     tolerance: float = 1e-8,
     max_iterations: int = 200,
-) -> Equilibrium:
+) -> GridSolution:
     """Linear problem of a known contact: K p = displacement on `contact`, p = 0 elsewhere; p may pull.
 
     Args:
@@ -82,7 +79,7 @@ def solve_on_contact(
     for iteration in range(max_iterations + 1):
         if (residual := float(np.max(np.abs(r))) / scale) <= tolerance:
             u = operator.displacement(p)
-            return Equilibrium(p, u, scale, iteration, residual)
+            return GridSolution(p, u, scale, iteration, residual)
         z = _restricted(operator.precondition(r), contact)
         rz_before, rz = rz, float(np.vdot(r, z))
         v = z + rz / rz_before * v
@@ -101,7 +98,7 @@ def solve_contact(
     start: FloatArray | None = None,
     tolerance: float = 1e-7,
     max_iterations: int = 200,
-) -> Equilibrium:
+) -> GridSolution:
     """The complementarity problem of a rigid indenter, either at a prescribed depth or under a prescribed load.
 
     Args:
@@ -129,7 +126,7 @@ def solve_contact(
         gap = u + height - delta
         residual = complementarity_residual(p, gap, delta)
         if residual <= tolerance:
-            return Equilibrium(p, u, delta, iteration, residual)
+            return GridSolution(p, u, delta, iteration, residual)
         contact = (p > 0.0) | (gap < 0.0)
         r = _restricted(-gap, contact)
         z = _restricted(operator.precondition(r), contact)
@@ -149,7 +146,8 @@ def solve_contact(
 def complementarity_residual(pressure: FloatArray, gap: FloatArray, depth: float) -> float:
     """max |min(p/p_max, g/delta)|: zero exactly where p >= 0, g >= 0 and p g = 0 in every cell."""
     peak = float(np.max(pressure))
-    shares = pressure / peak if peak > 0.0 else pressure  # a step may lift the indenter off for one iteration
+    # A step may lift the indenter off for one iteration.
+    shares = pressure / peak if peak > 0.0 else pressure
     return float(np.max(np.abs(np.minimum(shares, gap / depth))))
 
 

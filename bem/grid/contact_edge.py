@@ -19,17 +19,15 @@ import numpy as np
 
 from contact.records.validation import FloatArray
 
-AREA_SHIFT: Final = 0.11  # cells
-AREA_SCATTER: Final = 0.05  # cells, largest seen from 128 to 1024 cells
-STEP: Final = 0.03  # of ln(depth), either way
-# Times s/a, besides the difference of two grids: what the slope may be off although both agree. Depth, force and radius
-# of smooth profiles needed 0.0013 at most, k_N 0.0024 (250 steps on 128 cells, seeds 1 and 5, 2026-11-22).
-SLOPE_SCATTER: Final = 0.003
-THIN_SCATTER: Final = 0.05  # times (s/h)^2, likewise: measured 0.7 of it at h = s, nu = 1/2, and 0.4 for nu = 0.3
+# By so many cells the radius of the circle that has the area of the pressed cells is larger than the contact radius,
+# as measured from 128 to 1024 cells (see above).
+AREA_SHIFT: Final = 0.11
+# Change of ln(depth), either way, over which the slope of force over depth is taken (see above).
+STEP: Final = 0.03
 
 
 def area_radius(pressure: FloatArray, cell_size: float) -> float:
-    """a [m] from the area of the quadrant's cells under pressure; right within `AREA_SCATTER` cells."""
+    """a [m] from the area of the quadrant's cells under pressure; right within a twentieth of a cell."""
     return cell_size * (2.0 * sqrt(np.count_nonzero(pressure > 0.0) / pi) - AREA_SHIFT)
 
 

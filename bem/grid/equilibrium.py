@@ -10,11 +10,12 @@ from typing import Final, Literal
 import numpy as np
 
 from bem.grid.calibrated_disc import FILL as DISC_FILL
-from bem.grid.conjugate_gradients import Equilibrium, solve_contact
-from bem.grid.contact_edge import SLOPE_SCATTER, STEP, THIN_SCATTER, area_radius, slope
+from bem.grid.conjugate_gradients import GridSolution, solve_contact
+from bem.grid.contact_edge import STEP, area_radius, slope
+from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
-from bem.grid.quadrant import Grid, first_radius, grid_sequence, prolonged, refuse_thin_layer
+from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid, first_radius, grid_sequence, prolonged, refuse_thin_layer
 from bem.kernels.moduli import contact_modulus
 from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
 from contact.records.validation import FloatArray
@@ -22,27 +23,39 @@ from contact.records.validation import FloatArray
 Boundary = Literal["free", "periodic"]
 Prescribed = Literal["radius", "depth", "force"]
 
-COARSE_CELLS: Final = 64
-FIRST_BOX: Final = (
-    1.0973  # over the radius where f equals the depth; no round number: no cell centre lies on that radius
-)
-FILL: Final = 0.88  # contact radius over half the box
-IMAGE_GAP: Final = 16.0  # thicknesses between periodic images: exp(-0.739 * 16) = 7e-6
-STIFFNESS_CELLS: Final = 256  # of the flat punch behind k_N: its own error is below 1e-5 for a < 5 h
-STIFFNESS_LAYER: Final = 2.0  # cells that the layer under that punch is thick, if the grid has as many
-LEAST_LAYER: Final = 1.0  # cells; layers thinner than one are all the same to a grid
-CLOSE: Final = 1e-3  # of ln(k_N): from here on one step of the secant is enough
-NEAR: Final = 3e-2  # of a first guess
-NOISE: Final = 5e-3  # of ln(k_N): smaller changes say nothing on the exponent
+# Tolerance of the complementarity problem on the coarse grids of first guesses.
 COARSE_TOLERANCE: Final = 1e-5
-LARGEST_FILL: Final = 0.92  # contact radius over half a coarse box: room for a deeper contact
-LEAST_RADIUS: Final = 3.0  # cells
-RAGGED: Final = 2.0  # cells inside a circle's edge where every cell is pressed
-END_SHARE: Final = 0.02  # of the indenter's end: over which it is continued by its last slope
+# The first coarse box holds a contact of this times the radius where f equals the depth. Not round on purpose: a cell
+# centre exactly on that radius would let rounding decide whether it touches.
+FIRST_BOX: Final = 1.0973
+# Contact radius over half the box, and its largest value in a coarse box, which leaves room for a deeper contact.
+FILL: Final = 0.88
+LARGEST_FILL: Final = 0.92
+# Thicknesses between periodic images, which act on each other by exp(-0.739 * 16) = 7e-6.
+IMAGE_GAP: Final = 16.0
+# Least number of cells across the flat punch behind k_N: its own error is then below 1e-5 for a < 5 h.
+STIFFNESS_CELLS: Final = 256
+# Cells that the layer under that punch is thick, if the grid has as many.
+STIFFNESS_LAYER: Final = 2.0
+# A layer thinner than so many cells is refused: every wavenumber of the grid then sees the same limit of thin layers.
+LEAST_LAYER: Final = 1.0
+# Secant iterations take one last step when ln(k_N) is missed by less than this, since they converge faster than
+# linearly.
+CLOSE: Final = 1e-3
+# First guesses are good enough when the logarithm of stiffness or force is missed by less than this.
+NEAR: Final = 3e-2
+# Changes of that logarithm below this are the grid's noise and do not update the secant's exponent.
+NOISE: Final = 5e-3
+# A contact that spans fewer cells in its radius is refused.
+LEAST_RADIUS: Final = 3.0
+# From so many cells inside the edge on, every cell of one full circle is pressed.
+RAGGED: Final = 2.0
+# The indenter is continued beyond its end by its slope over this last part of its radius.
+END_SHARE: Final = 0.02
 
 
 @dataclass(frozen=True, eq=False)
-class Bed:
+class IndenterOnGrid:
     """An indenter above a layer on one grid.
 
     Attributes:
@@ -54,41 +67,41 @@ class Bed:
     """
 
     operator: Operator
-    grid: Grid
+    grid: QuadrantGrid
     height: FloatArray
     tolerance: float
     log: StageLog
 
-    def at_depth(self, depth: float, start: FloatArray | None) -> Equilibrium:
+    def at_depth(self, depth: float, start: FloatArray | None) -> GridSolution:
         """Under a depth [m]."""
         return self._counted(
             solve_contact(self.operator, self.height, depth=depth, start=start, tolerance=self.tolerance)
         )
 
-    def under_force(self, force: float, start: FloatArray | None) -> Equilibrium:
+    def under_force(self, force: float, start: FloatArray | None) -> GridSolution:
         """Under a force [N]."""
         load = force / (4.0 * self.grid.cell_size**2)
         return self._counted(
             solve_contact(self.operator, self.height, load=load, start=start, tolerance=self.tolerance)
         )
 
-    def force(self, state: Equilibrium) -> float:
+    def force(self, state: GridSolution) -> float:
         """F_N [N]; the quadrant stands for four."""
         return 4.0 * self.grid.cell_size**2 * float(state.pressure.sum())
 
-    def stiffness(self, state: Equilibrium) -> float:
+    def stiffness(self, state: GridSolution) -> float:
         """dF/d(delta) [N/m] about this state."""
         depth = state.indentation_depth
         less, more = (self.force(self.at_depth(depth * exp(step), state.pressure)) for step in (-STEP, STEP))
         return slope(depth, self.force(state), less, more)
 
-    def _counted(self, answer: Equilibrium) -> Equilibrium:
+    def _counted(self, answer: GridSolution) -> GridSolution:
         self.log.count("iterations", answer.iterations)
         return answer
 
 
 @dataclass(frozen=True, eq=False)
-class PressedState:
+class CircularContact:
     """One equilibrium on one grid.
 
     Attributes:
@@ -101,8 +114,8 @@ class PressedState:
         stiffness_exponent: Bound of d ln(k_N)/d ln(a).
     """
 
-    grid: Grid
-    equilibrium: Equilibrium
+    grid: QuadrantGrid
+    equilibrium: GridSolution
     contact_radius: float
     radius_scatter: float
     normal_force: float
@@ -116,7 +129,7 @@ class PressedState:
 
 
 @dataclass(frozen=True)
-class Press:
+class GridContactSearch:
     """What is pressed into what, how it is discretised, and the log of what was done.
 
     Attributes:
@@ -135,7 +148,7 @@ class Press:
     threads: int
     log: StageLog
 
-    def reach(self, prescribed: Prescribed, value: float, points: int) -> tuple[PressedState, PressedState]:
+    def reach(self, prescribed: Prescribed, value: float, points: int) -> tuple[CircularContact, CircularContact]:
         """The equilibria with the prescribed depth, force or radius on `points` cells and on half as many.
 
         Raises:
@@ -149,62 +162,66 @@ class Press:
 
     def _reach_depth_or_force(
         self, prescribed: Prescribed, value: float, points: int
-    ) -> tuple[PressedState, PressedState]:
+    ) -> tuple[CircularContact, CircularContact]:
         """Each grid starts from the answer of the one before; the first box is found on a coarse grid."""
         with self.log.stage("first_guess"):
             guess = self._near_force(value) if prescribed == "force" else self._coarse(value)
-        radius = area_radius(guess.answer.pressure, guess.bed.grid.cell_size)
+        radius = area_radius(guess.answer.pressure, guess.on_grid.grid.cell_size)
         start: FloatArray | None = None
-        states: list[PressedState] = []
+        states: list[CircularContact] = []
         box = radius
         for cells in grid_sequence(points):
-            bed = self._bed(box, cells)
+            on_grid = self._on_grid(box, cells)
             with self.log.stage("contact"):
-                solve = bed.at_depth if prescribed == "depth" else bed.under_force
+                solve = on_grid.at_depth if prescribed == "depth" else on_grid.under_force
                 answer = solve(value, start)
             start = prolonged(answer.pressure)
             if cells >= points // 2:
-                states.append(self._measured(bed, answer, radius))
+                states.append(self._measured(on_grid, answer, radius))
                 radius = states[-1].contact_radius
         return states[1], states[0]
 
-    def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[PressedState, PressedState]:
+    def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[CircularContact, CircularContact]:
         """The depth at which the contact is as stiff as the flat punch of this radius, Eq. (5)."""
         with self.log.stage("contact_stiffness"):
             stiffness = contact_stiffness(self.layer, radius, self._punch_cells(points, radius))
         with self.log.stage("first_guess"):
-            guess, exponent = self._coarse_root(Coarse.stiffness, stiffness, self._depth_scale(radius))
+            guess, exponent = self._coarse_root(FirstGuess.stiffness, stiffness, self._depth_scale(radius))
         depth, start = guess.answer.indentation_depth, None
-        states: list[PressedState] = []
+        states: list[CircularContact] = []
         for cells in grid_sequence(points):
-            bed = self._bed(radius, cells)
+            on_grid = self._on_grid(radius, cells)
             with self.log.stage("contact"):
-                answer, exponent = self._as_stiff(bed, stiffness, bed.at_depth(depth, start), exponent)
+                answer, exponent = self._as_stiff(on_grid, stiffness, on_grid.at_depth(depth, start), exponent)
             depth, start = answer.indentation_depth, prolonged(answer.pressure)
-            states.append(self._state(bed, answer, radius, stiffness))
+            states.append(self._state(on_grid, answer, radius, stiffness))
         with self.log.stage("contact_stiffness"):
             coarse = contact_stiffness(self.layer, radius, self._punch_cells(points, radius) // 2)
         return states[-1], replace(states[-2], contact_stiffness=coarse)
 
-    def _as_stiff(self, bed: Bed, stiffness: float, answer: Equilibrium, exponent: float) -> tuple[Equilibrium, float]:
+    def _as_stiff(
+        self, on_grid: IndenterOnGrid, stiffness: float, answer: GridSolution, exponent: float
+    ) -> tuple[GridSolution, float]:
         """Secant method in ln(depth) over ln(k_N), which grows like a power of the depth; and that power's inverse."""
-        miss = log(stiffness / bed.stiffness(answer))
+        miss = log(stiffness / on_grid.stiffness(answer))
         for _ in range(12):
             step = float(np.clip(exponent * miss, -0.5, 0.5))
-            answer = bed.at_depth(answer.indentation_depth * exp(step), answer.pressure)
+            answer = on_grid.at_depth(answer.indentation_depth * exp(step), answer.pressure)
             if abs(miss) < CLOSE:
                 return answer, exponent
-            before, miss = miss, log(stiffness / bed.stiffness(answer))
+            before, miss = miss, log(stiffness / on_grid.stiffness(answer))
             exponent = _updated(exponent, step, before - miss)
         raise NotConvergedError(
             "the prescribed contact radius was not met; use more points or prescribe depths", {"stiffness": abs(miss)}
         )
 
-    def _near_force(self, force: float) -> Coarse:
+    def _near_force(self, force: float) -> FirstGuess:
         """A coarse equilibrium near the force wanted."""
-        return self._coarse_root(Coarse.force, force, self._depth_of_force(force))[0]
+        return self._coarse_root(FirstGuess.force, force, self._depth_of_force(force))[0]
 
-    def _coarse_root(self, measure: Callable[[Coarse], float], value: float, depth: float) -> tuple[Coarse, float]:
+    def _coarse_root(
+        self, measure: Callable[[FirstGuess], float], value: float, depth: float
+    ) -> tuple[FirstGuess, float]:
         """Secant in logarithms on coarse grids, within 3 %; and the exponent of the depth over what is measured."""
         exponent, state = 1.0, self._coarse(depth)
         miss = log(value / measure(state))
@@ -218,42 +235,47 @@ class Press:
             exponent = _updated(exponent, step, before - miss)
         raise NotConvergedError("no first guess of the contact was found", {"miss": miss})
 
-    def _coarse(self, depth: float) -> Coarse:
+    def _coarse(self, depth: float) -> FirstGuess:
         """Equilibrium on a coarse grid whose box grows until the contact lies well inside."""
         radius = FIRST_BOX * self._geometric_radius(depth)
         for _ in range(40):
             thin = self.layer.thickness < 4.0 * radius / COARSE_CELLS
-            bed = self._bed(radius, COARSE_CELLS, "periodic" if thin else "free", COARSE_TOLERANCE)
+            on_grid = self._on_grid(radius, COARSE_CELLS, "periodic" if thin else "free", COARSE_TOLERANCE)
             try:
-                answer = bed.at_depth(depth, None)
-            except NotConvergedError:  # a box that is all contact may have no equilibrium (bonded, nu = 1/2)
+                answer = on_grid.at_depth(depth, None)
+            except NotConvergedError:
+                # A box that is all contact may have no equilibrium (bonded, nu = 1/2).
                 radius *= 1.3
                 continue
-            if area_radius(answer.pressure, bed.grid.cell_size) < LARGEST_FILL * bed.grid.cell_size * COARSE_CELLS / 2:
-                return Coarse(bed, answer)
+            if (
+                area_radius(answer.pressure, on_grid.grid.cell_size)
+                < LARGEST_FILL * on_grid.grid.cell_size * COARSE_CELLS / 2
+            ):
+                return FirstGuess(on_grid, answer)
             radius *= 1.3
         raise NotConvergedError(f"the contact at a depth of {depth:g} m outgrew every box")
 
-    def _measured(self, bed: Bed, answer: Equilibrium, near: float) -> PressedState:
+    def _measured(self, on_grid: IndenterOnGrid, answer: GridSolution, near: float) -> CircularContact:
         """With the radius of the flat punch that is as stiff."""
         with self.log.stage("contact_stiffness"):
-            stiffness = bed.stiffness(answer)
-            radius = radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(bed.grid.cells, near))
-        return self._state(bed, answer, radius, stiffness)
+            stiffness = on_grid.stiffness(answer)
+            radius = radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(on_grid.grid.cells, near))
+        return self._state(on_grid, answer, radius, stiffness)
 
-    def _state(self, bed: Bed, answer: Equilibrium, radius: float, stiffness: float) -> PressedState:
-        self._check_inside(answer, bed.grid, radius)
-        if radius < LEAST_RADIUS * bed.grid.cell_size:
+    def _state(self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float) -> CircularContact:
+        self._check_inside(answer, on_grid.grid, radius)
+        if radius < LEAST_RADIUS * on_grid.grid.cell_size:
             raise InvalidInput(
-                f"a contact of radius {radius:g} m spans too few of the {bed.grid.cells} cells of its box; "
+                f"a contact of radius {radius:g} m spans too few of the {on_grid.grid.cells} cells of its box; "
                 'take more points, or boundary="free"'
             )
-        punch_cell = self._punch_cell(bed.grid.cells, radius)
+        punch_cell = self._punch_cell(on_grid.grid.cells, radius)
         scatter = (
-            SLOPE_SCATTER * bed.grid.cell_size + THIN_SCATTER * punch_cell * (punch_cell / self.layer.thickness) ** 2
+            DIRECT.slope_scatter * on_grid.grid.cell_size
+            + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.thickness) ** 2
         )
         exponent = stiffness_exponent(radius / self.layer.thickness)
-        return PressedState(bed.grid, answer, radius, scatter, bed.force(answer), stiffness, exponent)
+        return CircularContact(on_grid.grid, answer, radius, scatter, on_grid.force(answer), stiffness, exponent)
 
     def _punch_cells(self, cells: int, radius: float) -> int:
         """Cells of the flat punch behind k_N."""
@@ -264,7 +286,7 @@ class Press:
         """Their size [m]."""
         return 2.0 * radius / (DISC_FILL * self._punch_cells(cells, radius))
 
-    def _check_inside(self, answer: Equilibrium, grid: Grid, radius: float) -> None:
+    def _check_inside(self, answer: GridSolution, grid: QuadrantGrid, radius: float) -> None:
         """The contact is one full circle that ends within the indenter and the box."""
         if radius > self.indenter.max_radius:
             raise InvalidInput(f"the contact reaches the end of the indenter at {self.indenter.max_radius:g} m")
@@ -282,17 +304,19 @@ class Press:
                 f"the contact is not one circle: cells to {outermost:g} m, area of a radius of {by_area:g} m"
             )
 
-    def _bed(self, radius: float, cells: int, boundary: Boundary | None = None, tolerance: float | None = None) -> Bed:
+    def _on_grid(
+        self, radius: float, cells: int, boundary: Boundary | None = None, tolerance: float | None = None
+    ) -> IndenterOnGrid:
         """A grid that a contact of this radius fills well."""
         kind = boundary or self.boundary
         gap = IMAGE_GAP * self.layer.thickness if kind == "periodic" else 0.0
-        grid = Grid(cells, max(2.0 * radius / FILL, 2.0 * radius + gap) / cells)
+        grid = QuadrantGrid(cells, max(2.0 * radius / FILL, 2.0 * radius + gap) / cells)
         make = PeriodicOperator if kind == "periodic" else FreeSpaceOperator
         with self.log.stage("operator"):
             operator = make(self.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=self.threads)
-        return Bed(operator, grid, self._height(grid), tolerance or self.tolerance, self.log)
+        return IndenterOnGrid(operator, grid, self._height(grid), tolerance or self.tolerance, self.log)
 
-    def _height(self, grid: Grid) -> FloatArray:
+    def _height(self, grid: QuadrantGrid) -> FloatArray:
         """f at the cell centres [m], continued beyond the indenter's end by its last slope.
 
         So the stiffness of a contact that ends within the indenter is not disturbed.
@@ -322,19 +346,19 @@ class Press:
 
 
 @dataclass(frozen=True)
-class Coarse:
+class FirstGuess:
     """A first guess."""
 
-    bed: Bed
-    answer: Equilibrium
+    on_grid: IndenterOnGrid
+    answer: GridSolution
 
     def force(self) -> float:
         """F_N [N]."""
-        return self.bed.force(self.answer)
+        return self.on_grid.force(self.answer)
 
     def stiffness(self) -> float:
         """dF/d(delta) [N/m]."""
-        return self.bed.stiffness(self.answer)
+        return self.on_grid.stiffness(self.answer)
 
 
 def _updated(exponent: float, step: float, moved: float) -> float:

@@ -23,14 +23,13 @@ from scipy.fft import dctn
 from scipy.interpolate import CubicSpline
 from scipy.special import itj0y0, j0
 
-from bem.kernels.layer import Support, one_minus_kernel
+from bem.kernels.layer import one_minus_kernel
 from bem.polynomials.gauss import legendre_rule
+from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
-FloatArray = npt.NDArray[np.float64]
-
-REACH: Final = 48.0  # r/h beyond which a layer does not answer
-LARGEST_Q: Final = 24.0  # 1 - chi(24) is about 1e-18
-KNOTS: Final = 1200  # of the spline on [0, REACH], dense near the axis: interpolation error below 1e-9
+# Distance r/h beyond which a layer does not answer: exp(-0.739 REACH) is 4e-16.
+REACH: Final = 48.0
 
 
 def rectangle_influence(offsets: int) -> FloatArray:
@@ -93,13 +92,18 @@ def _cell_average(
 
 @lru_cache(maxsize=32)
 def correction_function(support: Support, poissons_ratio: float) -> CubicSpline:
-    """V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq on [0, REACH], Gauss-Legendre with 8 nodes a period of J0."""
+    """V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq on [0, REACH], Gauss-Legendre with 8 nodes a period of J0.
+
+    The integral ends at q = 24, where 1 - chi is about 1e-18. The spline's 1200 knots are dense near the axis, which
+    makes its error less than 1e-9.
+    """
     points, weights = legendre_rule(32)
-    panels = ceil(LARGEST_Q * REACH / (8.0 * np.pi))
-    half = LARGEST_Q / (2 * panels)
+    largest_q, knots = 24.0, 1200
+    panels = ceil(largest_q * REACH / (8.0 * np.pi))
+    half = largest_q / (2 * panels)
     q = (half * (2.0 * np.arange(panels)[:, None] + 1.0 + points)).ravel()
     density = np.tile(half * weights, panels) * one_minus_kernel(q, support, poissons_ratio)
-    rho = REACH * np.sinh(4.0 * np.linspace(0.0, 1.0, KNOTS)) / np.sinh(4.0)
+    rho = REACH * np.sinh(4.0 * np.linspace(0.0, 1.0, knots)) / np.sinh(4.0)
     return CubicSpline(rho, -j0(rho[:, None] * q) @ density)
 
 
@@ -117,7 +121,8 @@ def band_limited_influence(offsets: int) -> FloatArray:
     Returns:
         Influence [cell sizes], shape (m + 1, m + 1).
     """
-    half = 2 * offsets  # of the period: no image of the cut-off kernel reaches back to sqrt(2) m
+    # Half of the period: with it no image of the cut-off kernel reaches back to sqrt(2) m.
+    half = 2 * offsets
     cut_off = 2.0 * offsets
     modes = np.arange(half + 1)
     k = np.pi / half * np.hypot(modes[:, None], modes)

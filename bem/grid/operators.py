@@ -11,7 +11,6 @@ from math import isinf, pi
 from typing import ClassVar, Final, Protocol
 
 import numpy as np
-import numpy.typing as npt
 
 from bem.grid.influence import band_limited_influence, layer_influence
 from bem.grid.transforms import (
@@ -25,10 +24,11 @@ from bem.grid.transforms import (
 from bem.kernels.layer import compliance_kernel, zero_mode
 from bem.kernels.moduli import contact_modulus
 from contact import InvalidInput, Layer
+from contact.records.validation import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
-
-LEAST_ANSWER: Final = 0.1  # of the mean mode over the next: below, conjugate gradients with its inverse stall
+# Least answer of the mean mode over that of the next mode. Below it conjugate gradients with the mean mode's inverse
+# stall.
+LEAST_ANSWER: Final = 0.1
 
 
 class Operator(Protocol):

@@ -13,12 +13,17 @@ import numpy as np
 from contact import Layer, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
-LEAST_CELLS: Final = 48  # of the coarsest grid of a sequence
-SHORTEST, LONGEST = 1e-12, 1e12  # m, between which a radius is looked for
+# Cells across the coarse grids on which first guesses and largest radii are looked for.
+COARSE_CELLS: Final = 64
+# Cells inside a contact's edge that the grid does not resolve: from there inwards the quotient of two pressures is
+# regular again.
+EDGE_CELLS: Final = 2.5
+# Least number of cells across the coarsest grid of a sequence, from whose answer the finer ones start.
+LEAST_CELLS: Final = 48
 
 
 @dataclass(frozen=True, eq=False)
-class Grid:
+class QuadrantGrid:
     """The quadrant x, y > 0 of a square box.
 
     Attributes:
@@ -68,11 +73,11 @@ def grid_sequence(points: int) -> list[int]:
 
 
 def first_radius(reached: Callable[[float], bool], largest: float) -> float:
-    """The smallest radius [m] where a condition holds that holds beyond it too; `largest` if it never does.
+    """The smallest radius in 1e-12 to 1e12 m from which on a condition holds; `largest` if it never does.
 
     Bisection in the logarithm, so that every unit system takes the same steps to within rounding.
     """
-    low, high = SHORTEST, min(largest, LONGEST)
+    low, high = 1e-12, min(largest, 1e12)
     for _ in range(200):
         middle = sqrt(low * high)
         low, high = (low, middle) if reached(middle) else (middle, high)

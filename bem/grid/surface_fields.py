@@ -14,16 +14,15 @@ from typing import Final, Protocol
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from bem.grid.equilibrium import PressedState
+from bem.grid.equilibrium import CircularContact
 from bem.grid.influence import REACH, correction_function
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
 from contact import Layer, Profile
 from contact.records.validation import FloatArray
 
-EDGE_CELLS: Final = 2.5  # cells inside the edge that the grid does not resolve
-RINGS_PER_CELL: Final = 1.0
-CHUNK: Final = 64  # radii summed at a time beyond the box: bounds the memory
+# Radii summed at a time beyond the box, which bounds the memory.
+CHUNK: Final = 64
 
 
 class AxisymmetricFields(Protocol):
@@ -59,7 +58,7 @@ class SmoothIndenterFields:
 
     layer: Layer
     indenter: Profile
-    state: PressedState
+    state: CircularContact
 
     def pressure(self, radius: FloatArray) -> FloatArray:
         """p(r) [Pa], zero outside the contact."""
@@ -108,7 +107,7 @@ class FlatPunchFields:
     indentation_depth: float
     pressure_scale: float
     shape: FloatArray
-    grid: Grid
+    grid: QuadrantGrid
     cell_pressure: FloatArray
 
     def pressure(self, radius: FloatArray) -> FloatArray:
@@ -132,7 +131,7 @@ class Rim:
     """The edge of a contact with a singular pressure, and what causes displacements beyond it."""
 
     layer: Layer
-    grid: Grid
+    grid: QuadrantGrid
     pressure: FloatArray
     radius: float
     displacement: float
@@ -147,7 +146,7 @@ class Rim:
         return w
 
 
-def summed_displacement(layer: Layer, grid: Grid, pressure: FloatArray, radius: FloatArray) -> FloatArray:
+def summed_displacement(layer: Layer, grid: QuadrantGrid, pressure: FloatArray, radius: FloatArray) -> FloatArray:
     """w(r) [m] outside the contact: each cell acts as a point force at its centre, mirrored into four quadrants.
 
     Args:
@@ -181,8 +180,8 @@ def _point_response(layer: Layer, distance: FloatArray) -> FloatArray:
 
 
 def ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PchipInterpolator:
-    """Means over rings of cells, interpolated in r and continued as they end."""
-    ring = np.floor(RINGS_PER_CELL * radius / cell_size).astype(np.intp)
+    """Means over rings as wide as a cell, interpolated in r and continued as they end."""
+    ring = np.floor(radius / cell_size).astype(np.intp)
     count = np.bincount(ring)
     kept = count > 0
     mean_radius = np.bincount(ring, radius)[kept] / count[kept]

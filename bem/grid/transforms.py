@@ -23,8 +23,8 @@ import pyfftw
 from scipy.fft import next_fast_len
 
 from contact import InvalidInput
+from contact.records.validation import FloatArray
 
-FloatArray = npt.NDArray[np.float64]
 Planning = Literal["FFTW_ESTIMATE", "FFTW_MEASURE"]
 
 

@@ -15,19 +15,20 @@ All functions take real q >= 0, or complex q with Re q >= 0, in any floating pre
 from __future__ import annotations
 
 from math import factorial
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Support = Literal["bonded", "unbonded"]
-Values = NDArray[Any]  # real or complex, in the precision of the argument
+from contact.scene.layer import Support
 
-SERIES_LIMIT: Final = 1.5  # |q| up to which sinh 2q - 2q is summed; beyond, 1 - D^2 - 4qD loses no digit
-SERIES_TERMS: Final = 17  # (2q)^(2k)/(2k+3)! falls below 1e-20 of the sum at the limit
+# Up to this |q| the difference sinh 2q - 2q is summed as a series; beyond it 1 - D^2 - 4qD loses no digit.
+SERIES_LIMIT: Final = 1.5
+# Terms of that series: at the limit the next one, (2q)^(2k)/(2k + 3)!, is below 1e-20 of the sum.
+SERIES_TERMS: Final = 17
 
 
-def compliance_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> Values:
+def compliance_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> NDArray[Any]:
     """Ratio chi of the layer's compliance to the half-space's, Eqs. (29) and (31).
 
     Args:
@@ -39,33 +40,37 @@ def compliance_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> 
         chi in the shape of q: 0 at q = 0, tending to 1 for large q.
     """
     q = _floating(q)
-    return q * compliance_over_wavenumber(q, support, poissons_ratio)
+    chi: NDArray[Any] = q * compliance_over_wavenumber(q, support, poissons_ratio)
+    return chi
 
 
-def compliance_over_wavenumber(q: ArrayLike, support: Support, poissons_ratio: float) -> Values:
+def compliance_over_wavenumber(q: ArrayLike, support: Support, poissons_ratio: float) -> NDArray[Any]:
     """chi(q)/q, finite at q = 0 (`zero_mode`). Arguments as in `compliance_kernel`."""
     q = _floating(q)
     D, S = np.exp(-2 * q), _decay_over_q(q)
     if support == "unbonded":
-        chi_over_q: Values = S / (4 * D / S + 1 + D)  # divided by S, whose square underflows for huge q
+        # Numerator and denominator are divided by S, because its square underflows for huge q.
+        chi_over_q: NDArray[Any] = S / (4 * D / S + 1 + D)
         return chi_over_q
-    # 2 kappa sinh 2q - 4q = 2 (kappa - 1) sinh 2q + 2 (sinh 2q - 2q): both terms are positive
-    numerator: Values = 2 * (1 - 2 * _same_precision(poissons_ratio, q)) * S * (1 + D) + _shear_bracket_over_q(q)
-    return numerator / _bonded_denominator(q, poissons_ratio)
+    # In 2 kappa sinh 2q - 4q = 2 (kappa - 1) sinh 2q + 2 (sinh 2q - 2q) both terms are positive.
+    numerator: NDArray[Any] = 2 * (1 - 2 * _same_precision(poissons_ratio, q)) * S * (1 + D) + _shear_bracket_over_q(q)
+    quotient: NDArray[Any] = numerator / _bonded_denominator(q, poissons_ratio)
+    return quotient
 
 
-def one_minus_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> Values:
+def one_minus_kernel(q: ArrayLike, support: Support, poissons_ratio: float) -> NDArray[Any]:
     """1 - chi, also where it is exponentially small. Arguments as in `compliance_kernel`."""
     q = _floating(q)
     D = np.exp(-2 * q)
     if support == "unbonded":
         S = _decay_over_q(q)
-        complement: Values = 2 * D * (2 + S) / (4 * D + S * (1 + D))
+        complement: NDArray[Any] = 2 * D * (2 + S) / (4 * D + S * (1 + D))
         return complement
     kappa = 3 - 4 * _same_precision(poissons_ratio, q)
-    # D (1 + 2q)^2 is squared as a whole: q^2 alone could overflow
-    numerator: Values = D * kappa * (kappa + 2 * D) + ((1 + 2 * q) * np.exp(-q)) ** 2
-    return numerator / _bonded_denominator(q, poissons_ratio)
+    # The product D (1 + 2q)^2 is formed as one square, because q^2 alone could overflow.
+    numerator: NDArray[Any] = D * kappa * (kappa + 2 * D) + ((1 + 2 * q) * np.exp(-q)) ** 2
+    quotient: NDArray[Any] = numerator / _bonded_denominator(q, poissons_ratio)
+    return quotient
 
 
 def zero_mode(support: Support, poissons_ratio: float) -> float:
@@ -75,30 +80,30 @@ def zero_mode(support: Support, poissons_ratio: float) -> float:
     return (1 - 2 * poissons_ratio) / (2 * (1 - poissons_ratio) ** 2)
 
 
-def _floating(q: ArrayLike) -> Values:
-    values: Values = np.asarray(q)
+def _floating(q: ArrayLike) -> NDArray[Any]:
+    values: NDArray[Any] = np.asarray(q)
     return values if values.dtype.kind in "fc" else values.astype(np.float64)
 
 
-def _same_precision(value: float, q: Values) -> Any:
+def _same_precision(value: float, q: NDArray[Any]) -> Any:
     return q.real.dtype.type(value)
 
 
-def _decay_over_q(q: Values) -> Values:
+def _decay_over_q(q: NDArray[Any]) -> NDArray[Any]:
     """(1 - exp(-2q))/q by expm1, 2 at q = 0."""
-    values: Values = np.divide(-np.expm1(-2 * q), q, out=np.full_like(q, 2), where=q != 0)
+    values: NDArray[Any] = np.divide(-np.expm1(-2 * q), q, out=np.full_like(q, 2), where=q != 0)
     return values
 
 
-def _bonded_denominator(q: Values, poissons_ratio: float) -> Values:
+def _bonded_denominator(q: NDArray[Any], poissons_ratio: float) -> NDArray[Any]:
     """D (1 + 4q^2 + kappa^2 + 2 kappa cosh 2q) with D = exp(-2q), term by term positive."""
     kappa = 3 - 4 * _same_precision(poissons_ratio, q)
     D = np.exp(-2 * q)
-    denominator: Values = kappa * (1 + D**2) + (1 + kappa**2) * D + (2 * q * np.exp(-q)) ** 2
+    denominator: NDArray[Any] = kappa * (1 + D**2) + (1 + kappa**2) * D + (2 * q * np.exp(-q)) ** 2
     return denominator
 
 
-def _shear_bracket_over_q(q: Values) -> Values:
+def _shear_bracket_over_q(q: NDArray[Any]) -> NDArray[Any]:
     """2 D (sinh 2q - 2q)/q with D = exp(-2q): series where the difference cancels, direct elsewhere."""
     small = np.abs(q) < SERIES_LIMIT
     D = np.exp(-2 * q)
@@ -107,5 +112,5 @@ def _shear_bracket_over_q(q: Values) -> Values:
     for k in reversed(range(SERIES_TERMS)):
         series = series * t2 + 1 / q.real.dtype.type(factorial(2 * k + 3))
     direct = (1 - D**2 - 4 * q * D) / np.where(small, 1, q)
-    bracket: Values = np.where(small, 4 * t2 * D * series, direct)
+    bracket: NDArray[Any] = np.where(small, 4 * t2 * D * series, direct)
     return bracket

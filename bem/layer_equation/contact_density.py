@@ -63,7 +63,8 @@ class ContactDensity:
     @property
     def edge_value(self) -> float:
         """psi(a)."""
-        return float(self._coefficients[-1].sum())  # every Chebyshev polynomial is 1 at the right end
+        # Every Chebyshev polynomial is 1 at the right end.
+        return float(self._coefficients[-1].sum())
 
     def slope(self, t: FloatArray) -> FloatArray:
         """psi'(t) at points of [0, a]."""

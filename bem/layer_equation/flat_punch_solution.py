@@ -8,8 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.kernels.layer import Support
 from bem.layer_equation.contact_density import ContactDensity
+from bem.layer_equation.error_model import FACTOR
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
@@ -19,22 +19,9 @@ from bem.polynomials.gauss_panels import gauss_nodes, partial_panel_interpolatio
 from bem.polynomials.mapped import MappedFunction
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 EPS = float(np.finfo(float).eps)
-# These multiply what the decay of coefficients lets expect of the orders left out. Over 5 layers, 20 pairs of nodes and
-# panel width and 3 001 radii the products are below the true errors at one radius in a hundred, and 4 to 10 times them
-# in the median (measured 2026-11-22 against 32 nodes on half the panels).
-STIFFNESS_SAFETY, SPRING_SAFETY, PROFILE_SAFETY = 1.0, 2.5, 1.5
-# Share of a panel over which an error of c_bar adds up in its integral: it changes sign as P_m does.
-OWN_PANEL = 0.25
-# Roundings of values that are of order one: of nodes, sums of exponentials and polynomials.
-ROUNDED = 8.0
-# Rounding of the factor moves k_bar by <phi, dA phi>/<1, phi> of itself, |dA| about one rounding, and
-# |phi|^2/<1, phi> is 1 to 1.5 k_bar for the densities of discs, beds and films. The standard deviation over five
-# discretisations is 0.18 k_bar roundings, of c_bar 0.3, on five layers from a/h = 5 to 80 (measured 2026-11-22);
-# against extended precision k_bar is within 0.6 of them up to a/h = 100.
-STIFFNESS_GROWTH = 0.8
-SPRING_GROWTH = 1.0
 
 
 @dataclass(frozen=True)
@@ -107,17 +94,17 @@ class IntegralEquationSolution(FlatPunchSolution):
         """
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
-        share = np.minimum(1.0, OWN_PANEL * self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny))
+        share = np.minimum(1.0, FACTOR.own_panel * self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny))
         truncated = self._contact_stiffness.truncation(ratio) / k + share * self._spring_truncation(ratio)
-        return STIFFNESS_SAFETY * truncated + EPS * (ROUNDED + STIFFNESS_GROWTH * k)
+        return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Error of c_bar, relative, made likewise."""
-        return self._edge_error(self._covered(ratio), SPRING_SAFETY)
+        return self._edge_error(self._covered(ratio), FACTOR.spring_safety)
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """In g = yg/y1 each edge value has half the relative error of c_bar = y1^2, mostly of the same sign."""
-        return self._edge_error(self._covered(ratio), PROFILE_SAFETY)
+        return self._edge_error(self._covered(ratio), FACTOR.profile_safety)
 
     @property
     def nodes(self) -> int:
@@ -171,7 +158,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         return float(self.spring_error(ratios).max())
 
     def _edge_error(self, ratio: FloatArray, safety: float) -> FloatArray:
-        rounded = 2 * ROUNDED + SPRING_GROWTH * self.normalized_contact_stiffness(ratio)
+        rounded = 2 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
         return safety * self._spring_truncation(ratio) + EPS * rounded
 
     def _spring_truncation(self, ratio: FloatArray) -> FloatArray:

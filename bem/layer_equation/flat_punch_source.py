@@ -1,4 +1,4 @@
-"""Flat punch on a layer by its Fredholm equation: one factorisation for all radii (`volterra_factor`)."""
+"""Flat punch on a layer by its Fredholm equation: one factorisation for all radii (`one_factorisation`)."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from typing import Annotated, Final, Self
 import numpy as np
 from pydantic import Field
 
-from bem.kernels.layer import Support
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
@@ -17,9 +16,12 @@ from contact import InvalidInput, Layer
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import positive
+from contact.scene.layer import Support
 
-LARGEST_FACTORISED_RATIO: Final = 160.0  # the dense factor for it takes 110 MB and two seconds
-RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)  # answers do not depend on history
+# Largest a/h on narrow panels: the dense factor for it takes 110 MB and two seconds.
+LARGEST_FACTORISED_RATIO: Final = 160.0
+# Ratios are rounded up to these, so that a larger cached factor never changes an answer's last digits.
+RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)
 
 
 @record
@@ -38,7 +40,7 @@ class IntegralEquation(Record):
     def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution | LargeRatioSolution:
         """The flat punch on this layer up to at least a/h = max_ratio, cached.
 
-        Beyond a/h = 160 answers come from `large_ratio`.
+        Beyond a/h = 160 answers come from `thin_layers`.
 
         Raises:
             InvalidInput: If the ratio is beyond `LARGEST_RATIO`.
@@ -47,7 +49,8 @@ class IntegralEquation(Record):
         if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
             raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
         rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
-        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0  # no influence on the unbonded layer
+        # Poisson's ratio has no influence on the unbonded layer.
+        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
         if rung is None:
             return _large_solution(self, layer.support, nu)
         return _solution(self, layer.support, nu, rung)
@@ -65,6 +68,7 @@ def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: fl
     return IntegralEquationSolution(support, nu, kernel, factor)
 
 
-@lru_cache(maxsize=2)  # the factors of each take 280 MB
+# The factors of each take 280 MB.
+@lru_cache(maxsize=2)
 def _large_solution(settings: IntegralEquation, support: Support, nu: float) -> LargeRatioSolution:
     return LargeRatioSolution(support, nu, lambda: _solution(settings, support, nu, RUNGS[-1]))

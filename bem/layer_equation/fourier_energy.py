@@ -18,15 +18,17 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from bem.kernels.layer import Support, compliance_kernel
+from bem.kernels.layer import compliance_kernel
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
-ComplexArray = NDArray[np.complex128]
-
+# Wavenumber times thickness beyond which chi counts as 1.
 LARGEST_WAVENUMBER = 40.0
-NODES = 28  # of a unit panel in t: cos(40 t) to 1e-13
-WAVENUMBERS = 16  # of a panel in k, over which the square of a density's transform turns twice at most
+# Gauss nodes of a unit panel in t: they integrate cos(40 t) to 1e-13.
+NODES = 28
+# Gauss nodes of a panel in k, over which the square of a density's transform turns twice at most.
+WAVENUMBERS = 16
 
 
 def energy_matrix(densities: FloatArray, width: float, support: Support, poissons_ratio: float) -> FloatArray:
@@ -69,20 +71,21 @@ def _transform(unit: FloatArray, offset: float, turns: int, size: int) -> FloatA
     """
     nodes, weights = gauss_nodes(NODES)
     turned = np.exp(1j * offset * np.arange(unit.shape[1])) * unit.swapaxes(1, 2)
-    sums = size * np.fft.ifft(turned, size)  # shape (densities, NODES, size)
+    # Shape (densities, NODES, size).
+    sums = size * np.fft.ifft(turned, size)
     sums *= (weights * np.exp(1j * offset * nodes))[:, None] * _phases(size)
     transform: FloatArray = (_turns(turns) @ sums).real
     return transform.reshape(len(unit), -1)
 
 
 @cache
-def _phases(size: int) -> ComplexArray:
+def _phases(size: int) -> NDArray[np.complex128]:
     """exp(ik node) over the first period of k, shape (NODES, size)."""
     return np.exp(2j * np.pi / size * np.multiply.outer(gauss_nodes(NODES)[0], np.arange(size)))
 
 
 @cache
-def _turns(turns: int) -> ComplexArray:
+def _turns(turns: int) -> NDArray[np.complex128]:
     """exp(2 pi i turn node), shape (turns, NODES)."""
     return np.exp(2j * np.pi * np.multiply.outer(np.arange(turns), gauss_nodes(NODES)[0]))
 
@@ -95,7 +98,7 @@ def _tail(densities: FloatArray, width: float, k: float) -> FloatArray:
     """
     a = width * densities.shape[1]
     coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
-    # every Chebyshev polynomial is 1 at the edge
+    # Every Chebyshev polynomial is 1 at the edge.
     p0, p1, p2, p3, p4 = ((2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(5))
     steady = _pair(p0, p0) / k + (_pair(p1, p1) - 2 * _pair(p0, p2)) / (3 * k**3)
     steady += (_pair(p2, p2) + 2 * _pair(p0, p4) - 2 * _pair(p1, p3)) / (5 * k**5)

@@ -6,7 +6,7 @@ is crossed as long as theta stays below 53.9 degrees (k = 1.80936 + 2.48689 i, b
 
     N(s) = Re sum_j w_j exp(-z_j s),     z_j = -i t_j exp(i theta)
 
-with one set of Gauss nodes t_j, graded towards zero, is good for all s up to `LARGEST_DISTANCE`.
+with one set of Gauss nodes t_j, graded towards zero, is good for all s up to 2^13.
 """
 
 from __future__ import annotations
@@ -18,17 +18,19 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from bem.kernels.layer import Support, one_minus_kernel
+from bem.kernels.layer import one_minus_kernel
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
+# theta, about half of the largest angle allowed: exp(-z s) decays with t sin(theta), and 1 - chi with 2 t cos(theta).
 RAY_ANGLE: Final = np.radians(25.0)
-FINEST_PANEL: Final = -13  # panels [2^j, 2^(j+1)] in t start here: resolves exp(-z s) up to the largest distance
-COARSEST_PANEL: Final = 4  # and end at t = 32, where 1 - chi has fallen to 1e-22
+# Panels [2^j, 2^(j+1)] in t begin with this j, which resolves exp(-z s) up to s = 2^13, and end with the other one at
+# t = 32, where 1 - chi has fallen to 1e-22.
+FINEST_PANEL: Final = -13
+COARSEST_PANEL: Final = 4
+# Gauss nodes on each of them.
 PANEL_NODES: Final = 20
-LARGEST_DISTANCE: Final = 2.0**13
-
-ComplexArray = NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -40,8 +42,8 @@ class FredholmKernel:
         weights: w_j, shape (terms,).
     """
 
-    rates: ComplexArray
-    weights: ComplexArray
+    rates: NDArray[np.complex128]
+    weights: NDArray[np.complex128]
 
     @classmethod
     def of_layer(cls, support: Support, poissons_ratio: float) -> FredholmKernel:
@@ -72,8 +74,9 @@ class FredholmKernel:
         near, further = self(width * abs(nodes[:, None] - nodes))[None], self._blocks(panels - 1, width, 1 - nodes)
         differences = np.concatenate([further[::-1].swapaxes(1, 2), near, further])
         blocks = np.empty((panels, count, panels, count))
-        by_difference = sliding_window_view(differences, panels, axis=0)[..., ::-1]  # block p - q
-        by_sum = sliding_window_view(self._blocks(2 * panels - 1, width, nodes), panels, axis=0)  # block p + q
+        # Block (p, q) of the first depends on p - q, of the second on p + q.
+        by_difference = sliding_window_view(differences, panels, axis=0)[..., ::-1]
+        by_sum = sliding_window_view(self._blocks(2 * panels - 1, width, nodes), panels, axis=0)
         np.add(np.moveaxis(by_difference, 3, 2), np.moveaxis(by_sum, 3, 2), out=blocks)
         blocks /= 2
         return blocks.reshape(panels * count, panels * count)

@@ -16,6 +16,7 @@ from pydantic import Field
 from scipy.optimize import toms748
 
 from bem.kernels.moduli import contact_modulus
+from bem.layer_equation.error_model import ONE_RADIUS
 from bem.layer_equation.one_radius import DirectDensity
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (
@@ -37,17 +38,14 @@ from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
 
 ARRAYS = ContactPath.ARRAYS
-LARGEST_RATIO = 60.0  # a/h: a dense system of two thousand unknowns
+# Largest a/h: its dense system has two thousand unknowns.
+LARGEST_RATIO = 60.0
+# Relative tolerance of the search for the radius of a prescribed depth or force.
 RADIUS_TOLERANCE = 1e-13
-SEARCHED = 10 * RADIUS_TOLERANCE  # what a prescribed depth or force may be missed by: powers of the radius up to six
-SAFETY = 4.0  # times what geometric convergence leaves, since one of three answers may be close by chance
-PRESSURES = 12  # looked at on each smooth stretch of the profile
-LEAST_TENSION = 1e-6  # of the largest pressure; rounding leaves 1e-9 in the centre
-# What one rounding of all positions would do to the depth is multiplied by this share, because they are rounded
-# independently of each other. Measured against 40-digit arithmetic over 60 spheres on the half-space, 1 - a/R from 1e-9
-# to 1e-2: at most 0.115 of it, 0.015 in the median (seed 3, 2026-11-22).
-POSITIONS = 0.125
-ROUNDING = 1e-13  # what cancellation in graded panels leaves, besides the difference of two discretisations
+# Radii on each smooth stretch of the profile at which the pressure is compared and must not pull.
+PRESSURES = 12
+# A contact pulls where its pressure is below minus this part of the largest; rounding leaves 1e-9 in the centre.
+LEAST_TENSION = 1e-6
 
 
 @record
@@ -289,25 +287,31 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
         scene: The scene.
     """
     exact = np.array([contact.answer for contact in fine])
-    rounding = ROUNDING + np.array([[POSITIONS * np.finfo(float).eps * contact.density.condition] for contact in fine])
+    rounding = ONE_RADIUS.rounding + np.array([[_position_rounding(contact.density)] for contact in fine])
     e, f = (np.abs(np.array([contact.answer for contact in coarse]) / exact - 1) for coarse in fewer)
     left = e * np.minimum(1.0, np.divide(e, f, out=np.ones_like(e), where=f > 0.0))
-    difference = SAFETY * left + rounding
+    difference = ONE_RADIUS.safety * left + rounding
     depth, force, stiffness = difference[:, 1:].T
-    pressure = ROUNDING + np.array([_pressure_error(*pair) for pair in zip(fine, fewer[0], strict=True)])
+    pressure = ONE_RADIUS.rounding + np.array([_pressure_error(*pair) for pair in zip(fine, fewer[0], strict=True)])
     nothing = np.zeros_like(depth)
     if isinstance(scene.indenter, FlatPunch):
         by_depth = isinstance(scene.loading, IndentationDepths)
         given = (nothing, nothing, stiffness, stiffness) if by_depth else (nothing, stiffness, nothing, stiffness)
         return dict(zip((*ARRAYS, "pressure"), (*given, pressure + given[1]), strict=True))
+    missed = nothing + ONE_RADIUS.searched
     match scene.loading:
         case ContactRadii():
             radius = nothing
         case IndentationDepths():
-            radius, depth, force = depth + RADIUS_TOLERANCE, nothing + SEARCHED, force + 2 * depth + SEARCHED
+            radius, depth, force = depth + RADIUS_TOLERANCE, missed, force + 2 * depth + missed
         case _:
-            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + SEARCHED, nothing + SEARCHED
+            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + missed, missed
     return dict(zip((*ARRAYS, "pressure"), (radius, depth, force, stiffness, pressure + radius), strict=True))
+
+
+def _position_rounding(density: DirectDensity) -> float:
+    """What rounded positions do to the depth, relative."""
+    return ONE_RADIUS.positions * float(np.finfo(float).eps) * density.condition
 
 
 def _pressure_error(fine: DirectContact, coarse: DirectContact) -> float:
@@ -325,5 +329,5 @@ def _pressure_error(fine: DirectContact, coarse: DirectContact) -> float:
         weight = weight * (density.excess - offset) * (a + density.panels.origin + offset)
     change = coarse.pressure(offset) - pressure
     share = 0.0 if density.layer.is_half_space else (1 - 2 * a / density.stiffness) * a**2 / (1 + a**2)
-    rounding = share * POSITIONS * np.finfo(float).eps * density.condition
+    rounding = share * _position_rounding(density)
     return float(2 * np.sqrt((weight @ change**2) / (weight @ pressure**2)) + rounding)

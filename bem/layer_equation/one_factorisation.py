@@ -119,7 +119,8 @@ class VolterraFactor:
             Shape (k, l).
         """
         rows = lagrange_matrix(self.count, edge) @ self.resolvent[panel]
-        edges = np.broadcast_to(edge[:, None], points.shape)  # at a panel's start they are rounding errors or zero
+        # At a panel's start the edges are rounding errors or zero.
+        edges = np.broadcast_to(edge[:, None], points.shape)
         share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
         values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, share), rows)
         return values
@@ -161,7 +162,8 @@ def _edge_resolvents(schur: FloatArray, panel_width: float) -> FloatArray:
     count = schur.shape[1]
     tau, omega = gauss_nodes(count)
     E = partial_panel_interpolation(count)
-    half = np.einsum("ijk,pkl->pijl", E, schur, optimize=True)  # K~(partial node, panel node)
+    # K~ between partial nodes and panel nodes.
+    half = np.einsum("ijk,pkl->pijl", E, schur, optimize=True)
     kernel = half @ E.swapaxes(1, 2)
     weights = panel_width * np.multiply.outer(tau, omega)
     to_edge = np.einsum("piji->pij", half)

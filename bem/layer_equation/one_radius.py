@@ -29,10 +29,15 @@ from bem.polynomials.stretch_slopes import StretchSlopes
 from contact import Layer, NotConvergedError, Profile
 from contact.records.validation import FloatArray
 
-LARGEST_WAVENUMBER = 24.0  # 1 - chi is below 1e-17 beyond
-PANEL_PHASE = 6.0  # largest phase of a cosine on a panel of 16 wavenumbers: sixteen nodes for one period
-SMOOTH_NODES = 24  # exact for the cubics of tables: f' is a trigonometric polynomial of theta
-CROWDING = 15  # panels of the rule for g_hs shrink to 5e-10 of a stretch towards its ends
+# Wavenumber times thickness beyond which 1 - chi is below 1e-17 and left out.
+LARGEST_WAVENUMBER = 24.0
+# Largest phase of a cosine on a panel of 16 wavenumbers: sixteen nodes for one period.
+PANEL_PHASE = 6.0
+# Gauss nodes of a stretch on which the profile is analytic: exact for the cubics of tables, whose f' is a trigonometric
+# polynomial of theta.
+SMOOTH_NODES = 24
+# Panels of the rule for g_hs towards either end of a stretch: the last is 5e-10 of it.
+CROWDING = 15
 # Gauss nodes on each of these panels. Close to a sphere's equator f' is singular as near as the panel begins, where the
 # error of n nodes is 3.0^(-2n): 4e-12 for 12, 5e-16 for 16.
 CROWDED_NODES = 16
@@ -272,7 +277,8 @@ def _solve(layer: Layer, panels: GradedPanels, loads: FloatArray) -> FloatArray:
     except np.linalg.LinAlgError:
         message = f"the equation at a/h = {a:g} is singular to double precision; take a smaller a/h"
         raise NotConvergedError(message) from None
-    edge = loads[-1] + cosines[-1] @ (scaled.T @ inner)  # the equation itself at x = a
+    # This is the equation itself at x = a.
+    edge = loads[-1] + cosines[-1] @ (scaled.T @ inner)
     return np.vstack([inner / root[:, None], edge])
 
 

@@ -17,7 +17,6 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 
-from bem.kernels.layer import Support
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fourier_energy import energy_matrix
 from bem.layer_equation.fredholm_kernel import FredholmKernel
@@ -29,17 +28,26 @@ from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, apart
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
+# Largest a/h. A quotient of two lengths meant as it may come out above it by this much, relative.
 LARGEST_RATIO = 1000.0
-ROUNDING = 1e-12  # a quotient of two lengths meant as 1000 may come out above it
-FIRST_RATIO = 80.0  # answers of the wide panels are made from here on,
-COMPARED = (FIRST_RATIO, 90.0, 4)  # ratios from, to, and number, where they are compared with the narrow panels'
+ROUNDING = 1e-12
+# The solution on wide panels is computed from this a/h on. It is returned where the narrow panels end.
+FIRST_RATIO = 80.0
+# First, last and number of the ratios at which the two are compared, which is an estimate of the error.
+COMPARED = (FIRST_RATIO, 90.0, 4)
+# Width of the wide panels in thicknesses, and their Gauss nodes.
 PANEL_WIDTH = 8.0
 PANEL_NODES = 36
-DENSITY_TRUNCATION = 3e-8  # 1.618^-36: densities are analytic within 2 of panels that are 8 wide
+# Relative error of a density by these panels: 1.618^-36, since densities are analytic within 2 of panels 8 wide.
+DENSITY_TRUNCATION = 3e-8
+# Densities that span the Ritz solution at each radius.
 RITZ_DENSITIES = 4
+# Radii solved, and degree of the polynomial ln k_bar in ln(a/h) through them. The degree is high because a nearly
+# incompressible layer turns from an incompressible one into a compressible one within the range.
 RADII = 42
-DEGREE = 26  # of ln k_bar in ln(a/h): nearly incompressible layers turn from film to bed within the range
+DEGREE = 26
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,7 +25,7 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
     Raises:
         NotConvergedError: If the matrix is not positive definite in double precision.
     """
-    from scipy.linalg import cholesky  # noqa: PLC0415  # see the module's docstring
+    from scipy.linalg import cholesky  # noqa: PLC0415
 
     kernel *= 2 / np.pi
     kernel *= root[:, None]
@@ -42,7 +42,7 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
 
 def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = False) -> FloatArray:
     """Solution of C x = b, or of C^T x = b; only the lower triangle of C is read."""
-    from scipy.linalg import solve_triangular  # noqa: PLC0415  # see the module's docstring
+    from scipy.linalg import solve_triangular  # noqa: PLC0415
 
     trans: Literal[0, 1] = 1 if transposed else 0
     with one_thread:

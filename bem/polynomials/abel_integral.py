@@ -159,7 +159,8 @@ class _Ranges:
         high = np.where(below, stretch.start, offset)
         length = stretch.stop - high
         gap = 2 * radius if stretch.begins_at_tip else np.abs(offset - stretch.start)
-        gap = np.where(gap > 0, gap, length)  # where r is the start, only one singularity is left
+        # Where r is the start, only one singularity is left.
+        gap = np.where(gap > 0, gap, length)
         is_close = stretch.room < length / 2
         inner = np.where(is_close, (length + stretch.room) / 2, length)
         growth = np.log(np.where(is_close, inner / stretch.room, 1.0))

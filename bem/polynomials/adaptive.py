@@ -13,16 +13,20 @@ from bem.polynomials import chebyshev
 from contact import NotConvergedError
 from contact.records.validation import FloatArray
 
+# Samples on each panel.
 NODES = 16
-_RESOLVED = 1e-12  # of a function's largest value: what the last coefficients may be
-_USABLE = 1e-7  # refuse functions that halving panels does not resolve to this
-_FIRST_PANELS = 4
+# A panel is fine enough when the last coefficients of each function are below this, relative to its largest value.
+_RESOLVED = 1e-12
+# Functions that halving panels does not resolve to this are refused.
+_USABLE = 1e-7
+# Panels at most; beyond them `_USABLE` has to do.
 _MOST_PANELS = 200
-_SMALLEST = 2.0**-40  # of the interval: panels shrink towards a tip whose power is not smooth
+# Least panel over the interval: panels shrink towards a tip whose power is not smooth.
+_SMALLEST = 2.0**-40
 
 
 @dataclass(frozen=True)
-class Panel:
+class SampledPanel:
     """Samples at the Chebyshev nodes of one panel.
 
     Attributes:
@@ -50,8 +54,8 @@ class Panel:
 
 def resolved_panels(
     sample: Callable[[FloatArray], FloatArray], low: float, high: float, error: float = 0.0
-) -> list[Panel]:
-    """Halve panels until the last Chebyshev coefficients of every function are small, or until halving helps no more.
+) -> list[SampledPanel]:
+    """Halve four panels until every function's last Chebyshev coefficients are small, or until halving helps no more.
 
     Args:
         sample: From points, shape (n,), to values of all functions, shape (functions, n).
@@ -62,15 +66,15 @@ def resolved_panels(
     Raises:
         NotConvergedError: If a function is too rough.
     """
-    waiting = list(pairwise(np.linspace(low, high, _FIRST_PANELS + 1)))
-    done: list[Panel] = []
+    waiting = list(pairwise(np.linspace(low, high, 5)))
+    done: list[SampledPanel] = []
     sizes: FloatArray | None = None
     while waiting and len(waiting) + len(done) < _MOST_PANELS:
         values = _values(sample, waiting)
         sizes = np.abs(values).max(axis=(0, 2)) if sizes is None else sizes
         tails = _tails(values)
         unresolved = (tails / np.where(sizes > 0.0, sizes, 1.0)).max(axis=1)
-        panels = [Panel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails, strict=True)]
+        panels = [SampledPanel(*ends, own, tail) for ends, own, tail in zip(waiting, values, tails, strict=True)]
         room = len(done) + 2 * len(waiting) < _MOST_PANELS
         halvable = min(right - left for left, right in waiting) > _SMALLEST * (high - low)
         fine = unresolved <= (_RESOLVED if room and halvable else max(_USABLE, error))
@@ -83,14 +87,14 @@ def resolved_panels(
     return sorted(done, key=lambda panel: panel.low)
 
 
-def relative_tail(panels: list[Panel]) -> float:
+def relative_tail(panels: list[SampledPanel]) -> float:
     """The part of a function that its polynomials leave out, over its largest value: the worst function's."""
     tails = np.max([panel.tails for panel in panels], axis=0)
     sizes = np.max([np.abs(panel.values).max(axis=1) for panel in panels], axis=0)
     return float(np.max(tails / np.where(sizes > 0.0, sizes, 1.0)))
 
 
-def _halves(panel: Panel) -> list[tuple[float, float]]:
+def _halves(panel: SampledPanel) -> list[tuple[float, float]]:
     middle = 0.5 * (panel.low + panel.high)
     return [(panel.low, middle), (middle, panel.high)]
 
@@ -112,8 +116,8 @@ class Piecewise:
     """Polynomials on consecutive panels.
 
     Attributes:
-        edges: Panel ends, shape (panels + 1,).
-        centres: Panel middles, shape (panels,).
+        edges: SampledPanel ends, shape (panels + 1,).
+        centres: SampledPanel middles, shape (panels,).
         scales: Two over the panels' widths, shape (panels,).
         powers: Powers of each panel's z in [-1, 1], shape (count, functions, panels).
     """
@@ -124,7 +128,7 @@ class Piecewise:
     powers: FloatArray
 
     @classmethod
-    def of(cls, panels: list[Panel], coefficients: FloatArray) -> Piecewise:
+    def of(cls, panels: list[SampledPanel], coefficients: FloatArray) -> Piecewise:
         """From Chebyshev coefficients, shape (count, functions, panels)."""
         edges = np.array([panels[0].low, *(panel.high for panel in panels)])
         powers = np.tensordot(chebyshev.to_powers(coefficients.shape[0]), coefficients, 1)

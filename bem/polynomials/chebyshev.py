@@ -10,9 +10,10 @@ from numpy.typing import NDArray
 
 from contact.records.validation import FloatArray
 
-_SAMPLES, _NEWTON_STEPS = 33, 4
-_SAMPLE_POINTS = np.linspace(-1.0, 1.0, _SAMPLES)
-_REACH = 2.0 / (_SAMPLES - 1)  # no maximum is farther from the best sample
+# Points at which polynomials are sampled to find their largest values; no maximum is farther from the best of them than
+# the distance of two neighbours.
+_SAMPLE_POINTS = np.linspace(-1.0, 1.0, 33)
+_SPACING = 2.0 / 32
 
 
 @cache
@@ -59,25 +60,26 @@ def powers(z: FloatArray, count: int) -> FloatArray:
 
 
 def largest(coefficients: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
-    """Largest value in z in [-1, 1] of many polynomials per lane.
+    """Largest value in z in [-1, 1] of several polynomials, for many scenes at once.
 
-    The best sample of each is polished by Newton's method on its slope.
+    The best sample of each is improved by four steps of Newton's method on its slope.
 
     Args:
-        coefficients: Powers of z, shape (m, polynomials, lanes).
-        present: Which of them exist, shape (polynomials, lanes).
+        coefficients: Powers of z, shape (m, polynomials, scenes).
+        present: Which of them exist, shape (polynomials, scenes).
 
     Returns:
-        Shape (lanes,).
+        Shape (scenes,).
     """
     count = coefficients.shape[0]
     values = np.tensordot(_sample_powers(count), coefficients, 1)
     z = _SAMPLE_POINTS[values.argmax(axis=0)]
     first = _derivative(coefficients)
     all_three = np.stack([coefficients, first, _derivative(first)])
-    for _ in range(_NEWTON_STEPS):
+    for _ in range(4):
         _, slope, curvature = np.einsum("dkpl,kpl->dpl", all_three, powers(z, count))
-        concave = -curvature * _REACH > np.abs(slope)  # otherwise the maximum is an end, or already found
+        # Where this does not hold the maximum is at an end, or already found.
+        concave = -curvature * _SPACING > np.abs(slope)
         z = np.clip(z - np.where(concave, slope / np.where(concave, curvature, 1.0), 0.0), -1.0, 1.0)
     found = np.maximum(values.max(axis=0), np.einsum("kpl,kpl->pl", coefficients, powers(z, count)))
     return np.asarray(np.where(present, found, -np.inf).max(axis=0))

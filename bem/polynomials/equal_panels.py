@@ -12,8 +12,10 @@ from bem.polynomials.gauss_panels import chebyshev_from_nodes
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
+# Up to so many points cosines are summed in one step, beyond them by Clenshaw's recurrence (`chebyshev_sum`).
 FEW_POINTS = 400
-BLOCK = 8192  # points: 24 coefficients each fill 1.6 MB
+# Points of a block: with 24 coefficients each they fill 1.6 MB.
+BLOCK = 8192
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,6 @@ from numpy.polynomial import chebyshev
 from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
 
-_TINY = float(np.finfo(float).tiny)
-
 
 @cache
 def gauss_nodes(count: int) -> tuple[FloatArray, FloatArray]:
@@ -33,7 +31,8 @@ def lagrange_matrix(count: int, points: FloatArray) -> FloatArray:
     """
     nodes, _ = gauss_nodes(count)
     distance = points[..., None] - nodes
-    distance[distance == 0] = _TINY  # a point that is a node: its own term dominates
+    # At a point that is a node its own term dominates.
+    distance[distance == 0] = np.finfo(float).tiny
     terms = _barycentric_weights(count) / distance
     matrix: FloatArray = terms / terms.sum(axis=-1, keepdims=True)
     return matrix

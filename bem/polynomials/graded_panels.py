@@ -53,7 +53,8 @@ class GradedPanels:
         for start, stop in pairwise(points):
             levels = TIP_LEVELS if start == -origin else LEVELS if start == 0 else SMOOTHER_LEVELS
             ends.append(start + (stop - start) * RATIO ** np.arange(levels, -1, -1.0))
-        coarse = np.unique(np.concatenate(ends))  # beside a distant point the smallest panels round to nothing
+        # Beside a distant point the smallest panels round to nothing.
+        coarse = np.unique(np.concatenate(ends))
         pieces = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)
         fine = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(coarse[:-1], coarse[1:], pieces, strict=True)]
         return cls(origin, np.concatenate([coarse[:1], *fine]), count)

@@ -19,6 +19,7 @@ from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, part
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
+# Times that pieces may be split, more than halving a piece down to rounding takes.
 MAX_SPLITS = 60
 EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
 # Two points closer than this, relative to their distance from the start, are one: rounding set them apart.
@@ -112,7 +113,8 @@ class MappedFunction:
     def derivative_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Derivative with respect to d at mapped positions, infinite where it is."""
         power, width = self.grid.power[piece], self.grid.width[piece]
-        with np.errstate(divide="ignore"):  # 1/0 at a square root's start is the infinite slope that is meant
+        # At a square root's start 1/0 is the infinite slope that is meant.
+        with np.errstate(divide="ignore"):
             stretch = u ** (1 - power)
         derivative: FloatArray = self.slope_at(piece, u) * stretch / (power * width)
         return derivative

@@ -9,7 +9,6 @@ from contact.records.validation import FloatArray
 # Bounds of the factor by which coefficients are taken to fall from order to order. A function analytic on a panel's
 # neighbourhood that is resolved at all falls faster than by 0.8; what has reached rounding shows no rate below 0.05.
 SLOWEST, FASTEST = 0.8, 0.05
-_LAST = 4
 _TINY = float(np.finfo(float).tiny)
 
 
@@ -32,7 +31,7 @@ def orders_beyond(coefficients: FloatArray, rate: float | None = None) -> FloatA
     last = np.maximum(size[..., -2:].max(axis=-1), _TINY)
     seen = np.clip((last / first) ** (1.0 / (count - 2.5)), FASTEST, SLOWEST)
     fall = seen if rate is None else np.full_like(seen, rate)
-    ahead = np.arange(min(_LAST, count), 0.0, -1.0)
+    ahead = np.arange(min(4, count), 0.0, -1.0)
     next_one = np.max(size[..., -ahead.size :] * fall[..., None] ** ahead, axis=-1)
     beyond: FloatArray = next_one / (1.0 - fall)
     return beyond

@@ -17,17 +17,17 @@ import numpy as np
 from scipy.integrate import simpson
 
 from bem.grid.influence import correction_function
-from bem.kernels.layer import Support, zero_mode
+from bem.kernels.layer import zero_mode
 from bem.tables.table import FlatPunchTable
 from contact import InvalidInput, Layer
 from contact.files.storage import read_tree, write_tree
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 SCHEMA: Final = "contact-verification/flat-punch-table/3"
-LIMIT_TOLERANCE: Final = 0.05  # a foreign table that misses a limit by more is of another kernel or normalisation
-THICK: Final = 0.05  # a/h below which k_bar = 1/(1 - c a/h) to 1e-4
-THIN: Final = 100.0  # a/h above which the thin-layer limits hold to 10 h/a, except for 0.45 < nu < 0.5
+# A foreign table that misses a limit by more, relative, is refused: it is of another kernel or normalisation.
+LIMIT_TOLERANCE: Final = 0.05
 ERRORS: Final = ("error", "pressure_error", "mean_error")
 NUMERICAL_LIBRARIES: Final = ("numpy", "scipy", "pyfftw")
 
@@ -123,7 +123,8 @@ class TableFile(Record):
                 f"{self.path} is for a {table.support} layer with nu = {table.poissons_ratio:g}, "
                 f"not for a {layer.support} one with nu = {layer.poissons_ratio:g} and h = {layer.thickness:g}"
             )
-        table.relative_error(max_ratio)  # refuses a ratio beyond the table
+        # Asking for the error refuses a ratio beyond the table.
+        table.relative_error(max_ratio)
         return table
 
     def refined(self) -> Self:
@@ -203,14 +204,18 @@ def _check_normalisation(path: str | Path, table: FlatPunchTable) -> float:
 
 
 def _check_limits(path: str | Path, table: FlatPunchTable) -> float:
-    """Relative defect of k_bar at the thick end; the thin end is only checked, its limit being reached slowly."""
+    """Relative defect of k_bar at the thick end; the thin end is only checked, its limit being reached slowly.
+
+    k_bar = 1/(1 - c a/h) holds to 1e-4 below a/h = 0.05, and the limits of thin layers to 10 h/a above a/h = 100,
+    except for 0.45 < nu < 0.5.
+    """
     first, last = float(table.ratios[0]), table.max_ratio
     thick = 1.0 / (1.0 + 2.0 / np.pi * float(correction_function(table.support, table.poissons_ratio)(0.0)) * first)
-    defect = abs(float(table.stiffness[0]) / thick - 1.0) if first <= THICK else 0.0
+    defect = abs(float(table.stiffness[0]) / thick - 1.0) if first <= 0.05 else 0.0
     if defect > LIMIT_TOLERANCE:
         raise InvalidInput(f"{path}: k_bar({first:g}) is {table.stiffness[0]:.6g}, but must be near {thick:.6g}")
     thin = _thin_layer_stiffness(table)
-    near_limit = last >= THIN and (table.support == "unbonded" or not 0.45 < table.poissons_ratio < 0.5)
+    near_limit = last >= 100.0 and (table.support == "unbonded" or not 0.45 < table.poissons_ratio < 0.5)
     if near_limit and abs(table.stiffness[-1] / thin - 1.0) > LIMIT_TOLERANCE + 10.0 / last:
         raise InvalidInput(f"{path}: k_bar({last:g}) is {table.stiffness[-1]:.6g}, but must be near {thin:.6g}")
     return defect

@@ -11,26 +11,20 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
-from bem.kernels.layer import Support
-from bem.tables.table import ERROR_FLOOR, LEAST_ROWS, STIFFNESS_FLOOR, FlatPunchTable, chebyshev_radii
+from bem.grid.error_model import TABLES
+from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
 from contact import InvalidInput, Layer
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
+# Tabulated ratios a/h. Below the first one a table is read linearly towards the half-space, beyond the last one never.
 SMALLEST_RATIO: Final = 1e-3
 LARGEST_RATIO: Final = 1e3
-# Shares of the differences to grids of half and of a quarter as many cells that count as errors. Second order would
-# make them 1/3 and 1/15; the finer one counts in full, and the coarser one, where those two agree by chance, by what
-# first order makes of it.
-HALF_SHARE: Final = 1.0
-QUARTER_SHARE: Final = 0.25
-# Limits of the share of the difference to every other row and column. Cubic splines gain 2^4 from half the spacing as
-# soon as that is small against one in ln(a/h), on which all functions vary: so the share is the spacing squared.
-LEAST_ROW_SHARE: Final = 1.0 / 64.0
-LARGEST_ROW_SHARE: Final = 1.0 / 4.0
-LEAST_HALVED: Final = 2 * LEAST_ROWS - 1  # rows and columns that a table needs so that every other one is a table
-BEYOND: Final = 6  # rows beyond the ratio asked for: splines end less well than they run, felt over so many rows
-SPREAD: Final = 1.5  # factor in a/h either way over which the error's largest value counts: differences cross zero
+# Rows and columns that a table needs so that every other one is a table.
+LEAST_HALVED: Final = 2 * LEAST_ROWS - 1
+# Rows solved beyond the ratio asked for, because splines end less well than they run; a quintic B-spline spans six.
+BEYOND: Final = LEAST_ROWS
 
 
 @record
@@ -71,10 +65,12 @@ class FftTable(Record):
         if layer.is_half_space:
             raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
         grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
-        if not 0.0 < max_ratio <= LARGEST_RATIO * (1.0 + 1e-12):  # a quotient meant as 1000 may come out above it
+        # A quotient of two lengths meant as 1000 may come out above it by rounding.
+        if not 0.0 < max_ratio <= LARGEST_RATIO * (1.0 + 1e-12):
             raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
         rows = max(LEAST_HALVED, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1 + BEYOND)
-        poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0  # unbonded: nu plays no part
+        # Poisson's ratio plays no part in the unbonded layer.
+        poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0
         return _build(self, layer.support, poissons_ratio, min(rows, self.ratios))
 
     def refined(self) -> Self:
@@ -88,11 +84,11 @@ def _build(settings: FftTable, support: Support, poissons_ratio: float, rows: in
     fine, half, quarter = (
         _on_grid(settings.cells // times, ratios, settings.radii, support, poissons_ratio) for times in (1, 2, 4)
     )
-    row_share = float(np.clip(np.log(ratios[1] / ratios[0]) ** 2, LEAST_ROW_SHARE, LARGEST_ROW_SHARE))
+    row_share = float(np.clip(np.log(ratios[1] / ratios[0]) ** 2, TABLES.least_row_share, TABLES.largest_row_share))
     return dataclasses.replace(
         _with_errors(fine, half, settings.cells, row_share),
         provenance=_provenance(settings, support, poissons_ratio),
-        variants=((HALF_SHARE, half), (QUARTER_SHARE, quarter), (row_share, _every_other(fine))),
+        variants=((TABLES.half_share, half), (TABLES.quarter_share, quarter), (row_share, _every_other(fine))),
     )
 
 
@@ -139,11 +135,13 @@ def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int, row_s
     read_stiffness, read_pressure = _reading_errors(fine, row_share)
     return dataclasses.replace(
         fine,
-        error=STIFFNESS_FLOOR + times * _largest_nearby(np.maximum(k, c), xi) + _largest_nearby(read_stiffness, xi),
-        pressure_error=ERROR_FLOOR
+        error=TABLES.stiffness_floor
+        + times * _largest_nearby(np.maximum(k, c), xi)
+        + _largest_nearby(read_stiffness, xi),
+        pressure_error=TABLES.pressure_floor
         + times * _largest_nearby(_worst(difference, q), xi)
         + _largest_nearby(_worst(read_pressure, q), xi),
-        mean_error=ERROR_FLOOR
+        mean_error=TABLES.pressure_floor
         + _largest_nearby(_outwards(difference, q), xi)
         + _largest_nearby(_outwards(read_pressure, q), xi),
     )
@@ -172,7 +170,8 @@ def _reading_errors(table: FlatPunchTable, share: float) -> tuple[FloatArray, Fl
     c = thin.normalized_spring_stiffness(xi) / table.normalized_spring_stiffness(xi) - 1.0
     q = thin.smooth_pressure(table.radii, xi[:, None]) - table.pressure * np.sqrt(1.0 - table.radii**2)
     shares = np.full(len(xi), share)
-    shares[-2:] = 2.0  # splines end less well than they run
+    # Splines end less well than they run.
+    shares[-2:] = 2.0
     return shares * np.maximum(np.abs(k), np.abs(c)), shares[:, None] * np.abs(q)
 
 
@@ -193,17 +192,18 @@ def _every_other(table: FlatPunchTable) -> FlatPunchTable:
 
 def _largest_nearby(difference: FloatArray, ratios: FloatArray) -> FloatArray:
     """The largest value over each row's neighbourhood, along axis 0."""
-    reach = ceil(log(SPREAD) / log(ratios[1] / ratios[0]))  # rows
-    return np.asarray(maximum_filter1d(difference, 2 * reach + 1, axis=0, mode="nearest"))
+    rows = ceil(log(TABLES.nearby) / log(ratios[1] / ratios[0]))
+    return np.asarray(maximum_filter1d(difference, 2 * rows + 1, axis=0, mode="nearest"))
 
 
 def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> dict[str, str | int | float]:
     equation = "(29)" if support == "unbonded" else "(31)"
+    nearby = f"its largest value within a factor of {TABLES.nearby:g} in a/h"
     return {
         "method": "FFT boundary elements, grid discs measured by the half-space",
         "kernel": f"{support}, Forsbach (2023) Eq. {equation}",
         "poissons_ratio": poissons_ratio,
         "cells": settings.cells,
         "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images",
-        "error": f"difference to {settings.cells // 2} cells, its largest value within a factor of {SPREAD:g} in a/h",
+        "error": f"difference to {settings.cells // 2} cells, {nearby}",
     }

@@ -17,20 +17,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, RectBivariateSpline, make_interp_spline
 
-from bem.kernels.layer import Support
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from bem.tables.published_transform import published_profile
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
-LEAST_ROWS: Final = 6  # a quintic spline needs six
-# Added to the stated errors of q: conjugate gradients stop at 1e-10 of the displacement, and q was off by up to three
-# times that (a/h = 1e-3, 16 to 256 cells, 2026-11-22).
-ERROR_FLOOR: Final = 1e-9
-# Added to the stated errors of k_bar, which is stationary at the solution: roundings of transforms and of the kernel,
-# measured at most 3e-13 (a/h = 1e-3, 16 to 256 cells, 2026-11-22).
-STIFFNESS_FLOOR: Final = 5e-13
+# Least number of rows and columns, which a quintic spline needs.
+LEAST_ROWS: Final = 6
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +149,8 @@ class FlatPunchTable(FlatPunchSolution):
 
     def _checked(self, ratio: ArrayLike) -> FloatArray:
         xi = np.asarray(ratio, dtype=np.float64)
-        if not np.all((xi >= 0.0) & (xi <= self.max_ratio * (1.0 + 1e-12))):  # written so that NaN fails
+        # This is written as a negation so that NaN is refused too.
+        if not np.all((xi >= 0.0) & (xi <= self.max_ratio * (1.0 + 1e-12))):
             raise InvalidInput(
                 f"a/h must lie in [0, {self.max_ratio:g}], got {xi.min():g} .. {xi.max():g}; "
                 "a table is never extrapolated: build it up to a larger ratio"
@@ -170,7 +166,8 @@ class FlatPunchTable(FlatPunchSolution):
         """q over (ln xi, theta), continued evenly by one column beyond the axis and one beyond the edge."""
         theta = np.arcsin(self.radii)
         q = self.pressure * np.cos(theta)
-        left = 1 if theta[0] == 0.0 else 0  # the column that has a mirror image
+        # The first column that has a mirror image about the axis.
+        left = 1 if theta[0] == 0.0 else 0
         theta = np.concatenate([[-theta[left]], theta, [np.pi - theta[-1]]])
         q = np.column_stack([q[:, left], q, q[:, -1]])
         return RectBivariateSpline(np.log(self.ratios), theta, q, kx=3, ky=3)

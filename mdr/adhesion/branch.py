@@ -16,7 +16,7 @@ import numpy as np
 from numpy.polynomial import chebyshev as series
 
 from bem.polynomials import chebyshev
-from bem.polynomials.adaptive import NODES, Panel, Piecewise, resolved_panels
+from bem.polynomials.adaptive import NODES, Piecewise, SampledPanel, resolved_panels
 from contact.records.validation import FloatArray
 
 DEPTH, FORCE = 0, 1
@@ -176,7 +176,7 @@ def adhesive_branch(
     """
     radii = np.array([0.0, *(b for b in sorted(set(breakpoints)) if 0.0 < b < radius), radius])
     ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
-    panels: list[Panel] = []
+    panels: list[SampledPanel] = []
     for start, low, high in zip(radii, ends, ends[1:], strict=False):
         panels += resolved_panels(_sampler(springs, start, low, work_of_adhesion), low, high, error)
     values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])  # (panels, 2, nodes)
@@ -192,7 +192,7 @@ def adhesive_branch(
     )
 
 
-def _steepest(panels: list[Panel]) -> FloatArray:
+def _steepest(panels: list[SampledPanel]) -> FloatArray:
     """Largest slopes of depth and force by y: a section beside a flat end hardly outgrown is short and steep."""
     return np.asarray(np.max([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels], axis=0))
 

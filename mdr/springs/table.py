@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.polynomials import chebyshev
-from bem.polynomials.adaptive import NODES, Panel, Piecewise, relative_tail, resolved_panels
+from bem.polynomials.adaptive import NODES, Piecewise, SampledPanel, relative_tail, resolved_panels
 from contact.records.validation import FloatArray
 
 # Rows of a table: g, dg/dy, k, dk/dy, P, Q.
@@ -140,7 +140,7 @@ def _radius(start: FloatArray, way: FloatArray) -> FloatArray:
     return np.asarray(np.where(start > 0.0, start + way**2, way))
 
 
-def _section(springs: SpringData, start: float, ends: tuple[float, float], error: float) -> list[Panel]:
+def _section(springs: SpringData, start: float, ends: tuple[float, float], error: float) -> list[SampledPanel]:
     """c_N, g and da/dy between two breakpoints, the first of them the radius `start`."""
     (low, high), beginning = ends, springs.mdr_profile(np.array([start]))
 
@@ -158,7 +158,7 @@ def _section(springs: SpringData, start: float, ends: tuple[float, float], error
     return resolved_panels(sample, low, high, error)
 
 
-def _coefficients(panels: list[Panel], start: float) -> list[FloatArray]:
+def _coefficients(panels: list[SampledPanel], start: float) -> list[FloatArray]:
     """Chebyshev coefficients of the six functions on each panel, shape (17, 6); integrals run on between panels."""
     analysis, carried, found = chebyshev.analysis(NODES), np.array([start, 0.0, 0.0]), []
     for panel in panels:

@@ -12,7 +12,8 @@ from typing import Final, cast
 
 import numpy as np
 
-from bem.tables.table import ERROR_FLOOR, STIFFNESS_FLOOR, FlatPunchTable
+from bem.grid.error_model import TABLES
+from bem.tables.table import FlatPunchTable
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
@@ -46,8 +47,8 @@ class TableDifferences:
             [share * (other - value) for other, value in zip(_values(variant, radius), (k, c, g, moment), strict=True)]
             for share, variant in system.variants
         ]
-        by_stiffness = STIFFNESS_FLOOR + _below_table(system, radius)
-        by_profile = ERROR_FLOOR + system.profile_truncation(radius)
+        by_stiffness = TABLES.stiffness_floor + _below_table(system, radius)
+        by_profile = TABLES.pressure_floor + system.profile_truncation(radius)
         rows += [
             [by_stiffness * k, by_stiffness * c, 0 * g, 0 * moment],
             [0 * k, 0 * c, by_profile * g, by_profile * moment],
@@ -118,7 +119,7 @@ def pressure_errors(system: EquivalentSystem, radius: FloatArray, *, is_punch: b
     rho = np.sin((np.arange(RINGS) + 0.5) * (np.pi / (2 * RINGS)))
     q = table.smooth_pressure(rho, ratio[:, None])
     changes = [share * (other.flat_punch.smooth_pressure(rho, ratio[:, None]) - q) for share, other in system.variants]
-    error, largest = size(np.array(changes)) + ERROR_FLOOR, np.max(q, axis=1)
+    error, largest = size(np.array(changes)) + TABLES.pressure_floor, np.max(q, axis=1)
     if is_punch:
         return np.asarray(np.max(error, axis=1) / largest)
     return np.asarray(

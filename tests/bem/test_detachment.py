@@ -8,7 +8,7 @@ from bem.adhesion.cell_by_cell.indenter import CELL_ENERGY, AdheringIndenter, di
 from bem.grid.calibrated_disc import disc
 from bem.grid.influence import rectangle_influence
 from bem.grid.operators import FreeSpaceOperator
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import QuadrantGrid
 from bem.method import Bem
 from contact import (
     Adhesion,
@@ -130,7 +130,7 @@ def test_the_branch_agrees_with_mdr_at_every_radius():
 
 def test_loading_follows_the_unloading_branch():
     cells, radius = 64, 0.35e-3
-    grid = Grid(cells, 2.0 * radius / (0.9 * cells))
+    grid = QuadrantGrid(cells, 2.0 * radius / (0.9 * cells))
     operator = FreeSpaceOperator(HALF_SPACE, cell_size=grid.cell_size, cells=cells, quarter=True)
     tension = strength(1e6, WORK, grid.cell_size)
     indenter = AdheringIndenter(operator, grid, SPHERE.height(grid.radius), tension, StageLog())

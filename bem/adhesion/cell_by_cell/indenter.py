@@ -32,24 +32,29 @@ from math import log, pi, sqrt
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.contact_edge import AREA_SHIFT
 from bem.grid.operators import Operator
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import QuadrantGrid
 from contact import NotConvergedError, StageLog
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 
-BoolArray = npt.NDArray[np.bool_]
-
-CELL_ENERGY: Final = 2.0 / (3.0 * pi) * (1.0 - sqrt(2.0) + 1.5 * log((sqrt(2.0) + 1.0) / (sqrt(2.0) - 1.0)))  # kappa
-STEPS: Final = 40  # of the depth, over the critical elongation at the start
-FOLD: Final = 2e-3  # the depth of pull-off is found within this part of the critical elongation
-COLLAPSE: Final = 0.7  # a contact that shrinks below this part of its radius at a fixed depth is past the fold
-LOST: Final = 0.1  # and below this part it will not come to rest again
-PAST_LEAST_FORCE: Final = 0.85  # of the largest tension
-SOLVER_TOLERANCE: Final = 1e-3  # of the displacement under the contact; 1e-4 moves the pull-off force by 0.3 %
+# kappa, derived above.
+CELL_ENERGY: Final = 2.0 / (3.0 * pi) * (1.0 - sqrt(2.0) + 1.5 * log((sqrt(2.0) + 1.0) / (sqrt(2.0) - 1.0)))
+# Steps of the depth over the critical elongation at the start.
+STEPS: Final = 40
+# The depth of pull-off is found within this part of the critical elongation.
+FOLD: Final = 2e-3
+# A contact that shrinks below this part of its radius at a fixed depth is past the fold; below `LOST` it does not come
+# to rest again.
+COLLAPSE: Final = 0.7
+LOST: Final = 0.1
+# Under force control a path ends when its tension has fallen to this part of its largest, which is more than the grid's
+# noise.
+PAST_LEAST_FORCE: Final = 0.85
+# Largest error of the displacement under the contact; with 1e-4 the pull-off force moves by 0.3 %.
+SOLVER_TOLERANCE: Final = 1e-3
 
 
 @dataclass(frozen=True)
@@ -80,7 +85,7 @@ class AdheringIndenter:
     """
 
     operator: Operator
-    grid: Grid
+    grid: QuadrantGrid
     height: FloatArray
     strength: float
     log: StageLog

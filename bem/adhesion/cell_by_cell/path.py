@@ -6,27 +6,27 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
 
-from bem.adhesion.branch import SCOUT_CELLS, AdhesiveBranch, long_enough
+from bem.adhesion.branch import DiscBranch, long_enough
 from bem.adhesion.cell_by_cell.indenter import FOLD, LOST, AdheringIndenter, AdheringState, strength
 from bem.adhesion.withdrawal import Withdrawal
 from bem.grid.calibrated_disc import FILL, disc, measured_disc
-from bem.grid.contact_edge import AREA_SCATTER
+from bem.grid.error_model import CELLS
 from bem.grid.operators import FreeSpaceOperator
-from bem.grid.quadrant import Grid
+from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
 from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, Scene, StageLog
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 
-AHEAD: Final = 1.2  # start radius over that of the least force; nearer, and the grid would resolve it better still
-LARGEST_EXPONENT: Final = 4.0  # of k_N over a, on a thin incompressible layer
-ROOM: Final = 1.05  # radius of the grid's disc over the largest contact
+# Radius at the start of a detachment over that of the least force. A smaller one would resolve that force better still.
+AHEAD: Final = 1.2
+# Radius of the grid's disc over that of the largest contact.
+ROOM: Final = 1.05
 PULL_OFF: Final = {"indentation_depth": "pull_off_depth", "contact_radius": "pull_off_contact_radius"}
 
 
 @dataclass(frozen=True, eq=False)
-class Branch:
+class CellBranch:
     """Stable states at decreasing depth.
 
     Attributes:
@@ -66,14 +66,14 @@ class Branch:
 
 def detachment_branch(
     scene: Scene, start_radius: float, cells: int, threads: int, log: StageLog, *, to_least_force: bool = False
-) -> Branch:
+) -> CellBranch:
     """The stable branch from a contact radius to pull-off, or to just beyond the least force, on one grid."""
     indenter, first = _on_grid(scene, start_radius, cells, threads, log)
     settled = None if isinstance(scene.indenter, FlatPunch) else indenter.settle(first, first.indentation_depth)
     start = first if settled is None else settled
     enough = indenter.is_past_least_force if to_least_force else lambda _: False
     states = indenter.unload(start, enough)
-    return Branch(
+    return CellBranch(
         contact_radius=np.array([indenter.contact_radius(state) for state in states]),
         indentation_depth=np.array([state.indentation_depth for state in states]),
         normal_force=np.array([indenter.normal_force(state) for state in states]),
@@ -110,13 +110,13 @@ class CellHistory:
     def errors(self, coarse: CellHistory) -> dict[str, FloatArray]:
         """Differences of two grids and the cell by which the rim may lag, relative to the largest magnitudes."""
         radius, force = self.contact_radius, self.normal_force
-        lag = 2.0 * self.cell_size / np.maximum(np.max(radius), self.cell_size) * (radius > 0.0)
+        lag = CELLS.lag * self.cell_size / np.maximum(np.max(radius), self.cell_size) * (radius > 0.0)
         shrunk = np.abs(radius - coarse.contact_radius) / max(float(np.max(radius)), self.cell_size) + lag
         largest = float(np.max(np.abs(force))) or 1.0
         return {
             "indentation_depth": np.zeros(radius.size),
             "contact_radius": shrunk,
-            "contact_stiffness": LARGEST_EXPONENT * shrunk,
+            "contact_stiffness": CELLS.largest_exponent * shrunk,
             "normal_force": np.abs(force - coarse.normal_force) / largest + lag,
         }
 
@@ -138,11 +138,11 @@ def _radius_at(scene: Scene, depths: FloatArray, threads: int) -> float:
         return scene.indenter.radius
     largest = max(float(depths.max()), 0.0)
 
-    def enough(branch: AdhesiveBranch) -> bool:
+    def enough(branch: DiscBranch) -> bool:
         return bool(branch.depth(np.array([branch.largest_radius]))[0] > largest)
 
     longest = long_enough(scene, threads, enough)
-    found = AdhesiveBranch.up_to(longest, scene, SCOUT_CELLS, threads).crossing(
+    found = DiscBranch.up_to(longest, scene, COARSE_CELLS, threads).crossing(
         "indentation_depth", largest, (scene.indenter.flat_radius, longest), inmost=False
     )
     return min(ROOM * found if found is not None else longest, scene.indenter.max_radius)
@@ -156,20 +156,20 @@ def start_radius(scene: Scene, threads: int) -> float:
     if prescribed is not None:
         return prescribed
     radius = long_enough(scene, threads, lambda branch: least_force(branch) < branch.largest_radius / AHEAD)
-    found = least_force(AdhesiveBranch.up_to(radius, scene, SCOUT_CELLS, threads))
+    found = least_force(DiscBranch.up_to(radius, scene, COARSE_CELLS, threads))
     return min(max(AHEAD * found, found + scene.indenter.flat_radius / 10.0), scene.indenter.max_radius)
 
 
-def least_force(branch: AdhesiveBranch) -> float:
+def least_force(branch: DiscBranch) -> float:
     """The radius [m] of the strongest tension."""
     return Withdrawal(branch, branch.largest_radius).loss("force")
 
 
-def branch_errors(fine: Branch, coarse: Branch, control: str) -> dict[str, FloatArray | float]:
+def branch_errors(fine: CellBranch, coarse: CellBranch, control: str) -> dict[str, FloatArray | float]:
     """Differences of two grids at equal contact radii, relative to the largest magnitude on the path."""
-    cell = fine.cell_size / fine.contact_radius  # the rim lags by up to about a cell
+    cell = fine.cell_size / fine.contact_radius
     errors: dict[str, FloatArray | float] = {
-        "contact_radius": (AREA_SCATTER + 1.0)
+        "contact_radius": (CELLS.area_scatter + 1.0)
         * fine.cell_size
         / fine.contact_radius[0]
         * np.ones(len(fine.contact_radius))
@@ -178,15 +178,15 @@ def branch_errors(fine: Branch, coarse: Branch, control: str) -> dict[str, Float
     for name in ("indentation_depth", "normal_force"):
         values, other = getattr(fine, name), getattr(coarse, name)
         same_radius = np.interp(fine.contact_radius, coarse.contact_radius[order], other[order])
-        errors[name] = np.abs(same_radius - values) / np.max(np.abs(values)) + 2.0 * cell
+        errors[name] = np.abs(same_radius - values) / np.max(np.abs(values)) + CELLS.lag * cell
     i, j = fine.pull_off(control), coarse.pull_off(control)
     force, other_force = fine.normal_force[fine.least_force], coarse.normal_force[coarse.least_force]
-    force_error = float(abs(other_force / force - 1.0) + 2.0 * cell[fine.least_force])
+    force_error = float(abs(other_force / force - 1.0) + CELLS.lag * cell[fine.least_force])
     errors["pull_off_force"] = force_error
     for name in ("indentation_depth", "contact_radius"):
         values, reached = getattr(fine, name), getattr(coarse, name)[j]
         spread = _spread(values, fine.normal_force, force_error) if control == "force" else FOLD
-        errors[PULL_OFF[name]] = abs(reached / values[i] - 1.0) + 2.0 * cell[i] + spread
+        errors[PULL_OFF[name]] = abs(reached / values[i] - 1.0) + CELLS.lag * cell[i] + spread
     return errors
 
 
@@ -197,7 +197,7 @@ def _spread(values: FloatArray, force: FloatArray, force_error: float) -> float:
     return float(np.max(np.abs(near / values[least] - 1.0)))
 
 
-def stable_under_force(branch: Branch) -> npt.NDArray[np.bool_]:
+def stable_under_force(branch: CellBranch) -> BoolArray:
     """Under force control the branch is stable up to its least force."""
     return np.arange(len(branch.normal_force)) <= branch.least_force
 
@@ -206,8 +206,9 @@ def _on_grid(
     scene: Scene, radius: float, cells: int, threads: int, log: StageLog
 ) -> tuple[AdheringIndenter, AdheringState]:
     """The indenter on a grid that a disc of this radius fills, and that contact as it begins to let go."""
-    measured = measured_disc(cells, False).radius  # a disc of cells acts as a punch of this radius, in cell sizes
-    grid = Grid(cells, radius / measured)
+    # A disc of cells acts as a punch of this radius, in cell sizes.
+    measured = measured_disc(cells, False).radius
+    grid = QuadrantGrid(cells, radius / measured)
     adhesion = scene.effect(Adhesion)
     work = adhesion.work_of_adhesion if adhesion is not None else 0.0
     operator = FreeSpaceOperator(scene.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
@@ -218,7 +219,7 @@ def _on_grid(
     return indenter, indenter.first_state(contact)
 
 
-def _finite_height(scene: Scene, grid: Grid) -> FloatArray:
+def _finite_height(scene: Scene, grid: QuadrantGrid) -> FloatArray:
     height = scene.indenter.height(grid.radius)
     return np.where(np.isfinite(height), height, np.max(height[np.isfinite(height)]))
 

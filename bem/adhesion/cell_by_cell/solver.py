@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import SCOUT_CELLS
 from bem.adhesion.cell_by_cell.path import (
     CellHistory,
     branch_errors,
@@ -17,6 +16,7 @@ from bem.adhesion.cell_by_cell.path import (
 )
 from bem.adhesion.withdrawal import Control
 from bem.grid.flat_punch import contact_stiffness
+from bem.grid.quadrant import COARSE_CELLS
 from contact import ContactPath, DetachmentPath, IndentationDepths, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
@@ -67,7 +67,7 @@ class AdheringCells:
             contact_radius=fine.contact_radius,
             indentation_depth=loading.values,
             normal_force=fine.normal_force,
-            contact_stiffness=np.array([contact_stiffness(layer, a, SCOUT_CELLS) if a > 0.0 else 0.0 for a in radii]),
+            contact_stiffness=np.array([contact_stiffness(layer, a, COARSE_CELLS) if a > 0.0 else 0.0 for a in radii]),
         )
 
     def detachment(self, control: Control) -> DetachmentPath:

@@ -1,0 +1,114 @@
+"""Every coefficient that shapes an error stated from grids: direct contact, adhering discs, single cells, tables.
+
+Stated errors are differences of grids, multiplied by shares that the order of convergence explains, and floors for what
+two grids do not show. How well the results cover and how sharp they are is measured by ``contact-verify coverage`` and
+asserted in ``tests/verification/test_boundary_elements.py`` and ``tests/bem/test_flat_punch_table.py``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class DirectContactCoefficients:
+    """They shape the stated errors of elastic contacts (`bem.method`).
+
+    Each is beside the difference of the answers on all points and on half of them.
+    """
+
+    # A kink of the profile within this many cells of the contact edge, on either side, is not resolved.
+    kink_cells: float = 6.0
+    # Such a kink costs every quantity this part of a cell over the radius. At a prescribed depth force, radius and
+    # stiffness of a truncated cone were off by 0.07 s/a at most with the rim within six cells, 0.023 s/a beyond (nu =
+    # 0.45, h/b = 0.6 and 4, 128 cells, rim 3 to 10 cells inside, 2026-11-22).
+    kink_error: float = 0.1
+    # Times (s/a)^2 with the cell size s, because the difference may be small by accident: 0.01 was needed at most (200
+    # steps of smooth profiles on 128 cells, seeds 1 and 5, 2026-11-22).
+    second_order: float = 0.05
+    # Times the difference of the pressures where the profile has a kink under pressure. Its logarithm, or the root
+    # close to a flat end, is resolved with order one half, so the error is 1/(sqrt(2) - 1) = 2.4 times the difference.
+    kink_difference: float = 3.0
+    # A relative error of the contact radius counts this many times in the pressure. It is the largest growth of a
+    # contact's pressure with its radius: on a thin incompressible layer p goes with a^4 and F_N with a^6.
+    pressure_exponent: float = 6.0
+    # Times s/a: what the radius read from the slope of force over depth may be off although both grids agree. Depth,
+    # force and radius of smooth profiles needed 0.0013 at most, k_N 0.0024 (250 steps on 128 cells, seeds 1 and 5,
+    # 2026-11-22).
+    slope_scatter: float = 0.003
+    # Times (s/a) (s/h)^2, for layers that are few cells thick. At h = s, 0.7 of it was needed with nu = 1/2 and 0.4
+    # with nu = 0.3.
+    thin_scatter: float = 0.05
+    # An error of the radius counts in k_N by d ln(k_N)/d ln(a): 1 on the half-space, and growing from there with this
+    # times a/h. It is 1.4 on an incompressible layer at a/h = 0.3, where it is fastest (integral equation, 2026-11-22).
+    exponent_growth: float = 1.5
+    # The largest that exponent becomes: k_N goes with a^4 on a thin incompressible layer, Eq. (21).
+    largest_exponent: float = 4.0
+
+
+@dataclass(frozen=True)
+class AdheringDiscCoefficients:
+    """They shape the stated errors of adhering contacts on discs of cells (`bem.adhesion.solver`).
+
+    Measured on 30 detachments on 128 cells, a/h to 5, seed 1, 2026-11-22, unless something else is said.
+    """
+
+    # Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error; where depth or force cross over
+    # from one order to another up to 2.2 was needed.
+    difference: float = 2.5
+    # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
+    # an odd power, added up to three times as much.
+    truncation: float = 4.0
+    # Relative error of depth and force by the linear solutions, which are solved to 1e-8.
+    floor: float = 2e-8
+    # Relative error of a radius at which minimisation finds a function least: at rims up to 2.3e-8.
+    radius_floor: float = 5e-8
+    # Differences of grids cross zero along a branch, so the largest within this factor in the radius, either way,
+    # counts.
+    nearby: float = 1.5
+    # Times (w/h)^3: what a fit over a ring of cells of width w leaves of an edge value that changes over the thickness
+    # h, where two grids agree by accident. A flat punch at a/h = 1 left 0.11 of it (2026-11-22).
+    ring: float = 0.12
+
+
+@dataclass(frozen=True)
+class SingleCellCoefficients:
+    """They shape the stated errors of adhering contacts that let go cell by cell (`bem.adhesion.cell_by_cell`)."""
+
+    # Cells by which the area of a contact may tell a wrong radius: the largest seen from 128 to 1024 cells.
+    area_scatter: float = 0.05
+    # Cells by which the contact's edge may lag behind its equilibrium: one cell at most on either of the two grids.
+    lag: float = 2.0
+    # An error of the radius counts so many times in k_N: its exponent on a thin incompressible layer, Eq. (21).
+    largest_exponent: float = 4.0
+
+
+@dataclass(frozen=True)
+class TableCoefficients:
+    """They shape the stated errors of flat-punch tables (`bem.tables.from_grid`) and of what MDR makes of them."""
+
+    # Added to the errors of q: conjugate gradients stop at 1e-10 of the displacement, and q was off by up to three
+    # times that (a/h = 1e-3, 16 to 256 cells, 2026-11-22).
+    pressure_floor: float = 1e-9
+    # Added to the errors of k_bar, which is stationary at the solution: roundings of transforms and of the kernel,
+    # measured at most 3e-13 (a/h = 1e-3, 16 to 256 cells, 2026-11-22).
+    stiffness_floor: float = 5e-13
+    # Share of the difference to the table of half as many cells that counts as error. Second order makes it 1/3, and
+    # it counts in full.
+    half_share: float = 1.0
+    # Share of the difference to the table of a quarter as many cells, for where those two agree by accident: between
+    # what second order makes of it, 1/15, and first order, 1/3.
+    quarter_share: float = 0.25
+    # The share of the difference to every other row and column is the spacing of the rows in ln(a/h), squared, within
+    # these limits. Cubic splines gain 2^4 from half the spacing as soon as that is small against one, the distance in
+    # ln(a/h) on which all functions vary.
+    least_row_share: float = 1.0 / 64.0
+    largest_row_share: float = 1.0 / 4.0
+    # Differences cross zero, so the largest within this factor in a/h, either way, counts.
+    nearby: float = 1.5
+
+
+DIRECT = DirectContactCoefficients()
+DISCS = AdheringDiscCoefficients()
+CELLS = SingleCellCoefficients()
+TABLES = TableCoefficients()
