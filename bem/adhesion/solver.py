@@ -120,15 +120,7 @@ class AdheringDiscs:
             for name, value in pull_off.items()
         }
         errors["pull_off_contact_radius"] += DISCS.radius_floor
-        truncated = DISCS.truncation * fine.truncation(radius)
-        displaced = np.abs(depth) + fine.elongation(radius)
-        for name, values, others, terms in (
-            ("indentation_depth", depth, coarse.depth(radius), displaced),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced),
-        ):
-            rounding = (DISCS.floor + self._by_ring(radius)) * terms / np.max(np.abs(values))
-            nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
-            errors[name] = DISCS.difference * nearby + truncated + rounding
+        errors |= self._branch_errors(fine, coarse, radius)
         return DetachmentPath(
             scene=self.scene,
             method="bem",
@@ -146,6 +138,20 @@ class AdheringDiscs:
             pull_off_depth=pull_off["pull_off_depth"],
             pull_off_contact_radius=pull_off["pull_off_contact_radius"],
         )
+
+    def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
+        """Errors of depth and force along a branch, relative to their largest values."""
+        depth, force, errors = fine.depth(radius), fine.force(radius), {}
+        truncated = DISCS.truncation * fine.truncation(radius)
+        displaced = np.abs(depth) + fine.elongation(radius)
+        for name, values, others, terms in (
+            ("indentation_depth", depth, coarse.depth(radius), displaced),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced),
+        ):
+            rounding = (DISCS.floor + self._by_ring(radius)) * terms / np.max(np.abs(values))
+            nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
+            errors[name] = DISCS.difference * nearby + truncated + rounding
+        return errors
 
     def _branches(self) -> tuple[DiscBranch, DiscBranch]:
         """On the fine and on the coarse grid."""

@@ -30,6 +30,8 @@ def refuse_touching_beside(scene: Scene, system: EquivalentSystem, radius: Float
     """
     if scene.indenter.is_convex:
         return
+    # A radius that a search found may lie a rounding beyond the last one that is covered.
+    radius = np.minimum(radius, system.max_radius)
     widest = float(radius.max())
     if touching_radius(scene, _circle(scene, system, widest, float(system.mdr_profile(widest)))) is not None:
         states = zip(radius.tolist(), depth.tolist(), strict=True)

@@ -41,8 +41,8 @@ def test_a_lost_two_pi_in_the_elongation(monkeypatch):
 
 
 def test_stability_turned_upside_down(monkeypatch):
-    right = adhesive_branch.AdhesiveBranch.slopes
-    monkeypatch.setattr(adhesive_branch.AdhesiveBranch, "slopes", lambda branch, y: -right(branch, y))
+    right = adhesive_branch.MdrAdhesiveBranch.slopes
+    monkeypatch.setattr(adhesive_branch.MdrAdhesiveBranch, "slopes", lambda branch, y: -right(branch, y))
     with pytest.raises(AssertionError):
         adhesion.test_equilibrium_and_stability_are_those_of_the_energy(adhesion.HALF_SPACE, adhesion.PROFILES[0])
 
