@@ -61,6 +61,8 @@ def test_files_are_read_back(path, tmp_path, ending):
     )
     assert back.cells[0].data.shape[1] == 6
     assert set(back.point_data) >= {"stress_rr", "stress_zz", "stress_hoop", "stress_rz", "pressure"}
+    normal = sum(back.point_data[f"stress_{name}"] for name in ("rr", "zz", "hoop"))
+    np.testing.assert_allclose(back.point_data["pressure"], -normal / 3, rtol=1e-12, atol=1e-12 * np.abs(normal).max())
 
 
 def read_by_vtk(file):
@@ -92,6 +94,8 @@ def test_files_are_read_by_the_library_of_paraview(path, tmp_path, ending):
     assert np.count_nonzero(top) > 10
     assert -arrays["stress_zz"][top] == pytest.approx(path.pressure(r[top]), abs=3e-3 * path.pressure(0.0))
     assert set(arrays) == {"displacement", "stress_rr", "stress_zz", "stress_hoop", "stress_rz", "pressure"}
+    normal = sum(arrays[f"stress_{name}"] for name in ("rr", "zz", "hoop"))
+    np.testing.assert_allclose(arrays["pressure"], -normal / 3, rtol=1e-12, atol=1e-12 * np.abs(normal).max())
 
 
 def test_settings_name_the_mesh(path):
