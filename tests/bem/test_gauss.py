@@ -56,7 +56,7 @@ BEYOND = {
 @pytest.mark.slow
 @pytest.mark.parametrize("poissons_ratio", BEYOND)
 def test_stated_errors_beyond_the_factorised_ratios_are_those_of_extended_precision(poissons_ratio):
-    """They cover the true ones, and are no fifty times larger either; a fiftieth of them is seen not to cover."""
+    """They cover the true ones and are less than fifty times larger, so a fiftieth of them would not cover."""
     layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio, support="bonded")
     solution = IntegralEquation().solution(layer, 1000.0)
     ratios, exact = np.array(list(BEYOND[poissons_ratio]), dtype=float), np.array(list(BEYOND[poissons_ratio].values()))

@@ -103,11 +103,11 @@ def test_a_profile_is_resolved_as_finely_as_its_flat_punch(indenter, nodes):
     radii = np.linspace(indenter.flat_radius, 7e-3, 23)[1:]
     stated = coarse.relative_errors(radii)["indentation_depth"]
     error = np.abs(coarse.mdr_profile(radii) / exact.mdr_profile(radii) - 1)
-    assert np.mean(error <= stated) >= 0.95
+    assert np.all(error <= stated)
     scene = Scene(layer=LAYER, indenter=indenter, loading=ContactRadii(radii))
     path = Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene)
     error = np.abs(path.normal_force / exact.elastic_force(radii) - 1)
-    assert np.mean(error <= path.error_estimate["normal_force"]) >= 0.95
+    assert np.all(error <= path.error_estimate["normal_force"])
 
 
 def test_the_flat_punch_has_no_profile():
