@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import j0
 
-from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.kernels.tangential import beyond_half_space
+from bem.layer_equation.stick.adhered_fields import AdheredFields, ComplexArray, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import LARGEST_Q, AdheredPunch
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import Scene
@@ -51,7 +51,7 @@ class PunchFields:
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]."""
-        return self.depth[step] * AdheredFields(self.punch).normal_displacement(radius / self.radius)
+        return np.asarray(self.depth[step] * AdheredFields(self.punch).normal_displacement(radius / self.radius))
 
     def _traction(self, name: str, radius: FloatArray, step: int) -> FloatArray:
         s, values = radius / self.radius, np.zeros_like(radius)
@@ -99,7 +99,7 @@ class StickFields:
         return np.asarray(values)
 
     def _traction(
-        self, unit: Callable[[FloatArray, FloatArray], FloatArray], radius: FloatArray, step: int
+        self, unit: Callable[[FloatArray, Increments], FloatArray], radius: FloatArray, step: int
     ) -> FloatArray:
         """Increments of the depth times the tractions of their punches."""
         a, values = float(self.contact_radius[step]), np.zeros(radius.shape)
@@ -113,7 +113,7 @@ class StickFields:
         """p of unit punches at s = r/a, in units of 4 G/(pi a)."""
         a = punches.radius
         t, value, slope, weights, height = self._densities(s, punches.gap * (1.0 + s) / a, a)
-        return ((value - slope / t).real @ weights) / height
+        return np.asarray(((value - slope / t).real @ weights) / height)
 
     def _unit_shear(self, s: FloatArray, punches: Increments) -> FloatArray:
         """q likewise; near the axis it grows with the radius."""
@@ -121,10 +121,12 @@ class StickFields:
         square = np.where(s < _NEAR_AXIS, 1.0 - _NEAR_AXIS**2, punches.gap * (1.0 + s) / a)
         t, value, slope, weights, height = self._densities(small, square, a)
         integrand = value / t - slope / t**2 + (1.0 - t) * (1.0 + t) * value / t**3
-        return s * (integrand.imag @ weights) / height
+        return np.asarray(s * (integrand.imag @ weights) / height)
 
-    def _densities(self, s: FloatArray, square: FloatArray, a: FloatArray):  # type: ignore[no-untyped-def]
-        """Phi and (1 - t^2) Phi' of unit punches on [s, 1], where 1 - s^2 = square; with t, weights and sqrt(1 - s^2)."""
+    def _densities(
+        self, s: FloatArray, square: FloatArray, a: FloatArray
+    ) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray, FloatArray]:
+        """t, Phi, (1 - t^2) Phi' of unit punches on [s, 1], 1 - s^2 = square; weights and sqrt(1 - s^2)."""
         table, (v, rest, weights) = self.growth.table, tanh_sinh()
         t = np.sqrt(s[:, None] ** 2 + square[:, None] * v**2)
         short = np.maximum(square[:, None] * rest * (1.0 + v) / (1.0 + t), 1e-300)
@@ -144,7 +146,7 @@ class StickFields:
         gap = (r - a)[:, None] + a * rest
         inner = (a * weights / np.sqrt(gap * (r[:, None] + a * x))) @ phi.real
         waves = np.zeros_like(r)
-        if not table.is_half_space:
+        if table.support is not None:
             width = min(1.0, 4.0 * math.pi / (a + float(r.max())))
             nodes, w = gauss_nodes(_WAVENUMBERS)
             panels = math.ceil(LARGEST_Q / width)

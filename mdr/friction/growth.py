@@ -12,6 +12,7 @@ delta' is a polynomial in a variable in which it is smooth, found by collocation
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -149,7 +150,7 @@ def _stretches(indenter: Profile, thickness: float, reach: float) -> tuple[Stret
     ends = [flat, *inner, reach]
     lead = float(indenter.exponent) if isinstance(indenter, PowerLaw) else 1.0
     first = Stretch(ends[0], ends[1] - ends[0], 2 if flat else 1, 1.0 if flat else lead)
-    rest = (Stretch(start, end - start, 2, 1.0) for start, end in zip(ends[1:], ends[2:], strict=False))
+    rest = (Stretch(start, end - start, 2, 1.0) for start, end in pairwise(ends[1:]))
     return (first, *rest)
 
 

@@ -8,6 +8,7 @@ rule, which thickens its nodes towards both ends.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
@@ -15,8 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import j0, j1
 
-from bem.layer_equation.stick.adhered_punch import AdheredPunch, basis_transforms
+from bem.kernels.tangential import SurfaceCompliance
+from bem.layer_equation.stick.adhered_punch import AdheredPunch, BasisTransforms, basis_transforms
 from contact.records.validation import FloatArray
+
+ComplexArray = NDArray[np.complex128]
 
 # Step and half range of the tanh-sinh rule: its error is exp(-pi^2/(2 step)), and at the ends weights are below 1e-17.
 _STEP = 0.05
@@ -27,8 +31,8 @@ _RANGE = 3.4
 class Densities:
     """Phi = phi + i psi at some t of [0, 1), and T = (1 - t^2) Phi'."""
 
-    value: NDArray[np.complex128]
-    slope: NDArray[np.complex128]
+    value: ComplexArray
+    slope: ComplexArray
 
 
 @dataclass(frozen=True)
@@ -65,7 +69,7 @@ class AdheredFields:
 
     def radial_displacement(self, radius: FloatArray) -> FloatArray:
         """u at r/a >= 0, positive outward: 0 inside."""
-        of = self.punch.material
+        of, asked = self.punch.material, radius
         radius = np.maximum(radius, _SMALLEST_RADIUS)
         transforms, extra = self._layer(radius)
         P, Q = self.punch.coefficients @ transforms.cosine, self.punch.coefficients @ transforms.sine
@@ -74,7 +78,8 @@ class AdheredFields:
         _, inner = self._inner_integrals(radius)
         _, outer = self._outer_integrals(radius)
         enclosed = self.punch.half_force - outer
-        return np.asarray(2.0 / math.pi * ((2.0 * of.beta * inner - of.eta * enclosed) / radius + waves))
+        displacement = 2.0 / math.pi * ((2.0 * of.beta * inner - of.eta * enclosed) / radius + waves)
+        return np.asarray(displacement * np.minimum(asked / radius, 1.0))
 
     def densities(self, t: FloatArray, rest: FloatArray) -> Densities:
         """Phi and T at t with 1 - t = rest."""
@@ -86,15 +91,15 @@ class AdheredFields:
         weight = np.exp(1j * of.charge * np.log((1.0 + t) / rest))
         return Densities(weight * value, weight * (2j * of.charge * value + rest * (1.0 + t) * slope))
 
-    def continued(self, s: FloatArray) -> NDArray[np.complex128]:
+    def continued(self, s: FloatArray) -> ComplexArray:
         """G = sqrt(kappa_nu) g at x/a, continued as the polynomial it is on the contact; for s up to 1.005 or so."""
         value = np.zeros(s.shape, dtype=complex)
         of, c = self.punch.material, self.punch.coefficients
         for factor, (polynomial, _) in zip(_scaled(c, of.charge), _jacobi(s, of.charge, c.size), strict=True):
             value += factor * polynomial
-        return math.sqrt(of.kappa) * value
+        return np.asarray(math.sqrt(of.kappa) * value)
 
-    def transform_beside(self, s: FloatArray) -> NDArray[np.complex128]:
+    def transform_beside(self, s: FloatArray) -> ComplexArray:
         """G beside the punch, s = x/a > 1, from the equation: ``((s+1)/(s-1))^(i eps) G = 1 - (S + K) Phi``."""
         of = self.punch.material
         if not s.size:
@@ -106,12 +111,13 @@ class AdheredFields:
         transforms, extra = self._layer(s)
         P, Q = self.punch.coefficients @ transforms.cosine, self.punch.coefficients @ transforms.sine
         angle, w = np.multiply.outer(s, transforms.wavenumber), 2.0 / math.pi * transforms.weights
-        waves = np.cos(angle) @ (w * (extra.normal * P + extra.coupling * Q))
-        waves = waves + 1j * np.sin(angle) @ (w * (extra.radial * Q + extra.coupling * P))
-        turned: NDArray[np.complex128] = np.exp(-1j * of.charge * np.log((s + 1.0) / (s - 1.0)))
-        return (1.0 - 1j * of.eta * hilbert - waves) * turned
+        normal_waves = np.cos(angle) @ (w * (extra.normal * P + extra.coupling * Q))
+        waves = normal_waves + 1j * np.sin(angle) @ (w * (extra.radial * Q + extra.coupling * P))
+        turned: ComplexArray = np.exp(-1j * of.charge * np.log((s + 1.0) / (s - 1.0)))
+        return np.asarray((1.0 - 1j * of.eta * hilbert - waves) * turned)
 
-    def _layer(self, radius: FloatArray):  # type: ignore[no-untyped-def]
+    def _layer(self, radius: FloatArray) -> tuple[BasisTransforms, SurfaceCompliance]:
+        """Waves that resolve the surface out to these radii, and the layer's share of the compliance there."""
         reach = max(1.0, float(np.max(radius, initial=0.0)))
         transforms = basis_transforms(
             self.punch.material.charge, self.punch.ratio, self.punch.coefficients.size, reach=reach
@@ -169,18 +175,18 @@ def _rest_outside(radius: FloatArray, end: FloatArray) -> FloatArray:
     return product
 
 
-def _scaled(coefficients: FloatArray, charge: float) -> NDArray[np.complex128]:
+def _scaled(coefficients: FloatArray, charge: float) -> ComplexArray:
     """c_n i^n/sqrt(h_n)."""
     n = np.arange(coefficients.size)
     gamma = math.pi * charge / math.sinh(math.pi * charge) if charge else 1.0
     squares = gamma * np.cumprod(np.concatenate([[1.0], 1.0 + (charge / n[1:]) ** 2]))
-    scaled: NDArray[np.complex128] = coefficients * (1j) ** (n % 4) / np.sqrt(2.0 / (2 * n + 1) * squares)
-    return scaled
+    return np.asarray(coefficients * (1j) ** (n % 4) / np.sqrt(2.0 / (2 * n + 1) * squares), dtype=complex)
 
 
-def _jacobi(t: FloatArray, charge: float, count: int):  # type: ignore[no-untyped-def]
+def _jacobi(t: FloatArray, charge: float, count: int) -> Iterator[tuple[ComplexArray, ComplexArray]]:
     """P_n^(-i eps, i eps)(t) and its derivative for n = 0 .. count - 1; only the first step is complex."""
-    before, here = np.ones(t.shape, dtype=complex), t - 1j * charge
+    before: ComplexArray = np.ones(t.shape, dtype=complex)
+    here: ComplexArray = np.asarray(t - 1j * charge, dtype=complex)
     slope_before, slope = np.zeros(t.shape, dtype=complex), np.ones(t.shape, dtype=complex)
     yield before, slope_before
     for n in range(1, count):

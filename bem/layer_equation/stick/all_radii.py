@@ -114,7 +114,7 @@ def _edge_values(kernel: FloatArray, load: FloatArray) -> FloatArray:
     phi = np.linalg.solve(np.eye(2 * _NODES) + system, right).reshape(_NODES, _NODES, 2)
     # Kernel between the edge, which is the panel's own node, and the nodes of the integral.
     to_edge = np.einsum("iakb,imk->iamb", blocks, E)
-    return load - np.einsum("iamb,im,imb->ia", to_edge, weights, phi)
+    return np.asarray(load - np.einsum("iamb,im,imb->ia", to_edge, weights, phi))
 
 
 def _place(ratio: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
@@ -134,8 +134,8 @@ def _layer_kernel(x: FloatArray, support: Support, material: Material) -> FloatA
     even, odd = _pairs((waves + mirrored) / 2.0), _pairs((waves - mirrored) / 2.0)
     extra = beyond_half_space(k, support, material.poissons_ratio)
     coupling = (even * (w * extra.coupling)) @ odd.T
-    kernel: FloatArray = (even * (w * extra.normal)) @ even.T + (odd * (w * extra.radial)) @ odd.T
-    return kernel + coupling + coupling.T
+    kernel = (even * (w * extra.normal)) @ even.T + (odd * (w * extra.radial)) @ odd.T
+    return np.asarray(kernel + coupling + coupling.T)
 
 
 def _pairs(waves: NDArray[np.complex128]) -> FloatArray:

@@ -16,9 +16,8 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
-from bem.layer_equation.stick.adhered_fields import AdheredFields
+from bem.layer_equation.stick.adhered_fields import AdheredFields, ComplexArray
 from bem.layer_equation.stick.adhered_punch import Material, adhered_punch
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -27,8 +26,8 @@ from contact.scene.layer import Support
 _CONTINUED = 1.005
 # Punches of a table, and positions beside each, for X = 0 and per unit of X: G's coefficients then fall below 1e-12
 # (measured for nu = 0 to 1/2 and X up to 20, largest of the last three coefficients).
-_PUNCHES = (22.0, 4.0)
-_POSITIONS = (24.0, 5.0)
+_PUNCHES = (26.0, 4.5)
+_POSITIONS = (28.0, 5.5)
 
 
 @dataclass(frozen=True)
@@ -46,7 +45,7 @@ class GrowthTable:
     material: Material
     support: Support | None
     max_ratio: float
-    coefficients: NDArray[np.complex128]
+    coefficients: ComplexArray
     stiffness: FloatArray
 
     @property
@@ -54,19 +53,19 @@ class GrowthTable:
         """Whether no layer shows."""
         return self.support is None
 
-    def beside(self, x: float, a: FloatArray) -> NDArray[np.complex128]:
+    def beside(self, x: float, a: FloatArray) -> ComplexArray:
         """G(x; a) for one x and many a, shape of a."""
         row = chebyshev.chebval(self._unit(x), self.coefficients)
         return np.asarray(chebyshev.chebval(self._unit(a), row))
 
-    def below(self, t: FloatArray, a: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
+    def below(self, t: FloatArray, a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
         """G(t; a) and dG/dt under the punch, a of shape (n,) and t of shape (n, m)."""
         columns = chebyshev.chebval(self._unit(a), self.coefficients.T)
         slopes = chebyshev.chebder(columns) * (2.0 / self.max_ratio) if len(columns) > 1 else np.zeros_like(columns)
         at = self._unit(t)
-        return chebyshev.chebval(at, columns[..., None], tensor=False), chebyshev.chebval(
-            at, slopes[..., None], tensor=False
-        )
+        value: ComplexArray = np.asarray(chebyshev.chebval(at, columns[..., None], tensor=False), dtype=complex)
+        slope: ComplexArray = np.asarray(chebyshev.chebval(at, slopes[..., None], tensor=False), dtype=complex)
+        return value, slope
 
     def contact_stiffness(self, a: FloatArray) -> FloatArray:
         """k_stick/(E* h) = 2 (a/h) k_bar."""
@@ -100,7 +99,9 @@ def growth_table(max_ratio: float, support: Support | None, poissons_ratio: floa
         inside = x <= _CONTINUED * a
         values[inside, j] = fields.continued(x[inside] / a)
         values[~inside, j] = fields.transform_beside(x[~inside] / a)
-    return GrowthTable(Material.of(poissons_ratio), support, max_ratio, to_x @ values @ to_a.T, to_a @ stiffness)
+    return GrowthTable(
+        Material.of(poissons_ratio), support, max_ratio, np.asarray(to_x @ values @ to_a.T), to_a @ stiffness
+    )
 
 
 def _to_coefficients(count: int) -> FloatArray:
