@@ -19,7 +19,16 @@ from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_ma
 from contact.records.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
 from contact.records.validation import Numbers
 from contact.scene.coated_pair import CoatedPair
-from contact.scene.effects import Adhesion, Effect, KelvinVoigt, PronySeries, Relaxation, StandardSolid, Viscoelasticity
+from contact.scene.effects import (
+    Adhesion,
+    Effect,
+    Friction,
+    KelvinVoigt,
+    PronySeries,
+    Relaxation,
+    StandardSolid,
+    Viscoelasticity,
+)
 from contact.scene.layer import Layer
 from contact.scene.loading import (
     ContactRadii,
@@ -64,6 +73,7 @@ __all__ = [
     "Fields",
     "FlatPunch",
     "ForceHistory",
+    "Friction",
     "HistoryLoading",
     "HistoryPath",
     "Impact",

@@ -13,6 +13,7 @@ from contact import (
     Detachment,
     Effect,
     ForceHistory,
+    Friction,
     Impact,
     IndentationDepths,
     Loading,
@@ -60,6 +61,7 @@ SOLVERS = (
     Solver((), _EQUILIBRIA, "mdr.elastic", "solve_elastic"),
     Solver((Adhesion,), _EQUILIBRIA, "mdr.adhesion.solver", "solve_adhesive"),
     Solver((Adhesion,), (Detachment,), "mdr.adhesion.solver", "solve_detachment"),
+    Solver((Friction,), _EQUILIBRIA, "mdr.friction.solver", "solve_stick"),
     Solver((), (Impact,), "mdr.impact.solver", "solve_impact"),
     Solver((Viscoelasticity,), (Impact,), "mdr.impact.solver", "solve_impact"),
     Solver((), (DepthHistory, ForceHistory), "mdr.history.solver", "solve_history"),
@@ -74,6 +76,12 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
         return Unsupported(
             f"mdr models {type(viscous).__name__} in incompressible layers only, and layer.poissons_ratio = "
             f"{scene.layer.poissons_ratio:g}; use Layer.incompressible, or a method that models compressible ones"
+        )
+    friction = scene.effect(Friction)
+    if friction is not None and not friction.is_stick:
+        return Unsupported(
+            f"mdr models full stick and frictionless contact, and Friction.coefficient = {friction.coefficient:g}; "
+            "ask fem, or give inf; the frictionless answer's notes bound what friction moves"
         )
     found = [solver for solver in SOLVERS if solver.takes(scene)]
     if found:

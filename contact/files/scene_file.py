@@ -151,4 +151,11 @@ def _named(item: Profile | Loading | Effect) -> dict[str, Any]:
 def _plain(item: Record) -> dict[str, Any]:
     # All records are dataclasses.
     values = ((f.name, getattr(item, f.name)) for f in dataclasses.fields(item))  # type: ignore[arg-type]
-    return {name: v.tolist() if isinstance(v, np.ndarray) else v for name, v in values if v is not None}
+    return {name: _plain_value(v) for name, v in values if v is not None}
+
+
+def _plain_value(value: Any) -> Any:
+    """JSON has no infinity: it stands there as the text that the records read."""
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return "inf" if isinstance(value, float) and math.isinf(value) else value

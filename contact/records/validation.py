@@ -83,6 +83,18 @@ def positive_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
 
 
+def not_negative_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """A number of at least zero; infinity is allowed, in files that have none as the text "inf"."""
+
+    def validate(value: object) -> float:
+        number = math.inf if value == "inf" else _number(value, remedy)
+        if not number >= 0.0:
+            raise ValueError(f"must be at least 0; {remedy}")
+        return _in_bounds(number, remedy)
+
+    return PlainValidator(validate), WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0}, {"const": "inf"}]})
+
+
 def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     """A finite number in the closed interval [low, high]."""
 

@@ -10,7 +10,7 @@ import numpy as np
 from pydantic import model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import FloatArray, Vector, bounded_vector, in_range, positive
+from contact.records.validation import FloatArray, Vector, bounded_vector, in_range, not_negative_or_infinite, positive
 
 _MODULUS = "give the shear modulus in pascals"
 _VISCOSITY = "give the viscosity in pascal seconds"
@@ -60,6 +60,22 @@ class Adhesion(Effect):
     """
 
     work_of_adhesion: Annotated[float, *in_range(0.0, math.inf, "give the work of adhesion in joules per square metre")]
+
+
+@record
+class Friction(Effect):
+    """Dry friction between indenter and layer (Coulomb). A coefficient of zero is frictionless contact.
+
+    Attributes:
+        coefficient: mu [-]; infinity is full stick: what touches does not slide.
+    """
+
+    coefficient: Annotated[float, *not_negative_or_infinite("give the coefficient of friction, or inf for full stick")]
+
+    @property
+    def is_stick(self) -> bool:
+        """Whether nothing slides."""
+        return math.isinf(self.coefficient)
 
 
 @record
@@ -136,4 +152,4 @@ class PronySeries(Viscoelasticity):
         )
 
 
-EFFECTS: tuple[type[Effect], ...] = (Adhesion, KelvinVoigt, StandardSolid, PronySeries)
+EFFECTS: tuple[type[Effect], ...] = (Adhesion, Friction, KelvinVoigt, StandardSolid, PronySeries)

@@ -6,11 +6,11 @@ import math
 from typing import TYPE_CHECKING, Any, Generic, Self, overload
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 from typing_extensions import TypeVar
 
 from contact.records.record import Record, record
-from contact.scene.effects import Adhesion, Effect, Viscoelasticity
+from contact.scene.effects import Adhesion, Effect, Friction, Viscoelasticity
 from contact.scene.layer import Layer
 from contact.scene.loading import ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
 from contact.scene.profiles import FlatPunch, Profile
@@ -34,7 +34,8 @@ class Scene(Record, Generic[LoadingT_co]):
         layer: The elastic layer.
         indenter: The rigid profile pressed into it.
         loading: What is prescribed.
-        effects: What is modelled beyond elastic frictionless contact; each kind at most once.
+        effects: What is modelled beyond elastic frictionless contact; each kind at most once. Friction with a
+            coefficient of zero is none, and is left out.
     """
 
     layer: Layer
@@ -54,6 +55,11 @@ class Scene(Record, Generic[LoadingT_co]):
         def replace(self, **changes: Any) -> Self: ...
         def replace(self, **changes: Any) -> Any:
             """A copy with some fields changed, validated like a new one."""
+
+    @field_validator("effects")
+    @classmethod
+    def _without_zero_friction(cls, effects: tuple[Effect, ...]) -> tuple[Effect, ...]:
+        return tuple(e for e in effects if not (isinstance(e, Friction) and e.coefficient == 0.0))
 
     @model_validator(mode="after")
     def _check(self) -> Self:

@@ -1,0 +1,108 @@
+"""What growing contact under full stick asks of adhered punches: their stiffness and the surface beside them.
+
+Beside the adhered unit punch of radius a, the transform of the surface displacement leaves of the depth
+
+    M(x; a) = Re[((x+a)/(x-a))^(i eps) G(x; a)],   x > a,
+
+with G smooth on the whole square 0 <= a, x <= X: it is tabulated as Chebyshev polynomials in both. Contact that grows
+through radii a by depths delta'(a) da follows the indenter if ``g_hs(x) = int_0^x M(x; a) delta'(a) da``.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bem.layer_equation.stick.adhered_fields import AdheredFields, ComplexArray
+from bem.layer_equation.stick.adhered_punch import Material, adhered_punch
+from contact.records.validation import FloatArray
+from contact.scene.layer import Support
+
+# Up to this x/a the polynomial g is continued; beyond, its terms magnify rounding and the equation itself is used.
+_CONTINUED = 1.005
+# Punches of a table, and positions beside each, for X = 0 and per unit of X: G's coefficients then fall below 1e-12
+# (measured for nu = 0 to 1/2 and X up to 20, largest of the last three coefficients).
+_PUNCHES = (26.0, 4.5)
+_POSITIONS = (28.0, 5.5)
+
+
+@dataclass(frozen=True)
+class GrowthTable:
+    """Adhered punches on one layer; lengths in its thickness.
+
+    Attributes:
+        material: What the layer is made of.
+        support: How the layer lies on its base; None for a half-space.
+        max_ratio: X, largest a/h and x/h.
+        coefficients: Of G in x (rows) and a (columns), Chebyshev polynomials on [0, X].
+        stiffness: Chebyshev coefficients of k_stick/(2 E* a) on [0, X].
+    """
+
+    material: Material
+    support: Support | None
+    max_ratio: float
+    coefficients: ComplexArray
+    stiffness: FloatArray
+
+    @property
+    def is_half_space(self) -> bool:
+        """Whether no layer shows."""
+        return self.support is None
+
+    def beside(self, x: float, a: FloatArray) -> ComplexArray:
+        """G(x; a) for one x and many a, shape of a."""
+        row = chebyshev.chebval(self._unit(x), self.coefficients)
+        return np.asarray(chebyshev.chebval(self._unit(a), row))
+
+    def below(self, t: FloatArray, a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+        """G(t; a) and dG/dt under the punch, a of shape (n,) and t of shape (n, m)."""
+        columns = chebyshev.chebval(self._unit(a), self.coefficients.T)
+        slopes = chebyshev.chebder(columns) * (2.0 / self.max_ratio) if len(columns) > 1 else np.zeros_like(columns)
+        at = self._unit(t)
+        value: ComplexArray = np.asarray(chebyshev.chebval(at, columns[..., None], tensor=False), dtype=complex)
+        slope: ComplexArray = np.asarray(chebyshev.chebval(at, slopes[..., None], tensor=False), dtype=complex)
+        return value, slope
+
+    def contact_stiffness(self, a: FloatArray) -> FloatArray:
+        """k_stick/(E* h) = 2 (a/h) k_bar."""
+        return np.asarray(2.0 * a * chebyshev.chebval(self._unit(a), self.stiffness))
+
+    def _unit(self, a: FloatArray | float) -> FloatArray:
+        return np.asarray(2.0 * np.asarray(a) / self.max_ratio - 1.0)
+
+    @property
+    def truncation(self) -> float:
+        """Size of the last coefficients over the largest: what the table leaves out."""
+        if self.is_half_space:
+            return 0.0
+        size = np.abs(self.coefficients)
+        return float(max(size[-3:].max(), size[:, -3:].max()) / size.max())
+
+
+@lru_cache(maxsize=16)
+def growth_table(max_ratio: float, support: Support | None, poissons_ratio: float) -> GrowthTable:
+    """Solve the punches of a table that reaches `max_ratio` thicknesses; without a support, on a half-space."""
+    if support is None:
+        punch = adhered_punch(0.0, "bonded", poissons_ratio)
+        return GrowthTable(punch.material, None, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness]))
+    punches, positions = (math.ceil(start + rate * max_ratio) for start, rate in (_PUNCHES, _POSITIONS))
+    to_a, to_x = _to_coefficients(punches), _to_coefficients(positions)
+    x = max_ratio * (1.0 + chebyshev.chebpts1(positions)) / 2.0
+    values, stiffness = np.empty((positions, punches), dtype=complex), np.empty(punches)
+    for j, a in enumerate(max_ratio * (1.0 + chebyshev.chebpts1(punches)) / 2.0):
+        fields = AdheredFields(adhered_punch(float(a), support, poissons_ratio))
+        stiffness[j] = fields.punch.stiffness
+        inside = x <= _CONTINUED * a
+        values[inside, j] = fields.continued(x[inside] / a)
+        values[~inside, j] = fields.transform_beside(x[~inside] / a)
+    return GrowthTable(
+        Material.of(poissons_ratio), support, max_ratio, np.asarray(to_x @ values @ to_a.T), to_a @ stiffness
+    )
+
+
+def _to_coefficients(count: int) -> FloatArray:
+    return np.asarray(np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(count), count - 1)))
