@@ -56,6 +56,10 @@ class AdheringDiscCoefficients:
     # Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error; where depth or force cross over
     # from one order to another up to 2.2 was needed.
     difference: float = 2.5
+    # The same for the pressure where the profile has a kink under the contact, whose logarithm or root is resolved with
+    # order one half: that leaves 2.4 of the difference, and 3.2 was needed where a truncated cone's rim lies just
+    # inside the edge (unbonded layer, 96 cells, 2026-11-22).
+    kink_difference: float = 4.0
     # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
     # an odd power, added up to three times as much.
     truncation: float = 4.0
