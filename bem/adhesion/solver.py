@@ -183,7 +183,7 @@ class AdheringDiscs:
         return {
             "pull_off_force": float(solved + by_edge),
             "pull_off_depth": float((solved + by_edge) * terms),
-            "pull_off_contact_radius": float(solved + np.where(self._at_rim(lost_at), 0.0, by_edge)),
+            "pull_off_contact_radius": float(np.where(self._at_rim(lost_at), 0.0, solved + by_edge)),
         }
 
     def _at_rim(self, radius: FloatArray) -> BoolArray:

@@ -55,27 +55,28 @@ def test_the_stated_error_covers_the_turn_from_film_to_bed(monkeypatch):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LAYERS)
-def test_stated_errors_cover_what_longer_waves_and_more_radii_change_and_are_sharp(name, monkeypatch):
+def test_stated_errors_cover_what_longer_waves_and_more_radii_change_and_are_sharp(name, request, monkeypatch):
     """Energies up to twice the wavenumber with more nodes have no error left, and errors of the fit are others'.
 
     Seen to fail with the difference to the narrow panels as the error: 1.3e-10 for 2e-13 at nu = 0.4999.
     """
     solution, ratios = IntegralEquation().solution(LAYERS[name], 1000.0), np.geomspace(161.0, 1000.0, 60)
     answers = {quantity: getattr(solution, quantity)(ratios) for quantity in QUANTITIES}
+    bounds = {quantity: getattr(solution, stated)(ratios) for quantity, stated in QUANTITIES.items()}
     monkeypatch.setattr(bem.layer_equation.fourier_energy, "LARGEST_WAVENUMBER", 80.0)
     monkeypatch.setattr(bem.layer_equation.fourier_energy, "NODES", 48)
     monkeypatch.setattr(bem.layer_equation.thin_layers, "RADII", 80)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "DEGREE", 32)
+    request.addfinalizer(fresh_phases)
     fresh_phases()
     other = LargeRatioSolution(solution.support, solution.poissons_ratio, lambda: solution.near)
     other.__dict__["wide"] = solution.wide
-    for quantity, stated in QUANTITIES.items():
+    for quantity, bound in bounds.items():
         error = np.abs(answers[quantity] / getattr(other, quantity)(ratios) - 1)
-        bound = getattr(solution, stated)(ratios)
-        told = error > 1e-13
+        told = error > 100 * np.finfo(float).eps
         assert np.mean(error <= bound) > 0.95
         assert not np.any(told) or np.median(bound[told] / error[told]) < 10
         assert np.max(bound) < 1e-11
-    fresh_phases()
 
 
 def fresh_phases():
