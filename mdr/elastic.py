@@ -18,7 +18,8 @@ from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
-from mdr.springs.table_errors import elastic_errors, pressure_errors
+from mdr.springs.table_errors import elastic_errors
+from mdr.springs.table_pressure import pressure_errors
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -172,4 +173,4 @@ def _table_errors(
     errors = elastic_errors(system, scene.loading, radius, depth, is_punch=is_punch)
     values = (radius, depth, force, system.contact_stiffness(radius))
     relative = {name: error / value for (name, error), value in zip(errors.items(), values, strict=True)}
-    return relative | {"pressure": pressure_errors(system, radius, is_punch=is_punch)}
+    return relative | {"pressure": pressure_errors(system, scene, radius, depth)}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -14,6 +15,9 @@ from bem.grid.surface_fields import Rim, ring_interpolator
 from bem.kernels.moduli import contact_modulus
 from contact import Scene
 from contact.records.validation import FloatArray
+
+# Rings of equal area in which two pressures are compared.
+RINGS: Final = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,3 +67,15 @@ class AdheringFields:
         r, quotient = disc.grid.radius[disc.disc.contact], disc.quotient(self._pressure)
         inside = r < self.contact_radius - EDGE_CELLS * disc.grid.cell_size
         return ring_interpolator(r[inside], quotient[inside], disc.grid.cell_size)
+
+
+def pressure_change(fine: AdheringFields, coarse: AdheringFields) -> float:
+    """Distance of two grids' pressures at the same shares of their contact radii, relative to the fine one's.
+
+    In the norm weighted with r (a^2 - r^2), in which the edge's singularity counts as much as the middle.
+    """
+    if fine.contact_radius == 0.0 or coarse.contact_radius == 0.0:
+        return float(fine.contact_radius != coarse.contact_radius)
+    share = np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
+    p, q = (np.sqrt(1.0 - share**2) * field.pressure(share * field.contact_radius) for field in (fine, coarse))
+    return float(np.linalg.norm(p - q) / np.linalg.norm(p))

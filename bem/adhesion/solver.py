@@ -9,9 +9,9 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import DiscBranch, Quantity, long_enough
+from bem.adhesion.branch import RIM, DiscBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
-from bem.adhesion.fields import AdheringFields
+from bem.adhesion.fields import AdheringFields, pressure_change
 from bem.adhesion.sequence import FollowedState, at_radii, followed
 from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
@@ -31,7 +31,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from contact.answer.solution import Setting
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 
 # Least thickness of the layer in cells: with it the ring of the coarse grid begins within half the layer's thickness.
 LEAST_LAYER: Final = 12.0
@@ -75,10 +75,11 @@ class AdheringDiscs:
         radius = values["contact_radius"]
         self._refuse_thin_layer(float(radius.max()))
         refuse_touching_beside(self.scene, radius, values["indentation_depth"], self.points, self.threads)
-        floor = DISCS.floor + DISCS.truncation * fine.truncation(radius) + self._by_ring(radius)
-        errors = {
-            name: DISCS.difference * _difference(values[name], other[name]) + floor for name in ContactPath.ARRAYS
-        }
+        fields = tuple(self._fields(state, self.points) for state in states)
+        changes = {name: _difference(values[name], other[name]) for name in ContactPath.ARRAYS}
+        floors = self._floors(fine, radius)
+        errors = {name: DISCS.difference * change + floors[name] for name, change in changes.items()}
+        errors["pressure"] = self._pressure_errors(fields, others) + floors["pressure"]
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -88,7 +89,7 @@ class AdheringDiscs:
             stages=self.log.records,
             notes=("values are followed in their order, from out of contact",),
             error_estimate=errors,
-            fields=FieldSequence(tuple(self._fields(state) for state in states)),
+            fields=FieldSequence(fields),
             contact_radius=values["contact_radius"],
             indentation_depth=values["indentation_depth"],
             normal_force=values["normal_force"],
@@ -110,9 +111,7 @@ class AdheringDiscs:
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
         depth, force = fine.depth(radius), fine.force(radius)
         refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)
-        lost_at = np.array(pull_off["pull_off_contact_radius"])
-        own = float(DISCS.floor + DISCS.truncation * fine.truncation(lost_at) + self._by_ring(lost_at))
-        share = dict.fromkeys(pull_off, own) | {"pull_off_depth": own * _swing(depth, pull_off["pull_off_depth"])}
+        share = self._pull_off_floors(fine, np.array(pull_off["pull_off_contact_radius"]))
         errors = {
             name: np.array(
                 [DISCS.difference * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]]
@@ -152,6 +151,44 @@ class AdheringDiscs:
             nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
             errors[name] = DISCS.difference * nearby + truncated + rounding
         return errors
+
+    def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:
+        """What the coarse grid changes in the pressures of these states, as much of it as counts as error."""
+        first = min(self.scene.indenter.kinks, default=np.inf)
+        errors = []
+        for own, state in zip(fields, others, strict=True):
+            times = DISCS.kink_difference if own.contact_radius > first else DISCS.difference
+            errors.append(times * pressure_change(own, self._fields(state, self.points // 2)))
+        return np.array(errors)
+
+    def _floors(self, fine: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
+        """What two grids do not show, of each quantity at equilibria of radii [m], relative.
+
+        Edge values say nothing where the radius is prescribed, of the stiffness, or held at a rim, of all but the
+        pressure: then flat punches of a known radius are what is left.
+        """
+        solved, by_edge = DISCS.floor + DISCS.truncation * fine.truncation(radius), self._by_ring(radius)
+        given = isinstance(self.scene.loading, ContactRadii)
+        known = 0.0 if given else np.where(self._at_rim(radius), 0.0, by_edge)
+        of_load = by_edge if given else known
+        floors = {"contact_radius": known, "contact_stiffness": known, "indentation_depth": of_load}
+        floors |= {"normal_force": of_load, "pressure": by_edge}
+        return {name: solved + floor for name, floor in floors.items()}
+
+    def _pull_off_floors(self, fine: DiscBranch, lost_at: FloatArray) -> dict[str, float]:
+        """The same of a pull-off at this radius [m]; its depth is a difference, of profile and elongation."""
+        solved, by_edge = DISCS.floor + DISCS.truncation * fine.truncation(lost_at), self._by_ring(lost_at)
+        depth = np.abs(fine.depth(lost_at))
+        terms = (depth + fine.elongation(lost_at)) / depth
+        return {
+            "pull_off_force": float(solved + by_edge),
+            "pull_off_depth": float((solved + by_edge) * terms),
+            "pull_off_contact_radius": float(np.where(self._at_rim(lost_at), 0.0, solved + by_edge)),
+        }
+
+    def _at_rim(self, radius: FloatArray) -> BoolArray:
+        """Whether radii [m] are that of the flat end, where the edge is held."""
+        return np.asarray(np.abs(radius - self.scene.indenter.flat_radius) <= RIM * radius)
 
     def _branches(self) -> tuple[DiscBranch, DiscBranch]:
         """On the fine and on the coarse grid."""
@@ -204,17 +241,12 @@ class AdheringDiscs:
         width = FARTHEST * radius / measured_disc(self.points, False).radius
         return np.asarray(DISCS.ring * np.minimum(width / self.scene.layer.thickness, 1.0) ** 3)
 
-    def _fields(self, held: FollowedState) -> AdheringFields:
-        return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, self.points, self.threads)
+    def _fields(self, held: FollowedState, points: int) -> AdheringFields:
+        return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, points, self.threads)
 
 
 def _quantity(loading: IndentationDepths | NormalForces) -> Quantity:
     return "normal_force" if isinstance(loading, NormalForces) else "indentation_depth"
-
-
-def _swing(depth: FloatArray, lost_at: float) -> float:
-    """The largest depth over that of the pull-off, which may be near zero under force control."""
-    return float(np.max(np.abs(depth)) / abs(lost_at))
 
 
 def _largest_nearby(share: FloatArray, radius: FloatArray) -> FloatArray:

@@ -27,8 +27,10 @@ class DirectContactCoefficients:
     # steps of smooth profiles on 128 cells, seeds 1 and 5, 2026-11-22).
     second_order: float = 0.05
     # Times the difference of the pressures where the profile has a kink under pressure. Its logarithm, or the root
-    # close to a flat end, is resolved with order one half, so the error is 1/(sqrt(2) - 1) = 2.4 times the difference.
-    kink_difference: float = 3.0
+    # close to a flat end, is resolved with order one half, so the error is 1/(sqrt(2) - 1) = 2.4 times the difference
+    # once cells are small against the distance of kink and edge; before, 3.8 times was needed at most (60 scenes on 128
+    # cells, seed 77001, 2026-11-22).
+    kink_difference: float = 4.0
     # A relative error of the contact radius counts this many times in the pressure. It is the largest growth of a
     # contact's pressure with its radius: on a thin incompressible layer p goes with a^4 and F_N with a^6.
     pressure_exponent: float = 6.0
@@ -56,6 +58,10 @@ class AdheringDiscCoefficients:
     # Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error; where depth or force cross over
     # from one order to another up to 2.2 was needed.
     difference: float = 2.5
+    # The same for the pressure where the profile has a kink under the contact, whose logarithm or root is resolved with
+    # order one half: that leaves 2.4 of the difference, and 3.2 was needed where a truncated cone's rim lies just
+    # inside the edge (unbonded layer, 96 cells, 2026-11-22).
+    kink_difference: float = 4.0
     # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
     # an odd power, added up to three times as much.
     truncation: float = 4.0

@@ -46,7 +46,7 @@ def energy_matrix(densities: FloatArray, width: float, support: Support, poisson
     unit = _on_unit_panels(densities, int(width))
     size = 1 << int(np.ceil(np.log2(max(unit.shape[1], 64))))
     step = 2 * np.pi / size
-    turns = int(np.ceil(LARGEST_WAVENUMBER / (2 * np.pi)))
+    turns = _whole_turns()
     k = step * np.arange(turns * size)
     offsets, weights = gauss_nodes(WAVENUMBERS)
     energy = np.zeros((len(densities), len(densities)))
@@ -97,14 +97,41 @@ def _tail(densities: FloatArray, width: float, k: float) -> FloatArray:
     So sin(2ka) = 0 and cos(2ka) = 1 at the end; of what swings, orders beyond k^-3 are left out.
     """
     a = width * densities.shape[1]
-    coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
-    # Every Chebyshev polynomial is 1 at the edge.
-    p0, p1, p2, p3, p4 = ((2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(5))
+    p0, p1, p2, p3, p4 = _edge_derivatives(densities, width, 4)
     steady = _pair(p0, p0) / k + (_pair(p1, p1) - 2 * _pair(p0, p2)) / (3 * k**3)
     steady += (_pair(p2, p2) + 2 * _pair(p0, p4) - 2 * _pair(p1, p3)) / (5 * k**5)
     swinging = _pair(p0, p1) / (a * k**3) - _pair(p0, p0) / (2 * a**2 * k**3)
     tail: FloatArray = (steady + swinging) / 2
     return tail
+
+
+def tail_left_out(density: FloatArray, width: float) -> float:
+    """Bound of what `_tail` leaves out of the energy of one density.
+
+    Twice the orders that follow, k^-5 of what swings and k^-7 of the rest: each further one is smaller again.
+
+    Args:
+        density: Values at the panels' Gauss nodes, shape (panels, nodes).
+        width: Width of the panels, in layer thicknesses.
+    """
+    a, k = width * len(density), 2 * np.pi * _whole_turns()
+    p0, p1, p2, p3, p4, p5, p6 = _edge_derivatives(density[None], width, 6)[:, 0]
+    swinging = (p0 * p3 + p1 * p2) / (a * k**5)
+    steady = (p3**2 + 2 * (p1 * p5 - p2 * p4 - p0 * p6)) / (7 * k**7)
+    return 2 * float(abs(swinging) + abs(steady)) / np.pi
+
+
+def _whole_turns() -> int:
+    """Whole periods 2 pi of k up to `LARGEST_WAVENUMBER`."""
+    return int(np.ceil(LARGEST_WAVENUMBER / (2 * np.pi)))
+
+
+def _edge_derivatives(densities: FloatArray, width: float, orders: int) -> FloatArray:
+    """Derivatives of each density at the edge, from itself to the highest order, shape (orders + 1, densities)."""
+    coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
+    # Every Chebyshev polynomial is 1 at the edge.
+    found = [(2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(orders + 1)]
+    return np.array(found)
 
 
 def _pair(left: FloatArray, right: FloatArray) -> FloatArray:

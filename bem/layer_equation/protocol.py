@@ -138,6 +138,11 @@ class FlatPunchSolution(Protocol):
         return False
 
     @property
+    def first_ratio(self) -> float:
+        """The a/h below which these data are read linearly towards the half-space; zero for nowhere."""
+        return 0.0
+
+    @property
     def variants(self) -> tuple[tuple[float, FlatPunchSolution], ...]:
         """Coarser data, each with the share of its difference that counts as an error of these."""
         return ()

@@ -5,6 +5,7 @@ Rounding has cost them up to nine digits where the layer is bonded and incompres
 their span, however, the force is stationary: the Ritz value ``F = b^T G^-1 b`` with ``b_i = <1, phi_i>`` and the
 energies ``G_ij = <phi_i, A phi_j>``, computed without cancellation (`fourier_energy`), is wrong only by the square of
 what the span lacks. k_bar is then interpolated by a polynomial of ln k_bar in ln(a/h); its derivative gives c_bar.
+Stated errors add up what the span lacks, what the energies leave out, and what the polynomial misses.
 """
 
 from __future__ import annotations
@@ -16,9 +17,10 @@ from functools import cached_property
 import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
+from scipy.ndimage import maximum_filter1d
 
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
-from bem.layer_equation.fourier_energy import energy_matrix
+from bem.layer_equation.fourier_energy import energy_matrix, tail_left_out
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.profiles.thin_layers import LAST_TERMS, WidePanels
@@ -35,8 +37,6 @@ LARGEST_RATIO = 1000.0
 ROUNDING = 1e-12
 # The solution on wide panels is computed from this a/h on. It is returned where the narrow panels end.
 FIRST_RATIO = 80.0
-# First, last and number of the ratios at which the two are compared, which is an estimate of the error.
-COMPARED = (FIRST_RATIO, 90.0, 4)
 # Width of the wide panels in thicknesses, and their Gauss nodes.
 PANEL_WIDTH = 8.0
 PANEL_NODES = 36
@@ -48,6 +48,10 @@ RITZ_DENSITIES = 4
 # incompressible layer turns from an incompressible one into a compressible one within the range.
 RADII = 42
 DEGREE = 26
+# Samples of what the polynomial misses for each of its degrees, and how many of them, either way, its largest value is
+# taken over: half a wave of its last term, because it crosses zero twice in each wave.
+SAMPLES = 4
+NEARBY = 3 * SAMPLES
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,19 +155,19 @@ class LargeRatioSolution(FlatPunchSolution):
         """Bound of the relative error of k_bar."""
         ratio = self._covered(ratio)
         within = self.near.relative_error(np.minimum(ratio, self.near.max_ratio))
-        return np.where(ratio <= self.near.max_ratio, within, self.error[0])
+        return np.where(ratio <= self.near.max_ratio, within, self._wide_error(ratio)[0])
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of c_bar."""
         ratio = self._covered(ratio)
         within = self.near.spring_error(np.minimum(ratio, self.near.max_ratio))
-        return np.where(ratio <= self.near.max_ratio, within, self.error[1])
+        return np.where(ratio <= self.near.max_ratio, within, self._wide_error(ratio)[1])
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """As that of the springs beyond; what the fits of the moment add is stated with the profile."""
         ratio = self._covered(ratio)
         within = self.near.profile_error(np.minimum(ratio, self.near.max_ratio))
-        return np.where(ratio <= self.near.max_ratio, within, self.error[1])
+        return np.where(ratio <= self.near.max_ratio, within, self._wide_error(ratio)[1])
 
     @cached_property
     def near(self) -> IntegralEquationSolution:
@@ -193,35 +197,42 @@ class LargeRatioSolution(FlatPunchSolution):
         """ln k_bar over ln(a/h)."""
         return self._fitted(DEGREE)
 
-    @cached_property
-    def error(self) -> tuple[float, float]:
-        """Relative errors of k_bar and c_bar: what the first ratios of the overlap, fit and Ritz values show.
+    def _wide_error(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Relative errors of k_bar and c_bar beyond the narrow panels, shape of `ratio` each.
 
-        What the Ritz values lack falls with the ratio, and the narrow panels' rounding grows: so the two are compared
-        at the first ratios, where the difference bounds what is left beyond. An error of k_bar that goes with a power
-        of the ratio counts in c_bar = k_bar (1 + d ln k_bar/d ln ratio) likewise, one of the fit by its slope.
+        What the Ritz values lack falls with the square of the ratio, so in c_bar = k_bar (1 + d ln k_bar/d ln ratio),
+        whose second factor is at least two, it counts twice at most. An error of the fit counts by its slope, and what
+        the fit misses at its radii by the largest slope of such a polynomial there (Bernstein's and Markov's bounds).
         """
-        first = np.linspace(*COMPARED)
-        seen = np.abs(self._stiffness(first) / self.near.normalized_contact_stiffness(first) - 1)
-        ratios, stiffness, left_out, _ = self._punches
-        missed = np.abs(self.log_stiffness(np.log(ratios)) - np.log(stiffness))
-        common = float(seen.max()) + left_out + float(missed.max())
-        value, slope = self._fit_error
-        return common + value, 2 * common + value + slope
+        ratios, stiffness, lacking, _ = self._punches
+        log_ratio = np.log(np.maximum(ratio, self.near.max_ratio))
+        missed = np.max(np.abs(self.log_stiffness(np.log(ratios)) - np.log(stiffness)))
+        samples, *misfit = self._misfit
+        value, slope = (np.interp(log_ratio, samples, error) for error in misfit)
+        ritz, growth = np.interp(log_ratio, np.log(ratios), lacking), 1 + self.log_stiffness.deriv()(log_ratio)
+        offset, scale = self.log_stiffness.mapparms()
+        steepest = DEGREE * scale / np.sqrt(np.maximum(1 - (offset + scale * log_ratio) ** 2, DEGREE**-2.0))
+        return ritz + missed + value, 2 * ritz + missed + value + (slope + missed * steepest) / growth
 
-    @property
-    def _fit_error(self) -> tuple[float, float]:
-        """What the last terms of the fit make of ln k_bar and of its slope beyond the narrow panels' end."""
-        log_ratio = np.linspace(np.log(self.near.max_ratio), np.log(LARGEST_RATIO), 4 * DEGREE)
+    @cached_property
+    def _misfit(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """What the last terms of the fit make of ln k_bar and of its slope around some ln(a/h), which come first."""
+        log_ratio = np.linspace(np.log(self.near.max_ratio), np.log(LARGEST_RATIO), SAMPLES * DEGREE)
         last = self.log_stiffness - self._fitted(DEGREE - LAST_TERMS)
-        return float(np.max(np.abs(last(log_ratio)))), float(np.max(np.abs(last.deriv()(log_ratio))))
+        value, slope = (
+            maximum_filter1d(np.abs(error(log_ratio)), 2 * NEARBY + 1, mode="nearest") for error in (last, last.deriv())
+        )
+        return log_ratio, value, slope
 
     def _fitted(self, degree: int) -> Chebyshev:
+        """The polynomial, and that of what roundings of the least-squares problem have left in it."""
         ratios, stiffness, *_ = self._punches
-        return Chebyshev.fit(np.log(ratios), np.log(stiffness), degree)
+        log_ratio, log_stiffness = np.log(ratios), np.log(stiffness)
+        first = Chebyshev.fit(log_ratio, log_stiffness, degree)
+        return first + Chebyshev.fit(log_ratio, log_stiffness - first(log_ratio), degree)
 
     @cached_property
-    def _punches(self) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
+    def _punches(self) -> tuple[FloatArray, FloatArray, FloatArray, dict[float, FloatArray]]:
         return _wide_punches(self.wide)
 
     def _stiffness(self, ratio: FloatArray) -> FloatArray:
@@ -262,13 +273,13 @@ class WideSolution(IntegralEquationSolution):
 
 def _wide_punches(
     wide: IntegralEquationSolution,
-) -> tuple[FloatArray, FloatArray, float, dict[float, FloatArray]]:
-    """Ratios, k_bar there, the largest relative difference that the last Ritz density makes, and the densities."""
+) -> tuple[FloatArray, FloatArray, FloatArray, dict[float, FloatArray]]:
+    """Ratios, k_bar there, its relative errors by what span and energies lack, and the densities."""
     ratios = _radii_at_panel_ends()
     punches = [_ritz_punch(trial, wide) for trial in _trial_densities(wide.factor, ratios)]
-    best, fewer = (np.array([punch[item] for punch in punches]) for item in (0, 1))
+    best, lacking = (np.array([punch[item] for punch in punches]) for item in (0, 1))
     densities = {float(a): punch[2] for a, punch in zip(ratios, punches, strict=True)}
-    return ratios, best / ratios, float(np.max(np.abs(fewer / best - 1))), densities
+    return ratios, best / ratios, lacking, densities
 
 
 def _radii_at_panel_ends() -> FloatArray:
@@ -294,11 +305,16 @@ def _trial_densities(factor: VolterraFactor, ratios: FloatArray) -> list[FloatAr
 
 
 def _ritz_punch(trial: FloatArray, wide: IntegralEquationSolution) -> tuple[float, float, FloatArray]:
-    """F/(2 E*) of a flat punch pressed in by 1, from all Ritz densities and from one less, and its density."""
+    """F/(2 E*) of a flat punch pressed in by 1, its relative error, and its density.
+
+    The error is what the last Ritz density makes, and what is left out of the energy, which is F itself.
+    """
     energy = energy_matrix(trial, wide.factor.panel_width, wide.support, wide.poissons_ratio)
     load = np.sum(trial @ wide.factor.weights, axis=1)
     shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
-    return float(load @ shares), float(load[:-1] @ fewer), np.tensordot(shares, trial, axes=1)
+    force, density = float(load @ shares), np.tensordot(shares, trial, axes=1)
+    lacking = abs(float(load[:-1] @ fewer) - force) + tail_left_out(density, wide.factor.panel_width)
+    return force, lacking / force, density
 
 
 def _stationary(energy: FloatArray, load: FloatArray) -> FloatArray:

@@ -80,6 +80,11 @@ class FlatPunchTable(FlatPunchSolution):
         """Largest a/h that is covered."""
         return float(self.ratios[-1])
 
+    @property
+    def first_ratio(self) -> float:
+        """Smallest a/h of the table."""
+        return float(self.ratios[0])
+
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar(a/h), shape of `ratio`."""
         xi = self._checked(ratio)

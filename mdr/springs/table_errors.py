@@ -8,19 +8,14 @@ first order, and only then their sizes are added up, each times the share that c
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, cast
 
 import numpy as np
 
 from bem.grid.error_model import TABLES
-from bem.tables.table import FlatPunchTable
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import STIFFNESS_SHARE
-
-# Radii at which pressures are compared.
-RINGS: Final = 24
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,7 +62,7 @@ def _values(system: EquivalentSystem, radius: FloatArray) -> tuple[FloatArray, F
 
 def _below_table(system: EquivalentSystem, radius: FloatArray) -> FloatArray:
     """What the law between the half-space and the first row leaves out: third order, of coefficients near one."""
-    ratio, first = radius / system.length_unit, cast(FlatPunchTable, system.flat_punch).ratios[0]
+    ratio, first = radius / system.length_unit, system.flat_punch.first_ratio
     return np.where(ratio < first, ratio * first**2, 0.0)
 
 
@@ -79,7 +74,15 @@ def size(changes: FloatArray) -> FloatArray:
 def elastic_errors(
     system: EquivalentSystem, loading: Loading, radius: FloatArray, depth: FloatArray, *, is_punch: bool
 ) -> dict[str, FloatArray]:
-    """Absolute errors of an elastic contact's four quantities, zero for what is prescribed [m, m, N, N/m].
+    """Absolute errors of an elastic contact's four quantities, zero for what is prescribed [m, m, N, N/m]."""
+    changes = elastic_changes(system, loading, radius, depth, is_punch=is_punch)
+    return {name: size(values) for name, values in changes.items()}
+
+
+def elastic_changes(
+    system: EquivalentSystem, loading: Loading, radius: FloatArray, depth: FloatArray, *, is_punch: bool
+) -> dict[str, FloatArray]:
+    """What `TableDifferences` make of an elastic contact's four quantities, shape (m, n) each [m, m, N, N/m].
 
     With F = k g - M at equilibrium, and dF = k d(delta) at a fixed radius.
     """
@@ -99,7 +102,7 @@ def elastic_errors(
     own = STIFFNESS_SHARE if is_punch or isinstance(loading, ContactRadii) else 1.0
     stiffness = own * change.stiffness + 2.0 * system.spring_stiffness(radius) * a  # d(k_N)/da = 2 c_N
     names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
-    return {name: size(values) for name, values in zip(names, (a, delta, force, stiffness), strict=True)}
+    return dict(zip(names, (a, delta, force, stiffness), strict=True))
 
 
 def adhesive_errors(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
@@ -111,20 +114,6 @@ def adhesive_errors(system: EquivalentSystem, radius: FloatArray, depth: FloatAr
     hanging = system.mdr_profile(radius) - depth
     delta = change.profile + 0.5 * hanging * change.springs / system.spring_stiffness(radius)
     return np.stack([size(delta), size(change.stiffness * depth + k * delta - change.moment)])
-
-
-def pressure_errors(system: EquivalentSystem, radius: FloatArray, *, is_punch: bool) -> FloatArray:
-    """Of the pressure under a contact: the largest of q under a punch, else its mean and that of the profile."""
-    table, ratio = system.flat_punch, radius / system.length_unit
-    rho = np.sin((np.arange(RINGS) + 0.5) * (np.pi / (2 * RINGS)))
-    q = table.smooth_pressure(rho, ratio[:, None])
-    changes = [share * (other.flat_punch.smooth_pressure(rho, ratio[:, None]) - q) for share, other in system.variants]
-    error, largest = size(np.array(changes)) + TABLES.pressure_floor, np.max(q, axis=1)
-    if is_punch:
-        return np.asarray(np.max(error, axis=1) / largest)
-    return np.asarray(
-        np.sqrt(np.mean(error**2, axis=1)) / largest + relative_errors(system, radius)["indentation_depth"]
-    )
 
 
 def relative_errors(system: EquivalentSystem, radius: FloatArray) -> dict[str, FloatArray]:

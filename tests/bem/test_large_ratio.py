@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import bem.layer_equation.fourier_energy
 import bem.layer_equation.thin_layers
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
@@ -22,14 +23,19 @@ RATIOS = np.array([161.0, 240.0, 333.0, 500.0, 777.0, 1000.0])
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LAYERS)
 def test_other_panels_give_the_same_within_the_stated_error(name, monkeypatch):
-    """The density that enters differs in the fourth digit at a/h = 1000; the Ritz value does not in the twelfth."""
+    """The density that enters differs in the fourth digit at a/h = 1000; the Ritz value does not in the twelfth.
+
+    Seen to fail at nu = 0.4999, as soon as the first solution was made on its own panels, where roundings of one
+    least-squares problem moved c_bar by 1.4e-12.
+    """
     layer = LAYERS[name]
     solution = IntegralEquation().solution(layer, 1000.0)
+    assert solution.log_stiffness.degree() == bem.layer_equation.thin_layers.DEGREE
     monkeypatch.setattr(bem.layer_equation.thin_layers, "PANEL_NODES", 40)
     other = LargeRatioSolution(layer.support, layer.poissons_ratio, lambda: solution.near)
     assert other.log_stiffness is not solution.log_stiffness
-    assert max(solution.error) < 1e-8
     for quantity, stated in QUANTITIES.items():
+        assert np.max(getattr(solution, stated)(RATIOS)) < 1e-8
         differences = np.abs(getattr(other, quantity)(RATIOS) / getattr(solution, quantity)(RATIOS) - 1)
         assert np.all(differences < getattr(solution, stated)(RATIOS))
         assert np.all(differences < (1e-13 if quantity == "normalized_contact_stiffness" else 1e-12))
@@ -45,6 +51,35 @@ def test_the_stated_error_covers_the_turn_from_film_to_bed(monkeypatch):
     other = LargeRatioSolution("bonded", 0.4999, lambda: solution.near)
     assert np.all(np.abs(stiffness / other.normalized_contact_stiffness(ratios) - 1) < solution.relative_error(ratios))
     assert np.all(np.abs(springs / other.normalized_spring_stiffness(ratios) - 1) < solution.spring_error(ratios))
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["bonded 0.5"])
+def test_stated_errors_cover_what_longer_waves_and_more_radii_change_and_are_sharp(name, request, monkeypatch):
+    """Energies up to twice the wavenumber with more nodes have no error left, and errors of the fit are others'."""
+    solution, ratios = IntegralEquation().solution(LAYERS[name], 1000.0), np.geomspace(161.0, 1000.0, 60)
+    answers = {quantity: getattr(solution, quantity)(ratios) for quantity in QUANTITIES}
+    bounds = {quantity: getattr(solution, stated)(ratios) for quantity, stated in QUANTITIES.items()}
+    monkeypatch.setattr(bem.layer_equation.fourier_energy, "LARGEST_WAVENUMBER", 80.0)
+    monkeypatch.setattr(bem.layer_equation.fourier_energy, "NODES", 48)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "RADII", 80)
+    monkeypatch.setattr(bem.layer_equation.thin_layers, "DEGREE", 32)
+    request.addfinalizer(fresh_phases)
+    fresh_phases()
+    other = LargeRatioSolution(solution.support, solution.poissons_ratio, lambda: solution.near)
+    other.__dict__["wide"] = solution.wide
+    for quantity, bound in bounds.items():
+        error = np.abs(answers[quantity] / getattr(other, quantity)(ratios) - 1)
+        told = error > 100 * np.finfo(float).eps
+        assert np.mean(error <= bound) > 0.95
+        assert not np.any(told) or np.median(bound[told] / error[told]) < 10
+        assert np.max(bound) < 1e-11
+
+
+def fresh_phases():
+    """Phases remembered for other nodes are forgotten."""
+    bem.layer_equation.fourier_energy._phases.cache_clear()
+    bem.layer_equation.fourier_energy._turns.cache_clear()
 
 
 def test_one_solution_serves_the_densities_of_all_radii(monkeypatch):
@@ -68,7 +103,7 @@ def test_one_solution_serves_the_densities_of_all_radii(monkeypatch):
 def test_stiffness_is_continuous_where_the_two_solutions_meet(name):
     solution = IntegralEquation().solution(LAYERS[name], 1000.0)
     for quantity, stated in QUANTITIES.items():
-        below, beyond = getattr(solution, quantity)(np.array([160.0, 160.0 * (1 + 1e-12)]))
+        below, beyond = getattr(solution, quantity)(np.array([160.0, np.nextafter(160.0, 161.0)]))
         error = float(np.sum(getattr(solution, stated)(np.array([160.0, 161.0]))))
         assert beyond == pytest.approx(below, rel=error, abs=0.0)
 

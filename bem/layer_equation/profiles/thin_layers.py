@@ -30,9 +30,10 @@ DEGREE = 24
 LAST_TERMS = 2
 # Size of coefficients of ln M that is rounding: sums over hundreds of nodes, of densities that have lost digits.
 NOISE = 1e-12
-# Multiplies what overlap and decay show. For cones and paraboloids on layers of nu = 0.49, 0.4999 and 0.5 and radii up
-# to 168, 328 and 704 thicknesses, against fits over all radii, the product is 1.5 to 24 times the true error
-# (measured 2026-11-22); what the shorter fit misses was up to 180 times it.
+# Multiplies the sum of two differences: of the fit and the narrow panels where they overlap, and of the fit and one
+# `LAST_TERMS` degrees shorter beyond, times the decay of the coefficients. For cones and paraboloids on layers of
+# nu = 0.49, 0.4999 and 0.5 and radii up to 168, 328 and 704 thicknesses, against fits over all radii, the error so
+# stated is 1.5 to 24 times the true one (measured 2026-11-22); without the decay it was up to 180 times.
 SAFETY = 1.5
 
 
