@@ -183,13 +183,6 @@ def gate(
     run: Annotated[Path, typer.Argument(help="Folder of a finished run.")] = Path("build/verification"),
     *,
     baseline: Baselines = Path("baselines"),
-    against: Annotated[
-        str, typer.Option(metavar="REVISION", help="Also time every method alternately with this git revision.")
-    ] = "",
-    only: Annotated[
-        list[str] | None, typer.Option(metavar="CASE", help="With --against: time only these cases. Repeatable.")
-    ] = None,
-    pairs: Annotated[int, typer.Option(min=7, help="With --against: how often each method is timed.")] = 15,
     method: Annotated[
         list[str] | None, typer.Option(help="Only these methods, for a run of them alone. Repeatable.")
     ] = None,
@@ -200,10 +193,9 @@ def gate(
 
     The regression claims join the others in the report, together with the history of accepted changes.
     """
-    from reports.commands.gate import Timing, run_gate  # noqa: PLC0415
+    from reports.commands.gate import run_gate  # noqa: PLC0415
 
-    timing = Timing(revision=against, cases=tuple(only or ()), pairs=pairs)
-    return run_gate(run, baseline, methods=method or (), timing=timing, strict=strict, quiet=quiet)
+    return run_gate(run, baseline, methods=method or (), strict=strict, quiet=quiet)
 
 
 @app.command()
