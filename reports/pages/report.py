@@ -20,6 +20,7 @@ from reports.pages.matrix import run_matrix
 from reports.tables import cost_tables
 from reports.tables.table import Table
 from reports.words.file_names import file_name
+from reports.words.moves import moves
 from reports.words.numbers import duration, small
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 
@@ -92,7 +93,8 @@ def baseline_sentence(run: RunResult) -> str:
     if not compared:
         return "Not compared with a baseline."
     changed = sum(claim.status is not Status.PASS for claim in compared)
-    return f"Since the baseline: {changed} of {len(compared)} numbers changed."
+    groups = "; ".join(moves(run))
+    return f"Since the baseline: {changed} of {len(compared)} numbers changed{groups and ': '}{groups}."
 
 
 def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:
