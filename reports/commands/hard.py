@@ -10,7 +10,7 @@ from cases.declare.guarded_method import build_guarded
 from cases.measurements.advice import advise as advice_on
 from cases.results.records.run import CaseResult
 from contact import InvalidInput, load_scene
-from reports.terminal.terminal import console
+from reports.terminal.terminal import console, show_table
 
 FAILED = 1
 
@@ -37,13 +37,23 @@ def ladders(names: list[str], methods: list[str], out: Path | None) -> int:
 def coverage(methods: list[str], families: list[str], seed: int | None, out: Path | None) -> int:
     """Compare stated with true errors over random scenes; return 1 if some are exceeded too often or are not sharp."""
     from cases.measurements.campaigns.coverage import PLANS, SEED, coverage_case  # noqa: PLC0415 - only this command needs it
+    from reports.tables.hard_tables import error_coefficients  # noqa: PLC0415
 
     plans = [
         plan for plan in PLANS if (not methods or plan.method in methods) and (not families or plan.family in families)
     ]
     if not plans:
         raise InvalidInput(f"no such plan; methods are {', '.join(dict.fromkeys(plan.method for plan in PLANS))}")
-    return published(lambda: coverage_case(plans, SEED if seed is None else seed, progress=_say), out)
+
+    def study() -> CaseResult:
+        """Measure, then show each error coefficient beside what was achieved."""
+        case = coverage_case(plans, SEED if seed is None else seed, progress=_say)
+        table = error_coefficients(case)
+        if table is not None:
+            show_table(table, on=console())
+        return case
+
+    return published(study, out)
 
 
 def accuracy(count: int, seed: int, evidence: Path | None, out: Path | None) -> int:

@@ -1,6 +1,12 @@
 """Tables of hard cases: where ladders break and with how many digits, and how well stated errors hold."""
 
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
 from cases.measurements.advice.error_maps import UNBONDED, good_range
+from cases.measurements.campaigns.coefficients import Coefficient, coefficients
 from cases.measurements.campaigns.coverage import at_90
 from cases.measurements.ladders.ladders import breakdown, fewest_digits
 from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
@@ -103,6 +109,38 @@ def _coverage_row(record: CoverageRecord) -> tuple[str, ...]:
         "" if record.sharpness is None else small(record.sharpness),
         "" if record.sharpness is None else small(at_90(record)),
     )
+
+
+def error_coefficients(case: CaseResult) -> Table | None:
+    """One row a coefficient of the error models of all measured methods, beside the worst that it led to."""
+    rows = tuple(map(_coefficient_row, coefficients(case.coverage)))
+    if not rows:
+        return None
+    return Table(
+        title="Error coefficients and what they achieved",
+        note="The least coverage and the largest sharpness, in the median and at 90 %, of the stated errors that a "
+        "coefficient shapes, over so many of the rows above; empty where this study measured none of them.",
+        heads=("coefficient", "shapes", "value", "rows", "least covered", "sharpness", "at 90 %"),
+        rows=rows,
+        words=2,
+    )
+
+
+def _coefficient_row(found: Coefficient) -> tuple[str, ...]:
+    shaped = ", ".join(quantity.replace("_", " ") for quantity in found.quantities) or "all quantities"
+    head = found.name, shaped, ", ".join(f"{number:.3g}" for number in _numbers(found.value))
+    if not found.achieved:
+        return *head, "0", "", "", ""
+    least = min(record.covered for record in found.achieved)
+    sharp = [record for record in found.achieved if record.sharpness is not None]
+    medians, at_most = [record.sharpness or 0.0 for record in sharp], [at_90(record) for record in sharp]
+    largest = (small(max(ratios)) if ratios else "" for ratios in (medians, at_most))
+    return *head, f"{len(found.achieved)}", f"{100 * least:.1f} %", *largest
+
+
+def _numbers(value: Any) -> Iterable[float]:
+    """The numbers of a coefficient: one, several, or one for each polynomial degree."""
+    return map(float, np.ravel(list(value.values()) if isinstance(value, Mapping) else value))
 
 
 def good_ranges(case: CaseResult) -> Table | None:
