@@ -14,7 +14,6 @@ from cases.gate.checks.check import regression_claim
 from cases.gate.history import append_history, blank_entry
 from cases.gate.write_permission import WriteConditions
 from cases.judgement.rules.judgement import Judgement, nothing_compared, passed_or_failed
-from cases.measurements.ladders.ladders import worsened
 from cases.results.files import write_whole
 from cases.results.records.claim import Claim
 from cases.results.records.reliability import Ladder
@@ -78,7 +77,7 @@ def _judged(ladder: Ladder, before: Ladder | None) -> Judgement:
     if before is None:
         message = "extra: this ladder was never accepted; look at it, then accept the run"
         return nothing_compared(Status.INCOMPARABLE, message)
-    worse = worsened(ladder, before)
+    worse = ladder.worse_than(before)
     message = "; ".join(worse) or "no rung lost, no more than one digit lost"
     return passed_or_failed(float(len(worse)), 0.5, message, failure=Status.DIFF)
 
@@ -93,7 +92,7 @@ def accept_ladders(
     """
     accepted = {(ladder.name, ladder.method): ladder for ladder in read_ladders(folder)}
     new = {(ladder.name, ladder.method): ladder for ladder in ladders}
-    worse = [line for place, ladder in new.items() if place in accepted for line in worsened(ladder, accepted[place])]
+    worse = [line for place, ladder in new.items() if place in accepted for line in ladder.worse_than(accepted[place])]
     if worse and not loosen:
         raise InvalidInput(f"ladders are not accepted: {'; '.join(worse)}; find out why, then say --loosen")
     for method in dict.fromkeys(ladder.method for ladder in new.values()):

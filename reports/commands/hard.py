@@ -37,7 +37,7 @@ def ladders(names: list[str], methods: list[str], out: Path | None) -> int:
 def coverage(methods: list[str], families: list[str], seed: int | None, out: Path | None) -> int:
     """Compare stated with true errors over random scenes; return 1 if some are exceeded too often or are not sharp."""
     from cases.measurements.campaigns.coverage import PLANS, SEED, coverage_case  # noqa: PLC0415 - only this command needs it
-    from reports.tables.hard_tables import error_coefficients  # noqa: PLC0415
+    from reports.tables.coefficient_table import error_coefficients  # noqa: PLC0415
 
     plans = [
         plan for plan in PLANS if (not methods or plan.method in methods) and (not families or plan.family in families)

@@ -1,16 +1,9 @@
 """Tables of hard cases: where ladders break and with how many digits, and how well stated errors hold."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import Any
 
-import numpy as np
-
-from cases.measurements.advice.error_maps import UNBONDED, good_range
-from cases.measurements.campaigns.coefficients import coefficients
-from cases.measurements.campaigns.coverage import at_90
-from cases.measurements.ladders.ladders import breakdown, fewest_digits
-from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder, Rung
+from cases.results.records.reliability import UNBONDED, CoverageRecord, ErrorMap, Ladder, Rung
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from reports.tables.table import Table, per_cent, tabulated
@@ -32,12 +25,12 @@ def ladders(case: CaseResult) -> Table | None:
                 ladder, f"{small(ladder.rungs[0].value)} .. {small(ladder.rungs[-1].value)}"
             ),
             "how far": _how_far,
-            "fewest digits": lambda ladder: "" if (d := fewest_digits(ladder)) is None else f"{d:.1f}",
+            "fewest digits": lambda ladder: "" if ladder.fewest_digits is None else f"{ladder.fewest_digits:.1f}",
             "iterations": lambda ladder: f"{max(found)}" if (found := _iterations(ladder)) else "",
-            "residual": lambda ladder: _largest(
+            "residual": lambda ladder: largest(
                 v for r in _climbed(ladder) for k, v in r.residuals.items() if k != STATED
             ),
-            "stated": lambda ladder: _largest(value for name, value in _residuals(ladder) if name == STATED),
+            "stated": lambda ladder: largest(value for name, value in _residuals(ladder) if name == STATED),
         },
         title="Breakdown rungs and digits",
         note="Digits are those that perturbed repeats share on the worst rung that was climbed. Residual: the largest "
@@ -64,19 +57,16 @@ def _with_unit(ladder: Ladder, text: str) -> str:
 
 
 def _how_far(ladder: Ladder) -> str:
-    stop = breakdown(ladder)
-    return "climbed to the end" if stop is None else _with_unit(ladder, f"{_gave_up(ladder, stop)} {small(stop)}")
+    stop = ladder.breakdown
+    if stop is None:
+        return "climbed to the end"
+    return _with_unit(ladder, f"{'fails at' if stop.status is Status.FAIL else 'refuses'} {small(stop.value)}")
 
 
-def _largest(values: Iterable[float]) -> str:
+def largest(values: Iterable[float]) -> str:
     """The largest of some errors; empty where there are none."""
     found = list(values)
     return small(max(found)) if found else ""
-
-
-def _gave_up(ladder: Ladder, stop: float) -> str:
-    (rung,) = (rung for rung in ladder.rungs if rung.value == stop)
-    return "fails at" if rung.status is Status.FAIL else "refuses"
 
 
 def coverage(case: CaseResult) -> Table | None:
@@ -94,8 +84,8 @@ def coverage(case: CaseResult) -> Table | None:
             "refused": lambda record: f"{record.refused}",
             "answers": lambda record: f"{record.checks}",
             "covered": lambda record: per_cent(record.covered),
-            "sharpness": lambda record: _largest(_sharpness([record])),
-            "at 90 %": lambda record: _largest(map(at_90, _told([record]))),
+            "sharpness": lambda record: largest(sharpness([record])),
+            "at 90 %": lambda record: largest(r.at_90 for r in told([record])),
         },
         title="Coverage and sharpness",
         note="Covered: share of answers whose true error lies within the stated one (with the referee's own "
@@ -105,38 +95,14 @@ def coverage(case: CaseResult) -> Table | None:
     )
 
 
-def _told(records: Iterable[CoverageRecord]) -> list[CoverageRecord]:
+def told(records: Iterable[CoverageRecord]) -> list[CoverageRecord]:
     """Those of which true errors could be told."""
     return [record for record in records if record.sharpness is not None]
 
 
-def _sharpness(records: Iterable[CoverageRecord]) -> list[float]:
-    return [record.sharpness or 0.0 for record in _told(records)]
-
-
-def error_coefficients(case: CaseResult) -> Table | None:
-    """One row a coefficient of the error models of all measured methods, beside the worst that it led to."""
-    return tabulated(
-        coefficients(case.coverage),
-        {
-            "coefficient": lambda found: found.name,
-            "shapes": lambda found: ", ".join(q.replace("_", " ") for q in found.quantities) or "all quantities",
-            "value": lambda found: ", ".join(f"{number:.3g}" for number in _numbers(found.value)),
-            "rows": lambda found: f"{len(found.achieved)}",
-            "least covered": lambda found: per_cent(min(r.covered for r in found.achieved)) if found.achieved else "",
-            "sharpness": lambda found: _largest(_sharpness(found.achieved)),
-            "at 90 %": lambda found: _largest(map(at_90, _told(found.achieved))),
-        },
-        title="Error coefficients and what they achieved",
-        note="The least coverage and the largest sharpness, in the median and at 90 %, of the stated errors that a "
-        "coefficient shapes, over so many of the rows above; empty where this study measured none of them.",
-        words=2,
-    )
-
-
-def _numbers(value: Any) -> Iterable[float]:
-    """The numbers of a coefficient: one, several, or one for each polynomial degree."""
-    return map(float, np.ravel(list(value.values()) if isinstance(value, Mapping) else value))
+def sharpness(records: Iterable[CoverageRecord]) -> list[float]:
+    """Stated over true error in the median, of those of which true errors could be told."""
+    return [record.sharpness or 0.0 for record in told(records)]
 
 
 def good_ranges(case: CaseResult) -> Table | None:
@@ -155,7 +121,7 @@ def _layer(row: str) -> str:
 
 
 def _range(found: ErrorMap, row: str) -> str:
-    good = good_range(found, row) if row in found.rows else None
+    good = found.good_range(row) if row in found.rows else None
     if good is None:
         return "nowhere" if row in found.rows else ""
     return f"{good[0]:.2g} .. {good[1]:.2g}"

@@ -11,7 +11,7 @@ from cases.measurements.campaigns.coefficients import GROUPS, coefficients, valu
 from cases.measurements.campaigns.coverage import PLANS
 from cases.results.records.reliability import CoverageRecord
 from contact import UNITS
-from reports.tables.hard_tables import error_coefficients
+from reports.tables.coefficient_table import error_coefficients
 from tests.cases.example_run import passing_case
 
 MODULES = ("bem.grid", "bem.layer_equation", "mdr.springs", "fem_reference")
