@@ -5,19 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
+from cases.declare.quantities import relative_change, single_numbers, values_of
 from cases.run.empty_caches import forget
-from contact import ContactError, Detachment, ImpactHistory, Layer, Method, Scene, Solution
-from contact.records.validation import FloatArray
+from contact import ContactError, Detachment, Layer, Method, Scene, Solution
 
-NUMBERS = (
-    "coefficient_of_restitution",
-    "contact_time",
-    "peak_force",
-    "peak_depth",
-    "peak_contact_radius",
-)
 THICKNESS = "finite thickness"
 _IMPORTS_COUNT = 2.0  # seconds: a longer solution hides them
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
@@ -98,7 +89,7 @@ def parts_of(scene: Scene) -> tuple[str, ...]:
 def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> float:
     """Largest relative change of any quantity with all these parts left out at once."""
     less = method.solve(without(whole.scene, parts))
-    return max(_change(whole, less, quantity) for quantity in _quantities(whole))
+    return max(_changes(whole, less).values())
 
 
 def without(scene: Scene, parts: Sequence[str]) -> Scene:
@@ -127,23 +118,14 @@ def _ablation(method: Method, whole: Solution, part: str) -> Ablation:
     except ContactError as error:
         remark = f"no answer without it ({error!s:.120})"
         return Ablation(part=part, changes={}, seconds_with=spent, seconds_without=0.0, remark=remark)
-    changes = {q: _change(whole, less, q) for q in _quantities(whole)}
+    changes = _changes(whole, less)
     return Ablation(part=part, changes=changes, seconds_with=spent, seconds_without=_seconds(less))
 
 
-def _quantities(answer: Solution) -> tuple[str, ...]:
-    if isinstance(answer, ImpactHistory):
-        return NUMBERS
-    return answer.SCALARS or STATIC
-
-
-def _change(whole: Solution, less: Solution, quantity: str) -> float:
-    before, after = _values(whole, quantity), _values(less, quantity)
-    return float(np.max(np.abs(before - after)) / max(np.max(np.abs(before)), np.finfo(float).tiny))
-
-
-def _values(answer: Solution, quantity: str) -> FloatArray:
-    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
+def _changes(whole: Solution, less: Solution) -> dict[str, float]:
+    """Relative change of what the answer ends with, or of its path."""
+    names = single_numbers(whole) or STATIC
+    return {name: relative_change(values_of(whole, name), values_of(less, name)) for name in names}
 
 
 def _seconds(answer: Solution) -> float:

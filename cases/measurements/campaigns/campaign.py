@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.declare.quantities import IMPACT_NUMBERS, single_numbers, values_of
 from cases.measurements.campaigns.random_scenes import RATIO, Family, random_scenes
 from cases.measurements.campaigns.referee import LARGEST_RATIO, adhesive_states, second_opinion
 from cases.measurements.campaigns.restated import changes_when_restated
@@ -37,7 +38,6 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Viscoelasticity
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
-IMPACT_NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 _MOTION = ("indentation_depth", "normal_force")
 UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
 
@@ -128,7 +128,7 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
     for q in _comparable(answer, finer):
         if q in answer.error_estimate:
             allowance = np.atleast_1d(finer.error_estimate.get(q, 0.0))
-            yield _check(answer, q, _values(finer, q), allowance, reference=reference)
+            yield _check(answer, q, values_of(finer, q), allowance, reference=reference)
 
 
 def _is_followed_by_springs(scene: Scene) -> bool:
@@ -159,19 +159,13 @@ def _branch_checks(answer: DetachmentPath) -> tuple[Measurement, ...]:
 
 def _comparable(answer: Solution, other: Solution) -> tuple[str, ...]:
     """Quantities of two answers that stand for the same states; an impact's samples lie where its steps fall."""
-    if isinstance(answer, ImpactHistory):
-        return IMPACT_NUMBERS
-    if isinstance(answer, DetachmentPath):  # states of two branches lie at different radii
-        return tuple(answer.SCALARS)
+    if isinstance(answer, ImpactHistory | DetachmentPath):  # states of two branches lie at different radii
+        return single_numbers(answer)
     if isinstance(answer, HistoryPath):  # its contact radius jumps where contact is lost
         same = isinstance(other, HistoryPath) and np.array_equal(answer.time, other.time)
         return tuple(answer.error_estimate) if same else ()
     names = (*answer.ARRAYS, *answer.SCALARS)
     return tuple(q for q in names if np.shape(getattr(other, q)) == np.shape(getattr(answer, q)))
-
-
-def _values(answer: Solution, quantity: str) -> FloatArray:
-    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
 
 
 def _check(
@@ -185,7 +179,7 @@ def _check(
 ) -> Measurement:
     """The step, among those chosen, with the largest excess of distance over what is allowed."""
     scale = np.maximum(answer.scale(quantity), np.finfo(float).tiny)
-    values = _values(answer, quantity)
+    values = values_of(answer, quantity)
     error = np.abs(values[chosen] - expected) / np.broadcast_to(scale, values.shape)[chosen]
     stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), values.shape)[chosen]
     allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
@@ -240,7 +234,7 @@ def _in_other_units(method: Method, answer: Solution) -> tuple[Measurement, ...]
             method=answer.method,
             quantity=f"{q} in other units",
             error=float(
-                np.max(np.abs(_values(answer, q) - _values(other, q) / OTHER_UNITS.factor(q)) / _scale(answer, q))
+                np.max(np.abs(values_of(answer, q) - values_of(other, q) / OTHER_UNITS.factor(q)) / _scale(answer, q))
             ),
             stated=UNITS_AGREEMENT,
             uncertainty=_largest_stated(answer, q) + _largest_stated(other, q),

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from cases.declare.methods import build
+from cases.declare.quantities import values_of
 from cases.measurements.campaigns.invariants import invariant_residuals
 from cases.measurements.driver import measured
 from cases.measurements.ladders.repeats import digits_of, relative_spread, repeated
@@ -110,7 +111,7 @@ def _beside_the_fast_method(method: Method, answer: Solution, quantity: str) -> 
         other = fast.solve(answer.scene)
     except ContactError:
         return {}
-    found, expected = (np.atleast_1d(getattr(path, quantity)) for path in (answer, other))
+    found, expected = (values_of(path, quantity) for path in (answer, other))
     distance = np.max(np.abs(found - expected) / np.maximum(np.abs(found), np.abs(expected)))
     return {"fast method": max(float(distance) - _stated(other, quantity), 0.0)}
 
