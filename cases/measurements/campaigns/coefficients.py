@@ -147,7 +147,7 @@ def values_of(group: Group) -> Iterator[tuple[str, Any]]:
     """Name and present value of each coefficient of a group."""
     module, _, record = group.place.partition(":")
     found = import_module(module)
-    holder = getattr(found, record) if record else found
+    holder: Any = getattr(found, record) if record else found
     names = tuple(entry.name for entry in dataclasses.fields(holder)) if record else group.names
     package = module.removesuffix(".error_model")
     for name in names:
