@@ -11,18 +11,8 @@ from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHisto
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, memory, prefix_for, scaled_unit, small
+from reports.words.quantity_names import SYMBOLS
 
-SYMBOLS = {
-    "time": "t",
-    "contact_radius": "a",
-    "indentation_depth": "δ",
-    "velocity": "v",
-    "normal_force": "F",
-    "contact_stiffness": "k_N",
-    "kinetic_energy": "E_kin",
-    "stored_energy": "E_el",
-    "dissipated_energy": "E_diss",
-}
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none."
 )
