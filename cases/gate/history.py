@@ -7,12 +7,12 @@ import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from cases.gate.write_permission import WriteConditions
 from cases.results.files import write_whole
 from cases.results.records.run import Acceptance
-from cases.results.sealed import digest_of, parsed
+from cases.results.sealed import digest_of, parsed, validated
 from contact import InvalidInput
 
 _ACCEPTANCE: TypeAdapter[Acceptance] = TypeAdapter(Acceptance)
@@ -83,11 +83,10 @@ def blank_entry(now: WriteConditions, case: str, method: str, quantity: str, rea
 
 def _entry(line: bytes, place: str) -> Acceptance:
     try:
-        return _ACCEPTANCE.validate_python(parsed(line))
-    except ValidationError as error:
-        raise InvalidInput(f"{place} is no acceptance: {error.errors()[0]['msg']}; {REMEDY}") from error
+        tree = parsed(line)
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{place} is not readable ({error!s:.160}); {REMEDY}") from None
+    return validated(_ACCEPTANCE, tree, place=place, remedy=REMEDY)
 
 
 def _line(entry: Acceptance) -> bytes:

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from cases.gate.baseline import REMEDY
 from cases.gate.checks.check import regression_claim
@@ -18,7 +18,7 @@ from cases.results.files import write_whole
 from cases.results.records.claim import Claim
 from cases.results.records.reliability import Ladder
 from cases.results.records.run import CaseResult
-from cases.results.sealed import read_sealed, sealed_text
+from cases.results.sealed import read_sealed, sealed_text, validated
 from cases.results.status import Status
 from contact import InvalidInput
 
@@ -36,10 +36,7 @@ def read_ladders(folder: Path) -> tuple[Ladder, ...]:
 
 
 def _read(path: Path) -> tuple[Ladder, ...]:
-    try:
-        return _LADDERS.validate_python(read_sealed(path, remedy=REMEDY).get("ladders"))
-    except ValidationError as error:
-        raise InvalidInput(f"{path} holds no ladders ({error.errors()[0]['msg']:.160}); {REMEDY}") from error
+    return validated(_LADDERS, read_sealed(path, remedy=REMEDY).get("ladders"), place=f"{path}, ladders", remedy=REMEDY)
 
 
 def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Claim]:
