@@ -17,6 +17,7 @@ import numpy as np
 from cases.results.status import Status
 
 K = TypeVar("K")
+R = TypeVar("R")
 
 End: TypeAlias = Literal["within", "refused", "beyond", "crashed"]
 ENDS: Final[tuple[End, ...]] = get_args(End)
@@ -76,9 +77,9 @@ class Measurement:
         return self.error <= self.stated + self.uncertainty
 
 
-def grouped(rows: Iterable[Measurement], key: Callable[[Measurement], K]) -> dict[K, list[Measurement]]:
-    """Rows by a key, in the order in which keys appear."""
-    found: dict[K, list[Measurement]] = {}
+def grouped(rows: Iterable[R], key: Callable[[R], K]) -> dict[K, list[R]]:
+    """Rows, or records of any kind, by a key, in the order in which keys appear."""
+    found: dict[K, list[R]] = {}
     for row in rows:
         found.setdefault(key(row), []).append(row)
     return found
