@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from statistics import median
 
+from cases.measurements.measurement import grouped
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.run import RunResult
 from cases.results.status import Status
@@ -20,9 +21,8 @@ def moves(run: RunResult) -> list[str]:
 
     A last sentence counts the rest by how it ended. Nothing is said of a run without failed comparisons.
     """
-    groups: dict[tuple[str, str], list[Claim]] = {}
-    for claim in (claim for case in run.cases for claim in case.claims if claim.kind is Kind.REGRESSION):
-        groups.setdefault((" against ".join(map(display_name, claim.methods)), claim.quantity), []).append(claim)
+    compared = (claim for case in run.cases for claim in case.claims if claim.kind is Kind.REGRESSION)
+    groups = grouped(compared, lambda claim: (" against ".join(map(display_name, claim.methods)), claim.quantity))
     rest = Counter(claim.status for claims in groups.values() for claim in claims if claim.status.is_failure)
     found: list[tuple[int, str]] = []
     for (method, quantity), claims in groups.items():

@@ -8,7 +8,7 @@ is also solved in other units, where it must give the same answer, and with its 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -77,16 +77,27 @@ def campaign(
         other_units: Whether each scene is solved in other units as well.
     """
     scenes = random_scenes(seed, count, family, ratio)
-    chosen = range(count) if numbers is None else numbers
-    return [
-        row
-        for n in chosen
-        for row in measured(
-            partial(method.solve, scenes[n]),
-            partial(_judged, method, number=n, other=referee, restated=other_units),
-            of=Measurement(method=method.name, scene=f"{n}", parameters={"family": family}, seed=seed),
-        )
-    ]
+    chosen = ((n, scenes[n]) for n in (range(count) if numbers is None else numbers))
+    of = Measurement(method=method.name, parameters={"family": family}, seed=seed)
+    return list(answered(method, chosen, partial(_judged, method, other=referee, restated=other_units), of))
+
+
+def answered(
+    method: Method,
+    scenes: Iterable[tuple[int, Scene]],
+    judge: Callable[..., Iterable[Measurement]],
+    of: Measurement,
+) -> Iterator[Measurement]:
+    """Rows of numbered scenes, each answered and judged by its number.
+
+    Args:
+        method: Who answers.
+        scenes: Their numbers, and the scenes.
+        judge: Compares an answer to the scene of a number, which is its keyword `number`.
+        of: What all rows share.
+    """
+    for n, scene in scenes:
+        yield from measured(partial(method.solve, scene), partial(judge, number=n), of=replace(of, scene=f"{n}"))
 
 
 def _judged(

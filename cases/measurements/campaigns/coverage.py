@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import count as counting
 from typing import Any, Final
@@ -11,10 +11,9 @@ from typing import Any, Final
 import numpy as np
 
 from cases.declare.methods import build
-from cases.measurements.campaigns.campaign import refereed
+from cases.measurements.campaigns.campaign import answered, refereed
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
-from cases.measurements.driver import measured
 from cases.measurements.measurement import Measurement, answers, by_quantity, covered, median, sharpness
 from cases.measurements.study import Say, silent, study_case, told, within_limit
 from cases.results.records.claim import Claim
@@ -122,9 +121,7 @@ def rows_of(plan: CoveragePlan, seed: int) -> Iterator[Measurement]:
     """Every scene of the plan, answered and judged by the fast method at its finest where no second opinion reaches."""
     method, finest = build(plan.method, plan.settings), build("mdr", {"nodes": 32, "accuracy": 1e-12})
     of = Measurement(method=plan.method, settings=plan.settings, parameters={"family": plan.family}, seed=seed)
-    for n, scene in enumerate(_scenes(plan, seed, method)):
-        judge = partial(refereed, method, number=n, other=finest)
-        yield from measured(partial(method.solve, scene), judge, of=replace(of, scene=f"{n}"))
+    yield from answered(method, enumerate(_scenes(plan, seed, method)), partial(refereed, method, other=finest), of)
 
 
 def _scenes(plan: CoveragePlan, seed: int, method: Method) -> Iterator[Scene]:
