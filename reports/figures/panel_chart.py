@@ -15,6 +15,10 @@ from reports.figures.figure import Cell, ReportFigure
 P = TypeVar("P")
 
 
+def nothing_shared(drawing: Drawing, axes: list[Axes], drawn: list[Any]) -> None:
+    """Add nothing; a function of the module, because charts are sent to processes that draw them."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class PanelChart(Generic[P]):
     """What all figures of one kind share.
@@ -39,7 +43,7 @@ class PanelChart(Generic[P]):
     size: tuple[float, float]
     across: int = 2
     a_figure: int = 6
-    finish: Callable[[Drawing, list[Axes], list[Any]], None] = lambda *_: None
+    finish: Callable[[Drawing, list[Axes], list[Any]], None] = nothing_shared
 
     def figure(self, name: str, panels: Sequence[P]) -> ReportFigure:
         """One figure of these panels."""
