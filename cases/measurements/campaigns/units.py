@@ -45,6 +45,7 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "work_of_adhesion": (1, 1, 0),
     "slope": _NUMBER,
     "exponent": _NUMBER,
+    "coefficient": _NUMBER,
     "poissons_ratio": _NUMBER,
     "contact_radius": _LENGTH,
     "indentation_depth": _LENGTH,
