@@ -145,6 +145,7 @@ class Fem:
         from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
+            """The answer on one mesh and with one number of time steps."""
             setup = HistorySetup(scene, settings, self.solver, log)
             if isinstance(loading, Impact):
                 return viscoelastic.impact_history(setup, loading, asdict(self))

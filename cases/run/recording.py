@@ -4,20 +4,20 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.declare.task import Sampling
 from cases.results.records.scene_run import CostRecord, Curve, Quantity, Stage
 from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
-_IMPACT_SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 _ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth"}
 
 
 def quantities(solution: Solution, sampling: Sampling) -> tuple[Quantity, ...]:
     """Return every quantity of the answer, along its steps; of a history only what sums it up."""
     if isinstance(solution, ImpactHistory):
-        names = [*_IMPACT_SCALARS, "energy_residual"]
+        names = [*IMPACT_NUMBERS, "energy_residual"]
     else:
         names = [*(n for n in solution.ARRAYS if n != "time"), *solution.SCALARS]
     own_checks = [name for name in solution.error_estimate if name not in UNITS]
@@ -28,7 +28,7 @@ def quantities(solution: Solution, sampling: Sampling) -> tuple[Quantity, ...]:
 
 
 def _quantity(solution: Solution, name: str, sampling: Sampling) -> Quantity:
-    values = np.atleast_1d(np.asarray(getattr(solution, name), dtype=np.float64))
+    values = values_of(solution, name)
     return Quantity(
         name=name,
         unit=UNITS.get(name, "1"),

@@ -37,6 +37,7 @@ def simulate_depths(
     surface = condensed.surface
 
     def advance(step: RelaxationStep, depth: float, active: BoolArray | None) -> Complementary:
+        """Pressures at the end of a step to this depth, remembered; the search begins with the contact `active`."""
         matrix, offset = surface.begin(step)
         state = solve_complementarity(matrix, depth * surface.resultants - condensed.profile - offset, active)
         surface.accept(step, state.pressure)
@@ -68,6 +69,7 @@ def simulate_forces(
     surface, depth = condensed.surface, 0.0
 
     def advance(step: RelaxationStep, force: float, depth: float) -> tuple[Complementary, float]:
+        """Pressures and depth at the end of a step to this force, remembered; the search begins at `depth`."""
         matrix, offset = surface.begin(step)
         state, depth = _depth_of_force(matrix, surface.resultants, condensed.profile + offset, force, depth)
         surface.accept(step, state.pressure)

@@ -29,6 +29,7 @@ def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> Imp
     modulus = shear_modulus(scene.layer)
 
     def simulate(condensed: CondensedLayer, duration: float) -> HistorySamples:
+        """The motion on this mesh of the strip with time steps of this duration [s]."""
         body = Body(mass=loading.mass / (modulus * condensed.radius), velocity=loading.velocity / condensed.radius)
         with log.stage("time_steps"):
             record = simulate_impact(condensed, body, setup.relaxation, duration)
@@ -106,6 +107,7 @@ def prescribed_history(setup: HistorySetup, loading: DepthHistory | ForceHistory
     modulus = shear_modulus(scene.layer)
 
     def simulate(condensed: CondensedLayer, steps: int) -> HistorySamples:
+        """The prescribed history on this mesh of the strip with about so many time steps."""
         with log.stage("time_steps"):
             if isinstance(loading, DepthHistory):
                 depth = loading.depth / condensed.radius

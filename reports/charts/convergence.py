@@ -1,20 +1,17 @@
 """Error under refinement: symbols for the measured error, bars for the estimated one, dashes for the formal order."""
 
 from collections.abc import Iterable, Sequence
-from functools import partial
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
+from cases.measurements.measurement import grouped
 from cases.results.records.convergence import ConvergenceStudy
 from cases.results.records.run import CaseResult
-from reports.figures.axes_grid import numbered_parts, panel_grid
 from reports.figures.figure import Cell, ReportFigure
+from reports.figures.panel_chart import PanelChart
 from reports.figures.style import GREY, look_of, mark_decades
 from reports.words.method_names import display_name
 
-# A figure has so many panels: one page.
-PANELS_A_FIGURE = 6
 # A bar is so wide, in decades of length: bars of grids refined by two (0.3 decades) do not touch.
 BAR_WIDTH = 0.16
 COLUMNS = (
@@ -30,36 +27,16 @@ CAPTION = (
 
 
 def figures(case: CaseResult) -> list[ReportFigure]:
-    """The convergence of a case, six panels a figure: one panel a scene and quantity, the methods overlaid."""
-    panels: dict[tuple[str, str], list[ConvergenceStudy]] = {}
-    for study in case.convergence:
-        panels.setdefault((study.scene, study.quantity), []).append(study)
-    return [
-        ReportFigure(
-            name=f"{case.name}-convergence-{number}",
-            title="Convergence: error under refinement",
-            caption=CAPTION,
-            paint=partial(draw, part),
-            columns=COLUMNS,
-            rows=tuple(row for panel in part for study in panel for row in _rows(study)),
-        )
-        for number, part in numbered_parts(list(panels.values()), PANELS_A_FIGURE)
-    ]
+    """The convergence of a case: one panel a scene and quantity, the methods overlaid."""
+    panels = list(grouped(case.convergence, lambda study: (study.scene, study.quantity)).values())
+    return CHART.figures(f"{case.name}-convergence", panels)
 
 
-def _rows(study: ConvergenceStudy) -> Iterable[tuple[Cell, ...]]:
-    for grid in study.grids:
+def _rows(studies: Sequence[ConvergenceStudy]) -> Iterable[tuple[Cell, ...]]:
+    for study, grid in ((one, grid) for one in studies for grid in one.grids):
         measured = (grid.length, grid.unknowns, grid.seconds, grid.value, grid.error, grid.gci)
         orders = (study.formal_order, study.observed_order, study.digits_per_refinement)
         yield study.scene, study.quantity, study.method, study.mesh_family, *measured, study.unit, study.scale, *orders
-
-
-def draw(panels: Sequence[Sequence[ConvergenceStudy]]) -> Drawing:
-    """Panels in rows of two."""
-    drawing, all_axes = panel_grid(len(panels), 2, (5.0, 3.1))
-    for axes, studies in zip(all_axes, panels, strict=True):
-        _draw_panel(axes, studies)
-    return drawing
 
 
 def _draw_panel(axes: Axes, studies: Sequence[ConvergenceStudy]) -> None:
@@ -121,3 +98,13 @@ def _speed(study: ConvergenceStudy) -> str:
     if study.observed_order is None or study.formal_order is None:
         return str(study.kind)
     return f"order {study.observed_order:.2f}, formal {study.formal_order:g}"
+
+
+CHART = PanelChart(
+    title="Convergence: error under refinement",
+    caption=CAPTION,
+    columns=COLUMNS,
+    rows=_rows,
+    panel=_draw_panel,
+    size=(5.0, 3.1),
+)

@@ -10,9 +10,8 @@ from cases.gate.accept import accept, refusals, refusals_beforehand
 from cases.gate.baseline import read_baselines
 from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
 from cases.gate.proposal import BaselineChange, Proposal, propose
-from cases.gate.race.against import SOURCE
 from cases.gate.spread import measured_spreads
-from cases.gate.write_permission import write_conditions
+from cases.gate.write_permission import SOURCE, write_conditions
 from cases.results.files import read_run
 from cases.results.records.run import CaseResult, RunResult
 from contact import InvalidInput

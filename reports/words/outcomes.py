@@ -56,13 +56,13 @@ class CheckOutcome:
     what: str
     status: Status
     word: str
-    fraction: float
-    observed: str
-    tolerance: str
-    origin: str
     message: str
-    because: str
-    seconds: float
+    fraction: float = -1.0
+    observed: str = ""
+    tolerance: str = ""
+    origin: str = ""
+    because: str = ""
+    seconds: float = 0.0
 
     @property
     def tone(self) -> str:
@@ -156,7 +156,6 @@ def claim_outcome(case: str, claim: Claim) -> CheckOutcome:
         origin=f"{claim.origin}: {claim.source}",
         message=worded(f"{claim.message} ({claim.relaxed})" if claim.relaxed else claim.message),
         because=claim.because,
-        seconds=0.0,
     )
 
 
@@ -169,12 +168,7 @@ def _solved(case: str, run: SceneRun) -> CheckOutcome:
         what="solution",
         status=run.status,
         word=str(run.status),
-        fraction=-1.0,
-        observed="",
-        tolerance="",
-        origin="",
         message=worded(run.reason),
-        because="",
         seconds=run.cost.wall_seconds if run.cost else 0.0,
     )
 

@@ -22,24 +22,19 @@ from contact import (
 from contact.records.validation import FloatArray
 
 BANDS: Final = (1.0, 10.0, 25.0)  # upper ends of a/h; evidence reaches as far as an independent reference
+KINDS: Final = {
+    ContactRadii: "radii",
+    Detachment: "detachment",
+    Impact: "impact",
+    DepthHistory: "history",
+    ForceHistory: "creep",
+}
 _TRIALS: Final = np.geomspace(1e-9, 1e9, 400)  # radii in units of a length of the scene
 
 
 def kind_of(scene: Scene) -> str:
     """The kind of loading: "radii", "equilibrium", "detachment", "impact", "history" or "creep"."""
-    match scene.loading:
-        case ContactRadii():
-            return "radii"
-        case Detachment():
-            return "detachment"
-        case Impact():
-            return "impact"
-        case DepthHistory():
-            return "history"
-        case ForceHistory():
-            return "creep"
-        case _:
-            return "equilibrium"
+    return KINDS.get(type(scene.loading), "equilibrium")
 
 
 def band_of(scene: Scene) -> float:
