@@ -44,6 +44,21 @@ class MappedGrid:
     power: FloatArray
     count: int
 
+    @classmethod
+    def between(cls, ends: FloatArray, count: int) -> MappedGrid:
+        """Unmapped pieces between neighbouring ends, of which the first is zero."""
+        return cls(ends[:-1], np.diff(ends), np.ones(len(ends) - 1), count)
+
+    @classmethod
+    def equal(cls, end: float, pieces: int, count: int) -> MappedGrid:
+        """Unmapped pieces of equal width on [0, end]."""
+        return cls.between(np.linspace(0.0, end, pieces + 1), count)
+
+    @property
+    def ends(self) -> FloatArray:
+        """Left ends of all pieces and the right end of the last, shape (q + 1,)."""
+        return np.append(self.left, self.end)
+
     @cached_property
     def nodes(self) -> FloatArray:
         """Node positions d, shape (q, m)."""

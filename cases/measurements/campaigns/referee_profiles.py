@@ -93,17 +93,6 @@ def _(indenter: Tabulated, x: FloatArray) -> FloatArray:
     return np.asarray(extended * integral, dtype=np.float64)
 
 
-def equivalent_excess(indenter: Profile, excess: float) -> float:
-    """g(b + excess) [m], with all its digits close to the rim of a flat end."""
-    b = indenter.flat_radius
-    leg = math.sqrt(excess * (excess + 2 * b))
-    if isinstance(indenter, TruncatedCone):
-        return indenter.slope * (b + excess) * math.atan2(leg, b)
-    if isinstance(indenter, TruncatedParaboloid):
-        return (b + excess) * leg / indenter.radius_of_curvature
-    return float(equivalent_profile(indenter, np.array([b + excess]))[0])
-
-
 @singledispatch
 def equivalent_slope(indenter: Profile, excess: FloatArray, room: FloatArray) -> FloatArray:
     """g'(x) at x = b + excess, `room` [m] before the end of the profile.
