@@ -11,15 +11,15 @@ which is even and analytic because it is ``int K phi dt``. Only psi is represent
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.triangular import solve_lower
-from bem.polynomials.equal_panels import chebyshev_sum
-from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from bem.polynomials.abel_integral import even_abel_integral
+from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact.records.validation import FloatArray
 
 
@@ -29,17 +29,13 @@ class ContactDensity:
 
     Attributes:
         kernel: Kernel of the layer.
-        left: Left ends of the panels that cover [0, a], shape (q,).
-        width: Their widths, equal but for the last, shape (q,).
         load: Averages of W over the panels' Lagrange basis, shape (q, m).
-        psi: Values at the panels' Gauss nodes, shape (q, m).
+        psi: On the panels that cover [0, a], equally wide but for the last.
     """
 
     kernel: FredholmKernel
-    left: FloatArray
-    width: FloatArray
     load: FloatArray
-    psi: FloatArray
+    psi: MappedFunction
 
     @classmethod
     def of_load(cls, kernel: FredholmKernel, factor: VolterraFactor, ratio: float, load: FloatArray) -> ContactDensity:
@@ -51,60 +47,33 @@ class ContactDensity:
             ratio: a, in units of the thickness.
             load: Averages of W on the panels that cover [0, a], shape (q, m); the last panel ends at a.
         """
-        left = factor.panel_width * np.arange(len(load), dtype=np.float64)
-        width = np.append(np.diff(left), ratio - left[-1])
-        return cls(kernel, left, width, load, _solve(factor, width[-1], load) - load)
+        panels = MappedGrid.between(np.append(factor.panel_width * np.arange(len(load)), ratio), factor.count)
+        return cls(kernel, load, MappedFunction(panels, _solve(factor, panels.width[-1], load) - load, 0.0))
 
     @property
     def ratio(self) -> float:
         """a, in units of the thickness."""
-        return float(self.left[-1] + self.width[-1])
+        return self.psi.grid.end
 
     @property
     def edge_value(self) -> float:
         """psi(a)."""
         # Every Chebyshev polynomial is 1 at the right end.
-        return float(self._coefficients[-1].sum())
-
-    def slope(self, t: FloatArray) -> FloatArray:
-        """psi'(t) at points of [0, a]."""
-        panel = np.clip(np.searchsorted(self.left, t, side="left") - 1, 0, len(self.left) - 1)
-        s = 2 * (t - self.left[panel]) / self.width[panel] - 1
-        return chebyshev_sum(self._slope_coefficients[panel], s)
+        return float(self.psi.coefficients[-1].sum())
 
     def abel_integral(self, radius: FloatArray) -> FloatArray:
-        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,).
-
-        With t^2 = r^2 + s^2 the integrand psi'(t)/t is an even analytic function of t, hence analytic in s.
-        """
-        nodes, weights = gauss_nodes(self.psi.shape[1])
-        panels = len(self.left) + 1
-        s = ((np.arange(panels)[:, None] + nodes) / panels).ravel()
-        reach = np.sqrt((self.ratio - radius) * (self.ratio + radius))[:, None]
-        t = np.minimum(np.hypot(radius[:, None], reach * s), self.ratio)
-        values: FloatArray = reach[:, 0] / panels * ((self.slope(t) / t) @ np.tile(weights, panels))
-        return values
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
+        return even_abel_integral(lambda t: self.psi.derivative(t) / t, self.psi.grid, radius)
 
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
-        nodes, weights = gauss_nodes(self.psi.shape[1])
-        t = (self.left[:, None] + self.width[:, None] * nodes).ravel()
-        mass = ((self.load + self.psi) * self.width[:, None] * weights).ravel()
+        grid = self.psi.grid
+        t, mass = grid.nodes.ravel(), ((self.load + self.psi.node_values) * grid.weights).ravel()
         rates = self.kernel.rates[:, None]
         moments = (np.exp(-rates * (self.ratio - t)) + np.exp(-rates * (self.ratio + t))) @ mass
         decay = np.exp(-np.multiply.outer(distance, self.kernel.rates))
         values: FloatArray = -(decay @ (self.kernel.weights * moments)).real / np.pi
         return values
-
-    @cached_property
-    def _coefficients(self) -> FloatArray:
-        return self.psi @ chebyshev_from_nodes(self.psi.shape[1]).T
-
-    @cached_property
-    def _slope_coefficients(self) -> FloatArray:
-        slope = np.zeros_like(self.psi)
-        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(self._coefficients, axis=1)
-        return slope / self.width[:, None]
 
 
 def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:

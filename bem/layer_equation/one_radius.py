@@ -22,7 +22,7 @@ from scipy.special import j0
 
 from bem.kernels.layer import one_minus_kernel
 from bem.kernels.profile_slope import profile_slope
-from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral
+from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
@@ -191,15 +191,9 @@ class DirectDensity:
         return StretchSlopes.of(lambda d: half_space_load(self.indenter, unit * d) / unit, self.flat, ends, count)
 
     def _smooth_integral(self, radius: FloatArray, depth: float) -> FloatArray:
-        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt with t^2 = r^2 + s^2, where psi'/t is an even analytic function of t."""
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt, psi'/t by its polynomials on the pieces."""
         slopes = MappedFunction(self.grid, (self._smooth_slopes @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
-        nodes, weights = gauss_nodes(self.grid.count)
-        count = len(self.grid.left) + 1
-        s = ((np.arange(count)[:, None] + nodes) / count).ravel()
-        reach = np.sqrt((self.contact_radius - radius) * (self.contact_radius + radius))[:, None]
-        t = np.minimum(np.hypot(radius[:, None], reach * s), self.contact_radius)
-        integral: FloatArray = reach[:, 0] / count * np.sum(slopes(t) * np.tile(weights, count), axis=1)
-        return integral
+        return even_abel_integral(slopes, self.grid, radius)
 
     @cached_property
     def _smooth_slopes(self) -> FloatArray:
