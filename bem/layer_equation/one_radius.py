@@ -21,7 +21,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
 from bem.kernels.layer import one_minus_kernel
-from bem.kernels.profile_slope import profile_slope
+from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid

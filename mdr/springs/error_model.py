@@ -35,12 +35,6 @@ SAMPLED_ROUNDING: Final = 256 * EPS
 # the profile comes. Differences to half as many cells were 2 to 18 times its true error, those of the profile 0.7 to 6
 # times (70 scenes, a/h to 60, seed 1, 64 cells, 2026-11-22).
 STIFFNESS_SHARE: Final = 0.5
-# The same for the pressure under a profile: punches of all smaller radii are superposed, whose errors partly cancel.
-# Twice this share was 3 to 29 times the true error (80 scenes, seed 3, 64 cells, 2026-11-22).
-PRESSURE_SHARE: Final = 0.3
-# Added to the error of the pressure under a profile, whose slope magnifies what is left in it: up to 8e-8 on thick
-# layers (seeds 1 and 3, 64 cells, 60 rows, a/h below 0.1, 2026-11-22).
-PRESSURE_FLOOR: Final = 1e-7
 
 # Impacts and histories.
 

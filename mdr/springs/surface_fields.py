@@ -3,7 +3,7 @@
     p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt],    phi = delta - g_hs + psi
 
 psi, the layer's share, is smooth (`bem.layer_equation.contact_density`). g_hs' has a closed form for most profiles
-(`bem.kernels.profile_slope`), and what kinks and a sphere's equator make of it is integrated by
+(`bem.layer_equation.profiles.half_space_slope`), and what kinks and a sphere's equator make of it is integrated by
 `bem.polynomials.abel_integral`.
 """
 
@@ -15,8 +15,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.profile_slope import profile_slope
 from bem.layer_equation.contact_density import ContactDensity
+from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral
 from bem.polynomials.mapped import MappedFunction, MappedGrid
