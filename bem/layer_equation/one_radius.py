@@ -329,10 +329,10 @@ def _transform(grid: MappedGrid, psi: FloatArray, k: FloatArray) -> FloatArray:
 def _solve(grid: MappedGrid, k: FloatArray, weight: FloatArray, moments: FloatArray) -> FloatArray:
     """psi at the nodes, from psi - L psi = L W, shape (n, 2)."""
     root = np.sqrt(grid.weights.ravel())[:, None]
-    strength = np.sqrt(2 / np.pi * weight)
-    scaled = root * strength * np.cos(np.multiply.outer(grid.nodes.ravel(), k))
+    cosines = root * np.cos(np.multiply.outer(grid.nodes.ravel(), k))
+    strength = 2 / np.pi * weight
     try:
-        psi: FloatArray = _resolved(scaled, scaled @ (strength[:, None] * moments)) / root
+        psi: FloatArray = _resolved(cosines * np.sqrt(strength), cosines @ (strength[:, None] * moments)) / root
     except np.linalg.LinAlgError:
         message = f"the equation at a/h = {grid.end:g} is singular to double precision; take a smaller a/h"
         raise NotConvergedError(message) from None
