@@ -141,7 +141,7 @@ def _errors(
         linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         depth_given = given == "IndentationDepths"
         return linear | {
-            "pressure": system.flat_punch.contact_pressure_error(ratio, stiffness) + PRESSURE_ROUNDING,
+            "pressure": system.flat_punch.contact_pressure_error(ratio, errors["spring_stiffness"]) + PRESSURE_ROUNDING,
             "indentation_depth": exact if depth_given else stiffness,
             "normal_force": stiffness if depth_given else exact,
         }

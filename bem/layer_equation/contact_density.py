@@ -16,11 +16,14 @@ from functools import cached_property
 import numpy as np
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.equal_panels import chebyshev_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from bem.polynomials.truncation import rate_of_decay
 from contact.records.validation import FloatArray
+
+EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -66,11 +69,14 @@ class ContactDensity:
         # Every Chebyshev polynomial is 1 at the right end.
         return float(self._coefficients[-1].sum())
 
-    def slope(self, t: FloatArray) -> FloatArray:
-        """psi'(t) at points of [0, a]."""
+    def slope_over_position(self, t: FloatArray) -> FloatArray:
+        """psi'(t)/t at points of (0, a]."""
         panel = np.clip(np.searchsorted(self.left, t, side="left") - 1, 0, len(self.left) - 1)
-        s = 2 * (t - self.left[panel]) / self.width[panel] - 1
-        return chebyshev_sum(self._slope_coefficients[panel], s)
+        left, width, coefficients = self._slopes
+        share = (t - left[panel]) / width[panel]
+        innermost = panel == 0
+        values = chebyshev_sum(coefficients[panel], 2 * np.where(innermost, share**2, share) - 1)
+        return values / np.where(innermost, 1.0, t)
 
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,).
@@ -82,7 +88,7 @@ class ContactDensity:
         s = ((np.arange(panels)[:, None] + nodes) / panels).ravel()
         reach = np.sqrt((self.ratio - radius) * (self.ratio + radius))[:, None]
         t = np.minimum(np.hypot(radius[:, None], reach * s), self.ratio)
-        values: FloatArray = reach[:, 0] / panels * ((self.slope(t) / t) @ np.tile(weights, panels))
+        values: FloatArray = reach[:, 0] / panels * (self.slope_over_position(t) @ np.tile(weights, panels))
         return values
 
     def outside(self, distance: FloatArray) -> FloatArray:
@@ -101,10 +107,31 @@ class ContactDensity:
         return self.psi @ chebyshev_from_nodes(self.psi.shape[1]).T
 
     @cached_property
-    def _slope_coefficients(self) -> FloatArray:
+    def _slopes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Panels for slopes: left ends, widths, and coefficients of psi'/t in the first, of psi' in the others.
+
+        Differences of rounded values grow with the inverse of what they are divided by. So the last panel, of which a
+        may leave little, reaches back to a full width, and in the first psi is taken as the function of t^2 that it is.
+        Orders that analyticity leaves below a rounding are rounding errors, magnified most by differentiation.
+        """
+        left, width, coefficients = self.left.copy(), self.width.copy(), self._coefficients.copy()
+        nodes, _ = gauss_nodes(self.psi.shape[1])
+        if len(left) > 1 and width[-1] < width[-2]:
+            width[-1] = width[-2]
+            left[-1] = self.ratio - width[-1]
+            coefficients[-1] = self._interpolated(left[-1] + width[-1] * nodes)
+        coefficients[0] = self._interpolated(width[0] * np.sqrt(nodes)) * 2 / width[0]
+        orders = np.ceil(np.log(EPS) / np.log(rate_of_decay(2 * STRIP / self.width.max())))
+        coefficients[:, int(orders) :] = 0.0
         slope = np.zeros_like(self.psi)
-        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(self._coefficients, axis=1)
-        return slope / self.width[:, None]
+        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(coefficients, axis=1)
+        return left, width, slope / width[:, None]
+
+    def _interpolated(self, t: FloatArray) -> FloatArray:
+        """Chebyshev coefficients of psi over a variable whose Gauss nodes are the points t of [0, a]."""
+        panel = np.clip(np.searchsorted(self.left, t, side="left") - 1, 0, len(self.left) - 1)
+        s = 2 * (t - self.left[panel]) / self.width[panel] - 1
+        return np.asarray(chebyshev_from_nodes(t.size) @ chebyshev_sum(self._coefficients[panel], s))
 
 
 def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:
