@@ -140,9 +140,10 @@ def _errors(
     if isinstance(scene.indenter, FlatPunch):
         linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         depth_given = given == "IndentationDepths"
+        of_depth = exact if depth_given else stiffness
         return linear | {
-            "pressure": system.flat_punch.contact_pressure_error(ratio, stiffness) + PRESSURE_ROUNDING,
-            "indentation_depth": exact if depth_given else stiffness,
+            "pressure": system.flat_punch.punch_pressure_error(ratio) + of_depth + PRESSURE_ROUNDING,
+            "indentation_depth": of_depth,
             "normal_force": stiffness if depth_given else exact,
         }
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not

@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.error_model import FACTOR
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes, partial_panel_interpolation
 from bem.polynomials.mapped import MappedFunction, MappedGrid
-from bem.polynomials.truncation import between_nodes, orders_beyond
+from bem.polynomials.truncation import between_nodes, orders_beyond, rate_of_decay
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -135,21 +135,28 @@ class IntegralEquationSolution(FlatPunchSolution):
         """From the relative errors of the depth and of the density that is solved for.
 
         psi, the layer's share of the density, is even and varies over a thickness: for small ratios a/h its slope,
-        which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all.
+        which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all. Polynomials through the
+        nodes are not even, so what they leave of the slope is not as small.
         """
-        share = (1 - 1 / self.normalized_contact_stiffness(ratio)) * ratio**2 / (1 + ratio**2)
-        return np.asarray(share * (depth_error + self._slope_truncation))
+        share = 1 - 1 / self.normalized_contact_stiffness(ratio)
+        return np.asarray(share * (ratio**2 / (1 + ratio**2) * depth_error + self._slope_truncation(ratio)))
 
-    @property
-    def _slope_truncation(self) -> float:
+    def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
+        """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
+        panels, _ = self._edge_density.grid.locate(ratio)
+        rounded = 4 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
+        return self.contact_pressure_error(ratio, 2 * self.factor.truncation[panels] + EPS * rounded)
+
+    def _slope_truncation(self, ratio: FloatArray) -> FloatArray:
         """What m Gauss nodes on panels of H thicknesses leave of the slope of psi, which is analytic for |Im t| < 2.
 
-        Interpolation leaves rho^-m on the ellipse of Bernstein through 2i, its derivative m times as much, if the
-        density stays there below its values in the contact.
+        Interpolation leaves rho^-m on the ellipse of Bernstein through 2i, its derivative m times as much, and beside
+        the axis, where all of a narrow contact lies, 2 m^2 times (Markov). In a wide one psi varies as fast as that
+        only within a thickness of the edge.
         """
-        distance = 4 / self.factor.panel_width
-        m = self.factor.count
-        return float(m * (distance + np.hypot(1, distance)) ** -m)
+        width, m = self.factor.panel_width, self.factor.count
+        steepest = np.minimum(2.0 * m, width / np.maximum(ratio, np.finfo(float).tiny))
+        return np.asarray(FACTOR.slope_safety * m * steepest * rate_of_decay(2 * STRIP / width) ** m)
 
     @property
     def panel_error(self) -> float:

@@ -96,6 +96,10 @@ class FlatPunchSolution(Protocol):
         """Relative error of a contact's pressure whose depth has the given relative error."""
         return FITTED_SHARE * np.asarray(depth_error)
 
+    def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
+        """Relative error of a flat punch's pressure at a given depth."""
+        return self.contact_pressure_error(ratio, self.relative_error(ratio))
+
     def profile_source(self, ratio: float, last_break: float) -> tuple[FlatPunchSolution, float]:
         """The solution that MDR profiles are made of, and the ratio up to which they must be known.
 

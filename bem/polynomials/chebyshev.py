@@ -104,7 +104,8 @@ def largest(coefficients: FloatArray, present: NDArray[np.bool_]) -> FloatArray:
         Shape (scenes,).
     """
     count = coefficients.shape[0]
-    values = np.tensordot(_sample_powers(count), coefficients, 1)
+    # A matrix product would round many scenes in another order than a few.
+    values = np.einsum("nk,kpl->npl", _sample_powers(count), coefficients)
     z = _SAMPLE_POINTS[values.argmax(axis=0)]
     first = _derivative(coefficients)
     all_three = np.stack([coefficients, first, _derivative(first)])

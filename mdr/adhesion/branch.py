@@ -75,8 +75,12 @@ class MdrAdhesiveBranch:
 
     def radius(self, y: FloatArray) -> FloatArray:
         """a [m] at y."""
+        return self.excess(y, 0.0)
+
+    def excess(self, y: FloatArray, flat_radius: float) -> FloatArray:
+        """a - b [m] at y over the radius b of a flat end, with the digits that the rounded a loses close to it."""
         section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
-        return np.asarray(self.section_radii[section] + (y - self.section_ends[section]) ** 2)
+        return np.asarray((self.section_radii[section] - flat_radius) + (y - self.section_ends[section]) ** 2)
 
     def values(self, y: FloatArray) -> FloatArray:
         """delta [m] and F_N [N], shape (2, n)."""

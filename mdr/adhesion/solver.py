@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,7 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
+from mdr.adhesion.pressure_errors import pressure_errors
 from mdr.adhesion.withdrawal import CONTROLS, Route
 from mdr.elastic import PathFields, solve_elastic
 from mdr.springs.assembly import equivalent_system
@@ -117,13 +118,16 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         return replace(solve_elastic(scene.replace(effects=()), flat_punch, settings), scene=scene)
     log = StageLog()
     with log.stage("adhesion"):
-        system, radius, depth, errors = _prescribed(scene, flat_punch)
+        found = _prescribed(scene, flat_punch)
+        system, radius, depth, errors = found.system, found.radius, found.depth, found.errors
         refuse_touching_beside(scene, system, radius, depth)
         force = np.asarray(system.force(radius, depth))
         if isinstance(scene.loading, NormalForces):
             force = scene.loading.values
         stiffness = np.asarray(system.contact_stiffness(radius))
         springs = 2.0 * system.spring_stiffness(radius)
+        fields = PathFields(scene, system.flat_punch, found.excess, depth, singular_edge=True)
+        pressure = pressure_errors(system, fields, radius, edge=found.edge, moved=errors[RADIUS])
     relative = system.relative_errors(radius)["contact_stiffness"]
     return ContactPath(
         scene=scene,
@@ -134,6 +138,7 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
             "indentation_depth": _relative(errors[DEPTH], depth),
             "normal_force": _relative(errors[FORCE], force),
             "contact_stiffness": _relative(relative * stiffness + springs * errors[RADIUS], stiffness),  # Eq. (6)
+            "pressure": pressure,
         },
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
@@ -141,7 +146,7 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         indentation_depth=depth,
         normal_force=force,
         contact_stiffness=stiffness,
-        fields=PathFields(scene, system.flat_punch, radius - system.flat_radius, depth, singular_edge=True),
+        fields=fields,
     )
 
 
@@ -223,10 +228,29 @@ def balance_radius(scene: Scene) -> float:
     return float((2.0 * np.pi * length / coefficient**2) ** (1.0 / (2.0 * exponent - 1.0)))
 
 
-def _prescribed(
-    scene: Scene, flat_punch: FlatPunchSource
-) -> tuple[EquivalentSystem, FloatArray, FloatArray, FloatArray]:
-    """Contact radius and depth under prescribed radii, depths or forces, and errors of depth, force and radius."""
+@dataclass(frozen=True)
+class _Equilibria:
+    """States with prescribed radii, depths or forces.
+
+    Attributes:
+        system: Springs and profile.
+        radius: a [m], shape (n,).
+        excess: a - b [m] over the radius b of the flat end, with the digits that a loses close to it.
+        depth: delta [m].
+        errors: Of depth [m], force [N] and radius [m], shape (3, n).
+        edge: Errors of the elongation at the edge at fixed radius [m], shape (n,).
+    """
+
+    system: EquivalentSystem
+    radius: FloatArray
+    excess: FloatArray
+    depth: FloatArray
+    errors: FloatArray
+    edge: FloatArray
+
+
+def _prescribed(scene: Scene, flat_punch: FlatPunchSource) -> _Equilibria:
+    """The states that the loading asks for."""
     loading = scene.loading
     if isinstance(loading, ContactRadii):
         system = equivalent_system(scene.layer, scene.indenter, float(loading.values[-1]), flat_punch)
@@ -234,7 +258,8 @@ def _prescribed(
             system, loading.values, work_of_adhesion(scene)
         )  # Eq. (41)
         errors = errors_at_radius(system, loading.values, depth)
-        return system, loading.values, depth, np.vstack([errors, np.zeros(depth.size)])
+        moved = np.vstack([errors, np.zeros(depth.size)])
+        return _Equilibria(system, loading.values, loading.values - system.flat_radius, depth, moved, errors[DEPTH])
     if not isinstance(loading, IndentationDepths | NormalForces):
         raise UnsupportedSceneError(
             f"loading = {type(loading).__name__}: adhesion needs radii, depths, forces, Detachment"
@@ -247,20 +272,23 @@ def _prescribed(
     y = branch.solutions(quantity, loading.values)
     _refuse_missing(y, loading.values, branch, quantity)
     depth = loading.values if quantity == DEPTH else branch.values(y)[DEPTH]
-    return system, branch.radius(y), depth, _errors_on_branch(system, branch, quantity, y)
+    errors, edge = _errors_on_branch(system, branch, quantity, y)
+    return _Equilibria(system, branch.radius(y), branch.excess(y, system.flat_radius), depth, errors, edge)
 
 
-def _errors_on_branch(system: EquivalentSystem, branch: MdrAdhesiveBranch, quantity: int, y: FloatArray) -> FloatArray:
-    """Errors of depth, force and radius of states with a prescribed quantity, which is exact."""
+def _errors_on_branch(
+    system: EquivalentSystem, branch: MdrAdhesiveBranch, quantity: int, y: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Errors of depth, force and radius of states with a prescribed quantity, which is exact; and at their edges."""
     errors = BranchErrors(system, branch)
     spread = errors.of_states(y, errors.shift(quantity, y))
     spread[quantity] = 0.0
-    return spread
+    return spread, errors.of_states(y, np.zeros(y.shape))[DEPTH]
 
 
 def _on_punch(
     scene: Scene, radius: float, quantity: int, values: FloatArray, flat_punch: FlatPunchSource
-) -> tuple[EquivalentSystem, FloatArray, FloatArray, FloatArray]:
+) -> _Equilibria:
     """A flat punch keeps its radius down to where the front sets off; then it peels, if it can do so stably."""
     system, branch = _branch(scene, radius, flat_punch)
     stiffness = float(system.contact_stiffness(radius))
@@ -272,8 +300,12 @@ def _on_punch(
     at_rest = np.stack([np.zeros(values.size), linear * stiffness, np.zeros(values.size)])  # Eq. (43)
     if quantity == FORCE:
         at_rest = np.stack([linear, *np.zeros((2, values.size))])
-    errors = np.where(held, at_rest, _errors_on_branch(system, branch, quantity, y))
-    return system, np.where(held, radius, branch.radius(y)), depth, errors
+    peeling, edge = _errors_on_branch(system, branch, quantity, y)
+    excess = np.where(held, 0.0, branch.excess(y, radius))
+    errors = np.where(held, at_rest, peeling)
+    return _Equilibria(
+        system, np.where(held, radius, branch.radius(y)), excess, depth, errors, np.where(held, at_rest[DEPTH], edge)
+    )
 
 
 def _refuse_missing(y: FloatArray, values: FloatArray, branch: MdrAdhesiveBranch, quantity: int) -> None:

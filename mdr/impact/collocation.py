@@ -167,7 +167,7 @@ class _Walk:
         self.error, self.stiff = np.zeros(lanes), np.zeros(lanes, dtype=np.bool_)
         self.pieces: list[tuple[Lanes, FloatArray, FloatArray]] = []
         self.sweeps = 0
-        self.active = np.arange(lanes)
+        self.active = _never_alone(np.arange(lanes))
         self.derivative = problem.derivative(self.active)
         self.course = course.copy()
 
@@ -201,7 +201,7 @@ class _Walk:
         self.size[lanes] = np.where(kept & (due >= 0), np.maximum(next_size, self.size[lanes]), next_size)
         self.course.follow(trial, lanes, ended=kept)
         if np.count_nonzero(self.ended_by[lanes] >= 0):
-            self.active = lanes[self.ended_by[lanes] < 0]
+            self.active = _never_alone(lanes[self.ended_by[lanes] < 0])
             self.derivative = self.problem.derivative(self.active)
 
     def _course(self, start: FloatArray) -> Course:
@@ -230,7 +230,7 @@ class _Walk:
         self.sweeps += trial.sweeps
         lost = ~np.isfinite(trial.error)
         self.stiff[lanes] |= lost & (task.size < _STIFF)
-        hard = np.flatnonzero(self.stiff[lanes] & lost)
+        hard = _never_alone(np.flatnonzero(self.stiff[lanes] & lost))
         if hard.size:
             harder = newton_step(self.problem.derivative(lanes[hard]), task.take(hard))
             trial.put(hard, harder)
@@ -271,6 +271,11 @@ class _Walk:
         return Trajectory(
             self.state, self.ended_by, counts, starts, steps, self.error, self.size, self.course, self.sweeps
         )
+
+
+def _never_alone(lanes: Lanes) -> Lanes:
+    """The same lanes, a single one twice: sums over one column are rounded in another order than over several."""
+    return lanes if lanes.size != 1 else np.repeat(lanes, 2)
 
 
 def states(trajectory: Trajectory, z: FloatArray) -> FloatArray:

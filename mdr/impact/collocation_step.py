@@ -50,8 +50,9 @@ _INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGE
 # Matrix from slopes to states, for a unit step.
 TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS
 TO_END = 0.5 * _GAUSS_WEIGHTS
-# The slope at the end of the step, where all Legendre polynomials are 1.
-_AT_END = np.ones(STAGES) @ _ANALYSIS
+# From slopes to the change of state over a unit step, and to the slope at its end, where all Legendre polynomials are
+# 1. The two stand in one matrix, because sums over columns of products with a single row depend on their number.
+_ENDS = np.stack([TO_END, np.ones(STAGES) @ _ANALYSIS])
 _POWERS = np.stack([np.pad(legendre.leg2poly(u), (0, STAGES - i)) for i, u in enumerate(np.eye(STAGES + 1))], axis=1)
 # Matrix from slopes to powers of z of the change of state.
 CHANGE = 0.5 * _POWERS @ _INTEGRALS
@@ -222,7 +223,7 @@ class CollocationStep:
     def end(self) -> FloatArray:
         """State at the end, exactly on its event where there is one."""
         start, landing = self.task.start, self.task.landing
-        end = start + self.size * (TO_END @ self.slopes)
+        end = start + self.size * (_ENDS @ self.slopes)[:, 0]
         if landing is not None:
             at = landing.component[landing.due], np.flatnonzero(landing.due)
             end[at] = start[at] + landing.span[landing.due]
@@ -294,8 +295,8 @@ def _corrected(
     task: Task, landing: Landing, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
     """Lengths nearer to the event, by Newton's method, and what the correction moves in units of the precision."""
-    at_end = _AT_END @ slopes
-    miss = (landing.span - size * (TO_END @ landing.of(slopes))) / landing.of(at_end)
+    change, at_end = np.moveaxis(_ENDS @ slopes, 1, 0)
+    miss = (landing.span - size * landing.of(change)) / landing.of(at_end)
     miss = np.where(landing.due & moving, miss, 0.0)
     return _lengthened(size, miss), np.maximum.reduce(np.abs(at_end) / task.precision) * np.abs(miss)
 

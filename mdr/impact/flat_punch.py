@@ -135,7 +135,8 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
     both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
     values, change = fine_and_change(both, accuracy, motion.error)
     return ImpactResults(
-        coefficient_of_restitution=values[0],
+        # Rounded as the quotient of two speeds [m/s], which it is in a history.
+        coefficient_of_restitution=values[0] * problem.velocity / problem.velocity,
         contact_time=values[1] * problem.time,
         peak_force=values[2] * _force_unit(problem),
         peak_depth=values[3] * problem.velocity * problem.time,
@@ -147,6 +148,8 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
 def _samples(motion: Trajectory) -> FloatArray:
     """States of a single lane in order of time, shape (m, n)."""
     state = np.swapaxes(states(motion, _Z), 1, 2)[..., 0].reshape(motion.final.shape[0], -1)
+    # The first sample is first touch and the last one the end itself, not the polynomials' rounded values there.
+    state[1, 0], state[:, -1] = 0.0, motion.final[:, 0]
     return state[:, distinct(state[1])]
 
 

@@ -57,7 +57,8 @@ class Memory:
             steps: Their change since then as powers of z, shape (11, rows, steps, lanes).
         """
         values = starts + np.einsum("krsl,knsl->nrsl", steps, chebyshev.powers(self.places, STAGES + 1))
-        return replace(self, powers=np.tensordot(_POWERS_FROM_VALUES, values, 1))
+        # A matrix product would round larger batches in another order than small ones.
+        return replace(self, powers=np.einsum("ij,jrsl->irsl", _POWERS_FROM_VALUES, values))
 
     def recall(self, step: int, lanes: Lanes) -> Derivative:
         """From y within one step, shape (stages, len(lanes)), to the remembered rows, (rows, stages, len(lanes))."""
@@ -69,8 +70,9 @@ class Memory:
         def rows(y: FloatArray) -> FloatArray:
             # A front beyond its turn is a rounding error.
             left = np.sqrt(np.maximum(end - y / way, 0.0))
-            ladder = chebyshev.powers(shift - scale * left, _NODES)
-            return (by_lane @ ladder.transpose(2, 0, 1)).transpose(1, 2, 0)
+            # Lane by lane, so that each product is the same whatever lanes stand beside it.
+            ladder = chebyshev.powers((shift - scale * left).T, _NODES)
+            return (by_lane @ ladder.transpose(1, 0, 2)).transpose(1, 2, 0)
 
         return rows
 

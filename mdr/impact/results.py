@@ -82,7 +82,8 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
     change += SPRINGS_TO_MOTION * lanes.table.error
     change[_TIME] += SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
     return ImpactResults(
-        coefficient_of_restitution=values[0],
+        # Rounded as the quotient of two speeds [m/s], which it is in a history.
+        coefficient_of_restitution=values[0] * scaled.velocity / scaled.velocity,
         contact_time=values[1] * scaled.time,
         peak_force=values[2] * scaled.stiffness * scaled.depth,
         peak_depth=values[3] * scaled.depth,
@@ -162,7 +163,7 @@ def _peak_force(lanes: ImpactBatch, leg: Leg) -> FloatArray:
     values = force_on_way_in(lanes, leg, chebyshev.nodes(_NODES))
     matrix = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
     present = np.arange(values.shape[1])[:, None] < leg.trajectory.counts
-    return chebyshev.largest(np.tensordot(matrix, values, 1), present)
+    return chebyshev.largest(np.einsum("ij,jsl->isl", matrix, values), present)
 
 
 def joined(parts: list[ImpactResults], order: NDArray[np.intp]) -> ImpactResults:

@@ -8,6 +8,7 @@ import pytest
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.method import IntegralEquationMethod
 from bem.method import Bem
+from cases.measurements.campaigns.random_scenes import falling_table
 from contact import (
     Adhesion,
     Cone,
@@ -135,16 +136,6 @@ def test_the_bulge_beside_an_incompressible_layer_touches_a_plateau_higher_than_
         method.solve(scene_of(STEPPED, loading, layer=INCOMPRESSIBLE))
 
 
-def random_table(rng):
-    """A measured profile that falls here and there, and a depth."""
-    count = int(rng.integers(5, 12))
-    radii = np.append(0.0, np.cumsum(rng.uniform(0.2, 1.0, count))) * 10 ** rng.uniform(-1.0, 0.5) * 1e-3 / count
-    rises = rng.uniform(-0.6, 1.0, count)
-    rises[0], rises[-1] = abs(rises[0]) + 0.05, 3.0
-    heights = 1e-2 * radii[-1] * np.append(0.0, np.cumsum(rises)) / count
-    return Tabulated(radii=radii, heights=heights), 0.3 * float(rng.uniform(0.05, 0.9) * heights.max())
-
-
 def random_layer(rng):
     support, ratio = str(rng.choice(["bonded", "unbonded"])), float(rng.choice([0.5, 0.45, 0.3]))
     return Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=ratio, support=support)
@@ -173,7 +164,7 @@ def test_the_same_for_many_tables(method, count):
 def check_random_tables(method, count, seed):
     rng, answered = np.random.default_rng(seed), 0
     for _ in range(count):
-        (indenter, depth), layer = random_table(rng), random_layer(rng)
+        (indenter, depth), layer = falling_table(rng, 1e-3), random_layer(rng)
         try:
             path = method.solve(scene_of(indenter, IndentationDepths(values=[depth]), layer=layer))
         except ContactError:

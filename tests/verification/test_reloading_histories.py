@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import random_scenes
+from cases.measurements.campaigns.random_scenes import random_scene, random_scenes
 from cases.measurements.campaigns.restated import RESTATEMENTS, changes_when_restated
 from cases.measurements.campaigns.spring_by_spring import spring_by_spring
 from cases.measurements.campaigns.units import Units, in_units
 from contact import (
     ContactError,
     DepthHistory,
+    FlatPunch,
     ForceHistory,
     Impact,
     KelvinVoigt,
@@ -148,3 +149,30 @@ def test_force_histories_and_impacts_however_they_are_written_down(kind, model):
     assert set(changes) == set(RESTATEMENTS) - ({*list(RESTATEMENTS)[:2]} if model is DASHPOT else set())
     assert changes.pop("branches in another order", 0.0) == 0.0
     assert max(changes.values()) <= 1e-9
+
+
+def test_the_referee_keeps_its_digits_where_a_punch_sinks_into_a_layer_that_flows():
+    """What moves within one relaxation time carries the force: F = k (g d + (1 - g) tau v), a millionth of k d."""
+    depths, times, share, lag = [0.0, 7.4, -2.9, 4.9], np.array([0.0, 205.0, 319.0, 329.0]), 5e-6, 6e-4
+    series = PronySeries(
+        long_term_shear_modulus=share * MODULUS, shear_moduli=[(1.0 - share) * MODULUS], relaxation_times=[lag]
+    )
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=3.0 * MODULUS, poissons_ratio=0.5),
+        indenter=FlatPunch(radius=1.0),
+        loading=DepthHistory(time=times, depth=depths),
+        effects=(series,),
+    )
+    expected = [
+        share * depths[i] + (1.0 - share) * lag * np.diff(depths)[i - 1] / np.diff(times)[i - 1] for i in (1, 3)
+    ]
+    force = spring_by_spring(scene, 1.0).force[[1, 3]] / (8.0 * MODULUS)
+    np.testing.assert_allclose(force, expected, rtol=1e-14)
+    assert distance_from_springs(scene)[0] <= 1e-14
+
+
+@pytest.mark.parametrize("number", [112, 135, 361])
+def test_a_layer_that_flows_is_followed_on_more_springs_before_it_is_refused(number):
+    scene = random_scene(np.random.default_rng([77, number]), "reloading")
+    distance, allowed = distance_from_springs(scene)
+    assert distance <= allowed

@@ -46,6 +46,9 @@ RATIO = (1e-3, 1e3)  # contact radius over layer thickness
 SLOPE = (1e-5, 1.0)  # of the indenter at the contact's edge
 UNITS = {"length": (1e-9, 1e3), "stress": (1.0, 1e12), "time": (1e-9, 1e6)}
 
+# Share of the elastic scenes whose profile falls here and there.
+_FALLING = 1 / 12
+
 Draw: TypeAlias = np.random.Generator
 
 
@@ -120,6 +123,16 @@ def tabulated(draw: Draw, a: float, slope: float) -> Tabulated:
     return Tabulated(radii=radii, heights=slope * a * np.concatenate([[0.0], np.cumsum(rises)]))
 
 
+def falling_table(draw: Draw, size: float) -> tuple[Tabulated, float]:
+    """A measured profile of about this size that falls here and there, and a depth; it may touch in several places."""
+    count = int(draw.integers(5, 12))
+    radii = np.append(0.0, np.cumsum(draw.uniform(0.2, 1.0, count))) * 10 ** draw.uniform(-1.0, 0.5) * size / count
+    rises = draw.uniform(-0.6, 1.0, count)
+    rises[0], rises[-1] = abs(rises[0]) + 0.05, 3.0
+    heights = 1e-2 * radii[-1] * np.append(0.0, np.cumsum(rises)) / count
+    return Tabulated(radii=radii, heights=heights), 0.3 * float(draw.uniform(0.05, 0.9) * heights.max())
+
+
 _INDENTERS: dict[type[Profile], Callable[[Draw, float, float], Profile]] = {
     Paraboloid: lambda _, a, slope: Paraboloid(radius_of_curvature=a / slope),
     Sphere: lambda draw, a, _: Sphere(radius=a * log_uniform(draw, 1.05, 1e4)),
@@ -159,8 +172,15 @@ def _stage(draw: Draw, ratio: tuple[float, float]) -> tuple[Layer, Profile, floa
 
 
 def _elastic(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """One scene in twelve has a profile that may touch in several places, which methods must notice."""
     layer, indenter, a = _stage(draw, ratio)
-    return Scene(layer=layer, indenter=indenter, loading=_static_loading(draw, layer, indenter, a))
+    loading = _static_loading(draw, layer, indenter, a)
+    if draw.random() < _FALLING:
+        indenter, depth = falling_table(draw, a)
+        loading = IndentationDepths(values=np.array([depth]))
+        if draw.random() < 1 / 3:
+            loading = ContactRadii(values=draw.uniform(0.02, 0.9, 1) * indenter.max_radius)
+    return Scene(layer=layer, indenter=indenter, loading=loading)
 
 
 def _static_loading(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Loading:

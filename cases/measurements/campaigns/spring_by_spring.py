@@ -132,18 +132,20 @@ def stepped(springs: Springs, relaxation: Relaxation, loading: DepthHistory, ste
     long_term, lag = relaxation.long_term_modulus / whole, relaxation.viscosity / whole
     u = np.maximum(loading.depth[0] - springs.gap, 0.0)
     strain = np.repeat(u[None], weights.size, axis=0)
-    forces = [springs.stiffness @ u]
-    part = np.arange(steps + 1) / steps
-    shares = part**_GRADING / (part**_GRADING + (1.0 - part) ** _GRADING)
+    forces, held = [springs.stiffness @ u], u > 0.0
+    s = np.arange(steps + 1) / steps
+    shares = s**_GRADING / (s**_GRADING + (1.0 - s) ** _GRADING)
     for k, (duration, rise) in enumerate(zip(np.diff(loading.time), np.diff(loading.depth), strict=True)):
-        for share, dt in zip(shares[1:], duration * np.diff(shares), strict=True):
+        for share, part in zip(shares[1:], np.diff(shares), strict=True):
+            dt, pressed = duration * part, loading.depth[k] + share * rise - springs.gap
             kept = np.exp(-dt / times) * strain
             gain = -times / dt * np.expm1(-dt / times)
             rest = long_term * u + np.sum(weights * kept, axis=0)
             stiffness = long_term + np.sum(weights * gain) + lag / dt
-            to_indenter, to_rest = loading.depth[k] + share * rise - springs.gap - u, -rest / stiffness
-            move = np.maximum(to_indenter, to_rest)
-            strain, u = kept + gain * move, u + move
-        held = long_term * u + np.sum(weights * strain, axis=0) + lag * rise / duration
-        forces.append(springs.stiffness @ np.where(to_indenter > to_rest, held, 0.0))
+            # A spring that is held moves with the indenter: a difference of depths would leave their roundings.
+            to_indenter, to_rest = np.where(held, part * rise, pressed - u), -rest / stiffness
+            held, move = to_indenter > to_rest, np.maximum(to_indenter, to_rest)
+            strain, u = kept + gain * move, np.where(held, pressed, u + move)
+        force = long_term * u + np.sum(weights * strain, axis=0) + lag * rise / duration
+        forces.append(springs.stiffness @ np.where(held, force, 0.0))
     return np.array(forces)

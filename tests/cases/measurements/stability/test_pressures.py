@@ -224,3 +224,25 @@ def test_coarse_panels_state_what_they_leave_of_the_pressure(nodes):
             scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=0.02), loading=ContactRadii([a]))
             check, _ = referee_checks(build("mdr", {"nodes": nodes}).solve(scene), 0)
             assert check.holds, check
+
+
+@pytest.mark.parametrize("nu", [0.1, 0.3])
+def test_a_contact_that_just_enters_the_next_panel_keeps_the_digits_of_its_pressure(nu):
+    """A slope over the little that the contact covers of its last panel would divide roundings by its width."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu)
+    for a in 2.0 * (1.0 + np.linspace(1e-3, 6e-3, 11)):
+        indenter = TruncatedParaboloid(flat_radius=(1.0 - 1e-7) * a, radius_of_curvature=6.0 * a)
+        path = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([a])))
+        rows = referee_checks(path, 0)
+        assert all(row.holds for row in rows), (a, rows)
+
+
+def test_flat_punches_state_what_rounding_leaves_of_their_pressure():
+    """Where the springs are soft beside the whole stiffness, their error counts, not that of the stiffness."""
+    draw = np.random.default_rng(31)
+    for _ in range(16):
+        layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=draw.uniform(0.0, 0.2))
+        scene = Scene(layer=layer, indenter=FlatPunch(radius=draw.uniform(4.0, 8.0)), loading=IndentationDepths([0.01]))
+        path = Mdr().solve(scene)
+        rows = referee_checks(path, 0)
+        assert all(row.holds for row in rows), (scene, rows)
