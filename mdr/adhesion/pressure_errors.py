@@ -63,7 +63,7 @@ def pressure_errors(
     rise = np.divide(a * np.abs(system.mdr_profile_slope(a)), g, out=np.zeros_like(a), where=g > 0.0)
     error = (of_elastic + (1.0 + rise) * shift) * elastic
     error += ((of_punch + shift) * elongation + edge[chosen]) * punch
-    return np.interp(np.arange(radius.size), chosen, error / whole)
+    return np.asarray(np.interp(np.arange(radius.size), chosen, error / whole))
 
 
 def _norms(system: EquivalentSystem, fields: PathFields, radius: float, step: int) -> _Norms:

@@ -23,7 +23,9 @@ from mdr.springs.surface_fields import ContactFields
 # Pieces of the half-space profile are split until its last Chebyshev coefficients are below this share of the largest;
 # chosen.
 RESOLVED = 1e-13
-# On coarse panels a tenth of the flat punch's own error is enough instead: the rest no longer shows in the sum.
+# On coarse panels a tenth of the flat punch's own error is enough instead: what is left is stated with the profile. A
+# hundredth makes depths a third more exact in the median, 7e-12 instead of 1.1e-11, in 16 % more time, with the same
+# sharpness (30 scenes of the elastic campaign with 12 nodes, a/h to 10, seed 9, 2026-11-22).
 SHARE = 0.1
 # Largest exponent at first touch: u^(4 n) leaves double precision beyond n = 30, and errs by 1e-11 from 23 on.
 _FLATTEST = 16.0

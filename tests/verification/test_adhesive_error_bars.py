@@ -4,7 +4,10 @@ import mpmath as mp
 import numpy as np
 import pytest
 
+from cases.declare.methods import build
+from cases.measurements.campaigns.pressure_referee import reference_pressure
 from cases.measurements.campaigns.random_scenes import random_scenes
+from cases.measurements.campaigns.referee import adhesive_states
 from contact import (
     Adhesion,
     ContactRadii,
@@ -99,6 +102,9 @@ def test_stated_errors_of_random_scenes_cover_the_change_by_refinement(number):
     pairs = [(coarse, fine), tuple(m.solve(scene.replace(loading=depths)) for m in (Mdr(), Mdr().refined()))]
     for one, other in pairs:
         for quantity, stated in one.error_estimate.items():
+            # Pressures have a referee of their own, below.
+            if quantity == "pressure":
+                continue
             change = np.abs(np.asarray(getattr(one, quantity)) - getattr(other, quantity)) / one.scale(quantity)
             assert np.all(change <= stated + other.error_estimate[quantity] + 3e-15), quantity
             if not isinstance(scene.indenter, FlatPunch):
@@ -119,3 +125,57 @@ def test_a_flat_end_that_is_hardly_outgrown_detaches_like_a_punch(growth):
         stated = float(found.error_estimate[name][0] + expected.error_estimate[name][0])
         assert stated < 3e-8
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=stated, abs=0.0)
+
+
+def distance(path, radius, expected):
+    """Of a pressure from the right one, over the latter, in the norm with the weight r (a^2 - r^2)."""
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    a = float(path.contact_radius[0])
+    ends = np.array([0.0, *(k for k in path.scene.indenter.kinks if k < a), a])
+    r = (ends[:-1, None] + np.diff(ends)[:, None] * (1 + nodes) / 2).ravel()
+    weight = (np.diff(ends)[:, None] * weights).ravel() * r * (a - r) * (a + r)
+    right = expected(r * (radius / a))
+    return np.sqrt(weight @ (path.pressure(r) - right) ** 2 / (weight @ right**2))
+
+
+@pytest.mark.parametrize("kind", [ContactRadii, IndentationDepths, NormalForces])
+def test_jkr_pressures_are_covered(kind):
+    """p = (2 sqrt(a^2 - r^2)/R - dl/sqrt(a^2 - r^2))/pi with E* = 1, compared at the same shares of the radius."""
+    for a in states()[3:]:
+        loading, radius = prescribed(a, kind)
+        path, radius = solve(loading), float(radius)
+        elongation = np.sqrt(2 * np.pi * WORK * radius)
+
+        def expected(r, radius=radius, elongation=elongation):
+            root = np.sqrt((radius - r) * (radius + r))
+            return (2 * root / CURVATURE - elongation / root) / np.pi
+
+        stated = float(path.error_estimate["pressure"][0])
+        assert distance(path, radius, expected) <= stated
+        assert stated <= 1e-11
+
+
+@pytest.mark.parametrize("nodes", [12, 24])
+def test_pressures_of_adhering_contacts_are_covered(nodes):
+    """Against the referee of elastic pressures, less a flat punch's lifted by the elongation."""
+    draw, method = np.random.default_rng(8), build("mdr", {"nodes": nodes})
+    for number in range(14):
+        a = float(np.exp(draw.uniform(np.log(0.02), np.log(5.0))))
+        layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=draw.uniform(0.0, 0.5))
+        indenter = (
+            Paraboloid(radius_of_curvature=30.0 * a) if number % 2 else TruncatedCone(flat_radius=0.6 * a, slope=0.02)
+        )
+        work = a * draw.uniform(0.1, 1.0) * 1e-4
+        scene = Scene(
+            layer=layer, indenter=indenter, loading=ContactRadii([a]), effects=(Adhesion(work_of_adhesion=work),)
+        )
+        path = method.solve(scene)
+        opinion = adhesive_states(scene, np.array([a]))
+        bare = adhesive_states(scene.replace(effects=()), np.array([a]))
+        dl = float((bare.values["indentation_depth"] - opinion.values["indentation_depth"])[0])
+
+        def expected(r, layer=layer, indenter=indenter, a=a, dl=dl):
+            lifted = reference_pressure(layer, FlatPunch(radius=a), 0.0, dl, r)
+            return reference_pressure(layer, indenter, a - indenter.flat_radius, None, r) - lifted
+
+        assert distance(path, a, expected) <= float(path.error_estimate["pressure"][0]) + 1e-13

@@ -55,3 +55,15 @@ def test_a_detaching_punch_may_end_on_the_last_panel(ratio):
         effects=(Adhesion(work_of_adhesion=1e-4),),
     )
     assert Mdr().solve(scene).contact_radius[0] == pytest.approx(ratio, rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("shift", [-1e-13, -1e-15, 0.0, 1e-15, 1e-14, 1e-13, 9e-13, 1.1e-12])
+def test_the_pressure_of_a_contact_that_ends_with_a_panel(shift):
+    """A radius a rounding beyond a panel's end has a panel more than its profile has; at first that was a crash."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
+    r = np.array([0.0, 0.5, 1.0, 1.5, 1.9])
+    near, exact = (
+        Mdr().solve(Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii([a])))
+        for a in (2.0 * (1.0 + shift), 2.0 - 1e-9)
+    )
+    np.testing.assert_allclose(near.pressure(r), exact.pressure(r), rtol=1e-7)
