@@ -126,9 +126,11 @@ class IntegralEquationSolution(FlatPunchSolution):
         self, load: MappedFunction | None, flat_radius: float, ratio: float, depth: float
     ) -> ContactDensity:
         """Solved for under W = delta - g_hs."""
-        averages = np.full((int(np.ceil(ratio / self.factor.panel_width)), self.factor.count), depth)
-        if load is not None:
-            averages -= contact_averages(self.factor, load, flat_radius)
+        if load is None:
+            return self.density(
+                ratio, np.full((int(np.ceil(ratio / self.factor.panel_width)), self.factor.count), depth)
+            )
+        averages = depth - contact_averages(self.factor, load, flat_radius)
         return self.density(ratio, averages)
 
     def contact_pressure_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
