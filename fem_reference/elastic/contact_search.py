@@ -6,8 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact import IndentationDepths, InvalidInput, NotConvergedError, Scene, StageLog
+from contact import IndentationDepths, InvalidInput, NotConvergedError, Profile, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_load
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.surface_compliance import STRIP_CELLS, SurfaceCompliance, condense, strip_mesh
@@ -141,7 +142,7 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
     end = scene.indenter.max_radius
-    radius = _first_radius(scene, target, by_depth)
+    radius = _first_radius(scene.indenter, target, by_depth)
     for _ in range(12):
         search = ContactSearch(scene, radius, settings, backend, log)
         found = search.at_depth(target) if by_depth else search.at_force(target)
@@ -156,14 +157,10 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
     raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})
 
 
-def _first_radius(scene: Scene, target: float, by_depth: bool) -> float:
+def _first_radius(indenter: Profile, target: float, by_depth: bool) -> float:
     """1.6 times the radius r at which the profile alone suggests contact: f(r) = delta, or 4 r f(r) = F / E*."""
-    low, high = 1e-15, 1e15
-    for _ in range(100):
-        middle = float(np.sqrt(low * high))
-        height = float(scene.indenter.height(middle))
-        low, high = (middle, high) if (height if by_depth else 4 * middle * height) < target else (low, middle)
-    return min(1.6 * high, scene.indenter.max_radius)
+    reached = radius_of_depth(indenter, target) if by_depth else radius_of_load(indenter, target / 4)
+    return min(1.6 * reached, indenter.max_radius)
 
 
 def _one_circle(found: FoundContact) -> FoundContact:

@@ -6,12 +6,13 @@ differences are the error estimates, see `errors`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_energy, radius_of_load
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
@@ -54,11 +55,9 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
     if isinstance(scene.indenter, FlatPunch):
         a = scene.indenter.radius
         return a, float(np.pi * np.sqrt(loading.mass / (2 * contact_modulus(scene.layer) * a)))
-    height, modulus = scene.indenter.height, contact_modulus(scene.layer)
     energy = loading.mass * loading.velocity**2 / 2
-    r = _radius_where(lambda r: modulus * r * float(height(r)) ** 2 / energy)
-    r = min(r, scene.indenter.max_radius)
-    return r, 3 * float(height(r)) / loading.velocity
+    r = radius_of_energy(scene.indenter, energy / contact_modulus(scene.layer), np.inf)
+    return r, 3 * float(scene.indenter.height(r)) / loading.velocity
 
 
 def _impact_in_si(
@@ -152,23 +151,10 @@ def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float
     """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
-    height = scene.indenter.height
-    if isinstance(loading, DepthHistory):
-        largest = float(loading.depth.max())
-        radius = _radius_where(lambda r: float(height(r)) / largest) if largest > 0 else 0.0
-    else:
-        largest = float(loading.force.max())
-        stiffness = 4 * contact_modulus(scene.layer)
-        radius = _radius_where(lambda r: stiffness * r * float(height(r)) / largest) if largest > 0 else 0.0
+    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
+    largest = float(prescribed.max())
     if largest <= 0:
         raise InvalidInput("the history never presses; give a positive depth or force somewhere")
-    return min(radius, scene.indenter.max_radius)
-
-
-def _radius_where(ratio: Callable[[float], float]) -> float:
-    """Where a growing ratio reaches one."""
-    low, high = 1e-15, 1e15
-    for _ in range(120):
-        middle = float(np.sqrt(low * high))
-        low, high = (middle, high) if ratio(middle) < 1 else (low, middle)
-    return high
+    if isinstance(loading, DepthHistory):
+        return radius_of_depth(scene.indenter, largest)
+    return radius_of_load(scene.indenter, largest / (4 * contact_modulus(scene.layer)))

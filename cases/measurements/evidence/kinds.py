@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from cases.measurements.campaigns.referee_profiles import equivalent_profile
+from bem.layer_equation.one_radius import half_space_load
 from contact import (
     Adhesion,
     ContactRadii,
@@ -65,7 +65,7 @@ def rough_radius(scene: Scene) -> float:
     if isinstance(scene.loading, ContactRadii):
         return float(scene.loading.values[-1])
     radii = _trial_radii(scene)
-    g = equivalent_profile(scene.indenter, radii)
+    g = half_space_load(scene.indenter, radii - scene.indenter.flat_radius)
     load = 2 * (radii * g - np.concatenate([[0.0], np.cumsum(np.diff(radii) * (g[1:] + g[:-1]) / 2)]))  # F / E*
     measure, wanted = _wanted(scene, g, load, radii)
     return float(np.interp(wanted, measure, radii))
