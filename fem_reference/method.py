@@ -36,7 +36,7 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.beside_contact import refuse_touching_contacts
+from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (
     ContactSolver,
@@ -135,6 +135,8 @@ class Fem:
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
         equilibria = self._equilibria(scene, log)
+        if not scene.effects and not isinstance(scene.indenter, FlatPunch):
+            refuse_pulled_contacts(scene, (state.contact for state in equilibria))
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
         return contact_path(scene, equilibria, asdict(self), log)
 
