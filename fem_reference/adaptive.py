@@ -19,12 +19,14 @@ ERROR_ORDER = 7.0
 # chooses the first mesh only.
 ERROR_AT_HALF = 8e-6
 
-# Share of the accuracy that outer edge and half-space may cost.  At a load most other errors cancel to a hundredth of
-# the accuracy or less (random elastic scenes at accuracy 1e-2, 2026-11-22), and these do not: with 3e-3 and 1e-2 they
-# were most of what was stated of unbonded layers and half-spaces.
+# Share of the accuracy that the outer edge may cost.  At a load most other errors cancel to a hundredth of the accuracy
+# or less (random elastic scenes at accuracy 1e-2, 2026-11-22), and this does not: with 3e-3 it was most of what was
+# stated of unbonded layers.
 FAR_SHARE = 1e-5
 # The error of the pressure falls like this power of the growth.
 PRESSURE_ORDER = 3.0
+# Errors over what is wanted that count where an attempt did not converge: cells become half as large.
+UNSETTLED = {"normal_force": 1e3}
 # Refinements that are tried before an accuracy counts as out of reach.
 ATTEMPTS = 6
 
@@ -41,7 +43,7 @@ def settings_for(accuracy: float) -> Discretisation:
         growth=growth,
         edge_cell=float(np.clip(accuracy / 2, 1e-11, 1e-3)),
         truncation=max(FAR_SHARE * accuracy, 1e-13),
-        half_space_thickness=min(1 / (FAR_SHARE * accuracy), 1e12),
+        half_space_thickness=float(np.clip(100 / accuracy, 1e3, 1e12)),
     )
 
 
@@ -59,8 +61,15 @@ def solve_to_accuracy(
         NotConvergedError: `ATTEMPTS` did not suffice.
     """
     settings = settings_for(min(error for name, error in wanted.items() if name != "pressure"))
-    for _ in range(ATTEMPTS):
-        answer = attempt(settings)
+    for left in reversed(range(ATTEMPTS)):
+        try:
+            answer = attempt(settings)
+        except NotConvergedError:
+            # On coarse meshes the radius of a load beside a flat end may not settle.
+            if not left:
+                raise
+            settings = _finer(settings, UNSETTLED)
+            continue
         excess = {name: errors(answer)[name] / accuracy for name, accuracy in wanted.items()}
         worst = max(excess, key=lambda name: excess[name])
         if excess[worst] <= 1:
