@@ -236,9 +236,12 @@ def solve(
     accuracy: Annotated[
         float | None,
         typer.Option(
-            help="Relative accuracy: chooses method and settings from measured evidence, and refuses an answer that is "
-            "less."
+            help="Relative accuracy of radius, depth, force and stiffness, of critical numbers, or of restitution and "
+            "peaks: chooses method and settings from measured evidence, and refuses an answer that is less."
         ),
+    ] = None,
+    pressure_accuracy: Annotated[
+        float | None, typer.Option(help="Relative accuracy of the contact pressure, besides --accuracy.")
     ] = None,
     within: Annotated[
         float | None,
@@ -261,7 +264,15 @@ def solve(
     """
     from reports.commands.solve import solve as run_command  # noqa: PLC0415
 
-    run_command(scene, method=method, accuracy=accuracy, outputs=write or [], within=within, evidence=evidence)
+    run_command(
+        scene,
+        method=method,
+        accuracy=accuracy,
+        pressure_accuracy=pressure_accuracy,
+        outputs=write or [],
+        within=within,
+        evidence=evidence,
+    )
 
 
 for _command in studies.COMMANDS:

@@ -32,7 +32,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
-from contact.answer.one_circle import refuse_touching_path
+from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
@@ -271,8 +271,7 @@ def _refuse_tension(contact: DirectContact) -> None:
     pulled = inside[pressure < -LEAST_TENSION * pressure.max()] + density.flat
     if pulled.size:
         a, where = density.contact_radius * unit, float(pulled[0]) * unit
-        message = f"a contact of radius {a:g} m would be pulled at r = {where:g} m: it is no single circle"
-        raise UnsupportedSceneError(f"{message}; smooth the profile or press less")
+        raise no_single_circle(a, f"would be pulled at r = {where:g} m")
 
 
 def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: Scene) -> dict[str, FloatArray]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact import IndentationDepths, InvalidInput, NotConvergedError, Profile, Scene, StageLog
+from contact.answer.one_circle import no_single_circle
 from contact.records.validation import BoolArray, FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
 from fem_reference.discrete_layer.settings import Discretisation
@@ -51,16 +52,23 @@ class FoundContact:
         return bool(self.state.active[: self.active_vertices].all())
 
     @property
-    def missing_contact(self) -> str:
-        """Where a contact that is not one circle around the axis has no pressure, in words."""
+    def reaches_end(self) -> bool:
+        """Whether the contact comes within a tenth of the strip's end."""
+        return bool(self.state.active[self.strip.radii > 0.9].any())
+
+    def refuse_ring(self) -> None:
+        """Refuse a contact that is not one circle around the axis.
+
+        Raises:
+            InvalidInput: nothing is in contact.
+            UnsupportedSceneError: with the contact's radius and a place inside that does not press.
+        """
         if not self.active_vertices:
-            return "nothing of the surface is in contact; press more"
-        place = self.radius * float(self.strip.radii[int(np.argmin(self.state.active))])
-        end = self.radius * float(self.strip.radii[np.flatnonzero(self.state.active)[-1]])
-        return (
-            f"the contact up to r = {end:g} m is not one circle around the axis: on {STRIP_CELLS} cells it has no "
-            f"pressure at r = {place:g} m; this method models single circles only"
-        )
+            raise InvalidInput("nothing of the surface is in contact; press more")
+        if not self.is_disc:
+            place = self.radius * float(self.strip.radii[int(np.argmin(self.state.active))])
+            end = self.radius * float(self.strip.radii[np.flatnonzero(self.state.active)[-1]])
+            raise no_single_circle(end, f"would not press at r = {place:g} m")
 
     @property
     def contact_radius(self) -> float:
@@ -128,16 +136,13 @@ class ContactSearch:
         block, w = self.strip.matrix[np.ix_(active, active)], self.strip.resultants[active]
         return float(w @ np.linalg.solve(block, w))
 
-    def reaches_end(self, found: FoundContact) -> bool:
-        """Whether the contact comes within a tenth of the strip's end."""
-        return bool(found.state.active[self.strip.radii > 0.9].any())
-
 
 def find_contact(scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog) -> FoundContact:
     """Contact at a depth [m] or force / E* [m^2] (as the scene's loading says) on a strip that fits it.
 
     Raises:
-        InvalidInput: contact would reach the end of the profile, or is not one circle.
+        InvalidInput: contact would reach the end of the profile, or nothing touches.
+        UnsupportedSceneError: the contact is not one circle.
         NotConvergedError: no strip fits.
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
@@ -146,14 +151,16 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
     for _ in range(12):
         search = ContactSearch(scene, radius, settings, backend, log)
         found = search.at_depth(target) if by_depth else search.at_force(target)
-        if search.reaches_end(found):
+        if found.reaches_end:
             if radius >= end:
+                found.refuse_ring()
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; press less")
             radius = min(1.8 * radius, end)
         elif found.active_vertices < STRIP_CELLS // 4:
             radius *= max(1.6 * found.contact_radius, 0.05)
         else:
-            return _one_circle(found)
+            found.refuse_ring()
+            return found
     raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})
 
 
@@ -161,9 +168,3 @@ def _first_radius(indenter: Profile, target: float, by_depth: bool) -> float:
     """1.6 times the radius r at which the profile alone suggests contact: f(r) = delta, or 4 r f(r) = F / E*."""
     reached = radius_of_depth(indenter, target) if by_depth else radius_of_load(indenter, target / 4)
     return min(1.6 * reached, indenter.max_radius)
-
-
-def _one_circle(found: FoundContact) -> FoundContact:
-    if found.active_vertices == 0 or not found.is_disc:
-        raise InvalidInput(found.missing_contact)
-    return found
