@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from cases.declare.case import CaseScene
 from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.carried_force import CarriedForce
 from cases.judgement.claims.declared import Reason
 from cases.judgement.claims.exact import Exact, Expected
 from cases.judgement.claims.field_agreement import FieldAgreement, Norm
@@ -78,6 +79,18 @@ def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], 
             tolerance=PRESSURE_TOLERANCE,
             reason=with_tolerance(SHARED["fem"], f"{limit} finite elements to about 2e-5, ten times"),
         )
+
+
+def carried_force(scenes: Iterable[CaseScene], methods: tuple[str, ...], tolerance: float) -> CarriedForce:
+    """Return the claim that sampled pressures add up to the force; the rings must reach the contact's edge."""
+    return CarriedForce(
+        name="the pressure carries the force",
+        quantity="pressure",
+        scenes=names_of(scenes),
+        methods=methods,
+        tolerance=tolerance,
+        reason=SHARED["equilibrium"],
+    )
 
 
 def exact(

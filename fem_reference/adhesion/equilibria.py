@@ -21,6 +21,7 @@ from contact import (
 from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
@@ -186,7 +187,7 @@ def _first_radius(scene: Scene) -> float:
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
     work = work_of_adhesion(scene)
-    return _bisect(scene, lambda r: float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work))
+    return _bisect(scene, lambda r: height(scene.indenter, r) - 2 * np.sqrt(2 * np.pi * r * work))
 
 
 def _radius_beyond(scene: Scene, target: float, by_depth: bool) -> float:
@@ -194,8 +195,8 @@ def _radius_beyond(scene: Scene, target: float, by_depth: bool) -> float:
     work = work_of_adhesion(scene)
 
     def excess(r: float) -> float:
-        height = float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work)
-        return float(height - (1.5 * target if by_depth else target / r))
+        above = height(scene.indenter, r) - 2 * np.sqrt(2 * np.pi * r * work)
+        return float(above - (1.5 * target if by_depth else target / r))
 
     return _bisect(scene, excess)
 

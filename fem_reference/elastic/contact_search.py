@@ -8,6 +8,7 @@ import numpy as np
 
 from contact import IndentationDepths, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
+from fem_reference.discrete_layer.indenter import height, shape
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.surface_compliance import STRIP_CELLS, SurfaceCompliance, condense, strip_mesh
@@ -98,8 +99,8 @@ class ContactSearch:
         self.strip = condense(scene.layer, mesh, backend, log)
         quadrature, _ = self.strip.pressure_space.gauss(4)
         inside = np.minimum(quadrature * radius, scene.indenter.max_radius)  # a strip may end where the profile does
-        self._profile = self.strip.weighted(scene.indenter.height(inside) / radius)
-        self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
+        self._profile = self.strip.weighted(shape(scene.indenter, inside).height / radius)
+        self._start_depth = height(scene.indenter, 0.5 * radius) or height(scene.indenter, 0.99 * radius)
         self._active: BoolArray | None = None
 
     def at_depth(self, depth: float) -> FoundContact:
@@ -161,8 +162,8 @@ def _first_radius(scene: Scene, target: float, by_depth: bool) -> float:
     low, high = 1e-15, 1e15
     for _ in range(100):
         middle = float(np.sqrt(low * high))
-        height = float(scene.indenter.height(middle))
-        low, high = (middle, high) if (height if by_depth else 4 * middle * height) < target else (low, middle)
+        alone = height(scene.indenter, middle)
+        low, high = (middle, high) if (alone if by_depth else 4 * middle * alone) < target else (low, middle)
     return min(1.6 * high, scene.indenter.max_radius)
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from contact.records.validation import FloatArray
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
@@ -53,11 +54,11 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
     if isinstance(scene.indenter, FlatPunch):
         a = scene.indenter.radius
         return a, float(np.pi * np.sqrt(loading.mass / (2 * contact_modulus(scene.layer) * a)))
-    height, modulus = scene.indenter.height, contact_modulus(scene.layer)
+    modulus = contact_modulus(scene.layer)
     energy = loading.mass * loading.velocity**2 / 2
-    r = _radius_where(lambda r: modulus * r * float(height(r)) ** 2 / energy)
+    r = _radius_where(lambda r: modulus * r * height(scene.indenter, r) ** 2 / energy)
     r = min(r, scene.indenter.max_radius)
-    return r, 3 * float(height(r)) / loading.velocity
+    return r, 3 * height(scene.indenter, r) / loading.velocity
 
 
 def _impact_in_si(
@@ -150,14 +151,13 @@ def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float
     """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
-    height = scene.indenter.height
     if isinstance(loading, DepthHistory):
         largest = float(loading.depth.max())
-        radius = _radius_where(lambda r: float(height(r)) / largest) if largest > 0 else 0.0
+        radius = _radius_where(lambda r: height(scene.indenter, r) / largest) if largest > 0 else 0.0
     else:
         largest = float(loading.force.max())
         stiffness = 4 * contact_modulus(scene.layer)
-        radius = _radius_where(lambda r: stiffness * r * float(height(r)) / largest) if largest > 0 else 0.0
+        radius = _radius_where(lambda r: stiffness * r * height(scene.indenter, r) / largest) if largest > 0 else 0.0
     if largest <= 0:
         raise InvalidInput("the history never presses; give a positive depth or force somewhere")
     return min(radius, scene.indenter.max_radius)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 from cases.declare.case import Case, CaseScene
+from cases.declare.shared import in_common
 from cases.declare.task import Answers, Task
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.tolerance import positive_tolerance
@@ -105,6 +106,10 @@ class DeclaredClaim(ABC):
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge the finished answers, one record a scene and method."""
 
+    def shared(self, case: Case, first: SceneRun, second: SceneRun) -> tuple[str, ...]:
+        """Return what both answers rest on: their agreement says nothing about it."""
+        return in_common(first.shared_inputs, second.shared_inputs, quantity=self.quantity, case=case.name)
+
     def record(
         self,
         judgement: Judgement,
@@ -132,7 +137,7 @@ class DeclaredClaim(ABC):
             tolerance=tolerance or self.tolerance,
             fraction=judgement.fraction,
             uncertainty=dict(uncertainty or {}),
-            origin=self.reason.origin,
+            origin=self._origin(shared),
             source=self.reason.source,
             because=self.reason.because,
             derived_from=self.reason.derived_from,
@@ -140,6 +145,11 @@ class DeclaredClaim(ABC):
             message=message,
             relaxed="; ".join(self.relaxed[label] for label in methods if label in self.relaxed),
         )
+
+    def _origin(self, shared: tuple[str, ...]) -> Origin:
+        """Return the declared origin; a method is independent only where nothing is shared."""
+        independent = self.reason.origin is Origin.INDEPENDENT_METHOD
+        return Origin.RELATED_METHOD if independent and shared else self.reason.origin
 
     def _declared(self, judgement: Judgement) -> tuple[Status, str]:
         """Turn a declared failure into XFAIL, and its unexpected success into XPASS."""

@@ -27,6 +27,7 @@ from cases.library._claims import (
     BEM_TOLERANCE,
     TABLE_TOLERANCES,
     agreements,
+    carried_force,
     exact,
     names_of,
     pressure_agreements,
@@ -226,11 +227,14 @@ RESIDUALS = {
     "patch test": ("patch_defect", 1e-12, WHY["patch"]),
 }
 
+CARRIED = carried_force(LAYER_SCENES, ("mdr", "fem"), 1e-3)
+
 ONE_OF_EACH = tuple(scene_name(label, 1.0) for label in LAYERS)
 UNBONDED = tuple(scene_name("unbonded", ratio) for ratio in (1.0, 5.0))
 ANY_NU = {"fem": 3e-6, "bem": 1e-7}
 
 INVARIANTS = (
+    CARRIED,
     IncrementalStiffness(
         name="dF/d(delta) is the stiffness of the flat punch",
         quantity="contact_stiffness",

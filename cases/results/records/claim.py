@@ -20,11 +20,12 @@ class Kind(StrEnum):
 
 
 class Origin(StrEnum):
-    """Where an expected number comes from; the four are never mixed."""
+    """Where an expected number comes from; they are never mixed."""
 
     CLOSED_FORM = "closed form"
     LITERATURE = "literature"
-    INDEPENDENT_METHOD = "independent method"
+    INDEPENDENT_METHOD = "independent method"  # shares neither code nor data with what it checks
+    RELATED_METHOD = "related method"  # shares what `shared_inputs` names
     OWN_EARLIER_OUTPUT = "own earlier output"
 
 
