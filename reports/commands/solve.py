@@ -66,7 +66,7 @@ def _write_all(solution: Solution, outputs: list[Path]) -> None:
 
 def _solve_uncertain(scene: Scene, uncertain: str, samples: int, method: Method) -> Solution:
     """Solve a scene with uncertain inputs, print what they make of the answer, and return the one at their middle."""
-    from cases.uncertain import propagate  # noqa: PLC0415 - only where it is asked for
+    from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
     from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above
 
     found = propagate(scene, uncertain, method=method, samples=samples)

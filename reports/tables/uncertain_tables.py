@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from cases.uncertain import Propagated, PropagatedQuantity
+from cases.run.propagation import Propagated, PropagatedQuantity
 from reports.tables.table import Table
 from reports.words.numbers import measured, scaled_unit, small
 

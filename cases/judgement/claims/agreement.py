@@ -48,7 +48,15 @@ class Agreement(DeclaredClaim):
                 yield self.record(judged, scene.name, labels, shared=shared)
                 continue
             judged, uncertainty = self._compared(fast, reference)
-            yield self.record(judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared)
+            yield self.record(
+                judged,
+                scene.name,
+                labels,
+                expected=0.0,
+                uncertainty=uncertainty,
+                shared=shared,
+                identity=self.identity(scene, labels),
+            )
 
     def _compared(self, fast: SceneRun, reference: SceneRun) -> tuple[Judgement, dict[str, float]]:
         a, b = fast.quantity(self.quantity), reference.quantity(self.quantity)

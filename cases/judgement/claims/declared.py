@@ -15,6 +15,9 @@ from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from contact import InvalidInput
 
+# On the half-space MDR on a table reads no table: it is MDR itself, by construction.
+TABLE, NO_TABLE = "mdr_table", "on the half-space no table is read"
+
 
 @dataclass(frozen=True, kw_only=True)
 class Reason:
@@ -51,6 +54,7 @@ class DeclaredClaim(ABC):
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
         relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
+        identities: of methods for which it holds by construction, by label: why; such checks are not counted.
     """
 
     kind: ClassVar[Kind]
@@ -62,6 +66,7 @@ class DeclaredClaim(ABC):
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
     relaxed: Mapping[str, str] = field(default_factory=dict)
+    identities: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a claim without a reason, and a tolerance of the wrong sign."""
@@ -110,6 +115,11 @@ class DeclaredClaim(ABC):
         """Return what both answers rest on: their agreement says nothing about it."""
         return in_common(first.shared_inputs, second.shared_inputs, quantity=self.quantity, case=case.name)
 
+    def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
+        """Return why the comparison cannot fail on ``scene``, empty where it can."""
+        known = {TABLE: NO_TABLE} if scene.scene.layer.is_half_space else {}
+        return next((why[label] for why in (self.identities, known) for label in labels if label in why), "")
+
     def record(
         self,
         judgement: Judgement,
@@ -120,6 +130,7 @@ class DeclaredClaim(ABC):
         uncertainty: Mapping[str, float] | None = None,
         shared: tuple[str, ...] = (),
         tolerance: float = 0.0,
+        identity: str = "",
     ) -> Claim:
         """Return the record of a judgement."""
         status, message = self._declared(judgement)
@@ -143,6 +154,7 @@ class DeclaredClaim(ABC):
             derived_from=self.reason.derived_from,
             shared_inputs=shared,
             message=message,
+            identity=identity,
             relaxed="; ".join(self.relaxed[label] for label in methods if label in self.relaxed),
         )
 

@@ -25,6 +25,7 @@ from cases.library._layers import (
 )
 from cases.library._methods import EVERY
 from cases.library._reasons import reasons
+from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import elastic_costs
 from contact import (
@@ -50,7 +51,7 @@ DEPTH = 1e-5  # m
 THICK_RATIOS = (0.02, 0.01)
 
 
-ALPHA = {"unbonded": 0.743303, "bonded nu=0.3": 0.876533, "bonded nu=0.45": 1.034807, "bonded nu=0.5": 1.126955}
+ALPHA = {label: float(numbers("first_order")[label][0]) for label in LAYERS}
 
 
 def on_half_space(name: str, indenter: Profile, loading: Loading) -> CaseScene:
@@ -138,13 +139,13 @@ CLAIMS = (
         tolerance=1e-10,
         tolerances={"fem": 3e-6, "bem": 1e-3},
     ),
-    # Boundary elements have no tolerance of their own here: they measure their disc of cells by this very force.
     *exact(
         WHY["sneddon"],
         {"force of the flat punch": ("normal_force", punch_force)},
         scenes=(PUNCH,),
         tolerance=1e-10,
         tolerances={"fem": 3e-6},
+        identities={"bem": "the disc of cells is calibrated by this very force"},
     ),
     *(
         Approach(

@@ -66,6 +66,7 @@ class Claim:
         shared_inputs: what the compared answers share; agreement says nothing about those.
         message: what was seen, one sentence.
         relaxed: whose own claim of accuracy has widened the tolerance, and from what; empty when nobody's has.
+        identity: why the comparison holds by construction, empty where it can fail; identities are not counted.
     """
 
     name: str
@@ -88,3 +89,4 @@ class Claim:
     shared_inputs: tuple[str, ...] = ()
     message: str
     relaxed: str = ""
+    identity: str = ""

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.uncertain import propagate, read_inputs
+from cases.declare.uncertain_inputs import read_inputs
+from cases.run.propagation import propagate
 from contact import (
     Adhesion,
     Cone,

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cases.declare.task import Sampling
+from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
 from cases.results.records.scene_run import Quantity
 from cases.run.recording import quantities
-from cases.uncertain.inputs import UncertainInputs, read_inputs
 from contact import UNITS, DetachmentPath, InvalidInput, Method, Scene, Solution
 from contact.records.validation import FloatArray
 
