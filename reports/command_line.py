@@ -356,6 +356,16 @@ def accuracy_page(
     write_page(baseline, out)
 
 
+@app.command("paper-page")
+def paper_page(
+    out: Annotated[Path, typer.Argument(help="File for the page, Markdown.")] = Path("docs/paper.md"),
+) -> None:
+    """Write the page of what the paper says and what is measured, with numbers computed now."""
+    from reports.commands.paper_page import write_page  # noqa: PLC0415
+
+    write_page(out)
+
+
 @app.command()
 def scaling(
     out: Annotated[Path, typer.Option(help="Folder for the report.")] = Path("build/scaling"),
