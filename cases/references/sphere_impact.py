@@ -50,7 +50,7 @@ def tabulated_springs() -> tuple[list[mpf], list[mpf]]:
 
     places = [mp.cos(mp.pi * (2 * i + 1) / (2 * POINTS)) for i in range(POINTS)]
     values = [solved(LARGEST_RATIO * (1 + x) / 2) for x in places]
-    return tuple(_coefficients([v[which] for v in values]) for which in (0, 1))
+    return _coefficients([v[0] for v in values]), _coefficients([v[1] for v in values])
 
 
 def _coefficients(values: list[mpf]) -> list[mpf]:

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from mpmath import mp, mpf
@@ -12,10 +12,10 @@ from cases.references import layer_equation, sphere_impact
 PLACE = Path(__file__).with_name("numbers.toml")
 LAYERS: dict[str, str | None] = {f"bonded nu={nu}": nu for nu in ("0.3", "0.4", "0.45", "0.5")} | {"unbonded": None}
 # Gauss nodes that give at least twelve digits up to this a/h.
-NODES = {"0.2": 16, "0.5": 18, "1": 20, "2": 24, "5": 34, "10": 50}
+NODES = {"0.1": 16, "0.2": 16, "0.5": 18, "1": 20, "2": 24, "5": 34, "10": 50}
 PRESSURE_AT = ("0", "0.2", "0.4", "0.6", "0.8", "0.9", "0.95")
 PARABOLOIDS = {"bonded nu=0.5": ("0.2", "1", "2", "5", "10"), "unbonded": ("1", "2", "5")}
-CONES = {"bonded nu=0.5": ("1", "2", "5"), "bonded nu=0.45": ("1", "2", "5"), "unbonded": ("1", "2", "5")}
+CONES = {"bonded nu=0.5": ("0.1", "1", "2", "5"), "bonded nu=0.45": ("1", "2", "5"), "unbonded": ("1", "2", "5")}
 ELONGATIONS = {"0.5": "0.46", "0.45": "0.6", "0.4": "0.914"}
 # Thickness [mm] of the impacted layers; zero stands for the half-space.
 THICKNESSES = ("0", "1", "2", "3")
@@ -50,52 +50,54 @@ def entries() -> Iterator[Entry]:
     """Return every entry, those of one kind together."""
     for label, nu in LAYERS.items():
         for ratio in ("0.2", "1", "2"):
-            yield _entry("stiffness", label, ratio, lambda n, r=ratio, v=nu: [layer_equation.stiffness(r, v, n)])
-    yield _entry("spring", "bonded nu=0.5", "1", lambda n: [layer_equation.spring("1", "0.5", n)])
+            yield _entry("stiffness", label, ratio, _single(layer_equation.stiffness, ratio, nu))
+    yield _entry("spring", "bonded nu=0.5", "1", _single(layer_equation.spring, "1", "0.5"))
     for ratio in ("0.5", "1", "2", "5"):
-        yield _entry(
-            "pressure", "bonded nu=0.5", ratio, lambda n, r=ratio: layer_equation.pressure(r, "0.5", n, PRESSURE_AT)
-        )
+        yield _entry("pressure", "bonded nu=0.5", ratio, partial(_pressure, ratio))
     for function, places in ((layer_equation.paraboloid, PARABOLOIDS), (layer_equation.truncated_cone, CONES)):
         for label, ratios in places.items():
             for ratio in ratios:
-                yield _entry(
-                    function.__name__,
-                    label,
-                    ratio,
-                    lambda n, f=function, r=ratio, v=LAYERS[label]: list(f(r, v, n)),
-                )
-    yield Entry(
-        "truncated_cone",
-        "bonded nu=0.5 a/h=0.1",
-        lambda more: list(layer_equation.truncated_cone("0.1", "0.5", 16 + more)),
-    )
+                yield _entry(function.__name__, label, ratio, _pair(function, ratio, LAYERS[label]))
     for label, nu in LAYERS.items():
-        yield Entry("first_order", label, lambda more, v=nu: [layer_equation.first_order(v)])
+        yield Entry("first_order", label, partial(_first_order, nu))
     for nu, near in ELONGATIONS.items():
-        yield Entry(
-            "largest_elongation",
-            f"bonded nu={nu}",
-            lambda more, v=nu, x=near: list(layer_equation.largest_elongation(v, x, 18 + more)),
-            digits=10,
-        )
+        yield Entry("largest_elongation", f"bonded nu={nu}", partial(_elongation, nu, near), digits=10)
     for thickness in THICKNESSES:
-        yield Entry(
-            "sphere_impact",
-            f"h={thickness} mm" if thickness != "0" else "half-space",
-            lambda more, h=thickness: _impact(h, STEPS + 10 * more),
-            digits=8,
-        )
+        name = f"h={thickness} mm" if thickness != "0" else "half-space"
+        yield Entry("sphere_impact", name, partial(_impact, thickness), digits=8)
 
 
 def _entry(kind: str, label: str, ratio: str, compute: Callable[[int], list[mpf]]) -> Entry:
+    def with_nodes(more: int) -> list[mpf]:
+        return compute(NODES[ratio] + more)
+
     # The equation of a thin incompressible layer magnifies roundings: one digit less at a/h = 10.
-    digits = 11 if ratio == "10" else 12
-    return Entry(kind, f"{label} a/h={ratio}", lambda more: compute(NODES[ratio] + more), digits)
+    return Entry(kind, f"{label} a/h={ratio}", with_nodes, 11 if ratio == "10" else 12)
 
 
-def _impact(thickness: str, steps: int) -> list[mpf]:
+def _single(function: Callable[..., mpf], ratio: str, nu: str | None) -> Callable[[int], list[mpf]]:
+    return lambda nodes: [function(ratio, nu, nodes)]
+
+
+def _pair(function: Callable[..., tuple[mpf, mpf]], ratio: str, nu: str | None) -> Callable[[int], list[mpf]]:
+    return lambda nodes: list(function(ratio, nu, nodes))
+
+
+def _pressure(ratio: str, nodes: int) -> list[mpf]:
+    return layer_equation.pressure(ratio, "0.5", nodes, PRESSURE_AT)
+
+
+def _first_order(nu: str | None, _: int) -> list[mpf]:
+    return [layer_equation.first_order(nu)]
+
+
+def _elongation(nu: str, near: str, more: int) -> list[mpf]:
+    return list(layer_equation.largest_elongation(nu, near, 18 + more))
+
+
+def _impact(thickness: str, more: int) -> list[mpf]:
     """Restitution and largest force [N]."""
+    steps = STEPS + 10 * more
     with mp.workdps(20):
         springs = sphere_impact.Springs()
         if thickness != "0":

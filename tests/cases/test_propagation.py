@@ -123,3 +123,20 @@ def test_what_the_scene_does_not_have_is_refused(text):
 def test_too_few_samples_are_refused():
     with pytest.raises(InvalidInput, match="samples = 3"):
         propagate(HERTZ, "youngs_modulus=2%", samples=3)
+
+
+def test_the_command_prints_both_uncertainties_and_what_moves_together(tmp_path, capsys):
+    from reports.commands.solve import solve
+
+    scene = tmp_path / "scene.toml"
+    scene.write_text(
+        '[layer]\nthickness = 1e-3\nyoungs_modulus = 1e6\npoissons_ratio = 0.49\nsupport = "bonded"\n'
+        '[indenter]\nkind = "paraboloid"\nradius_of_curvature = 1e-2\n'
+        '[loading]\nkind = "indentation_depths"\nvalues = [5e-5]\n'
+    )
+    solve(scene, method="mdr", accuracy=None, outputs=[], uncertain="thickness=3%,poissons_ratio=0.48..0.5")
+    printed = " ".join(capsys.readouterr().out.split())
+    for words in ("numerical error", "by inputs", "thickness", "poissons_ratio", "Moving together", "4.6 %"):
+        assert words in printed
+    with pytest.raises(InvalidInput, match="--samples"):
+        solve(scene, method="mdr", accuracy=None, outputs=[], samples=20)

@@ -53,13 +53,12 @@ class Printed(Exact):
     def _moved(self, task: Task) -> list[tuple[Task, Task]]:
         inputs = read_inputs(self.uncertain)
         units = np.eye(len(inputs.inputs))
-        return [
-            tuple(
-                task.changed(f"{self.name}, {one.name} {sign:+g}", problem=inputs.moved(task.problem, sign * unit))
-                for sign in (1, -1)
-            )
-            for one, unit in zip(inputs.inputs, units, strict=True)
-        ]
+
+        def moved(name: str, deviations: FloatArray, side: str) -> Task:
+            return task.changed(f"{self.name}, {name} {side}", problem=inputs.moved(task.problem, deviations))
+
+        named = zip((one.name for one in inputs.inputs), units, strict=True)
+        return [(moved(name, unit, "up"), moved(name, -unit, "down")) for name, unit in named]
 
     def _by_inputs(self, moved: list[tuple[SceneRun, SceneRun]]) -> FloatArray:
         """Standard uncertainty of every step: the root of D R D^T."""
@@ -70,4 +69,4 @@ class Printed(Exact):
             ]
         )
         correlation = read_inputs(self.uncertain).correlation
-        return np.sqrt(np.einsum("is,ij,js->s", changes, correlation, changes))
+        return np.asarray(np.sqrt(np.einsum("is,ij,js->s", changes, correlation, changes)))

@@ -75,7 +75,7 @@ class Motion:
     @property
     def peak_depth(self) -> float:
         """v0/omega exp(-D/s arccos(D)) [m]."""
-        return VELOCITY / self.frequency * restitution(self.damping) ** 0.5
+        return VELOCITY / self.frequency * math.sqrt(restitution(self.damping))
 
     @property
     def peak_force(self) -> float:
