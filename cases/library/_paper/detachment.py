@@ -7,7 +7,7 @@ import numpy as np
 
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of
 from cases.library._figures.figure_08 import elongation, reversals
-from cases.library._paper.statement import Measured, Statement, reads
+from cases.library._paper.statement import Measured, Statement, above, below, reads
 from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scene
 from mdr.adhesion.solver import solve_detachment
 
@@ -149,7 +149,7 @@ def statements() -> Iterator[Statement]:
             "increases",
             f"F_A over that of the half-space at a*/h = {high:g}",
             partial(adhesion_force, high),
-            lambda value, low=low: value > adhesion_force(low).value,
+            above(partial(adhesion_force, low)),
         )
         yield Statement(
             "Section 4.2, Fig. 9",
@@ -157,5 +157,5 @@ def statements() -> Iterator[Statement]:
             "decreases",
             f"delta_c1 over that of the half-space at a*/h = {high:g}",
             partial(first_depth, high),
-            lambda value, low=low: value < first_depth(low).value,
+            below(partial(first_depth, low)),
         )

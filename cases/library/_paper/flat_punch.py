@@ -10,7 +10,7 @@ from cases.library._figures._parts import UNBONDED, layer, name_of, punch
 from cases.library._figures.figure_03 import thin_layer_stiffness
 from cases.library._figures.figure_04 import second_maximum
 from cases.library._figures.figure_05 import exponent
-from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, within
+from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, above, deviation, reads, within
 from cases.library.elastic.flat_punch_stiffness import HAYES, HAYES_RATIOS
 from contact import Layer
 
@@ -168,7 +168,7 @@ def statements() -> Iterator[Statement]:
             f"{m:g}",
             f"m at a/h = {ratio:g}",
             partial(exponent_at, one, ratio),
-            lambda value, m=m: abs(value - m) <= GOOD * max(m, 1),
+            reads(m, GOOD * max(m, 1)),
         )
     for low, high in ((0.5, 1.0), (1.0, 2.0), (2.0, 5.0)):
         yield Statement(
@@ -177,7 +177,7 @@ def statements() -> Iterator[Statement]:
             "higher",
             f"p(0)/p_mean at a/h = {high:g}",
             partial(pressure, high, 0.0),
-            lambda value, low=low: value > pressure(low, 0.0).value,
+            above(partial(pressure, low, 0.0)),
         )
     yield Statement(
         "Fig. 4",

@@ -6,7 +6,18 @@ from functools import cache, partial
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of
 from cases.library._figures.figure_12 import elastic_half_space
 from cases.library._paper.flat_punch import stiffness
-from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within
+from cases.library._paper.statement import (
+    FORMULA,
+    GOOD,
+    SAME,
+    Measured,
+    Statement,
+    above,
+    below,
+    deviation,
+    reads,
+    within,
+)
 from cases.library.in_time.flat_punch_impact import restitution
 from cases.library.in_time.sphere_impact import scene_of, twice_the_radius_at_half_the_speed
 from contact import ImpactHistory, Layer
@@ -29,6 +40,11 @@ def bounce(thickness: float) -> Measured:
     return Measured(run.coefficient_of_restitution, float(run.uncertainty("coefficient_of_restitution").max()))
 
 
+def at_damping(damping: float) -> Measured:
+    """Restitution of a flat punch, Eq. (49)."""
+    return Measured(restitution(damping), 1e-15)
+
+
 def on_layer(one: Layer, ratio: float) -> Measured:
     """Restitution of a flat punch, Eqs. (49) and (50), over that of the half-space."""
     value, error = stiffness(one, ratio)
@@ -39,7 +55,7 @@ def support_matters(ratio: float) -> Measured:
     """Restitution on the bonded over that on the unbonded incompressible layer."""
     bonded, loose = (stiffness(one, ratio) for one in (layer(0.5), UNBONDED))
     values = [restitution(DAMPING * value**0.5) for value, _ in (bonded, loose)]
-    return deviation(*values, bonded[1] + loose[1])
+    return deviation(values[0], values[1], bonded[1] + loose[1])
 
 
 def duration(thickness: float, *, elastic: bool) -> Measured:
@@ -58,6 +74,8 @@ def by_finite_elements() -> Measured:
     from fem_reference import Fem  # noqa: PLC0415 - loaded where it is used
 
     run = Fem().solve(scene_of(2e-3))
+    if not isinstance(run, ImpactHistory):
+        raise TypeError("finite elements answer an impact with another history")
     error = float(run.uncertainty("peak_force").max()) / run.peak_force
     return deviation(run.peak_force, hit(2e-3).peak_force, error)
 
@@ -70,8 +88,8 @@ def statements() -> Iterator[Statement]:
             f"the restitution falls with the damping ratio, from D = {less:g} to {damping:g}",
             "decreasing",
             "restitution",
-            partial(lambda d: Measured(restitution(d), 1e-15), damping),
-            lambda value, less=less: value < restitution(less),
+            partial(at_damping, damping),
+            below(partial(at_damping, less)),
             FORMULA,
         )
     for one in (UNBONDED, layer(0.5)):
@@ -108,7 +126,7 @@ def statements() -> Iterator[Statement]:
             "increases",
             "restitution",
             partial(bounce, thin),
-            lambda value, thick=thick: value > bounce(thick).value,
+            above(partial(bounce, thick)),
         )
     yield Statement(
         "Section 4.3, Fig. 12B",
@@ -134,7 +152,7 @@ def statements() -> Iterator[Statement]:
                 "decreases",
                 "duration over that of the elastic half-space",
                 partial(duration, thin, elastic=elastic),
-                lambda value, thick=thick, elastic=elastic: value < duration(thick, elastic=elastic).value,
+                below(partial(duration, thick, elastic=elastic)),
             )
     yield Statement(
         "Section 4.3",

@@ -44,6 +44,11 @@ def thin_depth(one: Layer, ratio: float, share: float) -> Measured:
     return deviation(ratio**2 / (share * 1e3), float(path.indentation_depth[0]), error)
 
 
+def rise(one: Layer, ratio: float) -> Measured:
+    """g(a)/f(a): below one the surface beside the contact has risen."""
+    return Measured(depth_over_height(one, ratio), 1e-7)
+
+
 def pair_over_body(ratio: float) -> Measured:
     """Force of two equal coated bodies over that of one of them on a rigid plane."""
     scene = symmetric("bonded", ratio).scene
@@ -82,7 +87,7 @@ def statements() -> Iterator[Statement]:
                 f"{name_of(one)}: for high Poisson's ratios and a/h >= 2 the surface rises beside the contact",
                 "g(a)/f(a) < 1",
                 f"g(a)/f(a) at a/h = {ratio:g}",
-                lambda one=one, ratio=ratio: Measured(depth_over_height(one, ratio), 1e-7),
+                partial(rise, one, ratio),
                 lambda value: value < 1,
             )
     for one in (UNBONDED, layer(0.45), layer(0.5)):

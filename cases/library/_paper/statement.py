@@ -72,3 +72,13 @@ def within(share: float) -> Callable[[float], bool]:
 def reads(printed: float, half_unit: float) -> Callable[[float], bool]:
     """Whether a number rounds to the printed one."""
     return lambda value: abs(value - printed) <= half_unit
+
+
+def above(other: Callable[[], Measured]) -> Callable[[float], bool]:
+    """Whether a number is larger than another one that is computed."""
+    return lambda value: value > other().value
+
+
+def below(other: Callable[[], Measured]) -> Callable[[float], bool]:
+    """Whether a number is smaller than another one that is computed."""
+    return lambda value: value < other().value
