@@ -1,9 +1,9 @@
 """Flat-punch tables in HDF5 files: our own with provenance and hash, and others in a plain layout of four arrays.
 
-The plain layout is `ratios` (a/h), `radii` (r/a), `k_bar` and `p_bar`, the last with one row for each ratio. It is ours:
-the files of the supplement to Forsbach (2023), https://www.mdpi.com/article/10.3390/machines11040474/s1, were not seen
-and may need to be rewritten so. Our own files hold the same four, the stated errors, the kernel, and where the numbers
-come from.
+The plain layout is `ratios` (a/h), `radii` (r/a), `k_bar` and `p_bar`, the last with one row for each ratio. It is our
+own: the files of the supplement to Forsbach (2023), https://www.mdpi.com/article/10.3390/machines11040474/s1, were not
+seen and may need to be rewritten so. Our own files hold the same four, the stated errors, the kernel, and where the
+numbers come from.
 """
 
 from __future__ import annotations
