@@ -144,7 +144,7 @@ def run_suite(
     ] = "processes",
     time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds a single solution may take; 0: no limit.")] = 0.0,
     timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
-    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
 ) -> int:
     """Run cases through every method, judge their claims, write the report.
@@ -189,7 +189,7 @@ def gate(
     method: Annotated[
         list[str] | None, typer.Option(help="Only these methods, for a run of them alone. Repeatable.")
     ] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
 ) -> int:
     """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
@@ -252,6 +252,17 @@ def solve(
     evidence: Annotated[
         Path | None, typer.Option(help="Measurements of this machine from calibrate, in place of those shipped.")
     ] = None,
+    uncertain: Annotated[
+        str,
+        typer.Option(
+            metavar="INPUTS",
+            help='Uncertain inputs, "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8": standard '
+            "deviations, ranges, correlations.",
+        ),
+    ] = "",
+    samples: Annotated[
+        int, typer.Option(help="Scenes to draw for --uncertain; by default two for each input, and differences.")
+    ] = 0,
     write: Annotated[
         list[Path] | None,
         typer.Option("--write", "-w", help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. May be repeated."),
@@ -272,6 +283,8 @@ def solve(
         outputs=write or [],
         within=within,
         evidence=evidence,
+        uncertain=uncertain,
+        samples=samples,
     )
 
 
@@ -288,6 +301,16 @@ def accuracy_page(
     from reports.commands.accuracy_page import write_page  # noqa: PLC0415
 
     write_page(baseline, out)
+
+
+@app.command("paper-page")
+def paper_page(
+    out: Annotated[Path, typer.Argument(help="File for the page, Markdown.")] = Path("docs/paper.md"),
+) -> None:
+    """Write the page of what the paper says and what is measured, with numbers computed now."""
+    from reports.commands.paper_page import write_page  # noqa: PLC0415
+
+    write_page(out)
 
 
 @app.command()

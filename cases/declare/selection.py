@@ -51,3 +51,8 @@ def _left(case: Case, keep: Keep) -> Case:
     claims = tuple(left for claim in case.claims for left in claim.left(case, solvers))
     ablations = tuple(study.left(solvers) for study in case.ablations)
     return replace(case, scenes=scenes, claims=claims, ablations=ablations)
+
+
+def only_scenes(case: Case, scenes: Collection[str], methods: Collection[str]) -> Case:
+    """Return the case with some of its scenes and methods, and the claims that these can answer."""
+    return _left(case, lambda scene, use: scene.name in scenes and use.label in methods)

@@ -22,6 +22,7 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
@@ -187,7 +188,7 @@ def _first_radius(scene: Scene) -> float:
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
     work = work_of_adhesion(scene)
-    return first_radius(scene.indenter, lambda r: float(scene.indenter.height(r)) >= 2 * np.sqrt(2 * np.pi * r * work))
+    return first_radius(scene.indenter, lambda r: height(scene.indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
 
 
 def _radius_beyond(scene: Scene, target: float, by_depth: bool) -> float:
@@ -195,7 +196,7 @@ def _radius_beyond(scene: Scene, target: float, by_depth: bool) -> float:
     work = work_of_adhesion(scene)
 
     def reached(r: float) -> bool:
-        height = float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work)
-        return bool(height >= (1.5 * target if by_depth else target / r))
+        alone = height(scene.indenter, r) - 2 * np.sqrt(2 * np.pi * r * work)
+        return bool(alone >= (1.5 * target if by_depth else target / r))
 
     return first_radius(scene.indenter, reached)

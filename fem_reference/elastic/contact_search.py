@@ -10,6 +10,7 @@ from contact import IndentationDepths, InvalidInput, NotConvergedError, Profile,
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import BoolArray, FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
+from fem_reference.discrete_layer.indenter import height, shape
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.surface_compliance import STRIP_CELLS, SurfaceCompliance, condense, strip_mesh
@@ -107,8 +108,8 @@ class ContactSearch:
         self.strip = condense(scene.layer, mesh, backend, log)
         quadrature, _ = self.strip.pressure_space.gauss(4)
         inside = np.minimum(quadrature * radius, scene.indenter.max_radius)  # a strip may end where the profile does
-        self._profile = self.strip.weighted(scene.indenter.height(inside) / radius)
-        self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
+        self._profile = self.strip.weighted(shape(scene.indenter, inside).height / radius)
+        self._start_depth = height(scene.indenter, 0.5 * radius) or height(scene.indenter, 0.99 * radius)
         self._active: BoolArray | None = None
 
     def at_depth(self, depth: float) -> FoundContact:

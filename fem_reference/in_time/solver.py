@@ -13,6 +13,7 @@ import numpy as np
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_energy, radius_of_load
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
@@ -57,7 +58,7 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
         return a, float(np.pi * np.sqrt(loading.mass / (2 * contact_modulus(scene.layer) * a)))
     energy = loading.mass * loading.velocity**2 / 2
     r = radius_of_energy(scene.indenter, energy / contact_modulus(scene.layer), np.inf)
-    return r, 3 * float(scene.indenter.height(r)) / loading.velocity
+    return r, 3 * height(scene.indenter, r) / loading.velocity
 
 
 def _impact_in_si(

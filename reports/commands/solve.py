@@ -24,6 +24,8 @@ def solve(
     pressure_accuracy: float | None = None,
     within: float | None = None,
     evidence: Path | None = None,
+    uncertain: str = "",
+    samples: int = 0,
 ) -> None:
     """Solve the scene of a TOML file, print the answer and write it to `outputs`, whose endings choose the format.
 
@@ -37,7 +39,13 @@ def solve(
     if (within is not None or evidence is not None) and (accuracy is None or method):
         raise InvalidInput("--within and --evidence choose a method for an --accuracy; give one, and no --method")
     _check_accuracies(accuracy, pressure_accuracy)
+    if samples and not uncertain:
+        raise InvalidInput("--samples: of what? name the inputs with --uncertain")
     scene = load_scene(scene_file)
+    if uncertain:
+        answer = _solve_uncertain(scene, uncertain, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
+        _write_all(answer, outputs)
+        return
     facts: list[tuple[str, str]] = []
     if accuracy is not None and not method:
         solution, facts = _by_evidence(scene, accuracy, pressure_accuracy, within, evidence)
@@ -49,9 +57,24 @@ def solve(
     terminal = console()
     show_table(solution_table(solution), on=terminal)
     show_facts(solution_facts(solution) + facts, on=terminal)
+    _write_all(solution, outputs)
+
+
+def _write_all(solution: Solution, outputs: list[Path]) -> None:
     for path in outputs:
         _write(solution, path)
-        terminal.print(f"written: {path}")
+        console().print(f"written: {path}")
+
+
+def _solve_uncertain(scene: Scene, uncertain: str, samples: int, method: Method) -> Solution:
+    """Solve a scene with uncertain inputs, print what they make of the answer, and return the one at their middle."""
+    from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
+    from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above
+
+    found = propagate(scene, uncertain, method=method, samples=samples)
+    show_table(solution_table(found.answer), on=console())
+    show_table(propagated_table(found), on=console())
+    return found.answer
 
 
 def _by_evidence(

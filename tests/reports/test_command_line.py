@@ -139,7 +139,7 @@ def test_a_wrong_number_fails_the_run(library, tmp_path, capsys):
 def test_an_open_verdict_fails_only_when_strict(library, tmp_path):
     library(fake_case(slow=spoiled(SLOW, stated=1e-3)))
     assert run_here(tmp_path) == 0
-    assert run_here(tmp_path, "--resume", "--strict") == 1
+    assert run_here(tmp_path, "--resume", "--strict") == 6
 
 
 @pytest.mark.usefixtures("library")

@@ -13,10 +13,11 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
-from cases.library._claims import BEM_TOLERANCE, TABLE_TOLERANCES, agreements, names_of, scaling_law
+from cases.library._claims import agreements, names_of, scaling_law
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons
+from cases.library._requirements import required
 from cases.measurements.cost.settings import elastic_costs
 from contact import CoatedPair, ContactRadii, InvalidInput, Paraboloid, Scene
 
@@ -119,10 +120,7 @@ CASE = Case(
             tolerance=0.2,
             reason=WHY["series"],
         ),
-        *agreements(
-            SYMMETRIC,
-            {"fem": 3e-6, "bem": BEM_TOLERANCE, "integral_equation": 1e-9, "mdr_table": TABLE_TOLERANCES},
-        ),
+        *agreements(SYMMETRIC, required("fem", "bem", "integral_equation", "mdr_table")),
     ),
     work=elastic_costs(SYMMETRIC[0].name),
 )

@@ -16,6 +16,7 @@ from cases.library._claims import agreements, exact
 from cases.library._layers import THICKNESS, contact_modulus, layer_of
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import SHARED, reasons
+from cases.library._references import numbers
 from cases.measurements.cost.settings import elastic_costs
 from contact import FlatPunch, IndentationDepths, Scene
 
@@ -26,8 +27,7 @@ RATIOS_OF_POISSON = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.4999999, 0.
 ONE_MESH = MethodUse(
     label="fem one mesh", method="fem", settings={"order": 4, "growth": 0.5, "edge_cell": 1e-7, "outer_distance": 10.0}
 )
-KBAR_INCOMPRESSIBLE = 3.61873584896
-KBAR = {0.3: 2.48352462914, 0.4: 2.79376800243, 0.45: 3.09140806745, 0.5: KBAR_INCOMPRESSIBLE}
+KBAR = {nu: float(numbers("stiffness")[f"bonded nu={nu:g} a/h=1"][0]) for nu in (0.3, 0.4, 0.45, 0.5)}
 
 
 def scene_name(poissons_ratio: float) -> str:
@@ -56,7 +56,7 @@ def compressibility(scene: Scene) -> float:
 
 def incompressible_stiffness(scene: Scene) -> float:
     """k_N of the incompressible layer with the scene's contact modulus."""
-    return 2 * contact_modulus(scene.layer) * THICKNESS * KBAR_INCOMPRESSIBLE
+    return 2 * contact_modulus(scene.layer) * THICKNESS * KBAR[0.5]
 
 
 def tabulated() -> dict[str, tuple[float, ...]]:
