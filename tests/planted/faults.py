@@ -537,8 +537,8 @@ def _event():
 def sign_ignored(judge):
     """error <= tolerance: every number that is too small passes."""
 
-    def wrong(error, tolerance, message):
-        return judge(max(error, 0.0), tolerance, message)
+    def wrong(error, tolerance, message, *failure):
+        return judge(max(error, 0.0), tolerance, message, *failure)
 
     return wrong
 
