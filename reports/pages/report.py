@@ -17,7 +17,7 @@ from reports.figures.figure_files import FigureFolder
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.matrix import run_matrix
-from reports.tables import cost_tables
+from reports.tables import convergence_table, cost_tables
 from reports.tables.table import Table, tabulated
 from reports.words.file_names import file_name
 from reports.words.moves import moves
@@ -78,6 +78,7 @@ def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
         matrix=run_matrix(run) if rows else None,
         costs=cost_tables.shortest_times(run),
         speed_ups=cost_tables.speed_ups(run),
+        orders=convergence_table.orders(run),
         cases=cases,
         notable=notable,
         tolerances=tolerance_history(run.acceptances),

@@ -50,6 +50,7 @@ class DeclaredClaim(ABC):
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
         relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
+        nightly: whether it takes too long for the suite "ci".
     """
 
     kind: ClassVar[Kind]
@@ -61,6 +62,7 @@ class DeclaredClaim(ABC):
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
     relaxed: Mapping[str, str] = field(default_factory=dict)
+    nightly: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a claim without a reason, and a tolerance of the wrong sign."""
