@@ -15,12 +15,18 @@ def in_suite(case: Case, suite: str) -> Case:
 
     Without a suite each scene keeps its ``nightly`` methods; studies of cost and effects are those of ci.
     """
-    left = _left(case, lambda scene, use: use.label not in scene.nightly) if suite == "ci" else case
+    left = _in_ci(case) if suite == "ci" else case
     return replace(
         left,
         work=tuple(study.in_suite(suite) for study in case.work),
         ablations=tuple(study.in_suite(suite) for study in left.ablations),
     )
+
+
+def _in_ci(case: Case) -> Case:
+    """Return the case without its nightly claims and methods."""
+    quick = replace(case, claims=tuple(claim for claim in case.claims if not claim.nightly))
+    return _left(quick, lambda scene, use: use.label not in scene.nightly)
 
 
 def only_methods(case: Case, wanted: Collection[str]) -> Case:

@@ -17,7 +17,7 @@ from reports.figures.figure_files import FigureFolder
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.matrix import run_matrix
-from reports.tables import cost_tables
+from reports.tables import convergence_table, cost_tables
 from reports.tables.sharing_tables import shared_things
 from reports.tables.table import Table, tabulated
 from reports.words.file_names import file_name
@@ -80,6 +80,7 @@ def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
         costs=cost_tables.shortest_times(run),
         speed_ups=cost_tables.speed_ups(run),
         shared=shared_things(run),
+        orders=convergence_table.orders(run),
         cases=cases,
         notable=notable,
         tolerances=tolerance_history(run.acceptances),

@@ -55,6 +55,7 @@ class DeclaredClaim(ABC):
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
         relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
         identities: of methods for which it holds by construction, by label: why; such checks are not counted.
+        nightly: whether it takes too long for the suite "ci".
     """
 
     kind: ClassVar[Kind]
@@ -67,6 +68,7 @@ class DeclaredClaim(ABC):
     expected_to_fail: str = ""
     relaxed: Mapping[str, str] = field(default_factory=dict)
     identities: Mapping[str, str] = field(default_factory=dict)
+    nightly: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a claim without a reason, and a tolerance of the wrong sign."""

@@ -14,6 +14,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers
 from cases.library._claims import agreements, exact
+from cases.library._convergence import DISCS, FINEST_MDR, NODES, studies
 from cases.library._figures import paper_figure
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer_of
 from cases.library._methods import BEM, DETACHING_FEM, EQUATION, MDR, TABLE
@@ -165,6 +166,16 @@ CLAIMS = (
     ),
 )
 
+PULLED = BEYOND_MAXIMUM[:1]
+PULL_OFF = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+ORDERS = (
+    *studies(PULLED, NODES, PULL_OFF, against=FINEST_MDR),
+    # Beyond the maximum the contact lets go at a fifth of the punch's radius, which is 11 cells of 96: too few to show
+    # an order. Abrupt detachment happens at the radius of the punch.
+    *studies(ABRUPT, DISCS, dict.fromkeys(PULL_OFF[:2], 1.5), against=FINEST_MDR, nightly=True),
+)
+
+
 CASE = Case(
     name="flat_punch_adhesion",
     title="Adhesive detachment of a flat punch",
@@ -173,7 +184,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*HALF_SPACE, *BEYOND_MAXIMUM, *ABRUPT),
     methods=(MDR, DETACHING_FEM, BEM, EQUATION, TABLE),
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene=BEYOND_MAXIMUM[0].name, nightly=("fem", "bem")),),
     work=detachment_costs(BEYOND_MAXIMUM[0].name),
     figures=(figures,),

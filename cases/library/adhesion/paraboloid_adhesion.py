@@ -11,6 +11,7 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.library._claims import agreements, exact
+from cases.library._convergence import DISCS, FEM_ACCURACY, FINEST_MDR, NODES, studies
 from cases.library._layers import contact_modulus, half_space, layer
 from cases.library._methods import BEM, DETACHING_FEM, EQUATION, MDR, PEELING_FEM, TABLE
 from cases.library._reasons import reasons
@@ -111,6 +112,15 @@ CLAIMS = (
     ),
 )
 
+PULLED = tuple(s for s in ON_LAYERS if s.name == "bonded nu=0.5, force")
+PULL_OFF = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+ORDERS = (
+    *studies(PULLED, NODES, PULL_OFF, against=FINEST_MDR),
+    *studies(PULLED, DISCS, dict.fromkeys(PULL_OFF, 1.5), against=FINEST_MDR, nightly=True),
+    *studies(PULLED, FEM_ACCURACY, PULL_OFF, against=FINEST_MDR, nightly=True),
+)
+
+
 CASE = Case(
     name="paraboloid_adhesion",
     title="Adhesive detachment of a paraboloid",
@@ -119,7 +129,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*HALF_SPACE, *ON_LAYERS),
     methods=(MDR, DETACHING_FEM, BEM, EQUATION, TABLE),
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene="bonded nu=0.5, force", nightly=("fem",)),),
     work=detachment_costs("bonded nu=0.5, force"),
 )

@@ -14,6 +14,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import agreements, names_of, scaling_law
+from cases.library._convergence import EDGE_CELL, NODES, POINTS, fem_cells, studies
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons
@@ -92,6 +93,15 @@ def thinness(scene: Scene) -> float:
     return scene.layer.thickness / float(prescribed_radii(scene)[0])
 
 
+FORCE_AND_DEPTH = ("normal_force", "indentation_depth")
+ORDERS = (
+    *studies(SYMMETRIC[1:2], NODES, FORCE_AND_DEPTH, against="integral_equation"),
+    *studies(SYMMETRIC[:1], EDGE_CELL, {"normal_force": 1.0}, against="integral_equation"),
+    *studies(SYMMETRIC[:1], fem_cells(3), dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
+    *studies(SYMMETRIC[:1], POINTS, {"normal_force": 2.0}, against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="coated_pair",
     title="Two coated bodies",
@@ -121,6 +131,7 @@ CASE = Case(
             reason=WHY["series"],
         ),
         *agreements(SYMMETRIC, required("fem", "bem", "integral_equation", "mdr_table")),
+        *ORDERS,
     ),
     work=elastic_costs(SYMMETRIC[0].name),
 )

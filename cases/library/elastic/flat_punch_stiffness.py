@@ -17,6 +17,17 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers, Sampling
 from cases.library._claims import agreements, exact
+from cases.library._convergence import (
+    EQUATION_NODES,
+    FEW_ROWS,
+    FINEST_MDR,
+    MANY_ROWS,
+    NODES,
+    PUNCH_POINTS,
+    TABLE_CELLS,
+    fem_cells,
+    studies,
+)
 from cases.library._figures import paper_figure
 from cases.library._figures._symbols import pressure_symbols, series
 from cases.library._layers import THICKNESS, contact_modulus, edges, layer_of, scene_name
@@ -202,6 +213,19 @@ def _symbols(group: str, x: Sequence[float], y: Sequence[float], method: str) ->
     return series(f"{method} {group}", method, group, x, y)
 
 
+AT_ONE, AT_TWO = (tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.5", ratio)) for ratio in (1.0, 2.0))
+COMPRESSIBLE = tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.3", 1.0))
+ORDERS = (
+    *studies(AT_ONE, PUNCH_POINTS, {"contact_stiffness": 2.5}, against="integral_equation"),
+    *studies(AT_ONE, TABLE_CELLS, {"contact_stiffness": 2.5}, against="integral_equation", nightly=True),
+    *studies(AT_TWO, FEW_ROWS, {"contact_stiffness": 6.0}, against=MANY_ROWS, uncertainty=1e-13, nightly=True),
+    *studies(AT_TWO, NODES, ("contact_stiffness",), against="integral_equation"),
+    *studies(AT_TWO, EQUATION_NODES, ("contact_stiffness",), against=FINEST_MDR),
+    *studies(COMPRESSIBLE, fem_cells(2), {"contact_stiffness": 4.0}, against="integral_equation", nightly=True),
+    *studies(COMPRESSIBLE, fem_cells(3), {"contact_stiffness": 6.0}, against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="flat_punch_stiffness",
     title="Stiffness of the cylindrical flat punch",
@@ -210,7 +234,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*PUNCHES, *HAYES_WALKS, *HERMANOWICZ_WALKS),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     work=elastic_costs("bonded nu=0.5 a/h=2", ("contact_stiffness",)),
     figures=(figure_3, figure_4, figure_5),
 )

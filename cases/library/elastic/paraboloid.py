@@ -15,10 +15,23 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Sampling
 from cases.library._claims import (
+    PATH_QUANTITIES,
     agreements,
     exact,
     pressure_agreements,
     same_in_millimetres,
+)
+from cases.library._convergence import (
+    EDGE_CELL,
+    EQUATION_NODES,
+    FINEST_MDR,
+    MANY_ROWS,
+    NODES,
+    OUTER_RADIUS,
+    POINTS,
+    ROWS,
+    fem_cells,
+    studies,
 )
 from cases.library._layers import LAYERS, THICKNESS, contact_modulus, edges, layer, scene_name
 from cases.library._methods import EVERY
@@ -159,6 +172,30 @@ CLAIMS = (
     same_in_millimetres((scene_name(label, 1.0) for label in ("bonded nu=0.5", "unbonded")), (1e3, 1.0)),
 )
 
+AT_ONE = tuple(s for s in BY_RADIUS if s.name == scene_name("bonded nu=0.5", 1.0))
+AT_FIVE = tuple(s for s in BY_RADIUS if s.name == scene_name("bonded nu=0.5", 5.0))
+PRESSED = tuple(s for s in BY_DEPTH if s.name == scene_name("bonded nu=0.5", 1.0) + " by depth")
+ORDERS = (
+    *studies(AT_ONE, fem_cells(2), dict.fromkeys(PATH_QUANTITIES, 4.0), against="integral_equation", nightly=True),
+    *studies(AT_ONE, fem_cells(3), dict.fromkeys(PATH_QUANTITIES, 6.0), against="integral_equation", nightly=True),
+    # Depth and force reach the rounding of such meshes, 3e-11, on the finest one.
+    *studies(AT_ONE, fem_cells(4), {"contact_stiffness": 8.0}, against="integral_equation", nightly=True),
+    *studies(AT_ONE, EDGE_CELL, {"normal_force": 1.0, "contact_stiffness": 1.0}, against="integral_equation"),
+    *studies(AT_ONE, OUTER_RADIUS, ("contact_stiffness",), against="integral_equation"),
+    *studies(PRESSED, POINTS, {"normal_force": 2.0}, against="integral_equation", nightly=True),
+    *studies(AT_FIVE, NODES, PATH_QUANTITIES, against="integral_equation"),
+    *studies(AT_FIVE, EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
+    *studies(
+        AT_ONE,
+        ROWS,
+        {"normal_force": 4.0, "indentation_depth": 4.0},
+        against=MANY_ROWS,
+        uncertainty=1e-10,
+        nightly=True,
+    ),
+)
+
+
 CASE = Case(
     name="paraboloid",
     title="Indentation by a paraboloid",
@@ -167,6 +204,6 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     work=elastic_costs(scene_name("bonded nu=0.5", 2.0), periodic=True),
 )

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers
 from cases.library._claims import agreements, energy_balance, exact
+from cases.library._convergence import FINEST_MDR, TIME_ACCURACY, TIME_STEP, studies
 from cases.library._figures import paper_figure
 from cases.library._figures._symbols import series
 from cases.library._methods import EVERY, FEM, MDR, TABLE
@@ -216,6 +217,15 @@ CLAIMS = (
     ),
 )
 
+STRUCK = ON_LAYERS[:1]
+IN_TIME = ("coefficient_of_restitution", "contact_time", "peak_depth")
+ORDERS = (
+    *studies(STRUCK, TIME_ACCURACY, (*IN_TIME, "energy_residual"), against=FINEST_MDR),
+    *studies(STRUCK, TIME_STEP, dict.fromkeys(IN_TIME, 2.0), against=FINEST_MDR),
+    *studies(STRUCK, TIME_STEP, {"energy_residual": 2.0}),
+)
+
+
 CASE = Case(
     name="flat_punch_impact",
     title="Impact of a flat punch on a viscoelastic layer",
@@ -224,7 +234,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*HALF_SPACE, *ON_LAYERS),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene=ON_LAYERS[0].name, nightly=("fem",)),),
     work=impact_costs(ON_LAYERS[0].name),
     figures=(figure_11,),

@@ -16,6 +16,7 @@ from cases.declare.task import Answers
 from cases.judgement.claims.printed import Printed
 from cases.judgement.claims.scaling_law import ScalingLaw
 from cases.library._claims import agreements, energy_balance, exact, names_of
+from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, NODES, TIME_ACCURACY, studies
 from cases.library._figures import paper_figure
 from cases.library._figures._symbols import series
 from cases.library._methods import BEM, EQUATION, MDR, TABLE
@@ -196,6 +197,15 @@ CLAIMS = (
     ),
 )
 
+STRUCK = ON_LAYERS[1:2]
+IN_TIME = ("coefficient_of_restitution", "peak_force", "contact_time", "peak_depth")
+ORDERS = (
+    *studies(STRUCK, TIME_ACCURACY, (*IN_TIME, "energy_residual"), against=FINEST_MDR),
+    *studies(STRUCK, NODES, IN_TIME, against=FINEST_MDR),
+    *studies(STRUCK, CELLS_AND_STEPS, {"energy_residual": 2.0}),
+)
+
+
 CASE = Case(
     name="sphere_impact",
     title="Impact of a sphere on a viscoelastic layer",
@@ -204,7 +214,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(HALF_SPACE, *ON_LAYERS),
     methods=(MDR, FEM, BEM, EQUATION, TABLE),
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene=name_of(2e-3), nightly=("fem",)),),
     work=impact_costs(name_of(2e-3)),
     figures=(figure_12,),

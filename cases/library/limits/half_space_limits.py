@@ -13,6 +13,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import exact
+from cases.library._convergence import EDGE_CELL, HALF_SPACE, HALF_SPACE_FORCE, studies
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
@@ -163,6 +164,15 @@ CLAIMS = (
     ),
 )
 
+# At a given radius a base far away costs no force to first and second order of a/h.
+THICKNESS_ORDERS = {"indentation_depth": 1.0, "contact_stiffness": 1.0}
+ORDERS = (
+    *studies(CURVED[1:2], HALF_SPACE, THICKNESS_ORDERS, against="mdr"),
+    *studies(CURVED[1:2], HALF_SPACE_FORCE, {"normal_force": 3.0}, against="mdr", nightly=True),
+    *studies(CURVED[:1], EDGE_CELL, {"normal_force": 1.0}, against="mdr", nightly=True),
+)
+
+
 CASE = Case(
     name="half_space_limits",
     title="Limits of thick layers",
@@ -171,7 +181,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*CURVED, PUNCH, *THICK),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene="bonded nu=0.3 a/h=0.01"),),
     work=elastic_costs("half-space, paraboloid"),
 )

@@ -13,6 +13,7 @@ from cases.declare.methods import MethodUse
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.even_accuracy import EvenAccuracy
 from cases.library._claims import agreements, exact
+from cases.library._convergence import EDGE_CELL, NODES, OUTER_RADIUS, fem_cells, studies
 from cases.library._layers import THICKNESS, contact_modulus, layer_of
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import SHARED, reasons
@@ -64,6 +65,15 @@ def tabulated() -> dict[str, tuple[float, ...]]:
     return {scene_name(nu): (2 * contact_modulus(layer_of(nu)) * THICKNESS * kbar,) for nu, kbar in KBAR.items()}
 
 
+ALMOST = tuple(s for s in SCENES if s.name == scene_name(0.4999999))
+ORDERS = (
+    *studies(ALMOST, NODES, ("contact_stiffness",), against="integral_equation"),
+    *studies(ALMOST, EDGE_CELL, {"contact_stiffness": 1.0}, against="integral_equation"),
+    *studies(ALMOST, OUTER_RADIUS, ("contact_stiffness",), against="integral_equation", nightly=True),
+    *studies(ALMOST, fem_cells(3), {"contact_stiffness": 6.0}, against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="near_incompressible",
     title="Nearly incompressible layers",
@@ -101,6 +111,7 @@ CASE = Case(
             methods=("mdr", "fem", "integral_equation"),
             reason=WHY["regular limit"],
         ),
+        *ORDERS,
     ),
     work=elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
 )

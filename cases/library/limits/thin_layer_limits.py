@@ -14,6 +14,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import agreements
+from cases.library._convergence import EQUATION_NODES, FINEST_MDR, NODES, fem_cells, studies
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import reasons
@@ -133,6 +134,15 @@ CONES = tuple(cone(label, ratio) for label in LABELS for ratio in (*RATIOS, CHEC
 CHECKED = tuple(s for s in (*PARABOLOIDS, *CONES) if not s.methods)
 FAR = tuple(s for s in (*PARABOLOIDS, *CONES) if s.methods)
 
+THIN = tuple(s for s in CHECKED if s.name == f"{scene_name(QUICK_LABEL, CHECKED_RATIO)}, paraboloid")
+QUANTITIES = ("normal_force", "indentation_depth")
+ORDERS = (
+    *studies(THIN, NODES, QUANTITIES, against="integral_equation"),
+    *studies(THIN, EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
+    *studies(THIN, fem_cells(3, thin=True), dict.fromkeys(QUANTITIES, 6.0), against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="thin_layer_limits",
     title="Limits of thin layers",
@@ -149,6 +159,7 @@ CASE = Case(
         *agreements(CHECKED, required("fem", "integral_equation")),
         *agreements(CHECKED, COARSEST, reason=WHY["coarse grids"]),
         *agreements(FAR, required("fem"), suffix=", far"),
+        *ORDERS,
     ),
     work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )
