@@ -3,7 +3,7 @@
     python -m benchmarks.race REVISION [CASE..] [--pairs 15] [--strict]
 
 Every method is timed on the first scene of each case that it solves in the suite ci; without a case, on all cases. Exit
-codes: 0 no method is slower; 1 one is, or with --strict one may be; 4 wrong usage; 5 nothing was timed.
+codes: 0 no method is slower; 1 one is; 6 with --strict, one may be; 4 wrong usage; 5 nothing was timed.
 """
 
 import argparse

@@ -78,7 +78,7 @@ SHARED: tuple[Shared, ...] = (
     Shared(
         name="slopes of the half-space transform",
         kind=Sharing.CODE,
-        place="bem.kernels.profile_slope",
+        place="bem.layer_equation.profiles.half_space_slope",
         methods=EQUATIONS,
         guard="agreement with finite elements",
         quantities=("pressure",),

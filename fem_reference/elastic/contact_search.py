@@ -9,7 +9,7 @@ import numpy as np
 from contact import IndentationDepths, InvalidInput, NotConvergedError, Profile, Scene, StageLog
 from contact.answer.one_circle import no_single_circle
 from contact.records.validation import BoolArray, FloatArray
-from contact.scene.extent import radius_of_depth, radius_of_load
+from contact.scene.extent import first_radius
 from fem_reference.discrete_layer.indenter import height, shape
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
@@ -167,5 +167,5 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
 
 def _first_radius(indenter: Profile, target: float, by_depth: bool) -> float:
     """1.6 times the radius r at which the profile alone suggests contact: f(r) = delta, or 4 r f(r) = F / E*."""
-    reached = radius_of_depth(indenter, target) if by_depth else radius_of_load(indenter, target / 4)
+    reached = first_radius(indenter, lambda r: height(indenter, r) * (1.0 if by_depth else 4.0 * r) >= target)
     return min(1.6 * reached, indenter.max_radius)

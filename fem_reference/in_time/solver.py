@@ -12,7 +12,7 @@ import numpy as np
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from contact.records.validation import FloatArray
-from contact.scene.extent import radius_of_depth, radius_of_energy, radius_of_load
+from contact.scene.extent import first_radius
 from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
@@ -57,7 +57,8 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
         a = scene.indenter.radius
         return a, float(np.pi * np.sqrt(loading.mass / (2 * contact_modulus(scene.layer) * a)))
     energy = loading.mass * loading.velocity**2 / 2
-    r = radius_of_energy(scene.indenter, energy / contact_modulus(scene.layer), np.inf)
+    volume, indenter = energy / contact_modulus(scene.layer), scene.indenter
+    r = first_radius(indenter, lambda r: r * height(indenter, r) ** 2 >= volume)
     return r, 3 * height(scene.indenter, r) / loading.velocity
 
 
@@ -157,5 +158,6 @@ def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float
     if largest <= 0:
         raise InvalidInput("the history never presses; give a positive depth or force somewhere")
     if isinstance(loading, DepthHistory):
-        return radius_of_depth(scene.indenter, largest)
-    return radius_of_load(scene.indenter, largest / (4 * contact_modulus(scene.layer)))
+        return first_radius(scene.indenter, lambda r: height(scene.indenter, r) >= largest)
+    load = largest / (4 * contact_modulus(scene.layer))
+    return first_radius(scene.indenter, lambda r: r * height(scene.indenter, r) >= load)

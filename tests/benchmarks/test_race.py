@@ -182,7 +182,7 @@ def fake_library(monkeypatch):
         ((Status.PASS, Status.SKIP), False, 0),
         ((Status.PASS, Status.PERF), False, 1),
         ((Status.INCONCLUSIVE,), False, 0),
-        ((Status.INCONCLUSIVE,), True, 1),
+        ((Status.INCONCLUSIVE,), True, 6),
         ((Status.SKIP,), False, 5),
     ],
 )

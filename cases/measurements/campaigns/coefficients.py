@@ -52,10 +52,10 @@ GROUPS: Final = (
     ),
     Group(
         place=_SPRINGS,
-        names=("STIFFNESS_SHARE", "PRESSURE_SHARE", "PRESSURE_FLOOR"),
+        names=("STIFFNESS_SHARE",),
         methods=("mdr_table",),
         families=("elastic",),
-        quantities={"PRESSURE_SHARE": _PRESSURE, "PRESSURE_FLOOR": _PRESSURE},
+        quantities={"STIFFNESS_SHARE": _STIFFNESS},
     ),
     Group(place=_SPRINGS, names=("SPRINGS_TO_MOTION",), methods=_MDR, families=("impact", *_IN_TIME)),
     Group(
