@@ -13,8 +13,13 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
+<<<<<<< HEAD
 from cases.library._claims import agreements, names_of, scaling_law
 from cases.library._convergence import EDGE_CELL, NODES, POINTS, fem_cells, studies
+=======
+from cases.library._claims import BEM_TOLERANCE, TABLE_TOLERANCES, agreements, names_of, scaling_law
+from cases.library._convergence import EDGE_CELL, NODES, fem_cells, studies
+>>>>>>> orders
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons
@@ -98,7 +103,6 @@ ORDERS = (
     *studies(SYMMETRIC[1:2], NODES, FORCE_AND_DEPTH, against="integral_equation"),
     *studies(SYMMETRIC[:1], EDGE_CELL, {"normal_force": 1.0}, against="integral_equation"),
     *studies(SYMMETRIC[:1], fem_cells(3), dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
-    *studies(SYMMETRIC[:1], POINTS, {"normal_force": 2.0}, against="integral_equation", nightly=True),
 )
 
 
