@@ -29,6 +29,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
     Viscoelasticity,
+    other_layer,
 )
 from contact.answer.one_thread import one_thread
 from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
@@ -99,6 +100,8 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
+        if (other := other_layer("fem", scene.layer)) is not None:
+            return other
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
         modelled = Viscoelasticity if in_time else Adhesion
         if all(isinstance(effect, modelled) for effect in scene.effects):

@@ -20,7 +20,7 @@ from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO, RUNGS
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import CoatedPair, InvalidInput, Layer
+from contact import CoatedPair, InvalidInput, Layer, refuse_other_layers
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, in_range
 from mdr.springs.assembly import equivalent_system
@@ -49,6 +49,7 @@ class PairedCoatings(Record):
         Raises:
             InvalidInput: If the ratio is beyond what the integral equation covers.
         """
+        refuse_other_layers("the pair of coatings", layer)
         if not 0.0 < max_ratio <= LARGEST_FACTORISED_RATIO:
             raise InvalidInput(
                 f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_FACTORISED_RATIO:g}"

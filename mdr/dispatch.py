@@ -21,6 +21,7 @@ from contact import (
     Scene,
     Solution,
     Unsupported,
+    other_layer,
 )
 from contact.scene.effects import Viscoelasticity
 
@@ -71,6 +72,8 @@ SOLVERS = (
 
 def solver_of(scene: Scene) -> Solver | Unsupported:
     """The computation for a scene, or what stands in the way."""
+    if (other := other_layer("mdr", scene.layer)) is not None:
+        return other
     viscous = scene.effect(Viscoelasticity)
     if viscous is not None and scene.layer.poissons_ratio != _INCOMPRESSIBLE:
         return Unsupported(

@@ -31,6 +31,7 @@ from contact import (
     Supported,
     Unsupported,
     UnsupportedSceneError,
+    other_layer,
 )
 from contact.answer.one_circle import refuse_touching_path
 from contact.answer.one_thread import one_thread
@@ -64,6 +65,8 @@ class IntegralEquationMethod(Record):
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic contact of any profile with layers and half-spaces."""
+        if (other := other_layer("the direct integral equation", scene.layer)) is not None:
+            return other
         if scene.effects:
             names = ", ".join(type(effect).__name__ for effect in scene.effects)
             return Unsupported(f"the direct integral equation models elastic contact only, not {names}")

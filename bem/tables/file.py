@@ -19,7 +19,7 @@ from scipy.integrate import simpson
 from bem.grid.influence import correction_function
 from bem.kernels.layer import zero_mode
 from bem.tables.table import FlatPunchTable
-from contact import InvalidInput, Layer
+from contact import InvalidInput, Layer, refuse_other_layers
 from contact.files.storage import read_tree, write_tree
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -116,6 +116,7 @@ class TableFile(Record):
         Raises:
             InvalidInput: If it is of another kernel, or ends below `max_ratio`.
         """
+        refuse_other_layers("the table of flat punches", layer)
         table = _stored(self)
         same_nu = layer.support == "unbonded" or table.poissons_ratio == layer.poissons_ratio
         if layer.is_half_space or table.support != layer.support or not same_nu:

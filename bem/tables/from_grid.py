@@ -13,7 +13,7 @@ from scipy.ndimage import maximum_filter1d
 from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
 from bem.grid.error_model import TABLES
 from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
-from contact import InvalidInput, Layer
+from contact import InvalidInput, Layer, refuse_other_layers
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -62,6 +62,7 @@ class FftTable(Record):
         Raises:
             InvalidInput: If the layer is a half-space or the ratio is beyond 1000.
         """
+        refuse_other_layers("the table of flat punches", layer)
         if layer.is_half_space:
             raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
         grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)

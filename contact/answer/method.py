@@ -6,6 +6,9 @@ from dataclasses import dataclass
 from typing import ClassVar, Protocol, Self, TypeAlias, runtime_checkable
 
 from contact.answer.solution import Solution
+from contact.records.errors import UnsupportedSceneError
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import Layer
 from contact.scene.scene import Scene
 
 
@@ -32,6 +35,23 @@ class Unsupported:
 
 
 Support: TypeAlias = Supported | Unsupported
+
+
+def other_layer(method: str, layer: ElasticLayer) -> Unsupported | None:
+    """What a method answers that models plain layers only; None for those."""
+    if isinstance(layer, Layer):
+        return None
+    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr")
+
+
+def refuse_other_layers(caller: str, layer: ElasticLayer) -> None:
+    """Refuse what is no plain layer.
+
+    Raises:
+        UnsupportedSceneError: With the kind of layer.
+    """
+    if (other := other_layer(caller, layer)) is not None:
+        raise UnsupportedSceneError(other.reason)
 
 
 @runtime_checkable

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contact import Scene
+from contact import DepthFunction, Scene
 from contact.records.record import Record
 
 R = TypeVar("R", bound=Record)
@@ -101,6 +101,12 @@ def _converted(item: R, units: Units) -> R:
 def _scaled(item: Record, name: str, value: Any, units: Units) -> Any:
     if value is None or isinstance(value, str):
         return value
+    if isinstance(value, tuple):
+        return tuple(_scaled(item, name, one, units) for one in value)
+    if isinstance(value, DepthFunction):
+        return value.scaled(1.0 / units.length, 1.0 / units.factor(name))
+    if isinstance(value, Record):
+        return _converted(value, units)
     key = f"{type(item).__name__}.{name}" if name == "values" else name
     scaled = value * units.factor(key)
     return scaled if isinstance(value, np.ndarray) else float(scaled)
