@@ -123,4 +123,4 @@ def _solution(
     weights = np.concatenate([one.weights / (2.0 * share) for share in shares])
     kernel, width = FredholmKernel(rates, weights), coatings.equation.panel_width
     factor = VolterraFactor.of_kernel(kernel, int(np.ceil(ratio / width)), width, coatings.equation.nodes)
-    return IntegralEquationSolution(support, nu, kernel, factor)
+    return IntegralEquationSolution(kernel, factor)

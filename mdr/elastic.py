@@ -16,6 +16,7 @@ from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
+from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors
@@ -39,6 +40,9 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
     refuse_touching_beside(scene, system, radius, depth)
+    errors = _errors(system, scene, radius, depth, force)
+    fields = PathFields(scene, system.flat_punch, excess, depth)
+    refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
         method="mdr",
@@ -47,10 +51,10 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=depth,
         normal_force=force,
         contact_stiffness=stiffness,
-        error_estimate=_errors(system, scene, radius, depth, force),
+        error_estimate=errors,
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
-        fields=PathFields(scene, system.flat_punch, excess, depth),
+        fields=fields,
     )
 
 

@@ -20,7 +20,6 @@ from bem.polynomials.mapped import MappedFunction
 from bem.polynomials.truncation import rate_of_decay
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 EPS = float(np.finfo(float).eps)
 
@@ -30,21 +29,17 @@ class IntegralEquationSolution(FlatPunchSolution):
     """The flat punch on one layer, every radius up to `max_ratio`.
 
     Attributes:
-        support: "bonded" or "unbonded".
-        poissons_ratio: nu.
         kernel: Kernel of the layer's equation.
         factor: Its factor.
     """
 
-    support: Support
-    poissons_ratio: float
     kernel: FredholmKernel
     factor: VolterraFactor
 
     @property
     def max_ratio(self) -> float:
         """Largest a/h that is covered."""
-        return self.factor.panels * self.factor.panel_width
+        return self.factor.reach
 
     @property
     def unknowns(self) -> int:
@@ -78,7 +73,7 @@ class IntegralEquationSolution(FlatPunchSolution):
             ratio: a/h.
             load: Averages of W as in `ContactDensity`; by default W = 1, the flat punch.
         """
-        panels = int(np.ceil(ratio / self.factor.panel_width))
+        panels = self.factor.panels_to(ratio)
         unit = np.ones((panels, self.factor.count))
         return ContactDensity.of_load(self.kernel, self.factor, ratio, unit if load is None else load)
 
@@ -128,9 +123,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     ) -> ContactDensity:
         """Solved for under W = delta - g_hs."""
         if load is None:
-            return self.density(
-                ratio, np.full((int(np.ceil(ratio / self.factor.panel_width)), self.factor.count), depth)
-            )
+            return self.density(ratio, np.full((self.factor.panels_to(ratio), self.factor.count), depth))
         averages = depth - contact_averages(self.factor, load, flat_radius)
         return self.density(ratio, averages)
 
@@ -141,7 +134,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all. Polynomials through the
         nodes are not even, so what they leave of the slope is not as small.
         """
-        share = 1 - 1 / self.normalized_contact_stiffness(ratio)
+        share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
         return np.asarray(share * (ratio**2 / (1 + ratio**2) * depth_error + self._slope_truncation(ratio)))
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
@@ -188,7 +181,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     def _edge_density(self) -> EqualPanels:
         unit = np.ones((self.factor.panels, self.factor.count))
         _, inherited = self.factor.eliminate(unit)
-        return EqualPanels.from_nodes(self.factor.panel_width, self.factor.edge_values(unit + inherited))
+        return self.factor.interpolant(self.factor.edge_values(unit + inherited))
 
     @cached_property
     def _contact_stiffness(self) -> EqualPanels:

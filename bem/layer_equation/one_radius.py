@@ -19,18 +19,20 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
-from bem.kernels.layer import one_minus_kernel
+from bem.kernels.of_layer import surface_kernel
 from bem.kernels.profile_slope import profile_slope
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral
 from bem.polynomials.equal_panels import EqualPanels
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.graded_panels import GradedPanels
 from bem.polynomials.stretch_slopes import StretchSlopes
-from contact import Layer, NotConvergedError, Profile
+from contact import ElasticLayer, NotConvergedError, Profile
 from contact.records.validation import FloatArray
 
 # Wavenumber times thickness beyond which 1 - chi is below 1e-17 and left out.
 LARGEST_WAVENUMBER = 24.0
+# On a stack the first panel of wavenumbers is halved so many times more than the longest length asks for; chosen.
+LONG_HALVINGS = 4
 # Largest phase of a cosine on a panel of 16 wavenumbers: sixteen nodes for one period.
 PANEL_PHASE = 6.0
 # Gauss nodes of a stretch on which the profile is analytic: exact for the cubics of tables, whose f' is a trigonometric
@@ -61,7 +63,7 @@ class DirectDensity:
         load: g_hs, likewise.
     """
 
-    layer: Layer
+    layer: ElasticLayer
     indenter: Profile
     unit: float
     excess: float
@@ -72,14 +74,14 @@ class DirectDensity:
     load: FloatArray
 
     @classmethod
-    def solve(cls, layer: Layer, indenter: Profile, excess: float, width: float, nodes: int) -> DirectDensity:
+    def solve(cls, layer: ElasticLayer, indenter: Profile, excess: float, width: float, nodes: int) -> DirectDensity:
         """Assemble and solve for one excess a - b [m], on panels of `width` thicknesses with `nodes` nodes.
 
         Raises:
             NotConvergedError: If the matrix is not positive definite in double precision.
         """
         flat = indenter.flat_radius
-        unit = flat + excess if layer.is_half_space else layer.thickness
+        unit = flat + excess if layer.is_half_space else layer.surface.thickness
         smoother = (np.array(indenter.breakpoints) - flat) / unit
         end = excess / unit, _room(indenter, excess) / unit
         panels = GradedPanels.between(flat / unit, smoother, end, width, nodes)
@@ -263,43 +265,55 @@ def _crowded_rule() -> tuple[FloatArray, FloatArray]:
     return (ends[:-1, None] + width * nodes).ravel(), (width * weights).ravel()
 
 
-def _solve(layer: Layer, panels: GradedPanels, loads: FloatArray) -> FloatArray:
+def _solve(layer: ElasticLayer, panels: GradedPanels, loads: FloatArray) -> FloatArray:
     """phi at the nodes and at a for loads given there, shape (n + 1, loads)."""
     if layer.is_half_space:
         return loads
     root = np.sqrt(panels.weights)
     a = panels.origin + float(panels.ends[-1])
     k, weight = _wavenumbers(layer, 2 * a)
-    cosines = np.sqrt(2 / np.pi * weight) * np.cos(np.multiply.outer(np.append(panels.nodes, a), k))
+    # On a stack chi may exceed 1.
+    sign = np.sign(weight)
+    cosines = np.sqrt(2 / np.pi * np.abs(weight)) * np.cos(np.multiply.outer(np.append(panels.nodes, a), k))
     scaled = root[:, None] * cosines[:-1]
     try:
-        inner = _resolved(scaled, root[:, None] * loads[:-1])
+        inner = _resolved(scaled, sign, root[:, None] * loads[:-1])
     except np.linalg.LinAlgError:
         message = f"the equation at a/h = {a:g} is singular to double precision; take a smaller a/h"
         raise NotConvergedError(message) from None
     # This is the equation itself at x = a.
-    edge = loads[-1] + cosines[-1] @ (scaled.T @ inner)
+    edge = loads[-1] + (cosines[-1] * sign) @ (scaled.T @ inner)
     return np.vstack([inner / root[:, None], edge])
 
 
-def _resolved(scaled: FloatArray, loads: FloatArray) -> FloatArray:
-    """(I - S S^T)^-1 loads for S of nodes times wavenumbers; the smaller of S S^T and S^T S is factorised.
+def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatArray:
+    """(I - S D S^T)^-1 loads for S of nodes times wavenumbers, D their signs.
 
-    (I - S S^T)^-1 = I + S (I - S^T S)^-1 S^T, and both have the same smallest eigenvalue.
+    Where all are positive the smaller of S S^T and S^T S is factorised: (I - S S^T)^-1 = I + S (I - S^T S)^-1 S^T, and
+    both have the same smallest eigenvalue.
     """
     nodes, waves = scaled.shape
-    if waves < nodes:
-        dual: FloatArray = loads + scaled @ _resolved(scaled.T, scaled.T @ loads)
+    if waves < nodes and np.all(sign > 0):
+        dual: FloatArray = loads + scaled @ _resolved(scaled.T, np.ones(nodes), scaled.T @ loads)
         return dual
-    factor = cho_factor(np.eye(nodes) - scaled @ scaled.T, lower=True, check_finite=False)
+    square = scaled @ scaled.T if np.all(sign > 0) else (scaled * sign) @ scaled.T
+    factor = cho_factor(np.eye(nodes) - square, lower=True, check_finite=False)
     solution: FloatArray = cho_solve(factor, loads, check_finite=False)
     return solution
 
 
-def _wavenumbers(layer: Layer, distance: float) -> tuple[FloatArray, FloatArray]:
+def _wavenumbers(layer: ElasticLayer, distance: float) -> tuple[FloatArray, FloatArray]:
     """Gauss nodes k and weights times 1 - chi(k), fine enough for cos(k distance)."""
     nodes, weights = gauss_nodes(16)
     panels = int(np.ceil(LARGEST_WAVENUMBER * max(distance / PANEL_PHASE, 2.0)))
     width = LARGEST_WAVENUMBER / panels
+    kernel = surface_kernel(layer)
     k = (width * (np.arange(panels)[:, None] + nodes)).ravel()
-    return k, one_minus_kernel(k, layer.support, layer.poissons_ratio) * np.tile(width * weights, panels)
+    weight = np.tile(width * weights, panels)
+    if not layer.is_uniform:
+        # The first panel is halved until it is short against every length on which the kernel varies.
+        ends = width * np.append(0.0, 2.0 ** np.arange(-int(np.ceil(np.log2(kernel.longest))) - LONG_HALVINGS, 1))
+        first = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
+        k = np.append(first, k[nodes.size :])
+        weight = np.append(np.multiply.outer(np.diff(ends), weights).ravel(), weight[nodes.size :])
+    return k, kernel.one_minus_chi(k) * weight

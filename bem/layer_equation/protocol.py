@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 
 from bem.layer_equation.contact_density import ContactDensity
 from bem.polynomials.mapped import MappedFunction
-from contact import Layer, Profile
+from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
 
 # Multiplies the relative error of the depth, and gives that of the pressure, where the profile is fitted. Against
@@ -152,7 +152,7 @@ class FlatPunchSolution(Protocol):
 class FlatPunchSource(Protocol):
     """Numerical settings that can produce a `FlatPunchSolution`."""
 
-    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
         """The flat punch on this layer up to at least a/h = max_ratio; cached by the source.
 
         Raises:

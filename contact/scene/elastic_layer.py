@@ -44,6 +44,16 @@ class ElasticLayer(Record):
         return False
 
     @property
+    def is_uniform(self) -> bool:
+        """Whether it is of one material."""
+        return False
+
+    @property
+    def is_piecewise_uniform(self) -> bool:
+        """Whether it is of one material, or of several on top of each other."""
+        return False
+
+    @property
     def is_incompressible(self) -> bool:
         """Whether nu = 1/2 everywhere, an elastic base included."""
         return False

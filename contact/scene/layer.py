@@ -51,6 +51,16 @@ class Layer(ElasticLayer):
         return self
 
     @property
+    def is_uniform(self) -> bool:
+        """Whether it is of one material."""
+        return True
+
+    @property
+    def is_piecewise_uniform(self) -> bool:
+        """Whether it is of one material, or of several on top of each other."""
+        return True
+
+    @property
     def is_incompressible(self) -> bool:
         """Whether nu = 1/2."""
         return self.poissons_ratio == 0.5

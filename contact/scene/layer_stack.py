@@ -89,6 +89,11 @@ class LayerStack(ElasticLayer):
         return self.sublayers[0]
 
     @property
+    def is_piecewise_uniform(self) -> bool:
+        """Whether it is of one material, or of several on top of each other."""
+        return True
+
+    @property
     def is_incompressible(self) -> bool:
         """Whether nu = 1/2 in every sublayer and in an elastic base."""
         base = self.support.poissons_ratio if isinstance(self.support, ElasticBase) else 0.5
