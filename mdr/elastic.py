@@ -9,7 +9,7 @@ import numpy as np
 
 from bem.kernels.profile_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
-from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
+from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
@@ -65,7 +65,7 @@ class LoggedSource:
     source: FlatPunchSource
     log: StageLog
 
-    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
         """As the source's; counts the solutions asked for, whether made or found in its cache."""
         with self.log.stage("flat_punch_data"):
             self.log.count("flat_punch_solutions")

@@ -6,12 +6,13 @@ A surface pressure ``p^(k)`` displaces the surface by ``u^(k) = 2 chi(k)/(k E*) 
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
 
-class SurfaceKernel(Protocol):
+class SurfaceKernel(Hashable, Protocol):
     """Compliance of a layer's surface relative to the half-space of its surface material. Hashable."""
 
     @property

@@ -34,7 +34,8 @@ class Symmetric(NamedTuple):
     @property
     def determinant(self) -> Field:
         """Of each matrix."""
-        return self.uu * self.ww - self.uw**2
+        difference: Field = self.uu * self.ww - self.uw**2
+        return difference
 
     def times(self, factor: float) -> Symmetric:
         """Each entry times a factor."""
@@ -110,7 +111,8 @@ class StackKernel:
     def _through(self, own: _Step, wavenumber: Field) -> Field:
         """What the layers below add to C_WW of the first."""
         M = _coupled(self._below(wavenumber), own, slips=self.sheets[0].slips_below)
-        return own.wu**2 * M.uu + 2 * own.wu * own.ww * M.uw + own.ww**2 * M.ww
+        through: Field = own.wu**2 * M.uu + 2 * own.wu * own.ww * M.uw + own.ww**2 * M.ww
+        return through
 
     def _below(self, wavenumber: Field) -> Symmetric:
         """C of all that lies below the first layer, in its units."""

@@ -10,9 +10,9 @@ from pydantic import Field
 
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
+from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.layer_equation.graded_factor import AnyLayerSolution, GradedFactor
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
 from contact import ElasticLayer, InvalidInput, Layer

@@ -41,17 +41,22 @@ def other_layer(method: str, layer: ElasticLayer) -> Unsupported | None:
     """What a method answers that models plain layers only; None for those."""
     if isinstance(layer, Layer):
         return None
-    return Unsupported(f"{method} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr")
+    return Unsupported(_reason(method, layer))
 
 
-def refuse_other_layers(caller: str, layer: ElasticLayer) -> None:
-    """Refuse what is no plain layer.
+def refuse_other_layers(caller: str, layer: ElasticLayer) -> Layer:
+    """The layer, if it is a plain one.
 
     Raises:
         UnsupportedSceneError: With the kind of layer.
     """
-    if (other := other_layer(caller, layer)) is not None:
-        raise UnsupportedSceneError(other.reason)
+    if isinstance(layer, Layer):
+        return layer
+    raise UnsupportedSceneError(_reason(caller, layer))
+
+
+def _reason(caller: str, layer: ElasticLayer) -> str:
+    return f"{caller} models one uniform layer or a half-space, not a {type(layer).__name__}; ask mdr"
 
 
 @runtime_checkable

@@ -42,7 +42,7 @@ def test_methods_for_plain_layers_refuse_others(name, layer):
 
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)
 def test_flat_punch_tables_refuse_other_layers(layer):
-    with pytest.raises((UnsupportedSceneError, InvalidInput), match=f"not a {type(layer).__name__}"):
+    with pytest.raises((UnsupportedSceneError, InvalidInput), match=f"a {type(layer).__name__}"):
         build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100}).solve(scene_of(layer))
 
 

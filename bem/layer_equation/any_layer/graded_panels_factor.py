@@ -133,7 +133,8 @@ class GradedFactor(VolterraFactor):
         rates = np.array([rate_of_decay(2 * STRIP / width) for width in widths])
         beyond = np.array([orders_beyond(row, rate) for row, rate in zip(orders, rates, strict=True)])
         parts = self.ends[1:] <= self.panel_width
-        return 2 * widths * integrated(self.count) * beyond + np.where(parts, self.kernel_error * self.ends[1:], 0.0)
+        inherited = np.where(parts, self.kernel_error * self.ends[1:], 0.0)
+        return np.asarray(2 * widths * integrated(self.count) * beyond + inherited)
 
     @cached_property
     def _edge_matrix(self) -> FloatArray:
