@@ -9,10 +9,11 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from bem.kernels.graded import GradedKernel
 from bem.kernels.layer import compliance_kernel, one_minus_kernel, zero_mode
 from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import Sheet, StackKernel
-from contact import ElasticBase, ElasticLayer, Layer, LayerStack, UnsupportedSceneError
+from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack, UnsupportedSceneError
 from contact.scene.layer import Support
 
 
@@ -75,6 +76,11 @@ def _(layer: LayerStack) -> StackKernel:
         nu = rigid.poissons_ratio
         base = Sheet(inf, _shear(rigid.youngs_modulus, nu) / modulus, nu, slips_below=False)
     return StackKernel(tuple(sheets), base)
+
+
+@surface_kernel.register
+def _(layer: GradedLayer) -> GradedKernel:
+    return GradedKernel(layer.in_own_units())
 
 
 def _shear(youngs_modulus: float, poissons_ratio: float) -> float:

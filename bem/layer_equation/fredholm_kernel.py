@@ -65,11 +65,16 @@ class FredholmKernel:
         return cls(rates=-1j * wavenumber, weights=one_minus_kernel(wavenumber, support, poissons_ratio) * dk)
 
     @classmethod
-    def of_surface(cls, kernel: SurfaceKernel) -> FredholmKernel:
-        """The kernel of any layer, lengths in units of the thickness of its surface material."""
+    def of_surface(cls, kernel: SurfaceKernel, coarsest: int = COARSEST_PANEL) -> FredholmKernel:
+        """The kernel of any layer, lengths in units of the thickness of its surface material.
+
+        Args:
+            kernel: 1 - chi.
+            coarsest: Number of the last panel; beyond it 1 - chi is left out.
+        """
         finest = min(FINEST_PANEL, int(np.floor(-np.log2(kernel.longest))) + ANY_FINEST)
         nodes, weights = gauss_nodes(ANY_NODES)
-        ends = np.concatenate([[0.0], 2.0 ** np.arange(finest, COARSEST_PANEL + 2)])
+        ends = np.concatenate([[0.0], 2.0 ** np.arange(finest, coarsest + 2)])
         t = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
         turn = np.exp(1j * ANY_ANGLE)
         dk = turn * (np.diff(ends)[:, None] * weights).ravel()
