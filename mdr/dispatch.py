@@ -86,8 +86,6 @@ def _not_relaxing(layer: ElasticLayer, model: str) -> str:
 
 def solver_of(scene: Scene) -> Solver | Unsupported:
     """The computation for a scene, or what stands in the way."""
-    if not scene.layer.is_piecewise_uniform:
-        return Unsupported(f"mdr does not model a {type(scene.layer).__name__}; cut it into a LayerStack")
     viscous = scene.effect(Viscoelasticity)
     if viscous is not None and (reason := _not_relaxing(scene.layer, type(viscous).__name__)):
         return Unsupported(reason)

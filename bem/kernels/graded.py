@@ -54,6 +54,11 @@ class GradedKernel:
         return float(moduli.max() / moduli.min())
 
     @property
+    def is_smooth(self) -> bool:
+        """1 - chi falls like 1/k."""
+        return False
+
+    @property
     def zero_mode(self) -> float:
         """chi/k at k = 0, from a wavenumber that is small enough; infinite on an elastic base."""
         if isinstance(self.layer.support, ElasticBase):

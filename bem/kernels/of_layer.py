@@ -45,6 +45,11 @@ class UniformKernel:
         return 1.0
 
     @property
+    def is_smooth(self) -> bool:
+        """1 - chi falls exponentially."""
+        return True
+
+    @property
     def zero_mode(self) -> float:
         """chi/k at k = 0."""
         return zero_mode(self.support, self.poissons_ratio)

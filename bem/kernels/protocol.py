@@ -20,6 +20,10 @@ class SurfaceKernel(Hashable, Protocol):
         """Length over h beyond which chi has its limit for small k: chi is smooth on the scale of 1/longest."""
 
     @property
+    def is_smooth(self) -> bool:
+        """Whether 1 - chi falls exponentially; on a graded surface it falls like 1/k."""
+
+    @property
     def zero_mode(self) -> float:
         """chi/k at k = 0, the answer to a uniform pressure; infinite on an elastic base."""
 

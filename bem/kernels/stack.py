@@ -84,6 +84,11 @@ class StackKernel:
         return total * max(1.0, max(stiffness) / min(stiffness))
 
     @property
+    def is_smooth(self) -> bool:
+        """1 - chi falls exponentially."""
+        return True
+
+    @property
     def zero_mode(self) -> float:
         """chi/k at k = 0: uniaxial strain, less what groups of layers give that may slide sideways."""
         if self.base is not None:

@@ -11,9 +11,12 @@ from pydantic import Field
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
 from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor
+from bem.layer_equation.any_layer.graded_solution import GradedSolution
+from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.protocol import FlatPunchSolution
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
 from contact import ElasticLayer, InvalidInput, Layer
 from contact.answer.one_thread import one_thread
@@ -32,6 +35,9 @@ ANY_WIDTH: Final = 2.0
 # As `RUNGS` on a stack.
 ANY_RUNGS: Final = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 
+# The same on a graded layer.
+GRADED_RUNGS: Final = (1.0, 2.0, 4.0, 8.0, 16.0)
+
 
 @record
 class IntegralEquation(Record):
@@ -46,7 +52,7 @@ class IntegralEquation(Record):
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
 
     @one_thread
-    def solution(self, layer: ElasticLayer, max_ratio: float) -> IntegralEquationSolution | LargeRatioSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
         """The flat punch on this layer up to at least a/h = max_ratio, cached.
 
         On a plain layer answers beyond a/h = 160 come from `thin_layers`. On a stack h is the first sublayer's
@@ -59,7 +65,10 @@ class IntegralEquation(Record):
         if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
             raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
         if not isinstance(layer, Layer):
-            return _any_solution(self, surface_kernel(layer), _any_rung(layer, max_ratio))
+            surface = surface_kernel(layer)
+            if not surface.is_smooth:
+                return _graded_solution(surface, _any_rung(layer, max_ratio, GRADED_RUNGS))
+            return _any_solution(self, surface, _any_rung(layer, max_ratio, ANY_RUNGS))
         rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
         # Poisson's ratio has no influence on the unbonded layer.
         nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
@@ -72,15 +81,20 @@ class IntegralEquation(Record):
         return self.replace(panel_width=self.panel_width / 2)
 
 
-def _any_rung(layer: ElasticLayer, ratio: float) -> float:
-    for rung in ANY_RUNGS:
+def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> float:
+    for rung in rungs:
         if rung >= ratio:
             return rung
     h = layer.surface.thickness
     raise InvalidInput(
-        f"radius = {ratio * h:g} m: more than {ANY_RUNGS[-1]:g} times the thickness {h:g} m of the sublayer at the "
+        f"radius = {ratio * h:g} m: more than {rungs[-1]:g} times the thickness {h:g} m of the material at the "
         "surface; ask for smaller contacts"
     )
+
+
+@lru_cache(maxsize=8)
+def _graded_solution(surface: SurfaceKernel, ratio: float) -> GradedSolution:
+    return GradedSolution(PointKernel.of_surface(surface), ratio)
 
 
 # A factor for the largest ratio takes 110 MB.
