@@ -115,10 +115,10 @@ class GradedKernel:
                 ]
             )
             square = np.stack([uu * uu, uu * uw, uw * uw]) / beta
-            return drive + linear + g * D + square
+            return np.asarray(drive + linear + g * D + square)
 
         top = _integrated(rates, D, start)
-        return -top[2] / (2 * beta0 * k)
+        return np.asarray(-top[2] / (2 * beta0 * k))
 
     def _mixed(self, k: Field, base: ElasticBase | None) -> Field:
         """1 - C_WW/(2 (1 - nu)) by the mixed form, from a frictionless base upwards."""
@@ -143,7 +143,7 @@ class GradedKernel:
             )
             drive = np.stack([-1 / beta, m, -m, -eta / beta]) * np.ones(k.size)
             stretched = np.stack([-g * qu, 0 * qp, 0 * wu, g * wp])
-            return k * (drive - product) + stretched
+            return np.asarray(k * (drive - product) + stretched)
 
         qu, qp, wu, wp = _integrated(rates, M, np.ones(k.shape))
         return np.asarray(1 - (wp - qp * wu / qu) / (2 * beta0))

@@ -9,9 +9,8 @@ import numpy as np
 
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.profile_slope import profile_slope
-from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
-from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
 from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
@@ -126,7 +125,7 @@ def contact_fields(
     )
 
 
-def _edge_density(profile: MappedFunction, density: ContactDensity | None, delta: float) -> float:
+def _edge_density(profile: MappedFunction, density: LayerShare | None, delta: float) -> float:
     """phi(a) = delta - g_hs(a) + psi(a); with a table the spring displacement delta - g(a)."""
     share = 0.0 if density is None else density.edge_value
     return delta - float(profile(np.asarray(profile.grid.end))) + share

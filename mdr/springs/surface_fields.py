@@ -17,8 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.profile_slope import profile_slope
-from bem.layer_equation.contact_density import ContactDensity
-from bem.layer_equation.protocol import FlatPunchSolution
+from bem.layer_equation.protocol import FlatPunchSolution, LayerShare
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
@@ -60,7 +59,7 @@ class ContactFields:
     room: float
     indentation_depth: float
     profile: MappedFunction
-    density: ContactDensity | None
+    density: LayerShare | None
     table: FlatPunchSolution | None
     edge_density: float
 
@@ -192,7 +191,7 @@ def _arc_integral(
     return values
 
 
-def _remainder(density: ContactDensity, reach: float) -> MappedFunction:
+def _remainder(density: LayerShare, reach: float) -> MappedFunction:
     """Phi(a + d) on shells of width 1, 1, 2, 4, ... up to d = reach."""
     shells = int(np.ceil(np.log2(max(reach, 1.0)))) + 1
     ends = np.concatenate([[0.0], 2.0 ** np.arange(shells)])

@@ -74,5 +74,5 @@ class EdgeSystems:
     def density(self, x: float, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """phi at the nodes, and the layer's share M phi at nodes and edge, of a load at the nodes."""
         M = self.matrix(x)
-        phi = np.linalg.solve(np.eye(len(load)) - M[:-1], load)
-        return phi, M @ phi
+        phi = np.asarray(np.linalg.solve(np.eye(len(load)) - M[:-1], load), dtype=np.float64)
+        return phi, np.asarray(M @ phi)

@@ -65,7 +65,7 @@ class LogPieces:
         s = 2 * (inside - self.ends[piece]) / np.diff(self.ends)[piece] - 1
         first = np.polynomial.chebyshev.chebder(self.coefficients[0]) * 2 / (self.ends[1] - self.ends[0])
         slope = float(np.polynomial.chebyshev.chebval(-1.0, first))
-        return piecewise_sum(self.coefficients, piece, s) + slope * np.minimum(u - self.ends[0], 0.0)
+        return np.asarray(piecewise_sum(self.coefficients, piece, s) + slope * np.minimum(u - self.ends[0], 0.0))
 
     def error(self, x: FloatArray) -> FloatArray:
         """What the polynomials leave out at x."""
