@@ -10,6 +10,7 @@ from cases.measurements.evidence.choice import solve
 from contact import (
     ContactRadii,
     ExponentialDepth,
+    Friction,
     GradedLayer,
     InvalidInput,
     LayerStack,
@@ -18,6 +19,7 @@ from contact import (
     Sublayer,
     UnsupportedSceneError,
 )
+from mdr.friction.statement import friction_effect
 
 TOP = Sublayer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
 LAYERS = (
@@ -38,6 +40,15 @@ def test_methods_for_plain_layers_refuse_others(name, layer):
     assert type(layer).__name__ in method.supports(scene_of(layer)).reason
     with pytest.raises(UnsupportedSceneError, match=f"models one uniform layer.*not a {type(layer).__name__}; ask mdr"):
         method.solve(scene_of(layer))
+
+
+@pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)
+def test_friction_on_other_layers_is_refused(layer):
+    scene = scene_of(layer).replace(effects=(Friction(coefficient=float("inf")),))
+    assert type(layer).__name__ in build("mdr", {}).supports(scene).reason
+    path = build("mdr", {}).solve(scene_of(layer))
+    with pytest.raises(UnsupportedSceneError, match=f"the bound of friction models .* {type(layer).__name__}"):
+        friction_effect(path, 0.1, build("mdr", {}).solve)
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)

@@ -165,7 +165,7 @@ def test_unknowns_stay_few_for_stacks_and_thin_films():
 
 
 def test_a_contact_too_wide_for_its_first_sublayer_is_refused_with_both_lengths():
-    with pytest.raises(InvalidInput, match=r"more than 320 times the thickness 0\.001 m of the sublayer"):
+    with pytest.raises(InvalidInput, match=r"more than 320 times the thickness 0\.001 m of the material"):
         solve(film(0.5, thickness=1e-3), PARABOLOID, ContactRadii([1.0]))
 
 
