@@ -4,11 +4,13 @@
 - ``declare``: how a case is written and who solves it
 - ``run``: carrying it out, once, anywhere, without loss
 - ``judgement``: what a case may claim, and the tests behind a verdict
+- ``references``: reference numbers in extended precision, with the scripts that compute them
 - ``results``: the records of a run, how a check can end, the files
 - ``gate``: numbers and times against accepted ones
 - ``measurements``: what accuracy costs, where methods break, whether stated errors hold; settings and advice from that
 
-``solve(scene, accuracy=1e-4)`` chooses method and settings from measurements.
+``solve(scene, accuracy=1e-4)`` chooses method and settings from measurements. `cases.run.propagation` carries the
+uncertainty of inputs to every quantity.
 """
 
 from importlib import import_module

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import ClassVar, Self, overload
+from typing import ClassVar, Self, TypeVar, overload
 
 from contact import (
     Adhesion,
@@ -31,13 +32,14 @@ from contact import (
     Viscoelasticity,
     other_layer,
 )
+from contact.answer.accuracy import told_where_less
 from contact.answer.one_thread import one_thread
 from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
-from fem_reference.elastic.beside_contact import refuse_touching_contacts
+from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (
     ContactSolver,
@@ -45,7 +47,10 @@ from fem_reference.elastic.path import (
     contact_path,
     equilibria_at_radii,
     flat_punch_equilibria,
+    smooth_equilibrium,
 )
+
+S = TypeVar("S")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,8 +58,11 @@ class Fem:
     """Axisymmetric finite elements: mixed P_k-P_(k-1) on graded triangles, at every Poisson's ratio.
 
     Attributes:
-        accuracy: relative accuracy wanted in depth, force and stiffness; the other settings are then chosen (and
-            refined until the estimated errors hold), and the values given for them are not used.
+        accuracy: relative accuracy wanted in radius, depth, force and stiffness, or in restitution and peaks of an
+            impact and depth and force of a history; the other settings are then chosen (and refined until the
+            estimated errors hold), and the values given for them are not used.  Adhesive contacts are refined at fixed
+            radii.  What an answer states more of is told in its notes.
+        pressure_accuracy: the same for the pressure of contacts that do not move, besides an accuracy of the numbers.
         order: degree k of the displacement, 2, 3 or 4.
         edge_cell: cell at the contact edge, relative to the smallest length there.
         growth: growth of cells per distance, and largest cell per thickness.
@@ -68,6 +76,7 @@ class Fem:
     name: ClassVar[str] = "fem"
 
     accuracy: float | None = None
+    pressure_accuracy: float | None = None
     order: int = 4
     edge_cell: float = 1e-7
     growth: float = 0.5
@@ -78,8 +87,12 @@ class Fem:
 
     def __post_init__(self) -> None:
         """Refuse settings outside their ranges."""
-        if self.accuracy is not None and not 1e-9 <= self.accuracy <= 0.1:
-            raise InvalidInput(f"accuracy must lie in [1e-9, 0.1], got {self.accuracy}")
+        for name in ("accuracy", "pressure_accuracy"):
+            wanted = getattr(self, name)
+            if wanted is not None and not 1e-9 <= wanted <= 0.1:
+                raise InvalidInput(f"{name} must lie in [1e-9, 0.1], got {wanted}")
+        if self.pressure_accuracy is not None and self.accuracy is None:
+            raise InvalidInput("pressure_accuracy is asked besides an accuracy of the numbers; give both")
         if self.solver not in BACKENDS:
             raise InvalidInput(f"solver must be one of {', '.join(BACKENDS)}, got {self.solver!r}")
         _ = self.discretisation
@@ -130,7 +143,10 @@ class Fem:
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
-        log = StageLog()
+        answer = self._solve(scene, StageLog())
+        return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
+
+    def _solve(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
         if isinstance(scene.loading, Detachment):
             from fem_reference.adhesion.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
 
@@ -138,6 +154,8 @@ class Fem:
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
         equilibria = self._equilibria(scene, log)
+        if not scene.effects and not isinstance(scene.indenter, FlatPunch):
+            refuse_pulled_contacts(scene, (state.contact for state in equilibria))
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
         return contact_path(scene, equilibria, asdict(self), log)
 
@@ -148,6 +166,7 @@ class Fem:
         from fem_reference.in_time.setup import HistorySetup  # noqa: PLC0415
 
         def attempt(settings: Discretisation) -> ImpactHistory | HistoryPath:
+            """The answer on one mesh and with one number of time steps."""
             setup = HistorySetup(scene, settings, self.solver, log)
             if isinstance(loading, Impact):
                 return viscoelastic.impact_history(setup, loading, asdict(self))
@@ -176,11 +195,16 @@ class Fem:
 
     def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> FemEquilibrium:
         """Searches the contact, then solves it at a prescribed radius; target is a depth [m] or a force / E* [m^2]."""
-        from fem_reference.elastic.at_load import equilibrium_at_load  # noqa: PLC0415 - only scenes that search pay for it
+        from fem_reference.elastic.at_load import found_load  # noqa: PLC0415 - only scenes that search pay for it
         from fem_reference.elastic.contact_search import find_contact  # noqa: PLC0415
 
         found = find_contact(scene, target, self.discretisation, self.solver, log)
-        return equilibrium_at_load(scene, target, found.contact_radius * found.radius, self._solver(scene, log), log)
+        load = found_load(scene, target, found.contact_radius * found.radius, log)
+
+        def attempt(settings: Discretisation) -> FemEquilibrium:
+            return load.equilibrium(lambda radius: self._contact(scene, radius, settings, log))
+
+        return self._to_accuracy(attempt, lambda state: state.error)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.
@@ -196,9 +220,21 @@ class Fem:
 
     def solve_contact(self, scene: Scene, contact_radius: float, log: StageLog) -> ContactWithErrors:
         """One contact radius [m] with error bars."""
-        indenter = ScaledIndenter(scene.indenter, contact_radius)
 
         def attempt(settings: Discretisation) -> ContactWithErrors:
-            return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log)
+            return self._contact(scene, contact_radius, settings, log)
 
-        return attempt(self.discretisation) if self.accuracy is None else solve_to_accuracy(attempt, self.accuracy)
+        return self._to_accuracy(attempt, lambda contact: smooth_equilibrium(contact).error)
+
+    def _contact(self, scene: Scene, radius: float, settings: Discretisation, log: StageLog) -> ContactWithErrors:
+        indenter = ScaledIndenter(scene.indenter, radius)
+        return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log)
+
+    def _to_accuracy(self, attempt: Callable[[Discretisation], S], errors: Callable[[S], Mapping[str, float]]) -> S:
+        """As the settings say, or refined until the errors of all quantities that are asked for hold."""
+        if self.accuracy is None:
+            return attempt(self.discretisation)
+        wanted = dict.fromkeys(ContactPath.ASKED, self.accuracy)
+        if self.pressure_accuracy is not None:
+            wanted["pressure"] = self.pressure_accuracy
+        return solve_to_accuracy(attempt, errors, wanted)

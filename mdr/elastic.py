@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from bem.kernels.profile_slope import has_closed_slope
+from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
 from contact.answer.solution import Setting

@@ -30,6 +30,9 @@ from contact.records.record import Record, record
 from contact.records.validation import in_range
 from mdr.dispatch import solver_of
 
+# The coarsest accuracy that time steps are chosen for: what coarser steps would save is too little to be measured.
+COARSEST = 1e-4
+
 
 @record
 class Mdr(Record):
@@ -37,13 +40,14 @@ class Mdr(Record):
 
     Attributes:
         flat_punch: Where the flat punch's stiffness and pressure come from.
-        accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories).
+        accuracy: Wanted relative accuracy of what is integrated in time (impacts, histories). Coarser ones than
+            `COARSEST` are answered by it; what does not move is more accurate whatever is asked.
     """
 
     name: ClassVar[str] = "mdr"
 
     flat_punch: FlatPunchSource = Field(default_factory=IntegralEquation)
-    accuracy: Annotated[float, *in_range(1e-13, 1e-4, "1e-9 costs twice as much as 1e-6")] = 1e-9
+    accuracy: Annotated[float, *in_range(1e-13, 0.1, "1e-9 costs twice as much as 1e-6")] = 1e-9
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Contact of any profile with layers and half-spaces: elastic, adhesive, or incompressible and viscoelastic."""
@@ -80,7 +84,7 @@ class Mdr(Record):
 
     def _settings(self) -> dict[str, Setting]:
         source = self.flat_punch
-        settings: dict[str, Setting] = {"accuracy": self.accuracy, "flat_punch": type(source).__name__}
+        settings: dict[str, Setting] = {"accuracy": min(self.accuracy, COARSEST), "flat_punch": type(source).__name__}
         if dataclasses.is_dataclass(source):
             values = {f.name: getattr(source, f.name) for f in dataclasses.fields(source)}
             settings |= {name: v for name, v in values.items() if isinstance(v, bool | int | float | str | None)}

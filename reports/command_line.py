@@ -1,6 +1,7 @@
 """`contact-verify`: verification runs, reports, gates, and single answers with error bars, from the shell.
 
-Only declarations stand here; what a command needs is imported when it is called, so that help and errors come at once.
+Only declarations stand here and in `commands.studies`; what a command needs is imported when it is called, so that help
+and errors come at once.
 """
 
 import sys
@@ -10,6 +11,8 @@ from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import typer
+
+from reports.commands import studies
 
 EPILOG = (
     "Exit codes: 0 all checks passed; 1 a check failed; 2 interrupted; 3 internal error, or one inside a registered "
@@ -141,7 +144,7 @@ def run_suite(
     ] = "processes",
     time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds a single solution may take; 0: no limit.")] = 0.0,
     timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
-    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
 ) -> int:
     """Run cases through every method, judge their claims, write the report.
@@ -183,27 +186,19 @@ def gate(
     run: Annotated[Path, typer.Argument(help="Folder of a finished run.")] = Path("build/verification"),
     *,
     baseline: Baselines = Path("baselines"),
-    against: Annotated[
-        str, typer.Option(metavar="REVISION", help="Also time every method alternately with this git revision.")
-    ] = "",
-    only: Annotated[
-        list[str] | None, typer.Option(metavar="CASE", help="With --against: time only these cases. Repeatable.")
-    ] = None,
-    pairs: Annotated[int, typer.Option(min=7, help="With --against: how often each method is timed.")] = 15,
     method: Annotated[
         list[str] | None, typer.Option(help="Only these methods, for a run of them alone. Repeatable.")
     ] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open fail, too.")] = False,
+    strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
 ) -> int:
     """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
 
     The regression claims join the others in the report, together with the history of accepted changes.
     """
-    from reports.commands.gate import Timing, run_gate  # noqa: PLC0415
+    from reports.commands.gate import run_gate  # noqa: PLC0415
 
-    timing = Timing(revision=against, cases=tuple(only or ()), pairs=pairs)
-    return run_gate(run, baseline, methods=method or (), timing=timing, strict=strict, quiet=quiet)
+    return run_gate(run, baseline, methods=method or (), strict=strict, quiet=quiet)
 
 
 @app.command()
@@ -241,9 +236,12 @@ def solve(
     accuracy: Annotated[
         float | None,
         typer.Option(
-            help="Relative accuracy: chooses method and settings from measured evidence, and refuses an answer that is "
-            "less."
+            help="Relative accuracy of radius, depth, force and stiffness, of critical numbers, or of restitution and "
+            "peaks: chooses method and settings from measured evidence, and refuses an answer that is less."
         ),
+    ] = None,
+    pressure_accuracy: Annotated[
+        float | None, typer.Option(help="Relative accuracy of the contact pressure, besides --accuracy.")
     ] = None,
     within: Annotated[
         float | None,
@@ -254,6 +252,17 @@ def solve(
     evidence: Annotated[
         Path | None, typer.Option(help="Measurements of this machine from calibrate, in place of those shipped.")
     ] = None,
+    uncertain: Annotated[
+        str,
+        typer.Option(
+            metavar="INPUTS",
+            help='Uncertain inputs, "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8": standard '
+            "deviations, ranges, correlations.",
+        ),
+    ] = "",
+    samples: Annotated[
+        int, typer.Option(help="Scenes to draw for --uncertain; by default two for each input, and differences.")
+    ] = 0,
     write: Annotated[
         list[Path] | None,
         typer.Option("--write", "-w", help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. May be repeated."),
@@ -266,63 +275,21 @@ def solve(
     """
     from reports.commands.solve import solve as run_command  # noqa: PLC0415
 
-    run_command(scene, method=method, accuracy=accuracy, outputs=write or [], within=within, evidence=evidence)
+    run_command(
+        scene,
+        method=method,
+        accuracy=accuracy,
+        pressure_accuracy=pressure_accuracy,
+        outputs=write or [],
+        within=within,
+        evidence=evidence,
+        uncertain=uncertain,
+        samples=samples,
+    )
 
 
-@app.command()
-def advise(
-    scene: Annotated[Path, typer.Argument(help="Scene in TOML.")],
-    accuracy: Annotated[float, typer.Option(help="Relative change that does not matter.")] = 1e-2,
-    method: Annotated[str, typer.Option(help="Method that solves with and without.")] = "mdr",
-) -> None:
-    """Say which effects, and whether the layer's finite thickness, matter at an accuracy: solved with and without."""
-    from reports.commands.hard import advise as run_command  # noqa: PLC0415
-
-    run_command(scene, accuracy, method)
-
-
-@app.command()
-def ladders(
-    names: Annotated[
-        list[str] | None, typer.Argument(metavar="[WORD]...", help="Only ladders with such a name.")
-    ] = None,
-    method: Annotated[
-        list[str] | None, typer.Option(help="Method that climbs; mdr if none is named. Repeatable.")
-    ] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for a report with all rungs.")] = None,
-) -> int:
-    """Walk hard parameters until something breaks: digits left, and the rung where a method gives up by name."""
-    from reports.commands.hard import ladders as run_command  # noqa: PLC0415
-
-    return run_command(names or [], method or ["mdr"], out)
-
-
-@app.command()
-def coverage(
-    method: Annotated[list[str] | None, typer.Option(help="Only this method. Repeatable.")] = None,
-    *,
-    family: Annotated[list[str] | None, typer.Option(help="Only this kind of scenes. Repeatable.")] = None,
-    seed: Annotated[int | None, typer.Option(help="Of the random scenes; by default one that tuned nothing.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for a report with the figure.")] = None,
-) -> int:
-    """Compare stated with true errors over hundreds of random scenes: how often they hold, how much they give away."""
-    from reports.commands.hard import coverage as run_command  # noqa: PLC0415
-
-    return run_command(method or [], family or [], seed, out)
-
-
-@app.command()
-def accuracy(
-    count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 300,
-    *,
-    seed: Annotated[int, typer.Option(help="Of the scenes.")] = 2,
-    evidence: Annotated[Path | None, typer.Option(help="Measurements of this machine from calibrate.")] = None,
-    out: Annotated[Path | None, typer.Option(help="Folder for a report.")] = None,
-) -> int:
-    """Solve random scenes to random accuracies: are they met, and how near is the time to the shortest?"""
-    from reports.commands.hard import accuracy as run_command  # noqa: PLC0415
-
-    return run_command(count, seed, evidence, out)
+for _command in studies.COMMANDS:
+    app.command()(_command)
 
 
 @app.command("accuracy-page")
@@ -336,53 +303,14 @@ def accuracy_page(
     write_page(baseline, out)
 
 
-@app.command()
-def scaling(
-    out: Annotated[Path, typer.Option(help="Folder for the report.")] = Path("build/scaling"),
-) -> int:
-    """Measure how the time grows with a/h, radii, Prony terms, pieces of a history, grid cells, against theory."""
-    from reports.commands.hard import scaling as run_command  # noqa: PLC0415
-
-    return run_command(out)
-
-
-@app.command("maps")
-def error_maps(
-    names: Annotated[
-        list[str] | None, typer.Argument(metavar="[NAME]...", help="Formulas and methods; all if none is named.")
-    ] = None,
-    out: Annotated[Path, typer.Option(help="Folder for the report with figures and data.")] = Path("build/maps"),
-) -> int:
-    """Map the signed error of each closed form and method over a/h and Poisson's ratio: where it is good to 1 %."""
-    from reports.commands.hard import error_maps as run_command  # noqa: PLC0415
-
-    return run_command(names or [], out)
-
-
-@app.command()
-def calibrate(
-    out: Annotated[Path, typer.Argument(help="File for the measurements, JSON.")],
-    seed: Annotated[int, typer.Option(help="Of the random scenes.")] = 1,
+@app.command("paper-page")
+def paper_page(
+    out: Annotated[Path, typer.Argument(help="File for the page, Markdown.")] = Path("docs/paper.md"),
 ) -> None:
-    """Measure on this machine how accurate and how fast the settings are; takes some minutes, alone on the machine."""
-    from reports.commands.hard import calibrate as run_command  # noqa: PLC0415
+    """Write the page of what the paper says and what is measured, with numbers computed now."""
+    from reports.commands.paper_page import write_page  # noqa: PLC0415
 
-    run_command(out, seed)
-
-
-@app.command()
-def campaign(
-    family: Annotated[
-        str, typer.Argument(help="elastic, pressure, adhesive, impact, history (of depth) or creep (force).")
-    ] = "elastic",
-    method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
-    count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
-    seed: Annotated[int, typer.Option(help="Of the scenes.")] = 1,
-) -> int:
-    """Solve random scenes and check each answer: within its stated error of an independent one, or refused by name."""
-    from reports.commands.hard import campaign as run_command  # noqa: PLC0415
-
-    return run_command(method, family, count, seed)
+    write_page(out)
 
 
 @app.command()

@@ -14,11 +14,12 @@ from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhesion.disc import AdheringDisc
-from bem.grid.quadrant import COARSE_CELLS, first_radius
+from bem.grid.quadrant import COARSE_CELLS
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from contact import Adhesion, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_elongation
 
 # Contact radii solved on each piece of the branch, and on one with breakpoints, whose kinks a layer leaves in higher
 # derivatives. What these polynomials leave out is stated as an error.
@@ -238,17 +239,10 @@ def long_enough(scene: Scene, threads: int, enough: Callable[[DiscBranch], bool]
     indenter = scene.indenter
     if isinstance(indenter, FlatPunch):
         return indenter.radius
-    radius = GROWTH * max(min(_balance_radius(scene), FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
+    balance = radius_of_elongation(indenter, adhesive_length(scene))
+    radius = GROWTH * max(min(balance, FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
     while radius < indenter.max_radius:
         if enough(DiscBranch.up_to(radius, scene, COARSE_CELLS, threads)):
             return radius
         radius *= GROWTH
     return indenter.max_radius
-
-
-def _balance_radius(scene: Scene) -> float:
-    def outgrown(radius: float) -> bool:
-        height = float(scene.indenter.height(np.array([radius]))[0])
-        return height**2 >= 2.0 * pi * adhesive_length(scene) * radius
-
-    return first_radius(outgrown, scene.indenter.max_radius)

@@ -15,10 +15,11 @@ from bem.grid.contact_edge import STEP, area_radius, slope
 from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
-from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid, first_radius, grid_sequence, prolonged, refuse_thin_layer
+from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid, grid_sequence, prolonged, refuse_thin_layer
 from bem.kernels.moduli import contact_modulus
 from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_load
 
 Boundary = Literal["free", "periodic"]
 Prescribed = Literal["radius", "depth", "force"]
@@ -331,8 +332,7 @@ class GridContactSearch:
 
     def _geometric_radius(self, depth: float) -> float:
         """Where f equals the depth [m]."""
-        reached = first_radius(lambda r: self._depth_scale(r) >= depth, self.indenter.max_radius)
-        return max(reached, self.indenter.flat_radius)
+        return max(radius_of_depth(self.indenter, depth), self.indenter.flat_radius)
 
     def _depth_scale(self, radius: float) -> float:
         """f at the contact radius: the depth of a thin layer, and of the right size for any."""
@@ -340,8 +340,7 @@ class GridContactSearch:
 
     def _depth_of_force(self, force: float) -> float:
         """The depth at which 2 E* r f(r) equals the force, r the radius where f equals the depth."""
-        stiffness = 2.0 * contact_modulus(self.layer)
-        radius = first_radius(lambda r: stiffness * r * self._depth_scale(r) >= force, self.indenter.max_radius)
+        radius = radius_of_load(self.indenter, force / (2.0 * contact_modulus(self.layer)))
         return self._depth_scale(radius * (1.0 - 1e-12))
 
 

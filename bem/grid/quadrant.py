@@ -1,11 +1,9 @@
-"""Quadrants of square grids, sequences of them, and where a monotone condition on the radius begins."""
+"""Quadrants of square grids, and sequences of them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from math import sqrt
 from typing import Final
 
 import numpy as np
@@ -70,15 +68,3 @@ def grid_sequence(points: int) -> list[int]:
     while cells[-1] % 4 == 0 and cells[-1] // 2 >= LEAST_CELLS:
         cells.append(cells[-1] // 2)
     return cells[::-1]
-
-
-def first_radius(reached: Callable[[float], bool], largest: float) -> float:
-    """The smallest radius in 1e-12 to 1e12 m from which on a condition holds; `largest` if it never does.
-
-    Bisection in the logarithm, so that every unit system takes the same steps to within rounding.
-    """
-    low, high = 1e-12, min(largest, 1e12)
-    for _ in range(200):
-        middle = sqrt(low * high)
-        low, high = (low, middle) if reached(middle) else (middle, high)
-    return high

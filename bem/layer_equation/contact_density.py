@@ -18,8 +18,10 @@ import numpy as np
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.triangular import solve_lower
-from bem.polynomials.equal_panels import chebyshev_sum
+from bem.polynomials.abel_integral import even_abel_integral
+from bem.polynomials.chebyshev import chebyshev_sum, differentiation
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.truncation import rate_of_decay
 from contact.records.validation import FloatArray
 
@@ -32,17 +34,13 @@ class ContactDensity:
 
     Attributes:
         kernel: Kernel of the layer.
-        left: Left ends of the panels that cover [0, a], shape (q,).
-        width: Their widths, equal but for the last, shape (q,).
         load: Averages of W over the panels' Lagrange basis, shape (q, m).
-        psi: Values at the panels' Gauss nodes, shape (q, m).
+        psi: On the panels that cover [0, a], equally wide but for the last.
     """
 
     kernel: FredholmKernel
-    left: FloatArray
-    width: FloatArray
     load: FloatArray
-    psi: FloatArray
+    psi: MappedFunction
 
     @classmethod
     def of_load(cls, kernel: FredholmKernel, factor: VolterraFactor, ratio: float, load: FloatArray) -> ContactDensity:
@@ -54,57 +52,42 @@ class ContactDensity:
             ratio: a, in units of the thickness.
             load: Averages of W on the panels that cover [0, a], shape (q, m); the last panel ends at a.
         """
-        left = factor.starts(len(load))
-        width = np.append(np.diff(left), ratio - left[-1])
-        return cls(kernel, left, width, load, _solve(factor, width[-1], load) - load)
+        panels = MappedGrid.between(np.append(factor.starts(len(load)), ratio), factor.count)
+        return cls(kernel, load, MappedFunction(panels, _solve(factor, panels.width[-1], load) - load, 0.0))
 
     @property
     def ratio(self) -> float:
         """a, in units of the thickness."""
-        return float(self.left[-1] + self.width[-1])
+        return self.psi.grid.end
 
     @property
     def edge_value(self) -> float:
         """psi(a)."""
         # Every Chebyshev polynomial is 1 at the right end.
-        return float(self._coefficients[-1].sum())
+        return float(self.psi.coefficients[-1].sum())
+
+    def abel_integral(self, radius: FloatArray) -> FloatArray:
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
+        return even_abel_integral(self.slope_over_position, self.psi.grid, radius)
 
     def slope_over_position(self, t: FloatArray) -> FloatArray:
         """psi'(t)/t at points of (0, a]."""
-        panel = np.clip(np.searchsorted(self.left, t, side="left") - 1, 0, len(self.left) - 1)
+        panel, _ = self.psi.grid.locate(t)
         left, width, coefficients = self._slopes
         share = (t - left[panel]) / width[panel]
         innermost = panel == 0
         values = chebyshev_sum(coefficients[panel], 2 * np.where(innermost, share**2, share) - 1)
         return values / np.where(innermost, 1.0, t)
 
-    def abel_integral(self, radius: FloatArray) -> FloatArray:
-        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,).
-
-        With t^2 = r^2 + s^2 the integrand psi'(t)/t is an even analytic function of t, hence analytic in s.
-        """
-        nodes, weights = gauss_nodes(self.psi.shape[1])
-        panels = len(self.left) + 1
-        s = ((np.arange(panels)[:, None] + nodes) / panels).ravel()
-        reach = np.sqrt((self.ratio - radius) * (self.ratio + radius))[:, None]
-        t = np.minimum(np.hypot(radius[:, None], reach * s), self.ratio)
-        values: FloatArray = reach[:, 0] / panels * (self.slope_over_position(t) @ np.tile(weights, panels))
-        return values
-
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
-        nodes, weights = gauss_nodes(self.psi.shape[1])
-        t = (self.left[:, None] + self.width[:, None] * nodes).ravel()
-        mass = ((self.load + self.psi) * self.width[:, None] * weights).ravel()
+        grid = self.psi.grid
+        t, mass = grid.nodes.ravel(), ((self.load + self.psi.node_values) * grid.weights).ravel()
         rates = self.kernel.rates[:, None]
         moments = (np.exp(-rates * (self.ratio - t)) + np.exp(-rates * (self.ratio + t))) @ mass
         decay = np.exp(-np.multiply.outer(distance, self.kernel.rates))
         values: FloatArray = -(decay @ (self.kernel.weights * moments)).real / np.pi
         return values
-
-    @cached_property
-    def _coefficients(self) -> FloatArray:
-        return self.psi @ chebyshev_from_nodes(self.psi.shape[1]).T
 
     @cached_property
     def _slopes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
@@ -114,24 +97,23 @@ class ContactDensity:
         may leave little, reaches back to a full width, and in the first psi is taken as the function of t^2 that it is.
         Orders that analyticity leaves below a rounding are rounding errors, magnified most by differentiation.
         """
-        left, width, coefficients = self.left.copy(), self.width.copy(), self._coefficients.copy()
-        nodes, _ = gauss_nodes(self.psi.shape[1])
+        left, width, coefficients = (
+            values.copy() for values in (self.psi.grid.left, self.psi.grid.width, self.psi.coefficients)
+        )
+        nodes, _ = gauss_nodes(self.psi.grid.count)
         if len(left) > 1 and width[-1] < width[-2]:
             width[-1] = width[-2]
             left[-1] = self.ratio - width[-1]
             coefficients[-1] = self._interpolated(left[-1] + width[-1] * nodes)
         coefficients[0] = self._interpolated(width[0] * np.sqrt(nodes)) * 2 / width[0]
-        orders = np.ceil(np.log(EPS) / np.log(rate_of_decay(2 * STRIP / self.width.max())))
+        orders = np.ceil(np.log(EPS) / np.log(rate_of_decay(2 * STRIP / width.max())))
         coefficients[:, int(orders) :] = 0.0
-        slope = np.zeros_like(self.psi)
-        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(coefficients, axis=1)
+        slope = 2 * coefficients @ differentiation(nodes.size).T
         return left, width, slope / width[:, None]
 
     def _interpolated(self, t: FloatArray) -> FloatArray:
         """Chebyshev coefficients of psi over a variable whose Gauss nodes are the points t of [0, a]."""
-        panel = np.clip(np.searchsorted(self.left, t, side="left") - 1, 0, len(self.left) - 1)
-        s = 2 * (t - self.left[panel]) / self.width[panel] - 1
-        return np.asarray(chebyshev_from_nodes(t.size) @ chebyshev_sum(self._coefficients[panel], s))
+        return np.asarray(chebyshev_from_nodes(t.size) @ self.psi(t))
 
 
 def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:

@@ -14,10 +14,9 @@ from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
-from bem.polynomials.equal_panels import EqualPanels
 from bem.polynomials.gauss_panels import gauss_nodes, partial_panel_interpolation
-from bem.polynomials.mapped import MappedFunction
-from bem.polynomials.truncation import rate_of_decay
+from bem.polynomials.mapped import MappedFunction, MappedGrid
+from bem.polynomials.truncation import between_nodes, orders_beyond, rate_of_decay
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
@@ -91,7 +90,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
         share = np.minimum(1.0, FACTOR.own_panel * self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny))
-        truncated = self._contact_stiffness.truncation(ratio) / k + share * self._spring_truncation(ratio)
+        truncated = polynomial_truncation(self._contact_stiffness, ratio) / k + share * self._spring_truncation(ratio)
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
@@ -139,7 +138,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
-        panels, _ = self._edge_density.locate(ratio)
+        panels, _ = self._edge_density.grid.locate(ratio)
         rounded = 4 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
         return self.contact_pressure_error(ratio, 2 * self.factor.truncation[panels] + EPS * rounded)
 
@@ -166,8 +165,8 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def _spring_truncation(self, ratio: FloatArray) -> FloatArray:
         """Of c_bar = y1^2, relative: orders of y1 left out, and of the kernel that gives its values at the nodes."""
-        panels, _ = self._edge_density.locate(ratio)
-        own: FloatArray = self._edge_density.truncation(ratio) / self.edge_density(ratio)
+        panels, _ = self._edge_density.grid.locate(ratio)
+        own: FloatArray = polynomial_truncation(self._edge_density, ratio) / self.edge_density(ratio)
         return 2 * (own + self.factor.truncation[panels])
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
@@ -178,17 +177,29 @@ class IntegralEquationSolution(FlatPunchSolution):
         return ratio
 
     @cached_property
-    def _edge_density(self) -> EqualPanels:
-        unit = np.ones((self.factor.panels, self.factor.count))
-        _, inherited = self.factor.eliminate(unit)
-        return self.factor.interpolant(self.factor.edge_values(unit + inherited))
+    def _panels(self) -> MappedGrid:
+        """The factor's panels."""
+        return MappedGrid.between(self.factor.all_ends, self.factor.count)
 
     @cached_property
-    def _contact_stiffness(self) -> EqualPanels:
+    def _edge_density(self) -> MappedFunction:
+        unit = np.ones((self.factor.panels, self.factor.count))
+        _, inherited = self.factor.eliminate(unit)
+        return MappedFunction(self._panels, self.factor.edge_values(unit + inherited), 0.0)
+
+    @cached_property
+    def _contact_stiffness(self) -> MappedFunction:
         """k_bar at every node: full panels before it, and the part of its own panel by scaled Gauss nodes."""
         tau, omega = gauss_nodes(self.factor.count)
         width, panels = self.factor.panel_width, np.arange(self.factor.panels)[:, None]
         y = self._edge_density(width * (panels + tau))
         partial = width * tau * ((partial_panel_interpolation(tau.size) @ y[:, None, :, None])[..., 0] ** 2 @ omega)
         full = np.concatenate([[0.0], np.cumsum(width * y**2 @ omega)[:-1]])
-        return EqualPanels.from_nodes(width, (full[:, None] + partial) / (width * (panels + tau)))  # Eqs. (6), (10)
+        return MappedFunction(self._panels, (full[:, None] + partial) / (width * (panels + tau)), 0.0)  # Eqs. (6), (10)
+
+
+def polynomial_truncation(function: MappedFunction, x: FloatArray) -> FloatArray:
+    """Size of what the polynomials leave out at points x, as the decay of all their coefficients tells."""
+    panels, s = function.grid.locate(x)
+    beyond: FloatArray = orders_beyond(function.coefficients)[panels] * between_nodes(function.grid.count, 2 * s - 1)
+    return beyond

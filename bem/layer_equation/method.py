@@ -32,14 +32,14 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
-from contact.answer.one_circle import refuse_touching_path
+from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
 
 ARRAYS = ContactPath.ARRAYS
-# Largest a/h: its dense system has two thousand unknowns.
-LARGEST_RATIO = 60.0
+# Largest a/h: its dense system has two thousand unknowns there and takes two seconds.
+LARGEST_RATIO = 100.0
 # Relative tolerance of the search for the radius of a prescribed depth or force.
 RADIUS_TOLERANCE = 1e-13
 # Radii on each smooth stretch of the profile at which the pressure is compared and must not pull.
@@ -113,7 +113,7 @@ class IntegralEquationMethod(Record):
             normal_force=answers[:, 2],
             contact_stiffness=answers[:, 3],
             error_estimate=errors,
-            cost=log.cost(unknowns=max(contact.density.panels.nodes.size for contact in contacts)),
+            cost=log.cost(unknowns=max(contact.density.grid.nodes.size for contact in contacts)),
             stages=log.records,
             fields=DirectFields(scene, contacts),
         )
@@ -270,11 +270,10 @@ def _refuse_tension(contact: DirectContact) -> None:
         return
     density, unit = contact.density, contact.density.unit
     inside, pressure = contact.sampled
-    pulled = inside[pressure < -LEAST_TENSION * pressure.max()] + density.panels.origin
+    pulled = inside[pressure < -LEAST_TENSION * pressure.max()] + density.flat
     if pulled.size:
         a, where = density.contact_radius * unit, float(pulled[0]) * unit
-        message = f"a contact of radius {a:g} m would be pulled at r = {where:g} m: it is no single circle"
-        raise UnsupportedSceneError(f"{message}; smooth the profile or press less")
+        raise no_single_circle(a, f"would be pulled at r = {where:g} m")
 
 
 def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: Scene) -> dict[str, FloatArray]:
@@ -289,7 +288,7 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
         scene: The scene.
     """
     exact = np.array([contact.answer for contact in fine])
-    rounding = ONE_RADIUS.rounding + np.array([[_position_rounding(contact.density)] for contact in fine])
+    rounding = ONE_RADIUS.rounding + np.array([[_rounding(contact.density)] for contact in fine])
     e, f = (np.abs(np.array([contact.answer for contact in coarse]) / exact - 1) for coarse in fewer)
     left = e * np.minimum(1.0, np.divide(e, f, out=np.ones_like(e), where=f > 0.0))
     difference = ONE_RADIUS.safety * left + rounding
@@ -311,6 +310,12 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
     return dict(zip((*ARRAYS, "pressure"), (radius, depth, force, stiffness, pressure + radius), strict=True))
 
 
+def _rounding(density: DirectDensity) -> float:
+    """Of positions, and of the kernel times the condition of the equation, which is about k_bar."""
+    growth = ONE_RADIUS.growth * float(np.finfo(float).eps) * density.stiffness / (2 * density.contact_radius)
+    return _position_rounding(density) + growth
+
+
 def _position_rounding(density: DirectDensity) -> float:
     """What rounded positions do to the depth, relative."""
     return ONE_RADIUS.positions * float(np.finfo(float).eps) * density.condition
@@ -324,11 +329,9 @@ def _pressure_error(fine: DirectContact, coarse: DirectContact) -> float:
     """
     offset, pressure = fine.sampled
     density, a = fine.density, fine.density.contact_radius
-    weight = (density.panels.origin + offset) * (
-        np.diff(density.stretch_ends)[:, None] * gauss_nodes(PRESSURES)[1]
-    ).ravel()
+    weight = (density.flat + offset) * (np.diff(density.stretch_ends)[:, None] * gauss_nodes(PRESSURES)[1]).ravel()
     if fine.singular_edge:
-        weight = weight * (density.excess - offset) * (a + density.panels.origin + offset)
+        weight = weight * (density.excess - offset) * (a + density.flat + offset)
     change = coarse.pressure(offset) - pressure
     share = 0.0 if density.layer.is_half_space else (1 - 2 * a / density.stiffness) * a**2 / (1 + a**2)
     rounding = share * _position_rounding(density)

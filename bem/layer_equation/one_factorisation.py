@@ -29,7 +29,6 @@ from numpy.typing import NDArray
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.triangular import equation_factor, solve_lower
-from bem.polynomials.equal_panels import EqualPanels
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix, partial_panel_interpolation
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
@@ -84,6 +83,11 @@ class VolterraFactor:
         """Where the last panel ends."""
         return self.panels * self.panel_width
 
+    @property
+    def all_ends(self) -> FloatArray:
+        """Of the panels, from zero on."""
+        return self.panel_width * np.arange(self.panels + 1.0)
+
     def widths(self, panels: int) -> FloatArray:
         """Of the first panels."""
         return np.full(panels, self.panel_width)
@@ -103,10 +107,6 @@ class VolterraFactor:
     def panels_to(self, x: float) -> int:
         """How many panels cover [0, x]."""
         return int(np.ceil(x / self.panel_width))
-
-    def interpolant(self, values: FloatArray) -> EqualPanels:
-        """The function with these values at the nodes of all panels, shape (P, m)."""
-        return EqualPanels.from_nodes(self.panel_width, values)
 
     def root_weights(self, panels: int) -> FloatArray:
         """Square roots of the weights of the first panels, shape (m,) or (panels, m)."""

@@ -4,9 +4,10 @@ With lengths in units of the layer thickness and W = delta - g_hs, the density p
 
     phi(x) - (2/pi) int_0^a L(x, t) phi(t) dt = W(x),    L(x, t) = int_0^inf (1 - chi(k)) cos(kx) cos(kt) dk.
 
-L is formed as it stands: Gauss nodes in k on the real axis, fine enough for cos(ka), and one matrix product. On the
-half-space L = 0. For the pressure phi is split into W, whose slope is known, and psi = (2/pi) int L phi dt, which is
-differentiated under the integral sign: no interpolant of phi is.
+What the layer adds, psi = phi - W, is smooth whatever the profile, so it is what is solved for, on equal pieces; of W
+only integrals are needed. L is formed as it stands: Gauss nodes in k on the real axis, fine enough for cos(ka), and one
+matrix product. So psi is a sum of cosines, which is differentiated term by term for the pressure. On the half-space
+there are no wavenumbers and psi = 0.
 """
 
 from __future__ import annotations
@@ -20,11 +21,10 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
 from bem.kernels.of_layer import surface_kernel
-from bem.kernels.profile_slope import profile_slope
-from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral
-from bem.polynomials.equal_panels import EqualPanels
+from bem.layer_equation.profiles.half_space_slope import profile_slope
+from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
-from bem.polynomials.graded_panels import GradedPanels
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
 from contact import ElasticLayer, NotConvergedError, Profile
 from contact.records.validation import FloatArray
@@ -33,8 +33,9 @@ from contact.records.validation import FloatArray
 LARGEST_WAVENUMBER = 24.0
 # On a stack the first panel of wavenumbers is halved so many times more than the longest length asks for; chosen.
 LONG_HALVINGS = 4
-# Largest phase of a cosine on a panel of 16 wavenumbers: sixteen nodes for one period.
-PANEL_PHASE = 6.0
+# Gauss nodes of a panel of wavenumbers, and the largest phase of a cosine on it: a rule of n nodes integrates cosines
+# over a phase below n to rounding, and 1 - chi is analytic within 2.5 of the real axis (panels are at most 2 wide).
+WAVE_NODES, PANEL_PHASE = 40, 48.0
 # Gauss nodes of a stretch on which the profile is analytic: exact for the cubics of tables, whose f' is a trigonometric
 # polynomial of theta.
 SMOOTH_NODES = 24
@@ -45,59 +46,96 @@ CROWDING = 15
 CROWDED_NODES = 16
 # Slopes of a profile without a closed form are sampled at so many times the nodes of a panel on each of its stretches.
 SLOPE_SHARE = 2
+# Ratio of neighbouring pieces that approach a point where g_hs is not smooth.
+GRADING = 0.25
+# Pieces towards a root, at the rim of a flat end: the last is 1e-12 of the first, and what its nodes miss of the root's
+# integral is 1e-18.
+LEVELS = 20
+# Pieces towards a power 3/2, at a bend: the last is 2e-5 of the first, and its nodes miss 1e-12 of the 1e-6 there.
+SMOOTHER_LEVELS = 8
+# Pieces towards the tip, where a profile may rise like any power of r above one.
+TIP_LEVELS = 6
 
 
 @dataclass(frozen=True, eq=False)
 class DirectDensity:
     """Densities under a flat punch pressed in by one unit and for the profile's g_hs, for one contact radius.
 
+    Columns of arrays with two columns stand for W = 1 and W = g_hs, in this order.
+
     Attributes:
         layer: The layer.
         indenter: The profile.
         unit: Length unit [m] of all that follows: the thickness, or the contact radius on the half-space.
         excess: a - b over the radius b of the flat end, with all its digits.
-        width: Widest panel.
-        panels: Where the densities are known.
-        flat: phi for W = 1, at the nodes and, last, at a; shape (n + 1,).
-        risen: phi for W = g_hs, likewise.
-        load: g_hs, likewise.
+        load: g_hs over offsets from b, up to the excess.
+        load_at_edge: g_hs(a).
+        grid: Pieces of [0, a] where psi is known.
+        psi: At their nodes, shape (n, 2).
+        wavenumbers: k, shape (m,).
+        amplitudes: Of psi = sum A cos(kx), shape (m, 2).
     """
 
     layer: ElasticLayer
     indenter: Profile
     unit: float
     excess: float
-    width: float
-    panels: GradedPanels
-    flat: FloatArray
-    risen: FloatArray
-    load: FloatArray
+    load: MappedFunction
+    load_at_edge: float
+    grid: MappedGrid
+    psi: FloatArray
+    wavenumbers: FloatArray
+    amplitudes: FloatArray
 
     @classmethod
     def solve(cls, layer: ElasticLayer, indenter: Profile, excess: float, width: float, nodes: int) -> DirectDensity:
-        """Assemble and solve for one excess a - b [m], on panels of `width` thicknesses with `nodes` nodes.
+        """Assemble and solve for one excess a - b [m], on pieces of at most `width` thicknesses with `nodes` nodes.
 
         Raises:
             NotConvergedError: If the matrix is not positive definite in double precision.
         """
         flat = indenter.flat_radius
-        unit = flat + excess if layer.is_half_space else layer.surface.thickness
-        smoother = (np.array(indenter.breakpoints) - flat) / unit
-        end = excess / unit, _room(indenter, excess) / unit
-        panels = GradedPanels.between(flat / unit, smoother, end, width, nodes)
-        g_hs = half_space_load(indenter, unit * np.append(panels.offsets, excess / unit)) / unit
-        punch, risen = _solve(layer, panels, np.column_stack([np.ones_like(g_hs), g_hs])).T
-        return cls(layer, indenter, unit, excess / unit, width, panels, punch, risen, g_hs)
+        a = flat + excess
+        unit = a if layer.is_half_space else layer.surface.thickness
+        pieces = graded_pieces(indenter, excess, unit, width, nodes)
+        load = MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes) / unit, 0.0)
+        grid = MappedGrid.equal(a / unit, int(np.ceil(a / unit / width)), nodes)
+        k, weight = _wavenumbers(layer, 2 * a / unit)
+        moments = _moments(load, flat / unit, a / unit, k)
+        psi = _solve(grid, k, weight, moments)
+        amplitudes = 2 / np.pi * weight[:, None] * (moments + _transform(grid, psi, k))
+        at_edge = float(half_space_load(indenter, np.full(1, excess))[0]) / unit
+        return cls(layer, indenter, unit, excess / unit, load, at_edge, grid, psi, k, amplitudes)
+
+    @property
+    def flat(self) -> float:
+        """b, in length units."""
+        return self.indenter.flat_radius / self.unit
 
     @property
     def contact_radius(self) -> float:
         """a, in length units."""
-        return self.panels.origin + self.excess
+        return self.flat + self.excess
+
+    @cached_property
+    def edge_values(self) -> FloatArray:
+        """phi(a), shape (2,): the equation itself at x = a."""
+        at_edge: FloatArray = np.array([1.0, self.load_at_edge]) + self.amplitudes.T @ np.cos(
+            self.wavenumbers * self.contact_radius
+        )
+        return at_edge
+
+    @cached_property
+    def integrals(self) -> FloatArray:
+        """int phi dt, shape (2,)."""
+        loads = np.array([self.contact_radius, float(np.sum(self.load.grid.weights * self.load.node_values))])
+        total: FloatArray = loads + self.grid.weights.ravel() @ self.psi
+        return total
 
     @property
     def depth(self) -> float:
         """delta, in length units, that makes phi(a) = 0: no singular pressure at the edge."""
-        return float(self.risen[-1] / self.flat[-1])
+        return float(self.edge_values[1] / self.edge_values[0])
 
     @property
     def condition(self) -> float:
@@ -107,32 +145,33 @@ class DirectDensity:
         edge, room = np.full(1, self.unit * self.excess), np.full(1, _room(self.indenter, self.unit * self.excess))
         closed = profile_slope(self.indenter, edge, room)
         slope = self._sampled_slope(edge / self.unit) if closed is None else closed
-        return float(self.excess * slope[0] / self.load[-1])
+        return float(self.excess * slope[0] / self.load_at_edge)
 
     def force(self, depth: float) -> float:
         """F_N/(E* unit^2) = 2 int phi dt under a depth in length units."""
-        return 2 * float(self.panels.weights @ self._density(depth)[:-1])
+        return 2 * float(self.integrals @ _under(depth))
 
     @property
     def stiffness(self) -> float:
         """k_N/(E* unit)."""
-        return 2 * float(self.panels.weights @ self.flat[:-1])
+        return 2 * float(self.integrals[0])
 
     def pressure(self, offset: FloatArray, depth: float, *, singular_edge: bool) -> FloatArray:
         """p/E* at offsets r - b in length units, shape (n,), of radii 0 <= r < a."""
-        radius = self.panels.origin + offset
+        radius = self.flat + offset
         total = -self._smooth_integral(radius, depth)
         for stretch in self._stretches:
             total += abel_integral(self._profile_slope, stretch, radius, offset)
         if singular_edge:
-            total += self._density(depth)[-1] / np.sqrt((self.excess - offset) * (self.contact_radius + radius))
+            edge = self.edge_values @ _under(depth)
+            total += edge / np.sqrt((self.excess - offset) * (self.contact_radius + radius))
         return total / np.pi
 
     @cached_property
     def stretch_ends(self) -> FloatArray:
         """Offsets of the axis, of the breakpoints within the contact, and of its edge."""
         breaks = (np.array(self.indenter.breakpoints) - self.indenter.flat_radius) / self.unit
-        return np.unique([-self.panels.origin, *breaks[breaks < self.excess], self.excess])
+        return np.unique([-self.flat, *breaks[breaks < self.excess], self.excess])
 
     @cached_property
     def _stretches(self) -> list[Stretch]:
@@ -141,7 +180,7 @@ class DirectDensity:
         rooms = np.full(len(ends) - 1, np.inf)
         rooms[-1:] = _room(self.indenter, self.unit * self.excess) / self.unit
         starts = zip(ends[:-1], ends[1:], rooms, strict=True)
-        return [Stretch(self.panels.origin, float(start), float(stop), float(room)) for start, stop, room in starts]
+        return [Stretch(self.flat, float(start), float(stop), float(room)) for start, stop, room in starts]
 
     def _profile_slope(self, nodes: AbelNodes) -> FloatArray:
         closed = profile_slope(self.indenter, self.unit * nodes.offset, self.unit * nodes.room)
@@ -150,67 +189,78 @@ class DirectDensity:
     @cached_property
     def _sampled_slope(self) -> StretchSlopes:
         ends = self.stretch_ends[self.stretch_ends >= 0]
-        count = SLOPE_SHARE * self.panels.count
-        origin, unit = self.panels.origin, self.unit
-        return StretchSlopes.of(lambda d: half_space_load(self.indenter, unit * d) / unit, origin, ends, count)
+        unit, count = self.unit, SLOPE_SHARE * self.grid.count
+        return StretchSlopes.of(lambda d: half_space_load(self.indenter, unit * d) / unit, self.flat, ends, count)
 
     def _smooth_integral(self, radius: FloatArray, depth: float) -> FloatArray:
-        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt with t^2 = r^2 + s^2, where psi'/t is an even analytic function of t."""
-        if self.layer.is_half_space:
-            return np.zeros_like(radius)
-        punch, risen = self._smooth_slopes
-        slopes = EqualPanels(punch.panel_width, depth * punch.coefficients - risen.coefficients)
-        nodes, weights = gauss_nodes(self.panels.count)
-        count = len(slopes.coefficients) + 1
-        s = ((np.arange(count)[:, None] + nodes) / count).ravel()
-        reach = np.sqrt((self.contact_radius - radius) * (self.contact_radius + radius))[:, None]
-        t = np.minimum(np.hypot(radius[:, None], reach * s), self.contact_radius)
-        integral: FloatArray = reach[:, 0] / count * np.sum(slopes(t) * np.tile(weights, count), axis=1)
-        return integral
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt, psi'/t by its polynomials on the pieces."""
+        slopes = MappedFunction(self.grid, (self._smooth_slopes @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
+        return even_abel_integral(slopes, self.grid, radius)
 
     @cached_property
-    def _smooth_slopes(self) -> tuple[EqualPanels, EqualPanels]:
-        """psi'(t)/t = -(2/pi) int (1 - chi) k sin(kt)/t int phi cos(ks) ds dk, of the punch and of the profile."""
-        a, panels = self.contact_radius, self.panels
-        k, weight = _wavenumbers(self.layer, 2 * a)
-        densities = np.column_stack([self.flat, self.risen])[:-1]
-        moments = np.cos(np.multiply.outer(k, panels.nodes)) @ (panels.weights[:, None] * densities)
-        count = int(np.ceil(a / self.width))
-        t = a / count * (np.arange(count)[:, None] + gauss_nodes(panels.count)[0]).ravel()
-        waves = k**2 * np.sinc(np.multiply.outer(t, k) / np.pi)
-        values = -2 / np.pi * (waves @ (weight[:, None] * moments)).T.reshape(2, count, -1)
-        return EqualPanels.from_nodes(a / count, values[0]), EqualPanels.from_nodes(a / count, values[1])
+    def _smooth_slopes(self) -> FloatArray:
+        """psi'(t)/t = -sum A k sin(kt)/t at the nodes, shape (n, 2)."""
+        k = self.wavenumbers
+        waves = k**2 * np.sinc(np.multiply.outer(self.grid.nodes.ravel(), k) / np.pi)
+        slopes: FloatArray = -waves @ self.amplitudes
+        return slopes
 
     def displacement_outside(self, radius: FloatArray, depth: float) -> FloatArray:
         """w at radii r > a in length units: (2/pi) [int phi/sqrt(r^2 - t^2) dt - int (1 - chi) phi^ J0(kr) dk]."""
-        density = self._density(depth)[:-1]
-        half_space = self._half_space_displacement(radius, density)
-        if self.layer.is_half_space or not radius.size:
-            return 2 / np.pi * half_space
+        if not radius.size:
+            return np.zeros(0)
         k, weight = _wavenumbers(self.layer, self.contact_radius + float(radius.max()))
-        transform = np.cos(np.multiply.outer(k, self.panels.nodes)) @ (self.panels.weights * density)
-        outside: FloatArray = 2 / np.pi * (half_space - j0(np.multiply.outer(radius, k)) @ (weight * transform))
+        transform = _moments(self.load, self.flat, self.contact_radius, k) + _transform(self.grid, self.psi, k)
+        layer = j0(np.multiply.outer(radius, k)) @ (weight * (transform @ _under(depth)))
+        outside: FloatArray = 2 / np.pi * (self._half_space_displacement(radius, depth) - layer)
         return outside
 
-    def _half_space_displacement(self, radius: FloatArray, density: FloatArray) -> FloatArray:
-        """int_0^a phi/sqrt(r^2 - t^2) dt with t = r sin(theta), panel by panel."""
-        nodes, weights = gauss_nodes(self.panels.count)
-        ends = self.panels.origin + self.panels.ends
-        theta = np.arcsin(np.minimum(ends / radius[:, None], 1.0))
-        width = np.diff(theta, axis=1)[..., None]
-        t = np.minimum(radius[:, None, None] * np.sin(theta[:, :-1, None] + width * nodes), self.contact_radius)
-        total: FloatArray = np.sum(width * self.panels.interpolant(density, t) * weights, axis=(1, 2))
-        return total
+    def _half_space_displacement(self, radius: FloatArray, depth: float) -> FloatArray:
+        """int_0^a phi/sqrt(r^2 - t^2) dt."""
+        psi = MappedFunction(self.grid, (self.psi @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
+        total = depth * np.arcsin(self.contact_radius / radius) + arc_integral(radius, psi, 0.0, self.grid.count)
+        return total - arc_integral(radius, self.load, self.flat, self.grid.count) if self._stretches else total
 
-    def _density(self, depth: float) -> FloatArray:
-        density: FloatArray = depth * self.flat - self.risen
-        return density
+
+def _under(depth: float) -> FloatArray:
+    """W = delta - g_hs in terms of the two loads."""
+    return np.array([depth, -1.0])
 
 
 def _room(indenter: Profile, excess: float) -> float:
     """Distance [m] from the contact's edge to the end of a profile that is upright there; infinite for others."""
     is_upright = indenter.max_radius not in indenter.breakpoints
     return indenter.max_radius - indenter.flat_radius - excess if is_upright else np.inf
+
+
+def graded_pieces(indenter: Profile, excess: float, unit: float, widest: float, count: int) -> MappedGrid:
+    """Pieces of the offsets from 0 to a - b, graded where g_hs begins like a root, a power 3/2 or that of a tip.
+
+    Args:
+        indenter: The profile.
+        excess: a - b [m].
+        unit: Length unit [m] of the pieces.
+        widest: Largest piece.
+        count: Nodes on each.
+    """
+    end, room = excess / unit, _room(indenter, excess) / unit
+    bends = (np.array(indenter.breakpoints) - indenter.flat_radius) / unit
+    points = np.unique(np.concatenate([[0.0], bends[(bends > 0) & (bends < end)], [end]]))
+    ends = [points[:1], _towards_pole(end, room)]
+    for start, stop in pairwise(points):
+        levels = SMOOTHER_LEVELS if start > 0 else LEVELS if indenter.flat_radius > 0 else TIP_LEVELS
+        ends.append(start + (stop - start) * GRADING ** np.arange(levels, -1, -1.0))
+    # Beside a distant point the smallest pieces round to nothing.
+    coarse = np.unique(np.concatenate(ends))
+    parts = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)
+    fine = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(coarse[:-1], coarse[1:], parts, strict=True)]
+    return MappedGrid.between(np.concatenate([coarse[:1], *fine]), count)
+
+
+def _towards_pole(end: float, room: float) -> FloatArray:
+    """Ends of pieces that double with their distance from a pole at end + room, down to the middle of [0, end]."""
+    doublings = max(np.ceil(np.log2((end + room) / (2 * room))), 0.0) if 0 < room < end else 0.0
+    return np.asarray(end - room * (2.0 ** np.arange(1.0, doublings) - 1))
 
 
 def half_space_load(indenter: Profile, excess: FloatArray) -> FloatArray:
@@ -265,25 +315,33 @@ def _crowded_rule() -> tuple[FloatArray, FloatArray]:
     return (ends[:-1, None] + width * nodes).ravel(), (width * weights).ravel()
 
 
-def _solve(layer: ElasticLayer, panels: GradedPanels, loads: FloatArray) -> FloatArray:
-    """phi at the nodes and at a for loads given there, shape (n + 1, loads)."""
-    if layer.is_half_space:
-        return loads
-    root = np.sqrt(panels.weights)
-    a = panels.origin + float(panels.ends[-1])
-    k, weight = _wavenumbers(layer, 2 * a)
-    # On a stack chi may exceed 1.
-    sign = np.sign(weight)
-    cosines = np.sqrt(2 / np.pi * np.abs(weight)) * np.cos(np.multiply.outer(np.append(panels.nodes, a), k))
-    scaled = root[:, None] * cosines[:-1]
+def _moments(load: MappedFunction, flat: float, a: float, k: FloatArray) -> FloatArray:
+    """int_0^a cos(kt) W dt of both loads, shape (m, 2); the flat punch's in closed form."""
+    grid = load.grid
+    risen = np.cos(np.multiply.outer(k, flat + grid.nodes.ravel())) @ (grid.weights * load.node_values).ravel()
+    return np.column_stack([a * np.sinc(a * k / np.pi), risen])
+
+
+def _transform(grid: MappedGrid, psi: FloatArray, k: FloatArray) -> FloatArray:
+    """int_0^a cos(kt) psi dt, shape (m, 2)."""
+    transform: FloatArray = np.cos(np.multiply.outer(k, grid.nodes.ravel())) @ (grid.weights.ravel()[:, None] * psi)
+    return transform
+
+
+def _solve(grid: MappedGrid, k: FloatArray, weight: FloatArray, moments: FloatArray) -> FloatArray:
+    """psi at the nodes, from psi - L psi = L W, shape (n, 2)."""
+    root = np.sqrt(grid.weights.ravel())[:, None]
+    cosines = root * np.cos(np.multiply.outer(grid.nodes.ravel(), k))
+    strength = 2 / np.pi * weight
     try:
-        inner = _resolved(scaled, sign, root[:, None] * loads[:-1])
+        psi: FloatArray = (
+            _resolved(cosines * np.sqrt(np.abs(strength)), np.sign(strength), cosines @ (strength[:, None] * moments))
+            / root
+        )
     except np.linalg.LinAlgError:
-        message = f"the equation at a/h = {a:g} is singular to double precision; take a smaller a/h"
+        message = f"the equation at a/h = {grid.end:g} is singular to double precision; take a smaller a/h"
         raise NotConvergedError(message) from None
-    # This is the equation itself at x = a.
-    edge = loads[-1] + (cosines[-1] * sign) @ (scaled.T @ inner)
-    return np.vstack([inner / root[:, None], edge])
+    return psi
 
 
 def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatArray:
@@ -294,7 +352,7 @@ def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatA
     """
     nodes, waves = scaled.shape
     if waves < nodes and np.all(sign > 0):
-        dual: FloatArray = loads + scaled @ _resolved(scaled.T, np.ones(nodes), scaled.T @ loads)
+        dual: FloatArray = loads + scaled @ _resolved(scaled.T, np.ones(nodes), scaled.T @ loads) if waves else loads
         return dual
     square = scaled @ scaled.T if np.all(sign > 0) else (scaled * sign) @ scaled.T
     factor = cho_factor(np.eye(nodes) - square, lower=True, check_finite=False)
@@ -303,9 +361,11 @@ def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatA
 
 
 def _wavenumbers(layer: ElasticLayer, distance: float) -> tuple[FloatArray, FloatArray]:
-    """Gauss nodes k and weights times 1 - chi(k), fine enough for cos(k distance)."""
-    nodes, weights = gauss_nodes(16)
-    panels = int(np.ceil(LARGEST_WAVENUMBER * max(distance / PANEL_PHASE, 2.0)))
+    """Gauss nodes k and weights times 1 - chi(k), fine enough for cos(k distance); none on the half-space."""
+    if layer.is_half_space:
+        return np.zeros(0), np.zeros(0)
+    nodes, weights = gauss_nodes(WAVE_NODES)
+    panels = int(np.ceil(LARGEST_WAVENUMBER * max(distance / PANEL_PHASE, 0.5)))
     width = LARGEST_WAVENUMBER / panels
     kernel = surface_kernel(layer)
     k = (width * (np.arange(panels)[:, None] + nodes)).ravel()

@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact.records.validation import FloatArray
 
 # Gauss nodes of a panel. Seen from a panel of length one the nearest singularity lies 0.35 beyond an end (the pole) or
@@ -196,3 +197,50 @@ def _panels(reach: FloatArray, panels: int) -> tuple[FloatArray, FloatArray]:
     nodes, weights = gauss_nodes(NODES)
     share = ((np.arange(panels)[:, None] + nodes) / panels).ravel()
     return share * reach[:, None], np.tile(weights, panels) / panels * reach[:, None]
+
+
+def arc_integral(radius: FloatArray, function: MappedFunction, origin: float, count: int) -> FloatArray:
+    """int f(s)/sqrt(r^2 - s^2) ds over a function's whole range, for radii beyond it: s = r sin(theta) on each piece.
+
+    Args:
+        radius: r, shape (n,).
+        function: f of s - origin.
+        origin: Where the function begins.
+        count: Gauss nodes on each piece, which crowd towards its start as the function's own do.
+
+    Returns:
+        Shape (n,).
+    """
+    v, omega = gauss_nodes(count)
+    r, power = radius[:, None], function.grid.power[:, None]
+    ends = np.minimum(origin + function.grid.ends, r)
+    theta = np.arctan2(ends, np.sqrt(np.maximum((r - ends) * (r + ends), 0.0)))
+    width = np.diff(theta, axis=1)[..., None]
+    s = r[..., None] * np.sin(theta[:, :-1, None] + width * v**power)
+    weights = width * power * v ** (power - 1) * omega
+    values: FloatArray = np.sum(function(np.clip(s - origin, 0.0, function.grid.end)) * weights, axis=(1, 2))
+    return values
+
+
+def even_abel_integral(
+    slope_over_t: Callable[[FloatArray], FloatArray], grid: MappedGrid, radius: FloatArray
+) -> FloatArray:
+    """int_r^a psi'(t)/sqrt(t^2 - r^2) dt of a smooth even function on [0, a].
+
+    With t^2 = r^2 + s^2 the integrand psi'(t)/t is an even analytic function of t, hence analytic in s.
+
+    Args:
+        slope_over_t: psi'(t)/t.
+        grid: The pieces of [0, a] on which psi is known; the range of s takes one more, with as many nodes.
+        radius: r in [0, a], shape (n,).
+
+    Returns:
+        Shape (n,).
+    """
+    nodes, weights = gauss_nodes(grid.count)
+    a, pieces = grid.end, len(grid.left) + 1
+    s = ((np.arange(pieces)[:, None] + nodes) / pieces).ravel()
+    reach = np.sqrt((a - radius) * (a + radius))[:, None]
+    t = np.minimum(np.hypot(radius[:, None], reach * s), a)
+    integral: FloatArray = reach[:, 0] / pieces * (slope_over_t(t) @ np.tile(weights, pieces))
+    return integral

@@ -145,6 +145,7 @@ class Piecewise:
         powers = np.ascontiguousarray(self.powers[:, rows, own])
 
         def functions(y: FloatArray) -> FloatArray:
+            """Values at y, shape (rows, n) for y of shape (n,)."""
             panel = edges.searchsorted(y, side="right")
             z = (y - centres.take(panel)) * scales.take(panel)
             ladder = chebyshev.powers(z, powers.shape[0])

@@ -1,4 +1,4 @@
-"""Functions known at Chebyshev points of a panel: coefficients, integrals, conversion to powers of z in [-1, 1]."""
+"""Chebyshev sums, and functions known at Chebyshev points of a panel: coefficients, integrals, powers of z."""
 
 from __future__ import annotations
 
@@ -10,10 +10,42 @@ from numpy.typing import NDArray
 
 from contact.records.validation import FloatArray
 
+# Up to so many points cosines are summed in one step, beyond them by Clenshaw's recurrence (`chebyshev_sum`).
+FEW_POINTS = 400
+# Points of a block: with 24 coefficients each they fill 1.6 MB.
+BLOCK = 8192
 # Points at which polynomials are sampled to find their largest values; no maximum is farther from the best of them than
 # the distance of two neighbours.
 _SAMPLE_POINTS = np.linspace(-1.0, 1.0, 33)
 _SPACING = 2.0 / 32
+
+
+def chebyshev_sum(coefficients: FloatArray, s: FloatArray) -> FloatArray:
+    """Chebyshev sums: coefficients (*shape, m) at s in [-1, 1] of that shape.
+
+    A few points are summed as cosines in one step; for many, Clenshaw's recurrence needs less memory and time.
+    """
+    if s.size <= FEW_POINTS:
+        angles = np.arccos(np.minimum(np.maximum(s, -1.0), 1.0))
+        cosines = np.cos(np.multiply.outer(angles, np.arange(coefficients.shape[-1])))
+        few: FloatArray = np.sum(coefficients * cosines, axis=-1)
+        return few
+    older, newer = np.zeros_like(s), np.zeros_like(s)
+    for k in range(coefficients.shape[-1] - 1, 0, -1):
+        older, newer = newer, 2 * s * newer - older + coefficients[..., k]
+    return s * newer - older + coefficients[..., 0]
+
+
+def piecewise_sum(coefficients: FloatArray, piece: NDArray[np.intp], s: FloatArray) -> FloatArray:
+    """Chebyshev sums of the pieces, coefficients (q, m), at s in [-1, 1]; `piece` is of the shape of s.
+
+    Many points are summed in blocks whose coefficients stay in the cache: a million points take a third of the time.
+    """
+    if s.size <= BLOCK:
+        return chebyshev_sum(coefficients[piece], s)
+    starts, numbers, flat = range(0, s.size, BLOCK), piece.ravel(), s.ravel()
+    blocks = [chebyshev_sum(coefficients[numbers[i : i + BLOCK]], flat[i : i + BLOCK]) for i in starts]
+    return np.concatenate(blocks).reshape(s.shape)
 
 
 @cache

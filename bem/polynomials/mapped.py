@@ -14,7 +14,7 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.polynomials.equal_panels import piecewise_sum
+from bem.polynomials.chebyshev import differentiation, piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
@@ -43,6 +43,21 @@ class MappedGrid:
     width: FloatArray
     power: FloatArray
     count: int
+
+    @classmethod
+    def between(cls, ends: FloatArray, count: int) -> MappedGrid:
+        """Unmapped pieces between neighbouring ends, of which the first is zero."""
+        return cls(ends[:-1], np.diff(ends), np.ones(len(ends) - 1), count)
+
+    @classmethod
+    def equal(cls, end: float, pieces: int, count: int) -> MappedGrid:
+        """Unmapped pieces of equal width on [0, end]."""
+        return cls.between(np.linspace(0.0, end, pieces + 1), count)
+
+    @property
+    def ends(self) -> FloatArray:
+        """Left ends of all pieces and the right end of the last, shape (q + 1,)."""
+        return np.append(self.left, self.end)
 
     @cached_property
     def nodes(self) -> FloatArray:
@@ -187,22 +202,14 @@ class MappedFunction:
 
     @cached_property
     def _slope_coefficients(self) -> FloatArray:
-        return np.asarray(self.coefficients @ _slope_of_chebyshev(self.grid.count).T)
-
-
-@cache
-def _slope_of_chebyshev(count: int) -> FloatArray:
-    """Matrix from Chebyshev coefficients on [0, 1] to those of the derivative."""
-    matrix = np.zeros((count, count))
-    matrix[:-1] = 2 * np.polynomial.chebyshev.chebder(np.eye(count))
-    return matrix
+        return np.asarray(self.coefficients @ (2 * differentiation(self.grid.count)).T)
 
 
 @cache
 def _slopes_from_nodes(count: int) -> FloatArray:
     """Matrix from values at the Gauss nodes of [0, 1] to derivatives there."""
     at_nodes = np.polynomial.chebyshev.chebvander(2 * gauss_nodes(count)[0] - 1, count - 1)
-    return np.asarray(at_nodes @ _slope_of_chebyshev(count) @ chebyshev_from_nodes(count))
+    return np.asarray(at_nodes @ (2 * differentiation(count)) @ chebyshev_from_nodes(count))
 
 
 def apart(points: FloatArray, others: FloatArray) -> FloatArray:

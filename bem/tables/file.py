@@ -1,7 +1,9 @@
-"""Flat-punch tables in HDF5 files: our own with provenance and hash, and others in the paper's supplementary layout.
+"""Flat-punch tables in HDF5 files: our own with provenance and hash, and others in a plain layout of four arrays.
 
-The layout of Forsbach (2023) is four arrays named `ratios` (a/h), `radii` (r/a), `k_bar` and `p_bar`, the last with one
-row for each ratio. Our own files hold the same four, the stated errors, the kernel, and where the numbers come from.
+The plain layout is `ratios` (a/h), `radii` (r/a), `k_bar` and `p_bar`, the last with one row for each ratio. It is our
+own: the files of the supplement to Forsbach (2023), https://www.mdpi.com/article/10.3390/machines11040474/s1, were not
+seen and may need to be rewritten so. Our own files hold the same four, the stated errors, the kernel, and where the
+numbers come from.
 """
 
 from __future__ import annotations
@@ -68,7 +70,7 @@ def read_table(path: str | Path) -> FlatPunchTable:
 def read_foreign_table(
     path: str | Path, *, support: Support, poissons_ratio: float, relative_error: float | None = None
 ) -> FlatPunchTable:
-    """Read and validate a table in the paper's supplementary layout.
+    """Read and validate a table in the plain layout of four arrays.
 
     Checked: shapes, order and signs; int_0^1 p_bar rho d(rho) = 1/2; the half-space and thin-layer limits of k_bar;
     that k_bar grows with a/h.
@@ -101,9 +103,9 @@ class TableFile(Record):
     """A stored table as a `FlatPunchSource`.
 
     Attributes:
-        path: HDF5 file, ours or in the paper's layout.
-        support: For a file in the paper's layout: its kernel.
-        poissons_ratio: For a file in the paper's layout: nu of its kernel.
+        path: HDF5 file, ours or in the plain layout.
+        support: For a file in the plain layout: its kernel.
+        poissons_ratio: For a file in the plain layout: nu of its kernel.
     """
 
     path: str

@@ -37,6 +37,10 @@ class ClaimOfCase(Protocol):
     def reason(self) -> Any:
         """Why it should hold (`cases.judgement.claims.declared.Reason`)."""
 
+    @property
+    def nightly(self) -> bool:
+        """Whether it takes too long for the suite "ci"."""
+
     def check(self, case: "Case") -> None:
         """Refuse scenes or methods that the case does not have."""
 

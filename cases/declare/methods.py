@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Final
 
+from cases.declare.shared import used_by
 from contact import InvalidInput, Method
 from contact.records.record import shown
 
@@ -35,27 +36,18 @@ class MethodUse:
 
 @dataclass(frozen=True, kw_only=True)
 class TableEntry:
-    """Where a built-in method lives (a class, or a function that returns one), and what its answers share."""
+    """Where a built-in method lives: a class, or a function that returns one."""
 
     module: str
     attribute: str
-    shared_inputs: tuple[str, ...] = ()
 
-
-LAYER_KERNEL = "layer kernel"
 
 BUILT_IN: Mapping[str, TableEntry] = {
-    "mdr": TableEntry(
-        module="cases.declare.mdr_variants", attribute="mdr_by_integral_equation", shared_inputs=(LAYER_KERNEL,)
-    ),
-    "mdr_table": TableEntry(
-        module="cases.declare.mdr_variants", attribute="mdr_by_fft_table", shared_inputs=(LAYER_KERNEL,)
-    ),
+    "mdr": TableEntry(module="cases.declare.mdr_variants", attribute="mdr_by_integral_equation"),
+    "mdr_table": TableEntry(module="cases.declare.mdr_variants", attribute="mdr_by_fft_table"),
     "fem": TableEntry(module="fem_reference", attribute="Fem"),
-    "bem": TableEntry(module="bem.method", attribute="Bem", shared_inputs=(LAYER_KERNEL,)),
-    "integral_equation": TableEntry(
-        module="bem.layer_equation.method", attribute="IntegralEquationMethod", shared_inputs=(LAYER_KERNEL,)
-    ),
+    "bem": TableEntry(module="bem.method", attribute="Bem"),
+    "integral_equation": TableEntry(module="bem.layer_equation.method", attribute="IntegralEquationMethod"),
 }
 
 
@@ -109,10 +101,8 @@ def shared_inputs(method: Method) -> tuple[str, ...]:
     own = getattr(method, "shared_inputs", None)
     if own is not None:
         return tuple(own)
-    entry = BUILT_IN.get(method.name)
-    table = getattr(method, "flat_punch", None)
-    data = () if table is None else (f"flat-punch data by {type(table).__name__}",)
-    return (*(entry.shared_inputs if entry else ()), *data)
+    on_table = type(getattr(method, "flat_punch", None)).__name__ == "FftTable"
+    return used_by("mdr_table" if on_table else method.name)
 
 
 def location(name: str) -> tuple[str, str]:

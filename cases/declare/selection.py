@@ -15,12 +15,18 @@ def in_suite(case: Case, suite: str) -> Case:
 
     Without a suite each scene keeps its ``nightly`` methods; studies of cost and effects are those of ci.
     """
-    left = _left(case, lambda scene, use: use.label not in scene.nightly) if suite == "ci" else case
+    left = _in_ci(case) if suite == "ci" else case
     return replace(
         left,
         work=tuple(study.in_suite(suite) for study in case.work),
         ablations=tuple(study.in_suite(suite) for study in left.ablations),
     )
+
+
+def _in_ci(case: Case) -> Case:
+    """Return the case without its nightly claims and methods."""
+    quick = replace(case, claims=tuple(claim for claim in case.claims if not claim.nightly))
+    return _left(quick, lambda scene, use: use.label not in scene.nightly)
 
 
 def only_methods(case: Case, wanted: Collection[str]) -> Case:
@@ -51,3 +57,8 @@ def _left(case: Case, keep: Keep) -> Case:
     claims = tuple(left for claim in case.claims for left in claim.left(case, solvers))
     ablations = tuple(study.left(solvers) for study in case.ablations)
     return replace(case, scenes=scenes, claims=claims, ablations=ablations)
+
+
+def only_scenes(case: Case, scenes: Collection[str], methods: Collection[str]) -> Case:
+    """Return the case with some of its scenes and methods, and the claims that these can answer."""
+    return _left(case, lambda scene, use: scene.name in scenes and use.label in methods)

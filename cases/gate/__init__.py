@@ -6,5 +6,4 @@ Enters: a judged run, the folder of baselines. Leaves: the run with its regressi
 - ``gate``: a run against the baselines, by the checks in ``comparison``; ``ladders``: the same for stability ladders
 - ``spread``: how much an answer moves when nothing has changed; it sets the tolerance
 - ``accept``: the only writer, from a ``proposal``, with its ``write_permission`` and its ``history``
-- ``race``: is this version slower than another? ``against`` a revision in its ``worktree``, timed by ``stopwatch``
 """

@@ -7,14 +7,14 @@ import math
 from pathlib import Path
 from typing import Any, Self
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError, model_validator
+from pydantic import ConfigDict, TypeAdapter, model_validator
 from pydantic.dataclasses import dataclass
 
 from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.files import write_whole
 from cases.results.records.claim import Kind
 from cases.results.records.field_types import Finite, Mapping, NotNegative, Positive, Vector
-from cases.results.sealed import read_sealed, sealed_text
+from cases.results.sealed import read_sealed, sealed_text, validated
 from contact import InvalidInput
 
 # Files of another version are refused.
@@ -160,11 +160,7 @@ def _read(path: Path) -> Baseline:
 
 
 def _validated(tree: dict[str, Any], path: Path) -> Baseline:
-    try:
-        baseline = _BASELINE.validate_python(tree)
-    except ValidationError as error:
-        first = error.errors()[0]
-        raise InvalidInput(f"{path}: {'.'.join(map(str, first['loc']))}: {first['msg']}; {REMEDY}") from error
+    baseline = validated(_BASELINE, tree, place=str(path), remedy=REMEDY)
     if path.parts[-2:] != (baseline.case, f"{baseline.method}.json"):
         raise InvalidInput(f"{path} holds {baseline.method} on {baseline.case}; move it to where it belongs")
     return baseline

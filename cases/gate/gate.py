@@ -9,6 +9,7 @@ from cases.gate.checks.counts import count_checks
 from cases.gate.checks.uncertainties import uncertainty_checks
 from cases.gate.checks.values import value_checks
 from cases.gate.ladders import ladder_claims
+from cases.measurements.measurement import grouped
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.reliability import Ladder
 from cases.results.records.run import Acceptance, CaseResult, RunResult
@@ -36,9 +37,7 @@ def gate(
         watched: whether a solution of a case needs accepted numbers; those of the nightly suite alone do not.
     """
     accepted_ladders = tuple(ladders)
-    accepted: dict[str, list[Baseline]] = {}
-    for baseline in baselines:
-        accepted.setdefault(baseline.case, []).append(baseline)
+    accepted = grouped(baselines, lambda baseline: baseline.case)
     present = {case.name for case in run.cases}
     lost = [_lost_case(name) for name in sorted(accepted) if name not in present and _belongs(accepted[name], run)]
     cases = tuple(_gated(case, accepted.get(case.name, []), accepted_ladders, watched) for case in (*run.cases, *lost))

@@ -7,19 +7,18 @@ from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from pathlib import Path
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from cases.gate.baseline import REMEDY
 from cases.gate.checks.check import regression_claim
 from cases.gate.history import append_history, blank_entry
 from cases.gate.write_permission import WriteConditions
 from cases.judgement.rules.judgement import Judgement, nothing_compared, passed_or_failed
-from cases.measurements.ladders.ladders import worsened
 from cases.results.files import write_whole
 from cases.results.records.claim import Claim
 from cases.results.records.reliability import Ladder
 from cases.results.records.run import CaseResult
-from cases.results.sealed import read_sealed, sealed_text
+from cases.results.sealed import read_sealed, sealed_text, validated
 from cases.results.status import Status
 from contact import InvalidInput
 
@@ -37,10 +36,7 @@ def read_ladders(folder: Path) -> tuple[Ladder, ...]:
 
 
 def _read(path: Path) -> tuple[Ladder, ...]:
-    try:
-        return _LADDERS.validate_python(read_sealed(path, remedy=REMEDY).get("ladders"))
-    except ValidationError as error:
-        raise InvalidInput(f"{path} holds no ladders ({error.errors()[0]['msg']:.160}); {REMEDY}") from error
+    return validated(_LADDERS, read_sealed(path, remedy=REMEDY).get("ladders"), place=f"{path}, ladders", remedy=REMEDY)
 
 
 def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Claim]:
@@ -78,7 +74,7 @@ def _judged(ladder: Ladder, before: Ladder | None) -> Judgement:
     if before is None:
         message = "extra: this ladder was never accepted; look at it, then accept the run"
         return nothing_compared(Status.INCOMPARABLE, message)
-    worse = worsened(ladder, before)
+    worse = ladder.worse_than(before)
     message = "; ".join(worse) or "no rung lost, no more than one digit lost"
     return passed_or_failed(float(len(worse)), 0.5, message, failure=Status.DIFF)
 
@@ -93,7 +89,7 @@ def accept_ladders(
     """
     accepted = {(ladder.name, ladder.method): ladder for ladder in read_ladders(folder)}
     new = {(ladder.name, ladder.method): ladder for ladder in ladders}
-    worse = [line for place, ladder in new.items() if place in accepted for line in worsened(ladder, accepted[place])]
+    worse = [line for place, ladder in new.items() if place in accepted for line in ladder.worse_than(accepted[place])]
     if worse and not loosen:
         raise InvalidInput(f"ladders are not accepted: {'; '.join(worse)}; find out why, then say --loosen")
     for method in dict.fromkeys(ladder.method for ladder in new.values()):

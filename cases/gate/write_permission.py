@@ -10,6 +10,9 @@ from pathlib import Path
 from cases.run import stamp
 from contact import InvalidInput
 
+# The folder that holds every package: what must be committed to be accepted.
+SOURCE = Path(__file__).resolve().parents[2]
+
 
 @dataclass(frozen=True, kw_only=True)
 class WriteConditions:

@@ -4,6 +4,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from cases.declare.case import CaseScene
 from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.carried_force import CarriedForce
 from cases.judgement.claims.declared import Reason
 from cases.judgement.claims.exact import Exact, Expected
 from cases.judgement.claims.field_agreement import FieldAgreement, Norm
@@ -11,12 +12,10 @@ from cases.judgement.claims.residual import Residual
 from cases.judgement.claims.scaling_law import ScalingLaw
 from cases.library._layers import in_millimetres
 from cases.library._reasons import SHARED, with_tolerance
+from cases.library._requirements import REFERENCE
 from contact import Scene
 
-BEM_TOLERANCE = 2e-3
-TABLE_TOLERANCES = {"indentation_depth": 2.5e-3, "normal_force": 6e-3, "contact_stiffness": 3e-4}
 PATH_QUANTITIES = ("indentation_depth", "normal_force", "contact_stiffness")
-PRESSURE_TOLERANCE = 2e-4
 
 
 def names_of(scenes: Iterable[CaseScene]) -> tuple[str, ...]:
@@ -64,7 +63,7 @@ def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], 
     Args:
         scenes: what they answer.
         norms: how pressures are compared, by name of the claim.
-        limit: what limits finite elements to about 2e-5; the tolerance is ten times that.
+        limit: what limits finite elements to about 2e-5, far inside the requirement.
     """
     for name, norm in norms.items():
         yield FieldAgreement(
@@ -75,9 +74,21 @@ def pressure_agreements(scenes: Iterable[CaseScene], norms: Mapping[str, Norm], 
             fast="mdr",
             reference="fem",
             refined=("mdr",),
-            tolerance=PRESSURE_TOLERANCE,
-            reason=with_tolerance(SHARED["fem"], f"{limit} finite elements to about 2e-5, ten times"),
+            tolerance=REFERENCE["fem"]["pressure"],
+            reason=with_tolerance(SHARED["fem"], f"a requirement: 2e-4; {limit} finite elements to about 2e-5"),
         )
+
+
+def carried_force(scenes: Iterable[CaseScene], methods: tuple[str, ...], tolerance: float) -> CarriedForce:
+    """Return the claim that sampled pressures add up to the force; the rings must reach the contact's edge."""
+    return CarriedForce(
+        name="the pressure carries the force",
+        quantity="pressure",
+        scenes=names_of(scenes),
+        methods=methods,
+        tolerance=tolerance,
+        reason=SHARED["equilibrium"],
+    )
 
 
 def exact(
@@ -88,6 +99,7 @@ def exact(
     tolerances: Mapping[str, float] | None = None,
     scenes: Iterable[CaseScene] = (),
     methods: tuple[str, ...] = (),
+    identities: Mapping[str, str] | None = None,
 ) -> Iterator[Exact]:
     """Yield a claim for each name of ``expected``: its quantity and the numbers that the scenes must give.
 
@@ -98,6 +110,7 @@ def exact(
         tolerances: of methods that need another one.
         scenes: what must give the numbers; empty for those that have a number.
         methods: labels; empty for every method of the case.
+        identities: of methods for which it holds by construction: why.
     """
     for name, (quantity, values) in expected.items():
         yield Exact(
@@ -108,6 +121,7 @@ def exact(
             methods=methods,
             tolerance=tolerance,
             tolerances=tolerances or {},
+            identities=identities or {},
             reason=reason,
         )
 
@@ -142,6 +156,7 @@ def scaling_law(
     *,
     tolerance: float = 1e-12,
     tolerances: Mapping[str, float] | None = None,
+    identities: Mapping[str, str] | None = None,
 ) -> ScalingLaw:
     """Return the claim that a changed scene gives known multiples of depth, force and (if named) stiffness.
 
@@ -153,6 +168,7 @@ def scaling_law(
         reason: why they are known.
         tolerance: relative.
         tolerances: of methods that need another one.
+        identities: of methods for which it holds by construction: why.
     """
     return ScalingLaw(
         name=name,
@@ -162,6 +178,7 @@ def scaling_law(
         factors=dict(zip(PATH_QUANTITIES, factors, strict=False)),
         tolerance=tolerance,
         tolerances=tolerances or {},
+        identities=identities or {},
         reason=reason,
     )
 

@@ -71,5 +71,12 @@ def quick_maps() -> CaseResult:
     return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in FORMULAS)
 
 
-QUICK: tuple[Callable[[], CaseResult], ...] = (quick_coverage, quick_ladders, quick_maps)
-NIGHTLY: tuple[Callable[[], CaseResult], ...] = (quick_coverage, all_ladders, quick_maps)
+def code_verification() -> CaseResult:
+    """Orders, stability and locking of the finite elements."""
+    from cases.library._code_verification.finite_elements import finite_element_case  # noqa: PLC0415
+
+    return finite_element_case()
+
+
+QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, quick_ladders, quick_maps)
+NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, all_ladders, quick_maps)

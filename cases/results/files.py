@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from cases.results.records.run import SCHEMA_VERSION, CaseResult, RunResult
-from cases.results.sealed import read_sealed, sealed_text, unsealed
+from cases.results.sealed import read_sealed, sealed_text, unsealed, validated
 from contact import InvalidInput
 from contact.files.storage import write_tree
 from contact.records.record import shown
@@ -40,12 +40,7 @@ def _validated(tree: dict[str, Any], place: str) -> RunResult:
     version = tree.get("schema_version")
     if version != SCHEMA_VERSION:
         raise InvalidInput(f"{place} has schema version {shown(version)}, this program reads {SCHEMA_VERSION}")
-    try:
-        return _RUN.validate_python(tree)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        raise InvalidInput(f"{place}: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}") from error
+    return validated(_RUN, tree, place=place, remedy=_REMEDY)
 
 
 def json_schema() -> dict[str, Any]:

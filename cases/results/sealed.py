@@ -5,10 +5,14 @@ import json
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
 
 from contact import InvalidInput
 from contact.records.record import shown
+
+T = TypeVar("T")
 
 # A larger file is refused before it is read: its values would need several times these bytes of memory.
 MAX_BYTES = 500_000_000
@@ -65,6 +69,21 @@ def unsealed(data: bytes, *, place: str, remedy: str, covered: str = "") -> dict
     if not whole or digest != digest_of(tree[covered] if covered else tree):
         raise InvalidInput(f"{place} was changed after it was written: its seal does not fit; {remedy}")
     return tree
+
+
+def validated(adapter: TypeAdapter[T], tree: Any, *, place: str, remedy: str) -> T:
+    """Return the records that ``tree`` holds.
+
+    Raises:
+        InvalidInput: in one line, naming the first entry that fits no record, its value, and the remedy.
+    """
+    try:
+        return adapter.validate_python(tree)
+    except ValidationError as error:
+        first = error.errors()[0]
+        where = ".".join(str(part) for part in first["loc"])
+        wrong = f"{place}: {where:.200}: {first['msg']:.200}, got {shown(first['input'])}"
+        raise InvalidInput(f"{wrong}; {remedy}") from None
 
 
 def parsed(data: bytes) -> Any:

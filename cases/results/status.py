@@ -26,7 +26,7 @@ class Status(StrEnum):
 
     @property
     def is_warning(self) -> bool:
-        """Whether this fails the gate only under ``strict``."""
+        """Whether this leaves the verdict open: under ``strict`` it has an exit code of its own."""
         return self is Status.INCONCLUSIVE
 
 
@@ -44,6 +44,8 @@ class ExitCode(IntEnum):
     INTERNAL_ERROR = 3
     USAGE = 4
     NOTHING_RAN = 5
+    # Only under ``strict``: nothing failed, but a verdict stays open (MARGINAL, INCONCLUSIVE).
+    UNDECIDED = 6
 
 
 def exit_code(statuses: Iterable[Status], *, strict: bool = False) -> ExitCode:
@@ -51,8 +53,9 @@ def exit_code(statuses: Iterable[Status], *, strict: bool = False) -> ExitCode:
     ran = [status for status in statuses if status is not Status.SKIP]
     if not ran:
         return ExitCode.NOTHING_RAN
-    failed = any(status.is_failure or (strict and status.is_warning) for status in ran)
-    return ExitCode.GATE_FAILED if failed else ExitCode.PASSED
+    if any(status.is_failure for status in ran):
+        return ExitCode.GATE_FAILED
+    return ExitCode.UNDECIDED if strict and any(status.is_warning for status in ran) else ExitCode.PASSED
 
 
 def worst(statuses: Iterable[Status]) -> Status:

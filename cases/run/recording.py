@@ -4,37 +4,40 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.declare.task import Sampling
 from cases.results.records.scene_run import CostRecord, Curve, Quantity, Stage
 from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
-_IMPACT_SCALARS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 _ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth"}
 
 
 def quantities(solution: Solution, sampling: Sampling) -> tuple[Quantity, ...]:
-    """Return every quantity of the answer, along its steps; of a history only what sums it up."""
+    """Return every quantity of the answer, along its steps; of an impact what sums it up, of a history its end."""
     if isinstance(solution, ImpactHistory):
-        names = [*_IMPACT_SCALARS, "energy_residual"]
+        names = [*IMPACT_NUMBERS, "energy_residual"]
     else:
         names = [*(n for n in solution.ARRAYS if n != "time"), *solution.SCALARS]
+    end = slice(-1, None) if isinstance(solution, HistoryPath) else slice(None)
     own_checks = [name for name in solution.error_estimate if name not in UNITS]
     return (
-        *(_quantity(solution, name, sampling) for name in names),
+        *(_quantity(solution, name, sampling, end) for name in names),
         *(_check(solution, name) for name in own_checks),
     )
 
 
-def _quantity(solution: Solution, name: str, sampling: Sampling) -> Quantity:
-    values = np.atleast_1d(np.asarray(getattr(solution, name), dtype=np.float64))
+def _quantity(solution: Solution, name: str, sampling: Sampling, steps: slice) -> Quantity:
+    values = values_of(solution, name)
+    uncertainty = _uncertainty(solution, name, values.size)[steps]
+    values = values[steps]
     return Quantity(
         name=name,
         unit=UNITS.get(name, "1"),
         scale=sampling.scales.get(name) or _SCALES.get(name) or _size(values),
         values=tuple(values.tolist()),
-        uncertainty=_uncertainty(solution, name, values.size),
+        uncertainty=uncertainty,
     )
 
 

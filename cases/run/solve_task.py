@@ -89,4 +89,5 @@ def without_numbers(task: Task, key: str, status: Status, reason: str) -> SceneR
         status=status,
         reason=printable(" ".join(reason.split())) or status.value,
         cost=None,
+        shared_inputs=shared_inputs(task.solver),
     )

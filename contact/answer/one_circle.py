@@ -66,10 +66,13 @@ def refuse_touching(scene: Scene, circles: Iterable[Circle]) -> None:
     for circle in circles:
         where = touching_radius(scene, circle)
         if where is not None:
-            raise UnsupportedSceneError(
-                f"a contact of radius {circle.contact_radius:g} m would touch at r = {where:g} m: it is no single "
-                "circle; smooth the profile or press less"
-            )
+            raise no_single_circle(circle.contact_radius, f"would touch at r = {where:g} m")
+
+
+def no_single_circle(contact_radius: float, fault: str) -> UnsupportedSceneError:
+    """The refusal of a contact radius [m], in the words of all methods; the fault says what would happen, and where."""
+    circle = f"a contact of radius {contact_radius:g} m {fault}: it is no single circle"
+    return UnsupportedSceneError(f"{circle}; smooth the profile or press less")
 
 
 def refuse_touching_path(path: ContactPath) -> ContactPath:

@@ -69,6 +69,8 @@ class Solution:
     SCALARS: ClassVar[tuple[str, ...]] = ()
     OFFERS: ClassVar[tuple[str, ...]] = ()
     """What else the answer has to show, as `repr` lists it."""
+    ASKED: ClassVar[tuple[str, ...]] = ()
+    """What a requested accuracy is asked of."""
 
     scene: Scene
     method: str
@@ -148,6 +150,7 @@ class ContactPath(Solution):
 
     ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
     OFFERS: ClassVar[tuple[str, ...]] = ("pressure(radius, step)", "surface_displacement(radius, step)")
+    ASKED: ClassVar[tuple[str, ...]] = ARRAYS
 
     contact_radius: FloatArray
     indentation_depth: FloatArray
@@ -233,6 +236,7 @@ class DetachmentPath(Solution):
     ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force")
     SCALARS: ClassVar[tuple[str, ...]] = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
     OFFERS: ClassVar[tuple[str, ...]] = ("critical_points", "stable_displacement_control", "stable_force_control")
+    ASKED: ClassVar[tuple[str, ...]] = (*ARRAYS, *SCALARS)
 
     contact_radius: FloatArray
     indentation_depth: FloatArray
@@ -257,6 +261,7 @@ class HistoryPath(Solution):
     """
 
     ARRAYS: ClassVar[tuple[str, ...]] = ("time", "indentation_depth", "normal_force", "contact_radius")
+    ASKED: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force")
 
     time: FloatArray
     indentation_depth: FloatArray
@@ -295,6 +300,7 @@ class ImpactHistory(Solution):
     )
     SCALARS: ClassVar[tuple[str, ...]] = ("peak_force", "peak_depth", "peak_contact_radius")
     OFFERS: ClassVar[tuple[str, ...]] = ("energy_residual",)
+    ASKED: ClassVar[tuple[str, ...]] = ("coefficient_of_restitution", "peak_force", "peak_depth")
 
     time: FloatArray
     indentation_depth: FloatArray

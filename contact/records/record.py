@@ -55,6 +55,7 @@ def record(cls: type[R]) -> type[R]:
 
     @functools.wraps(unchecked)
     def checked(self: R, *args: Any, **kwargs: Any) -> None:
+        """Construct; what pydantic complains of becomes one `InvalidInput`."""
         try:
             unchecked(self, *args, **kwargs)
         except pydantic.ValidationError as error:

@@ -63,6 +63,7 @@ def positive(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     """A finite number above zero."""
 
     def validate(value: object) -> float:
+        """The number if it is positive, finite and between `SMALLEST` and `LARGEST`; else a ValueError."""
         number = _number(value, remedy)
         if not 0.0 < number < math.inf:
             raise ValueError(f"must be positive and finite; {remedy}")
@@ -75,6 +76,7 @@ def positive_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     """A number above zero; infinity is allowed."""
 
     def validate(value: object) -> float:
+        """The number if it is positive; infinity passes, nothing else beyond `SMALLEST` and `LARGEST`."""
         number = _number(value, remedy)
         if not number > 0.0:
             raise ValueError(f"must be positive; {remedy}")
@@ -99,6 +101,7 @@ def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, With
     """A finite number in the closed interval [low, high]."""
 
     def validate(value: object) -> float:
+        """The number if it lies in the interval; where the interval has no upper end, `LARGEST` is one."""
         number = _number(value, remedy)
         if not (low <= number <= high and math.isfinite(number)):
             limits = f"lie in [{low:g}, {high:g}]" if math.isfinite(high) else f"be finite and at least {low:g}"
@@ -138,6 +141,7 @@ def _vector_validator(
     """A validator of finite vectors; `check` returns what is required and where it is violated."""
 
     def validate(value: object) -> FloatArray:
+        """The vector, read-only, if `check` finds no offending entry; else a ValueError that names the first."""
         vector = _as_vector(value, remedy)
         verdict = check(vector)
         if verdict is not None and verdict[1].any():
@@ -160,6 +164,7 @@ def increasing_vector(
     """Strictly increasing finite numbers, the first at `least` or strictly `above` a bound where given."""
 
     def check(vector: FloatArray) -> tuple[str, NDArray[np.bool_]]:
+        """What is required of the first number or of the steps, and where a vector of shape (n,) violates it."""
         if least is not None and vector[0] < least:
             return f"be at least {least:g}", vector < least
         if above is not None and vector[0] <= above:
@@ -174,6 +179,7 @@ def bounded_vector(remedy: str, *, least: float, strict: bool = False) -> tuple[
     relation = "be above" if strict else "be at least"
 
     def check(vector: FloatArray) -> tuple[str, NDArray[np.bool_]]:
+        """The bound in words, and where a vector of shape (n,) violates it."""
         return f"{relation} {least:g}", vector <= least if strict else vector < least
 
     return _vector_validator(check, remedy)

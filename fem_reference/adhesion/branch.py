@@ -17,6 +17,7 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import Chebyshev
+from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 
 from contact.records.validation import FloatArray
 from fem_reference.elastic.error_estimate import ContactWithErrors
@@ -57,7 +58,7 @@ class BranchPiece:
 
     def _values(self, name: str) -> FloatArray:
         """Quantity at the nodes, in SI lengths; stiffness and its slope over the power of a that half-spaces have."""
-        radii = np.array([contact.indenter.contact_radius for contact in self.contacts])
+        radii = self.radii
         solutions = [contact.levels[self.degree or contact.settings.order] for contact in self.contacts]
         values = np.array([getattr(solution, name) for solution in solutions])
         scaled = np.log(values) if name.startswith("stiffness") else values * radii ** POWERS[name]
@@ -67,6 +68,18 @@ class BranchPiece:
         """A quantity [powers of m, E* = 1] at radii within the piece."""
         value = self._interpolants[name](self.parameter(radius))
         return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
+
+    @property
+    def radii(self) -> FloatArray:
+        """Solved contact radii [m]."""
+        return np.array([contact.indenter.contact_radius for contact in self.contacts])
+
+    def tilts(self, radius: float) -> FloatArray:
+        """Slope per ln a at a radius [m] of the interpolant that is one at one solved radius and zero at the others."""
+        count = len(self.contacts)
+        coefficients = chebfit(2 * chebyshev_points(count) - 1, np.eye(count), count - 1)
+        inner, s = self.parameter(radius * np.array([1 - 1e-6, 1.0]))
+        return np.asarray(chebval(2 * s - 1, chebder(coefficients)) * 2 * (s - inner) / 1e-6)
 
     @cached_property
     def far(self) -> dict[str, float]:
@@ -179,7 +192,7 @@ class InterpolatedBranch:
         """Of the depth between the solved radii, relative to its largest term in each piece."""
         found = []
         for piece in self.pieces:
-            radii = np.array([contact.indenter.contact_radius for contact in piece.contacts])
+            radii = piece.radii
             largest = np.max(np.abs(self._evaluate("smooth_depth", radii)) + self.elongation(radii))
             errors = piece.last_coefficients
             found.append(errors["stiffness_slope"] / 2 + errors["smooth_depth"] / largest)
@@ -215,9 +228,13 @@ class InterpolatedBranch:
         force = pressed * smooth_depth + profile_force + pressed * elongation * (stiffness + slope / 2)
         return np.array([smooth_depth + elongation * slope / 2, force])
 
+    def piece_around(self, radius: float) -> BranchPiece:
+        """The piece that a radius [m] lies in."""
+        return next((piece for piece in self.pieces if radius <= piece.high), self.pieces[-1])
+
     def tilt_of_last_polynomial(self, radius: float) -> float:
         """Slope per ln a of the last Chebyshev polynomial around a radius: an error of interpolation tilts so much."""
-        piece = next((piece for piece in self.pieces if radius <= piece.high), self.pieces[-1])
+        piece = self.piece_around(radius)
         return float(2 * (len(piece.contacts) - 1) / np.log(piece.high / piece.low))
 
 

@@ -25,14 +25,14 @@ from fem_reference.error_model import AT_LOAD, FIXED_RADIUS, ON_BRANCH
 Numbers = Callable[[InterpolatedBranch], FloatArray]
 
 
-def degree_error(branch: InterpolatedBranch, numbers: Numbers) -> FloatArray:
-    """What the last change of the degree means for numbers; absolute."""
+def degree_error(branch: InterpolatedBranch, numbers: Numbers, rate: str = "rate") -> FloatArray:
+    """What the last change of the degree means for numbers, absolute; the rate is a property of the contacts."""
     contacts = branch.contacts
     values = [numbers(branch.at_degree(degree)) for degree in sorted(contacts[0].levels)]
     changes = [np.abs(high - low) for low, high in pairwise(values)]
-    rate, fastest = (float(np.mean([getattr(c, name) for c in contacts])) for name in ("rate", "fastest_rate"))
+    share, fastest = (float(np.mean([getattr(c, name) for c in contacts])) for name in (rate, "fastest_rate"))
     expected = [AT_LOAD.fastest_share * fastest * before for before in changes[-2:-1]]
-    return np.asarray(ON_BRANCH.scatter * FIXED_RADIUS.safety * rate * np.max([changes[-1], *expected], axis=0))
+    return np.asarray(FIXED_RADIUS.safety * share * np.max([changes[-1], *expected], axis=0))
 
 
 def edge_error(branch: InterpolatedBranch, numbers: Numbers) -> FloatArray:
@@ -46,7 +46,7 @@ def errors_along(branch: InterpolatedBranch, radius: FloatArray) -> FloatArray:
     def loads(other: InterpolatedBranch) -> FloatArray:
         return np.array([other.depth(radius), other.force(radius)])
 
-    by_degree = degree_error(branch, loads)
+    by_degree = ON_BRANCH.scatter * degree_error(branch, loads)
     for piece in branch.pieces:
         there = (radius >= piece.low) & (radius <= piece.high)
         typical = np.sqrt(np.mean(by_degree[:, there] ** 2, axis=1, keepdims=True))

@@ -19,8 +19,10 @@ from contact import (
     Scene,
 )
 from contact.records.validation import FloatArray
+from contact.scene.extent import first_radius
 from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
@@ -186,27 +188,15 @@ def _first_radius(scene: Scene) -> float:
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
     work = work_of_adhesion(scene)
-    return _bisect(scene, lambda r: float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work))
+    return first_radius(scene.indenter, lambda r: height(scene.indenter, r) >= 2 * np.sqrt(2 * np.pi * r * work))
 
 
 def _radius_beyond(scene: Scene, target: float, by_depth: bool) -> float:
     """A radius at which the elastic load exceeds the target, adhesion included."""
     work = work_of_adhesion(scene)
 
-    def excess(r: float) -> float:
-        height = float(scene.indenter.height(r)) - 2 * np.sqrt(2 * np.pi * r * work)
-        return float(height - (1.5 * target if by_depth else target / r))
+    def reached(r: float) -> bool:
+        alone = height(scene.indenter, r) - 2 * np.sqrt(2 * np.pi * r * work)
+        return bool(alone >= (1.5 * target if by_depth else target / r))
 
-    return _bisect(scene, excess)
-
-
-def _bisect(scene: Scene, excess: Callable[[float], float]) -> float:
-    """Where an excess that grows with the radius becomes positive, within the profile."""
-    end = scene.indenter.max_radius
-    low, high = 1e-15, min(end, 1e15)
-    if excess(high) < 0:
-        return high
-    for _ in range(120):
-        middle = float(np.sqrt(low * high))
-        low, high = (middle, high) if excess(middle) < 0 else (low, middle)
-    return high
+    return first_radius(scene.indenter, reached)

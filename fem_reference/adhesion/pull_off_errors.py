@@ -16,6 +16,7 @@ from contact import CriticalPoint
 from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
+from fem_reference.error_model import ON_BRANCH
 
 Load = Callable[[InterpolatedBranch, FloatArray], FloatArray]
 
@@ -64,6 +65,20 @@ class Extremum:
         """How far, in ln a, the extremum of another branch lies away."""
         return 0.0 if self.is_at_end else -self.slope(other, self.load) / self.curvature
 
+    @property
+    def shift_by_scatter(self) -> float:
+        """How far the errors of the solved radii move it: each has a mesh and an error of its own, which tilt the load.
+
+        What the change of the degree moves it by may be small by accident; this is the root mean square.
+        """
+        if self.is_at_end:
+            return 0.0
+        piece = self.branch.piece_around(self.radius)
+        low, high = (self.load(self.branch.at_degree(k), piece.radii) for k in sorted(piece.contacts[0].levels)[-2:])
+        rates = np.array([contact.rate_at_load for contact in piece.contacts])
+        tilts = ON_BRANCH.slope_scatter * rates * (high - low) * piece.tilts(self.radius)
+        return float(np.linalg.norm(tilts)) / abs(self.curvature)
+
     def shift_between(self, error: float) -> float:
         """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii."""
         return 0.0 if self.is_at_end else self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
@@ -91,7 +106,11 @@ def pull_off_errors(
 
     between = branch.errors_between(here)[:, 0]
     shift = extremum.shift_between(between[0 if by_depth else 1])
-    depth, force, place = degree_error(branch, numbers) + edge_error(branch, numbers)
+    moved = extremum.shift_by_scatter * np.array([abs(depth_slope), abs(force_slope), 1.0])
+    by_degree = degree_error(branch, numbers)
+    # What the slower rate of single radii would add to the place is in the scatter.
+    by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
+    depth, force, place = np.maximum(by_degree, moved) + edge_error(branch, numbers)
     depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
     force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
     is_at_rim = pull_off.contact_radius == branch.pieces[-1].high

@@ -1,14 +1,135 @@
-"""An indenter seen from its contact: lengths by the contact radius."""
+"""An indenter as finite elements see it: its shape from what the user gave, lengths by the contact radius.
+
+Heights and slopes are written here once more, and not asked of `contact.scene.profiles`: the other methods use those,
+and a mistake in them would go unseen between two methods that share it.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, singledispatch
 
 import numpy as np
 
-from contact import Profile
+from contact import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Sphere,
+    Tabulated,
+    TruncatedCone,
+    TruncatedParaboloid,
+    UnsupportedSceneError,
+)
 from contact.records.validation import FloatArray
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Height f [m] and slope f' [-] of a profile at radii [m] within it; at a kink the slope is that from outside."""
+
+    height: FloatArray
+    slope: FloatArray
+
+
+@singledispatch
+def shape(profile: Profile, radius: FloatArray) -> Shape:
+    """Height and slope at radii [m] of any shape.
+
+    Raises:
+        UnsupportedSceneError: for a profile that is not written here.
+    """
+    raise UnsupportedSceneError(f"finite elements know no {type(profile).__name__}; write its shape in {__name__}")
+
+
+@shape.register
+def _(profile: FlatPunch, radius: FloatArray) -> Shape:
+    within = np.where(radius <= profile.radius, 0.0, np.inf)
+    return Shape(within, within)
+
+
+@shape.register
+def _(profile: Paraboloid, radius: FloatArray) -> Shape:
+    curvature = profile.radius_of_curvature
+    return Shape(radius**2 / (2.0 * curvature), radius / curvature)
+
+
+@shape.register
+def _(profile: Sphere, radius: FloatArray) -> Shape:
+    # The centre lies this much higher than the circle of the given radius; the sum does not cancel as R - sqrt() does.
+    cap = np.sqrt(np.maximum((profile.radius - radius) * (profile.radius + radius), 0.0))
+    height = np.where(radius <= profile.radius, radius**2 / (profile.radius + cap), np.inf)
+    return Shape(height, np.divide(radius, cap, out=np.full(np.shape(radius), np.inf), where=cap > 0.0))
+
+
+@shape.register
+def _(profile: Cone, radius: FloatArray) -> Shape:
+    return Shape(profile.slope * radius, np.full(np.shape(radius), profile.slope))
+
+
+@shape.register
+def _(profile: TruncatedCone, radius: FloatArray) -> Shape:
+    beyond = radius - profile.flat_radius
+    return Shape(profile.slope * np.maximum(beyond, 0.0), np.where(beyond >= 0.0, profile.slope, 0.0))  # Eq. (35)
+
+
+@shape.register
+def _(profile: TruncatedParaboloid, radius: FloatArray) -> Shape:
+    flat, curvature = profile.flat_radius, profile.radius_of_curvature
+    height = np.maximum((radius - flat) * (radius + flat), 0.0) / (2.0 * curvature)
+    return Shape(height, np.where(radius >= flat, radius / curvature, 0.0))
+
+
+@shape.register
+def _(profile: PowerLaw, radius: FloatArray) -> Shape:
+    ratio, exponent = radius / profile.reference_radius, profile.exponent
+    steepness = profile.reference_height / profile.reference_radius * exponent
+    return Shape(profile.reference_height * ratio**exponent, steepness * ratio ** (exponent - 1.0))
+
+
+@shape.register
+def _(profile: Tabulated, radius: FloatArray) -> Shape:
+    r, f = profile.radii, profile.heights
+    i = np.clip(np.searchsorted(r, radius, side="right") - 1, 0, len(r) - 2)
+    width, slopes = np.diff(r)[i], pchip_slopes(r, f)
+    secant, start = (f[i + 1] - f[i]) / width, slopes[i]
+    bend = (start + slopes[i + 1] - 2.0 * secant) / width**2
+    tilt = (secant - start) / width - bend * width
+    s = radius - r[i]
+    height = f[i] + s * (start + s * (tilt + s * bend))
+    slope = start + s * (2.0 * tilt + 3.0 * s * bend)
+    return Shape(np.where(radius <= r[-1], height, np.inf), np.where(radius <= r[-1], slope, np.inf))
+
+
+def pchip_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Slopes of the shape-preserving cubics through points (PCHIP).
+
+    Inside, the weighted harmonic mean of the neighbouring secants, zero where these differ in sign: Fritsch and
+    Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300. At the ends the three-point formula, limited so that the curve
+    does not overshoot: Moler, Numerical Computing with Matlab (2004), section 3.6.
+    """
+    width = np.diff(x)
+    secant = np.diff(y) / width
+    left, right = secant[:-1], secant[1:]
+    same = left * right > 0.0
+    weights = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]
+    mean = sum(weights) / (weights[0] / np.where(same, left, 1.0) + weights[1] / np.where(same, right, 1.0))
+    ends = (_end_slope(width[0], width[1], secant[0], secant[1]), _end_slope(*width[:-3:-1], *secant[:-3:-1]))
+    return np.concatenate([[ends[0]], np.where(same, mean, 0.0), [ends[1]]])
+
+
+def _end_slope(near: float, far: float, first: float, second: float) -> float:
+    slope = ((2.0 * near + far) * first - near * second) / (near + far)
+    if slope * first <= 0.0:
+        return 0.0
+    return 3.0 * first if first * second <= 0.0 and abs(slope) > 3.0 * abs(first) else slope
+
+
+def height(profile: Profile, radius: float) -> float:
+    """f [m] at one radius [m]."""
+    return float(shape(profile, np.asarray(radius, dtype=np.float64)).height)
 
 
 @dataclass(frozen=True)
@@ -25,11 +146,11 @@ class ScaledIndenter:
 
     def height(self, radius: FloatArray) -> FloatArray:
         """f / a at r / a; nodes at the rim of a punch may exceed it by rounding."""
-        return np.asarray(self.profile.height(self._inside(radius)) / self.contact_radius)
+        return np.asarray(shape(self.profile, self._inside(radius)).height / self.contact_radius)
 
     def slope(self, radius: FloatArray) -> FloatArray:
         """f' at r / a, at the contact edge the value from inside."""
-        return np.asarray(self.profile.slope_at((1 - 1e-10) * self._inside(radius)))
+        return np.asarray(shape(self.profile, (1 - 1e-10) * self._inside(radius)).slope)
 
     def _inside(self, radius: FloatArray) -> FloatArray:
         return np.minimum(radius * self.contact_radius, min(self.contact_radius, self.profile.max_radius))

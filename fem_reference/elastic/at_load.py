@@ -8,6 +8,7 @@ load misses by less than 1e-4, else repeated.  At smooth contact dF/da = 0 at gi
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -26,34 +27,61 @@ COARSE = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, ha
 LEFT_OVER = 1e-4
 
 
-def equilibrium_at_load(
-    scene: Scene, target: float, start: float, solve: ContactSolver, log: StageLog
-) -> FemEquilibrium:
-    """The state at a depth [m] or force / E* [m^2], from a first guess of the contact radius [m].
+@dataclass(frozen=True, kw_only=True)
+class Load:
+    """A prescribed depth or force and where it is to be found.
+
+    Attributes:
+        scene: the scene.
+        target: a depth [m] or a force / E* [m^2].
+        by_depth: which of them.
+        radius: contact radius [m] by coarse solutions.
+        exponent: d ln(load) / d ln(a - flat radius) there.
+    """
+
+    scene: Scene
+    target: float
+    by_depth: bool
+    radius: float
+    exponent: float
+
+    def equilibrium(self, solve: ContactSolver) -> FemEquilibrium:
+        """The state at the load, by full solutions.
+
+        Raises:
+            NotConvergedError: the radius does not settle.
+        """
+        radius, flat = self.radius, self.scene.indenter.flat_radius
+        name = "smooth_depth" if self.by_depth else "smooth_force"
+        for is_last in (False, False, True):
+            contact = solve(radius)
+            scaled = self.target / radius if self.by_depth else self.target / radius**2
+            defect = getattr(contact.answer, name) / scaled
+            corrected = flat + (radius - flat) * defect ** (-1 / self.exponent)
+            # Each radius has a mesh of its own: the last may miss the load by what its mesh misses it by.
+            if abs(defect - 1) <= max(LEFT_OVER, is_last * contact.error[name]):
+                factor = corrected / radius
+                return LoadedContact(
+                    contact=contact, load=scaled, by_depth=self.by_depth, radius_factor=factor
+                ).equilibrium
+            radius = corrected
+        raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
+
+
+def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load:
+    """A depth [m] or force / E* [m^2], as the loading says, from a first guess of the contact radius [m].
 
     Raises:
         NotConvergedError: the secant iteration on the radius does not settle.
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
-    flat = scene.indenter.flat_radius
 
-    def ratio(contact: PrescribedContact, radius: float) -> float:
-        load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
-        return load / target
+    def ratio(radius: float) -> float:
+        contact = quick_solution(scene, radius, log)
+        return (contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2) / target
 
-    radius, exponent = radius_of_load(lambda a: ratio(quick_solution(scene, a, log), a), start, flat)
-    name = "smooth_depth" if by_depth else "smooth_force"
-    for is_last in (False, False, True):
-        contact = solve(radius)
-        defect = ratio(contact.answer, radius)
-        corrected = flat + (radius - flat) * defect ** (-1 / exponent)
-        # Each radius has a mesh of its own: the last may miss the load by what its mesh misses it by.
-        if abs(defect - 1) <= max(LEFT_OVER, is_last * contact.error[name]):
-            scaled = target / radius if by_depth else target / radius**2
-            loaded = LoadedContact(contact=contact, load=scaled, by_depth=by_depth, radius_factor=corrected / radius)
-            return loaded.equilibrium
-        radius = corrected
-    raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
+    radius, exponent = radius_of_load(ratio, start, scene.indenter.flat_radius)
+    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, exponent=exponent)
 
 
 def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:

@@ -1,4 +1,4 @@
-"""Refusal of contacts beside which the indenter would touch the surface."""
+"""Refusal of contacts that are no single circle: pulled somewhere inside, or touched by the indenter beside it."""
 
 from __future__ import annotations
 
@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import Scene, StageLog
-from contact.answer.one_circle import Circle, refuse_touching
+from contact import InvalidInput, Scene, StageLog
+from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from fem_reference.elastic.at_load import quick_solution
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.prescribed_radius import PrescribedContact
@@ -18,6 +18,37 @@ Array = NDArray[np.float64]
 # Relative error of the depth in a quick solution: three times the largest difference to MDR, 6e-5, on 16 random tables
 # (seed 2, 2026-11-22).
 QUICK_ERROR = 2e-4
+
+
+def refuse_pulled_contacts(scene: Scene, contacts: Iterable[ContactWithErrors]) -> None:
+    """Refuse smooth contacts that only tension would close, as beyond a dip of the profile.
+
+    Raises:
+        UnsupportedSceneError: with the contact radius and the first radius where the surface would be pulled.
+        InvalidInput: a convex profile presses nowhere, since its slope is not positive yet.
+    """
+    for contact in contacts:
+        radius = contact.indenter.contact_radius
+        where = None if scene.indenter.is_convex else pulled_radius(contact)
+        if where is not None:
+            raise no_single_circle(radius, f"would be pulled at r = {where * radius:g} m")
+        if min(contact.answer.smooth_depth, contact.answer.smooth_force) <= 0:
+            raise InvalidInput(
+                f"the profile presses nowhere at contact radius {radius:g} m: its slope is not positive there; "
+                "prescribe a radius beyond its flat end"
+            )
+
+
+def pulled_radius(contact: ContactWithErrors) -> float | None:
+    """Centre / a of the first cell that is pulled in smooth contact, by more than the last degree changes there.
+
+    Where a slope falls suddenly the pressure is minus infinity, like a logarithm; only cells that are pulled count.
+    """
+    low, high = (contact.levels[degree] for degree in sorted(contact.levels)[-2:])
+    radius, weight = high.contact_trace.gauss(high.pair.degree + 1)
+    fine, coarse = (level.pressure(radius.ravel(), level.smooth_depth).reshape(radius.shape) for level in (high, low))
+    pulled = np.flatnonzero(np.sum((fine + np.abs(fine - coarse)) * weight, axis=1) < 0)
+    return float(radius[pulled[0]].mean()) if pulled.size else None
 
 
 def refuse_touching_contacts(scene: Scene, states: Iterable[tuple[ContactWithErrors, float]]) -> None:

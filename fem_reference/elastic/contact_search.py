@@ -6,8 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact import IndentationDepths, InvalidInput, NotConvergedError, Scene, StageLog
+from contact import IndentationDepths, InvalidInput, NotConvergedError, Profile, Scene, StageLog
+from contact.answer.one_circle import no_single_circle
 from contact.records.validation import BoolArray, FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_load
+from fem_reference.discrete_layer.indenter import height, shape
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.surface_compliance import STRIP_CELLS, SurfaceCompliance, condense, strip_mesh
@@ -50,16 +53,23 @@ class FoundContact:
         return bool(self.state.active[: self.active_vertices].all())
 
     @property
-    def missing_contact(self) -> str:
-        """Where a contact that is not one circle around the axis has no pressure, in words."""
+    def reaches_end(self) -> bool:
+        """Whether the contact comes within a tenth of the strip's end."""
+        return bool(self.state.active[self.strip.radii > 0.9].any())
+
+    def refuse_ring(self) -> None:
+        """Refuse a contact that is not one circle around the axis.
+
+        Raises:
+            InvalidInput: nothing is in contact.
+            UnsupportedSceneError: with the contact's radius and a place inside that does not press.
+        """
         if not self.active_vertices:
-            return "nothing of the surface is in contact; press more"
-        place = self.radius * float(self.strip.radii[int(np.argmin(self.state.active))])
-        end = self.radius * float(self.strip.radii[np.flatnonzero(self.state.active)[-1]])
-        return (
-            f"the contact up to r = {end:g} m is not one circle around the axis: on {STRIP_CELLS} cells it has no "
-            f"pressure at r = {place:g} m; this method models single circles only"
-        )
+            raise InvalidInput("nothing of the surface is in contact; press more")
+        if not self.is_disc:
+            place = self.radius * float(self.strip.radii[int(np.argmin(self.state.active))])
+            end = self.radius * float(self.strip.radii[np.flatnonzero(self.state.active)[-1]])
+            raise no_single_circle(end, f"would not press at r = {place:g} m")
 
     @property
     def contact_radius(self) -> float:
@@ -98,8 +108,8 @@ class ContactSearch:
         self.strip = condense(scene.layer, mesh, backend, log)
         quadrature, _ = self.strip.pressure_space.gauss(4)
         inside = np.minimum(quadrature * radius, scene.indenter.max_radius)  # a strip may end where the profile does
-        self._profile = self.strip.weighted(scene.indenter.height(inside) / radius)
-        self._start_depth = float(scene.indenter.height(0.5 * radius)) or float(scene.indenter.height(0.99 * radius))
+        self._profile = self.strip.weighted(shape(scene.indenter, inside).height / radius)
+        self._start_depth = height(scene.indenter, 0.5 * radius) or height(scene.indenter, 0.99 * radius)
         self._active: BoolArray | None = None
 
     def at_depth(self, depth: float) -> FoundContact:
@@ -127,46 +137,35 @@ class ContactSearch:
         block, w = self.strip.matrix[np.ix_(active, active)], self.strip.resultants[active]
         return float(w @ np.linalg.solve(block, w))
 
-    def reaches_end(self, found: FoundContact) -> bool:
-        """Whether the contact comes within a tenth of the strip's end."""
-        return bool(found.state.active[self.strip.radii > 0.9].any())
-
 
 def find_contact(scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog) -> FoundContact:
     """Contact at a depth [m] or force / E* [m^2] (as the scene's loading says) on a strip that fits it.
 
     Raises:
-        InvalidInput: contact would reach the end of the profile, or is not one circle.
+        InvalidInput: contact would reach the end of the profile, or nothing touches.
+        UnsupportedSceneError: the contact is not one circle.
         NotConvergedError: no strip fits.
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
     end = scene.indenter.max_radius
-    radius = _first_radius(scene, target, by_depth)
+    radius = _first_radius(scene.indenter, target, by_depth)
     for _ in range(12):
         search = ContactSearch(scene, radius, settings, backend, log)
         found = search.at_depth(target) if by_depth else search.at_force(target)
-        if search.reaches_end(found):
+        if found.reaches_end:
             if radius >= end:
+                found.refuse_ring()
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; press less")
             radius = min(1.8 * radius, end)
         elif found.active_vertices < STRIP_CELLS // 4:
             radius *= max(1.6 * found.contact_radius, 0.05)
         else:
-            return _one_circle(found)
+            found.refuse_ring()
+            return found
     raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})
 
 
-def _first_radius(scene: Scene, target: float, by_depth: bool) -> float:
+def _first_radius(indenter: Profile, target: float, by_depth: bool) -> float:
     """1.6 times the radius r at which the profile alone suggests contact: f(r) = delta, or 4 r f(r) = F / E*."""
-    low, high = 1e-15, 1e15
-    for _ in range(100):
-        middle = float(np.sqrt(low * high))
-        height = float(scene.indenter.height(middle))
-        low, high = (middle, high) if (height if by_depth else 4 * middle * height) < target else (low, middle)
-    return min(1.6 * high, scene.indenter.max_radius)
-
-
-def _one_circle(found: FoundContact) -> FoundContact:
-    if found.active_vertices == 0 or not found.is_disc:
-        raise InvalidInput(found.missing_contact)
-    return found
+    reached = radius_of_depth(indenter, target) if by_depth else radius_of_load(indenter, target / 4)
+    return min(1.6 * reached, indenter.max_radius)

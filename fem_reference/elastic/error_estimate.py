@@ -126,8 +126,7 @@ class ContactWithErrors:
         # A change that fell faster than errors do is small by accident.
         for before in self._last_changes[-2:-1]:
             change = np.maximum(change, self.fastest_rate * self._change(*before))
-        # One quantity may change little by accident; the error of k_N' is seldom below that of k_N.
-        change = np.maximum(change, FIXED_RADIUS.share_of_mean * change.mean())
+        # The error of k_N' is seldom below that of k_N.
         change[1] = max(change[1], change[0])
         return dict(zip(QUANTITIES, FIXED_RADIUS.safety * self.rate * change, strict=True))
 
@@ -194,9 +193,6 @@ class ContactWithErrors:
         """Relative L2 change of the pressure of smooth contact."""
         coarse, fine = self.levels[lower], self.levels[higher]
         return pressure_difference(coarse, coarse.smooth_depth or 1.0, fine, fine.smooth_depth or 1.0)
-
-
-ContactAttempt = Callable[[Discretisation], ContactWithErrors]
 
 
 def relative_change(coarse: FloatArray, fine: FloatArray) -> FloatArray:

@@ -50,7 +50,7 @@ class LoadedContact:
         uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - 1)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
         # The last term is the rounding of the radius, whatever its slope.
-        radius_error = AT_LOAD.radius_safety * (radius_error + contact.edge_shift) + correction + 1e-15
+        radius_error += contact.edge_shift + correction + 1e-15
         # The field is that of the solved radius: at the load it has a little of the singular pressure of a flat punch.
         singular = pressure_difference(answer, answer.smooth_depth, answer, depth)
         reported = {

@@ -47,11 +47,6 @@ class FemEquilibrium:
 def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
     """The state in which the pressure vanishes at the contact edge."""
     answer, error = contact.answer, contact.error
-    if answer.smooth_depth <= 0 or answer.smooth_force <= 0:
-        raise InvalidInput(
-            f"the profile presses nowhere at contact radius {contact.indenter.contact_radius:g} m: its slope is not "
-            "positive there; prescribe a radius beyond its flat end"
-        )
     reported = {
         "contact_radius": 0.0,
         "indentation_depth": error["smooth_depth"],

@@ -13,10 +13,11 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from contact import NotConvergedError, Relaxation
+from contact import NotConvergedError
 from fem_reference.elastic.active_set import solve_complementarity
 from fem_reference.elastic.contact_search import edge_radius
 from fem_reference.in_time.condensed_layer import CondensedLayer
+from fem_reference.in_time.relaxation import ShearRelaxation
 from fem_reference.in_time.relaxation_step import RelaxationStep, relaxation_step
 
 # Steps after which a body counts as held by the layer: five hundred times what an impact at the default settings takes.
@@ -54,7 +55,9 @@ class HistorySamples:
             getattr(self, name).append(value)
 
 
-def simulate_impact(condensed: CondensedLayer, body: Body, relaxation: Relaxation, duration: float) -> HistorySamples:
+def simulate_impact(
+    condensed: CondensedLayer, body: Body, relaxation: ShearRelaxation, duration: float
+) -> HistorySamples:
     """Steps of ``duration`` [s] from first touch to the loss of contact.
 
     Raises:

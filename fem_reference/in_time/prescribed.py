@@ -6,12 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from contact import NotConvergedError, Relaxation
+from contact import NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
 from fem_reference.elastic.active_set import Complementary, solve_complementarity
 from fem_reference.elastic.contact_search import edge_radius
 from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.impact import HistorySamples
+from fem_reference.in_time.relaxation import ShearRelaxation
 from fem_reference.in_time.relaxation_step import INSTANT, RelaxationStep, relaxation_step
 
 
@@ -22,7 +23,7 @@ def segment_steps(time: FloatArray, steps: int) -> list[int]:
 
 
 def simulate_depths(
-    condensed: CondensedLayer, relaxation: Relaxation, time: FloatArray, depth: FloatArray, steps: int
+    condensed: CondensedLayer, relaxation: ShearRelaxation, time: FloatArray, depth: FloatArray, steps: int
 ) -> HistorySamples:
     """Depths linear between the given instants.
 
@@ -37,6 +38,7 @@ def simulate_depths(
     surface = condensed.surface
 
     def advance(step: RelaxationStep, depth: float, active: BoolArray | None) -> Complementary:
+        """Pressures at the end of a step to this depth, remembered; the search begins with the contact `active`."""
         matrix, offset = surface.begin(step)
         state = solve_complementarity(matrix, depth * surface.resultants - condensed.profile - offset, active)
         surface.accept(step, state.pressure)
@@ -57,7 +59,7 @@ def simulate_depths(
 
 
 def simulate_forces(
-    condensed: CondensedLayer, relaxation: Relaxation, time: FloatArray, force: FloatArray, steps: int
+    condensed: CondensedLayer, relaxation: ShearRelaxation, time: FloatArray, force: FloatArray, steps: int
 ) -> HistorySamples:
     """Forces linear between the given instants, in the units of the condensed layer; see `simulate_depths`.
 
@@ -68,6 +70,7 @@ def simulate_forces(
     surface, depth = condensed.surface, 0.0
 
     def advance(step: RelaxationStep, force: float, depth: float) -> tuple[Complementary, float]:
+        """Pressures and depth at the end of a step to this force, remembered; the search begins at `depth`."""
         matrix, offset = surface.begin(step)
         state, depth = _depth_of_force(matrix, surface.resultants, condensed.profile + offset, force, depth)
         surface.accept(step, state.pressure)

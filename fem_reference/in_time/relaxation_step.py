@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from contact import Relaxation
 from contact.records.validation import FloatArray
+from fem_reference.in_time.relaxation import ShearRelaxation
 
 RateRule = tuple[float, float, float, float]
 
@@ -102,9 +102,9 @@ class RelaxationStep:
         return lost
 
 
-def relaxation_step(relaxation: Relaxation, duration: float) -> RelaxationStep:
+def relaxation_step(relaxation: ShearRelaxation, duration: float) -> RelaxationStep:
     """Step of ``duration`` [s]; branches without modulus are left out."""
-    unit = relaxation.instantaneous_modulus
+    unit = relaxation.at_once
     acts = relaxation.moduli > 0
     return RelaxationStep(
         duration=duration,

@@ -14,14 +14,11 @@ from contact import (
     ForceHistory,
     InvalidInput,
     NotConvergedError,
-    Relaxation,
     Scene,
     StageLog,
-    Viscoelasticity,
 )
 from contact.records.validation import FloatArray
-from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.material import shear_modulus
+from fem_reference.discrete_layer.indenter import ScaledIndenter, shape
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
@@ -32,6 +29,7 @@ from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import KnownErrors
 from fem_reference.in_time.field_memory import CompressibleSurface
 from fem_reference.in_time.impact import HistorySamples
+from fem_reference.in_time.relaxation import relaxation_of
 from fem_reference.in_time.surface_memory import ProportionalSurface
 
 
@@ -51,15 +49,6 @@ class Resolution:
 def resolution_of(settings: Discretisation) -> Resolution:
     """Cells and steps shrink with the growth of the meshes."""
     return Resolution(cells=max(20, round(60 / settings.growth)), steps=max(40, round(200 / settings.growth)))
-
-
-def relaxation_of(scene: Scene) -> Relaxation:
-    """The scene's shear relaxation; an elastic layer does not relax."""
-    model = scene.effect(Viscoelasticity)
-    if model is not None:
-        return model.relaxation
-    nothing = np.empty(0)
-    return Relaxation(long_term_modulus=shear_modulus(scene.layer), moduli=nothing, times=nothing, viscosity=0.0)
 
 
 class HistorySetup:
@@ -150,7 +139,7 @@ class HistorySetup:
         space = TraceSpace(radii, 1)
         quadrature, _ = space.gauss(4)
         inside = np.minimum(quadrature * radius, min(radius, self.scene.indenter.max_radius))
-        return space.moments(self.scene.indenter.height(inside) / radius, 4)
+        return space.moments(shape(self.scene.indenter, inside).height / radius, 4)
 
     def fitted_radius(
         self, guess: float, simulate: Callable[[CondensedLayer], HistorySamples]

@@ -6,12 +6,14 @@ differences are the error estimates, see `errors`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
 from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_energy, radius_of_load
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
@@ -29,6 +31,7 @@ def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> Imp
     modulus = shear_modulus(scene.layer)
 
     def simulate(condensed: CondensedLayer, duration: float) -> HistorySamples:
+        """The motion on this mesh of the strip with time steps of this duration [s]."""
         body = Body(mass=loading.mass / (modulus * condensed.radius), velocity=loading.velocity / condensed.radius)
         with log.stage("time_steps"):
             record = simulate_impact(condensed, body, setup.relaxation, duration)
@@ -53,11 +56,9 @@ def _impact_scales(scene: Scene, loading: Impact) -> tuple[float, float]:
     if isinstance(scene.indenter, FlatPunch):
         a = scene.indenter.radius
         return a, float(np.pi * np.sqrt(loading.mass / (2 * contact_modulus(scene.layer) * a)))
-    height, modulus = scene.indenter.height, contact_modulus(scene.layer)
     energy = loading.mass * loading.velocity**2 / 2
-    r = _radius_where(lambda r: modulus * r * float(height(r)) ** 2 / energy)
-    r = min(r, scene.indenter.max_radius)
-    return r, 3 * float(height(r)) / loading.velocity
+    r = radius_of_energy(scene.indenter, energy / contact_modulus(scene.layer), np.inf)
+    return r, 3 * height(scene.indenter, r) / loading.velocity
 
 
 def _impact_in_si(
@@ -106,6 +107,7 @@ def prescribed_history(setup: HistorySetup, loading: DepthHistory | ForceHistory
     modulus = shear_modulus(scene.layer)
 
     def simulate(condensed: CondensedLayer, steps: int) -> HistorySamples:
+        """The prescribed history on this mesh of the strip with about so many time steps."""
         with log.stage("time_steps"):
             if isinstance(loading, DepthHistory):
                 depth = loading.depth / condensed.radius
@@ -150,23 +152,10 @@ def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float
     """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
-    height = scene.indenter.height
-    if isinstance(loading, DepthHistory):
-        largest = float(loading.depth.max())
-        radius = _radius_where(lambda r: float(height(r)) / largest) if largest > 0 else 0.0
-    else:
-        largest = float(loading.force.max())
-        stiffness = 4 * contact_modulus(scene.layer)
-        radius = _radius_where(lambda r: stiffness * r * float(height(r)) / largest) if largest > 0 else 0.0
+    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
+    largest = float(prescribed.max())
     if largest <= 0:
         raise InvalidInput("the history never presses; give a positive depth or force somewhere")
-    return min(radius, scene.indenter.max_radius)
-
-
-def _radius_where(ratio: Callable[[float], float]) -> float:
-    """Where a growing ratio reaches one."""
-    low, high = 1e-15, 1e15
-    for _ in range(120):
-        middle = float(np.sqrt(low * high))
-        low, high = (middle, high) if ratio(middle) < 1 else (low, middle)
-    return high
+    if isinstance(loading, DepthHistory):
+        return radius_of_depth(scene.indenter, largest)
+    return radius_of_load(scene.indenter, largest / (4 * contact_modulus(scene.layer)))

@@ -207,6 +207,7 @@ def _sampler(
     """Depth and force along the section that begins at the radius `start`, where y = low."""
 
     def sample(y: FloatArray) -> FloatArray:
+        """Depth [m] and force [N] at y, shape (2, n)."""
         way = (y - low) ** 2
         radius, excess = start + way, (start - springs.flat_radius) + way
         depth = springs.profile_beyond(excess) - critical_elongation(springs, radius, work_of_adhesion)  # Eq. (41)

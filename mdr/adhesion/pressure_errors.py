@@ -12,7 +12,7 @@ from typing import Final
 
 import numpy as np
 
-from bem.kernels.profile_slope import has_closed_slope
+from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import FlatPunch, Scene
 from contact.records.validation import FloatArray

@@ -27,6 +27,7 @@ from contact import (
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_elongation
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.pressure_errors import pressure_errors
@@ -36,7 +37,7 @@ from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.reach import FIRST_RATIO
-from mdr.springs.shared_tables import bisected, growing_radii, power_law, upper
+from mdr.springs.shared_tables import growing_radii, power_law
 
 # States of a detachment path.
 POINTS = 200
@@ -220,16 +221,11 @@ def _first_radius(scene: Scene) -> float:
 
 def balance_radius(scene: Scene) -> float:
     """The contact radius [m] at which the indenter is as high as the elongation on the half-space is long."""
-    indenter, length = scene.indenter, 2.0 * np.pi * work_of_adhesion(scene) / contact_modulus(scene.layer)
-    law = power_law(indenter)
-    if law is not None:
-        coefficient, exponent = law
-        return float((length / coefficient**2) ** (1.0 / (2.0 * exponent - 1.0)))
-
-    def excess(r: float) -> float:
-        return float(indenter.height(r)) ** 2 - length * r
-
-    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
+    length, law = work_of_adhesion(scene) / contact_modulus(scene.layer), power_law(scene.indenter)
+    if law is None:
+        return radius_of_elongation(scene.indenter, length)
+    coefficient, exponent = law
+    return float((2.0 * np.pi * length / coefficient**2) ** (1.0 / (2.0 * exponent - 1.0)))
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Closed forms of the paper: limits of thin and thick layers, power laws, impact numbers.
+"""Closed forms of the paper: limits of thin layers, the restitution of a flat punch.
 
 Enters: parameters of a scene. Leaves: numbers from a formula, with its equation. Read `asymptotic` first.
 """

@@ -5,7 +5,7 @@ Loading, unloading with a receding front, and reloading over a surface that has 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -20,13 +20,13 @@ from contact import (
     HistoryPath,
     InvalidInput,
     NotConvergedError,
-    Profile,
     Scene,
     StageLog,
     UnsupportedSceneError,
 )
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.force_control import Ramp, pressed_at_once, to_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
@@ -41,7 +41,7 @@ from mdr.springs.error_model import (
     SPRINGS_TO_MOTION,
 )
 from mdr.springs.pulling import refuse_pulling_at
-from mdr.springs.shared_tables import bisected, growing_radii, own_table, upper
+from mdr.springs.shared_tables import growing_radii, own_table
 from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 
 # Accuracy of the method's time integration for which the next two numbers stand; one digit more doubles both.
@@ -304,16 +304,9 @@ def _refuse_idle(loading: DepthHistory | ForceHistory, prescribed: FloatArray) -
 
 def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
     """A radius [m] to start from: where the half-space, roughly, has the largest depth or force."""
-    indenter, modulus = scene.indenter, contact_modulus(scene.layer)
     if isinstance(loading, DepthHistory):
-        largest = float(loading.depth.max())
-        return _beyond_flat(indenter, lambda r: float(indenter.height(r)) - largest)
-    largest = float(loading.force.max())
-    return _beyond_flat(indenter, lambda r: modulus * r * float(indenter.height(r)) - largest)
-
-
-def _beyond_flat(indenter: Profile, excess: Callable[[float], float]) -> float:
-    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
+        return radius_of_depth(scene.indenter, float(loading.depth.max()))
+    return radius_of_load(scene.indenter, float(loading.force.max()) / contact_modulus(scene.layer))
 
 
 def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHistory, law: SpringLaw) -> FloatArray:

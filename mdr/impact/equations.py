@@ -105,6 +105,7 @@ class Pressing:
         slowing = -own.inertia
 
         def rhs(state: FloatArray) -> FloatArray:
+            """d(state)/d(sigma) on the way in, shape of the state."""
             v, relaxed, faded = state[2], state[shared], state[memory]
             springs = springs_at(state[0])
             g, g_y, k, k_y, moment = springs
@@ -143,6 +144,7 @@ class Receding:
         slowing = -own.inertia
 
         def rhs(state: FloatArray) -> FloatArray:
+            """d(state)/d(sigma) on the way back, shape of the state."""
             delta, v = state[2], state[3]
             springs = springs_at(state[0])
             g_y = springs[SLOPE]

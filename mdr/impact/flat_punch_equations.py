@@ -57,6 +57,7 @@ class FlatPunchBatch:
         weights, rates = self.weights[..., lanes], self.rates[..., lanes]
 
         def rhs(state: FloatArray) -> FloatArray:
+            """d(state)/dt of the force, time, depth, velocity, branches and the energy lost, shape of the state."""
             f, v, branches = state[0], state[3], state[4:-1]
             slopes = np.empty_like(state)
             slopes[1], slopes[2] = 1.0, v

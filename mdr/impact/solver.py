@@ -136,6 +136,7 @@ def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: floa
         return id(shaped[i][1]) if i in shaped else 0, relaxation_of(scenes[i]).moduli.size
 
     def shaped_results(chunk: list[int]) -> ImpactResults:
+        """Results of scenes on one table, advanced together; one by one where the table proves too short."""
         problem = scaled([scenes[i] for i in chunk], [shaped[i][0] for i in chunk], shaped[chunk[0]][1])
         try:
             return results(problem, impacts(problem.lanes, tolerance=tolerance), accuracy)

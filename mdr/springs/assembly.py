@@ -8,8 +8,8 @@ from functools import partial
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
-from bem.kernels.profile_slope import profile_slope
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
+from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
 from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError

@@ -78,7 +78,8 @@ def _(indenter: PowerLaw, excess: FloatArray) -> FloatArray:
     n = indenter.exponent
     # n int_0^1 s^(n-1)/sqrt(1 - s^2) ds
     factor = n * math.sqrt(math.pi) / 2 * math.exp(math.lgamma(n / 2) - math.lgamma((n + 1) / 2))
-    return factor * indenter.height(excess)
+    height = indenter.reference_height * (excess / indenter.reference_radius) ** n
+    return np.asarray(factor * height)
 
 
 @half_space_profile.register

@@ -7,7 +7,7 @@ C h^n one table serves all thicknesses, radii and moduli. Other profiles get a t
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,6 +17,7 @@ from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import Cone, ElasticLayer, InvalidInput, Paraboloid, PowerLaw, Profile
 from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_energy
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.table import SpringTable, spring_table
 
@@ -24,10 +25,6 @@ from mdr.springs.table import SpringTable, spring_table
 _KEPT = 64
 # Trial radii double up to this share of the radius of an upright rim; chosen.
 _NEAR_RIM = 0.7
-
-# First trial radius [m] of a pointed profile, from which radii double until they are large enough. A profile with a
-# flat end starts there instead: its trial radii, and so its springs, do not depend on the unit of length.
-_SMALL = 1e-9
 
 # Beyond it, trial radii stay away from the rim by these shares of its radius; chosen.
 _UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)
@@ -86,38 +83,10 @@ def power_law(indenter: Profile) -> tuple[float, float] | None:
 def contact_scale(layer: ElasticLayer, indenter: Profile, energy: float) -> float:
     """A typical contact radius [m], where E* r f(r)^2 (1 + r/h) equals the energy [J]."""
     law, volume = power_law(indenter), energy / contact_modulus(layer)
-    if law is not None:
+    if law is not None and layer.is_half_space:
         coefficient, exponent = law
-        high = float((volume / coefficient**2) ** (1.0 / (2.0 * exponent + 1.0)))
-        if layer.is_half_space:
-            return high
-        return bisected(
-            lambda r: r * (coefficient * r**exponent) ** 2 * (1.0 + r / layer.thickness) - volume, 0.0, high
-        )
-
-    def excess(r: float) -> float:
-        return r * float(indenter.height(r)) ** 2 * (1.0 + r / layer.thickness) - volume
-
-    return bisected(excess, indenter.flat_radius, upper(excess, indenter))
-
-
-def upper(excess: Callable[[float], float], indenter: Profile) -> float:
-    """A radius beyond the root, or the rim."""
-    if math.isfinite(indenter.max_radius):
-        return indenter.max_radius
-    high = indenter.flat_radius or _SMALL
-    while excess(high) < 0.0:
-        high *= 2.0
-    return high
-
-
-def bisected(excess: Callable[[float], float], low: float, high: float) -> float:
-    """The root of an increasing function to one per cent of its distance from `low`."""
-    origin = low
-    while high - low > 0.01 * (high - origin) and high > origin * (1.0 + 1e-13):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
-    return high
+        return float((volume / coefficient**2) ** (1.0 / (2.0 * exponent + 1.0)))
+    return radius_of_energy(indenter, volume, layer.thickness)
 
 
 @lru_cache(maxsize=_KEPT)

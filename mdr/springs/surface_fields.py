@@ -3,23 +3,21 @@
     p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) - int_r^a phi'(t)/sqrt(t^2 - r^2) dt],    phi = delta - g_hs + psi
 
 psi, the layer's share, is smooth (`bem.layer_equation.contact_density`). g_hs' has a closed form for most profiles
-(`bem.kernels.profile_slope`), and what kinks and a sphere's equator make of it is integrated by
+(`bem.layer_equation.profiles.half_space_slope`), and what kinks and a sphere's equator make of it is integrated by
 `bem.polynomials.abel_integral`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.profile_slope import profile_slope
+from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.layer_equation.protocol import FlatPunchSolution, LayerShare
-from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
 from contact import InvalidInput, Profile
@@ -144,16 +142,11 @@ class ContactFields:
         """(2/pi) int_0^r Phi(s)/sqrt(r^2 - s^2) ds, Phi = W inside the contact and what K phi leaves outside."""
         if self.table is not None and r.size:
             raise InvalidInput("flat-punch tables hold no displacement outside the contact; use the integral equation")
-        a, grid = self.contact_radius, self.profile.grid
+        a = self.contact_radius
         integral = self.indentation_depth * np.arctan2(a, np.sqrt((r - a) * (r + a)))
-        pieces = np.broadcast_to(self._flat + np.append(grid.left, grid.end), (r.size, len(grid.left) + 1))
-        integral -= _arc_integral(
-            r, pieces, grid.power, lambda s: self.profile(np.clip(s - self._flat, 0, self._reach))
-        )
+        integral -= arc_integral(r, self.profile, self._flat, NODES)
         if self.density is not None and r.size:
-            remainder = _remainder(self.density, float(r.max()) - a)
-            shells = np.minimum(a + np.append(remainder.grid.left, remainder.grid.end), r[:, None])
-            integral += _arc_integral(r, shells, remainder.grid.power, lambda s: remainder(np.maximum(s - a, 0)))
+            integral += arc_integral(r, _remainder(self.density, float(r.max()) - a), a, NODES)
         return 2 / np.pi * integral
 
     @cached_property
@@ -171,29 +164,8 @@ class ContactFields:
             raise InvalidInput(f"radius = {infinite[0]:g} m: the pressure is infinite at this sharp rim; ask beside it")
 
 
-def _arc_integral(
-    r: FloatArray, ends: FloatArray, power: FloatArray, function: Callable[[FloatArray], FloatArray]
-) -> FloatArray:
-    """int f(s)/sqrt(r^2 - s^2) ds with s = r sin(theta), piece by piece.
-
-    Args:
-        r: Radii, shape (n,).
-        ends: Increasing ends of the pieces in s, up to r, shape (n, q + 1).
-        power: How each piece's nodes crowd towards its left end, shape (q,).
-        function: f.
-    """
-    v, omega = gauss_nodes(NODES)
-    theta = np.arctan2(ends, np.sqrt(np.maximum((r[:, None] - ends) * (r[:, None] + ends), 0.0)))
-    width = np.diff(theta, axis=1)[..., None]
-    s = r[:, None, None] * np.sin(theta[:, :-1, None] + width * v ** power[:, None])
-    weights = width * power[:, None] * v ** (power[:, None] - 1) * omega
-    values: FloatArray = np.sum(function(s) * weights, axis=(1, 2))
-    return values
-
-
 def _remainder(density: LayerShare, reach: float) -> MappedFunction:
     """Phi(a + d) on shells of width 1, 1, 2, 4, ... up to d = reach."""
     shells = int(np.ceil(np.log2(max(reach, 1.0)))) + 1
-    ends = np.concatenate([[0.0], 2.0 ** np.arange(shells)])
-    grid = MappedGrid(ends[:-1], np.diff(ends), np.ones(shells), NODES)
+    grid = MappedGrid.between(np.concatenate([[0.0], 2.0 ** np.arange(shells)]), NODES)
     return MappedFunction(grid, density.outside(grid.nodes), 0.0)

@@ -145,6 +145,7 @@ def _section(springs: SpringData, start: float, ends: tuple[float, float], error
     (low, high), beginning = ends, springs.mdr_profile(np.array([start]))
 
     def sample(y: FloatArray) -> FloatArray:
+        """c_N [Pa], g [m] and da/dy at y, shape (3, n)."""
         way = y - low
         x = _radius(np.array(start), way)
         rise = springs.mdr_profile(x) - beginning

@@ -1,117 +1,105 @@
-"""Error under refinement: symbols for the measured error, bars for the estimated one, dashes for the formal order."""
+"""Error under refinement: filled symbols for the measured error, empty ones for the stated, bars for the estimated."""
 
 from collections.abc import Iterable, Sequence
-from functools import partial
+from itertools import cycle
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
-from cases.results.records.convergence import ConvergenceStudy
+from cases.measurements.measurement import grouped
+from cases.results.records.convergence import ConvergenceStudy, Grid
 from cases.results.records.run import CaseResult
-from reports.figures.axes_grid import numbered_parts, panel_grid
 from reports.figures.figure import Cell, ReportFigure
-from reports.figures.style import GREY, look_of, mark_decades
+from reports.figures.panel_chart import PanelChart
+from reports.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILLION, mark_decades
 from reports.words.method_names import display_name
 
-# A figure has so many panels: one page.
-PANELS_A_FIGURE = 6
-# A bar is so wide, in decades of length: bars of grids refined by two (0.3 decades) do not touch.
-BAR_WIDTH = 0.16
+# A bar is so wide, in decades of length: bars of grids refined by the root of two (0.15 decades) do not touch.
+BAR_WIDTH = 0.1
+# The legend stands above the symbols: so much of the axis is added for each of its lines.
+ROOM_FOR_A_LINE = 0.1
+# Colour and marker of the quantities of one panel.
+LOOKS_OF_QUANTITIES = ((VERMILLION, "s"), (BLUE, "o"), (GREEN, "^"), (PURPLE, "D"), (ORANGE, "v"))
 COLUMNS = (
     "scene", "quantity", "method", "mesh_family", "length", "unknowns", "seconds", "value", "error", "gci", "unit",
-    "scale", "formal_order", "observed_order", "digits_per_refinement",
+    "scale", "formal_order", "observed_order", "digits_per_refinement", "stated",
 )  # fmt: skip
 CAPTION = (
-    "Symbols: distance to the reference, relative to the scale of the quantity; without a reference, distance to the "
-    "value extrapolated from the refinements, or to that of the finest grid where none was extrapolated. Bars: error "
-    "that the refinements themselves suggest (grid convergence index); a bar that reaches its symbol covers the error. "
-    "Dashes: formal order. In brackets: observed order, or digits gained per refinement where convergence is spectral."
+    "One panel a refinement. Filled symbols: distance to the reference, relative to the scale of the quantity; without "
+    "a reference, to the value extrapolated from the refinements, or to that of the finest grid. Empty symbols: error "
+    "that the method itself states. Bars: error that the refinements suggest (grid convergence index). Either covers "
+    "the error where it lies above the filled symbol. Dashes: formal order. In the legend: observed and formal order, "
+    "or digits gained per refinement where convergence is exponential."
 )
 
 
 def figures(case: CaseResult) -> list[ReportFigure]:
-    """The convergence of a case, six panels a figure: one panel a scene and quantity, the methods overlaid."""
-    panels: dict[tuple[str, str], list[ConvergenceStudy]] = {}
-    for study in case.convergence:
-        panels.setdefault((study.scene, study.quantity), []).append(study)
-    return [
-        ReportFigure(
-            name=f"{case.name}-convergence-{number}",
-            title="Convergence: error under refinement",
-            caption=CAPTION,
-            paint=partial(draw, part),
-            columns=COLUMNS,
-            rows=tuple(row for panel in part for study in panel for row in _rows(study)),
-        )
-        for number, part in numbered_parts(list(panels.values()), PANELS_A_FIGURE)
-    ]
+    """The convergence of a case: one panel a refinement, its quantities overlaid."""
+    panels = grouped(case.convergence, lambda study: (study.scene, study.method, study.mesh_family))
+    return CHART.figures(f"{case.name}-convergence", list(panels.values()))
 
 
-def _rows(study: ConvergenceStudy) -> Iterable[tuple[Cell, ...]]:
-    for grid in study.grids:
+def _rows(studies: Sequence[ConvergenceStudy]) -> Iterable[tuple[Cell, ...]]:
+    for study, grid in ((one, grid) for one in studies for grid in one.grids):
+        names = study.scene, study.quantity, study.method, study.mesh_family
         measured = (grid.length, grid.unknowns, grid.seconds, grid.value, grid.error, grid.gci)
         orders = (study.formal_order, study.observed_order, study.digits_per_refinement)
-        yield study.scene, study.quantity, study.method, study.mesh_family, *measured, study.unit, study.scale, *orders
-
-
-def draw(panels: Sequence[Sequence[ConvergenceStudy]]) -> Drawing:
-    """Panels in rows of two."""
-    drawing, all_axes = panel_grid(len(panels), 2, (5.0, 3.1))
-    for axes, studies in zip(all_axes, panels, strict=True):
-        _draw_panel(axes, studies)
-    return drawing
+        yield *names, *measured, study.unit, study.scale, *orders, grid.stated
 
 
 def _draw_panel(axes: Axes, studies: Sequence[ConvergenceStudy]) -> None:
     first = studies[0]
-    quantity = first.quantity.replace("_", " ")
-    axes.set(xscale="log", yscale="log", xlabel="relative discretisation length", ylabel=f"distance of {quantity}")
-    axes.set_title(first.scene)
-    for study in studies:
-        _draw_study(axes, study)
+    exponential = first.formal_order is None
+    axes.set(xscale="linear" if exponential else "log", yscale="log", ylabel="relative error")
+    axes.set_xlabel("refinement" if exponential else "relative discretisation length")
+    axes.set_title(f"{first.scene}\n{display_name(first.method)}: {first.mesh_family}")
+    for study, (colour, marker) in zip(studies, cycle(LOOKS_OF_QUANTITIES)):
+        _draw_study(axes, study, colour, marker)
     if not axes.lines:
         axes.text(0.5, 0.5, "all refinements give the same digits", transform=axes.transAxes, ha="center")
         return
-    for study in studies:
-        _draw_bars(axes, study)
-    for axis in (axes.xaxis, axes.yaxis):
-        mark_decades(axis)
-    axes.legend(loc="best")
+    bottom, top = axes.get_ylim()
+    axes.set_ylim(bottom, top * (top / bottom) ** (ROOM_FOR_A_LINE * len(axes.get_legend_handles_labels()[1])))
+    mark_decades(axes.yaxis)
+    if exponential:
+        axes.set_xticks(range(len(first.grids)))
+    else:
+        mark_decades(axes.xaxis)
+    axes.legend(loc="upper left")
 
 
-def _draw_study(axes: Axes, study: ConvergenceStudy) -> None:
-    look = look_of(study.method)
+def _draw_study(axes: Axes, study: ConvergenceStudy, colour: str, marker: str) -> None:
     shown = distances(study)
     if not shown:
         return
-    lengths, errors = zip(*shown, strict=True)
-    label = f"{display_name(study.method)} ({_speed(study)})"
-    axes.plot(lengths, errors, color=look.colour, linestyle=":", linewidth=0.8, marker=look.marker, label=label)
+    places, errors = zip(*shown, strict=True)
+    label = f"{study.quantity.replace('_', ' ')} ({_speed(study)})"
+    axes.plot(places, errors, color=colour, linestyle=":", linewidth=0.8, marker=marker, label=label)
     if study.formal_order is not None:
-        line = [errors[0] * (length / lengths[0]) ** study.formal_order for length in lengths]
-        axes.plot(lengths, line, color=GREY, linestyle="--", linewidth=1.0, zorder=1.5)
+        line = [errors[0] * (place / places[0]) ** study.formal_order for place in places]
+        axes.plot(places, line, color=GREY, linestyle="--", linewidth=1.0, zorder=1.5)
+    stated = [(place, grid.stated / study.scale) for place, grid in _placed(study) if grid.stated]
+    if stated:
+        axes.plot(*zip(*stated, strict=True), color=colour, linestyle="none", marker=marker, markerfacecolor="white")
+    half = 10.0 ** (BAR_WIDTH / 2)
+    for place, gci in ((place, grid.gci) for place, grid in _placed(study) if grid.gci):
+        axes.plot([place / half, place * half], [gci, gci], color=colour, linewidth=1.4)
+
+
+def _placed(study: ConvergenceStudy) -> list[tuple[float, Grid]]:
+    """The grids with their length, or with the number of refinements where convergence is exponential."""
+    if study.formal_order is not None:
+        return [(grid.length, grid) for grid in study.grids]
+    return [(float(number), grid) for number, grid in zip(reversed(range(len(study.grids))), study.grids, strict=True)]
 
 
 def distances(study: ConvergenceStudy) -> list[tuple[float, float]]:
-    """Length and relative distance to the best value there is, finest first; a distance of zero has no logarithm."""
+    """Place and relative distance to the best value there is, finest first; a distance of zero has no logarithm."""
     best = study.extrapolated if study.extrapolated is not None else study.grids[0].value
     found = (
-        (grid.length, (abs(grid.value - best) if grid.error is None else grid.error) / study.scale)
-        for grid in study.grids
+        (place, (abs(grid.value - best) if grid.error is None else grid.error) / study.scale)
+        for place, grid in _placed(study)
     )
-    return [(length, distance) for length, distance in found if distance > 0.0]
-
-
-def _draw_bars(axes: Axes, study: ConvergenceStudy) -> None:
-    """Bars of the estimated error, from the bottom of the axes up."""
-    bottom = axes.get_ylim()[0]
-    colour = look_of(study.method).colour
-    half = 10.0 ** (BAR_WIDTH / 2)
-    for length, gci in ((grid.length, grid.gci) for grid in study.grids if grid.gci):
-        sides = [length / half, length * half]
-        axes.fill_between(sides, bottom, max(gci, bottom), facecolor=colour, alpha=0.18, edgecolor="none", zorder=1.2)
-        axes.plot(sides, [gci, gci], color=colour, linewidth=1.4)
-    axes.set_ylim(bottom=bottom)
+    return [(place, distance) for place, distance in found if distance > 0.0]
 
 
 def _speed(study: ConvergenceStudy) -> str:
@@ -121,3 +109,13 @@ def _speed(study: ConvergenceStudy) -> str:
     if study.observed_order is None or study.formal_order is None:
         return str(study.kind)
     return f"order {study.observed_order:.2f}, formal {study.formal_order:g}"
+
+
+CHART = PanelChart(
+    title="Convergence: error under refinement",
+    caption=CAPTION,
+    columns=COLUMNS,
+    rows=_rows,
+    panel=_draw_panel,
+    size=(5.0, 3.2),
+)

@@ -1,15 +1,14 @@
 """Stated over true errors: which share of answers lies below each ratio, one panel a family of scenes."""
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterator, Sequence
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
+from cases.measurements.measurement import grouped
 from cases.results.records.reliability import CoverageRecord
 from cases.results.records.run import CaseResult
-from reports.figures.axes_grid import panel_grid
-from reports.figures.figure import ReportFigure
+from reports.figures.figure import Cell, ReportFigure
+from reports.figures.panel_chart import PanelChart
 from reports.figures.style import BLACK, look_of, mark_decades
 from reports.words.method_names import display_name
 
@@ -24,23 +23,17 @@ SMALLEST, LARGEST = 1e-3, 1e6
 
 
 def figures(case: CaseResult) -> list[ReportFigure]:
-    """One figure for all families, if anything was measured."""
-    shown = [record for record in case.coverage if record.percentiles]
-    drawn = ReportFigure(
-        name=f"{case.name}-stated-over-true",
-        title="Stated over true error",
-        caption=CAPTION,
-        paint=partial(draw, shown),
-        columns=COLUMNS,
-        rows=tuple(row for record in shown for row in _rows(record)),
-    )
-    return [drawn] if shown else []
+    """One figure for all families, if anything was measured: one panel a family."""
+    shown = (record for record in case.coverage if record.percentiles)
+    families = list(grouped(shown, lambda record: record.family).values())
+    return [CHART.figure(f"{case.name}-stated-over-true", families)] if families else []
 
 
-def _rows(record: CoverageRecord) -> list[tuple[str | float, ...]]:
-    settings = " ".join(f"{name}={value}" for name, value in record.settings.items())
-    place = record.family, record.method, settings, record.quantity
-    return [(*place, share, ratio) for share, ratio in zip(_shares(record), record.percentiles, strict=True)]
+def _rows(records: Sequence[CoverageRecord]) -> Iterator[tuple[Cell, ...]]:
+    for record in records:
+        settings = " ".join(f"{name}={value}" for name, value in record.settings.items())
+        place = record.family, record.method, settings, record.quantity
+        yield from ((*place, *point) for point in zip(_shares(record), record.percentiles, strict=True))
 
 
 def _shares(record: CoverageRecord) -> list[float]:
@@ -48,17 +41,14 @@ def _shares(record: CoverageRecord) -> list[float]:
     return [100.0 * k / last for k in range(last + 1)]
 
 
-def draw(records: Sequence[CoverageRecord]) -> Drawing:
-    """Panels in rows of two, a curve a method and quantity."""
-    families = list(dict.fromkeys(record.family for record in records))
-    drawing, all_axes = panel_grid(len(families), 2, (5.2, 3.2))
-    for axes, family in zip(all_axes, families, strict=True):
-        _draw_panel(axes, family, [record for record in records if record.family == family])
-    return drawing
-
-
-def _draw_panel(axes: Axes, family: str, records: Sequence[CoverageRecord]) -> None:
-    axes.set(title=f"{family} scenes", xscale="log", xlabel="stated over true error", ylabel="share of answers [%]")
+def _draw_panel(axes: Axes, records: Sequence[CoverageRecord]) -> None:
+    """The methods and quantities of one family of scenes, a curve each."""
+    axes.set(
+        title=f"{records[0].family} scenes",
+        xscale="log",
+        xlabel="stated over true error",
+        ylabel="share of answers [%]",
+    )
     axes.axvline(1.0, color=BLACK, linewidth=0.8)
     axes.axhline(5.0, color=BLACK, linewidth=0.6, linestyle=":")
     named: set[str] = set()
@@ -74,3 +64,13 @@ def _draw_panel(axes: Axes, family: str, records: Sequence[CoverageRecord]) -> N
     axes.set_ylim(0.0, 100.0)
     mark_decades(axes.xaxis)
     axes.legend(loc="lower right")
+
+
+CHART = PanelChart(
+    title="Stated over true error",
+    caption=CAPTION,
+    columns=COLUMNS,
+    rows=_rows,
+    panel=_draw_panel,
+    size=(5.2, 3.2),
+)

@@ -1,7 +1,6 @@
 """Signed errors over a/h and Poisson's ratio, with the region that is good to one percent framed."""
 
-from collections.abc import Sequence
-from functools import partial
+from dataclasses import replace
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,8 +11,9 @@ from matplotlib.patches import Rectangle
 
 from cases.results.records.reliability import ErrorMap
 from cases.results.records.run import CaseResult
-from reports.figures.axes_grid import numbered_parts, panel_grid
+from reports.figures.axes_grid import numbered_parts
 from reports.figures.figure import ReportFigure
+from reports.figures.panel_chart import PanelChart
 from reports.figures.style import BLACK, mark_decades, power_of_ten
 from reports.words.file_names import file_name
 
@@ -33,14 +33,11 @@ CAPTION = (
 def figures(case: CaseResult) -> list[ReportFigure]:
     """Four maps a figure."""
     return [
-        ReportFigure(
-            name=file_name(case.name, f"{number}"),
+        replace(
+            CHART,
             title=", ".join(found.title.partition(",")[0] for found in maps),
             caption=f"{CAPTION} Reference: {maps[0].reference}.",
-            paint=partial(draw, maps),
-            columns=COLUMNS,
-            rows=tuple(row for found in maps for row in _rows(found)),
-        )
+        ).figure(file_name(case.name, f"{number}"), maps)
         for number, maps in numbered_parts(case.maps, PANELS_A_FIGURE)
     ]
 
@@ -53,20 +50,16 @@ def _rows(found: ErrorMap) -> list[tuple[str | float | None, ...]]:
     ]
 
 
-def draw(maps: Sequence[ErrorMap]) -> Drawing:
-    """Panels in rows of two with one bar of colours."""
-    drawing, all_axes = panel_grid(len(maps), 2, (5.0, 3.1))
-    norm = SymLogNorm(linthresh=SMALLEST, vmin=-LARGEST, vmax=LARGEST)
-    for axes, found in zip(all_axes, maps, strict=True):
-        mesh = _draw_map(axes, found, norm)
-    bar = drawing.colorbar(mesh, ax=all_axes, shrink=0.8, label="relative error of the force")
+def _add_bar(drawing: Drawing, all_axes: list[Axes], meshes: list[QuadMesh]) -> None:
+    """One bar of colours for all maps."""
+    bar = drawing.colorbar(meshes[-1], ax=all_axes, shrink=0.8, label="relative error of the force")
     ticks = [-1.0, -1e-2, -1e-4, 0.0, 1e-4, 1e-2, 1.0]
     bar.set_ticks(ticks, labels=["0" if t == 0 else f"{'−' if t < 0 else ''}{power_of_ten(abs(t))}" for t in ticks])
     bar.minorticks_off()
-    return drawing
 
 
-def _draw_map(axes: Axes, found: ErrorMap, norm: SymLogNorm) -> QuadMesh:
+def _draw_map(axes: Axes, found: ErrorMap) -> QuadMesh:
+    norm = SymLogNorm(linthresh=SMALLEST, vmin=-LARGEST, vmax=LARGEST)
     errors = np.array([[np.nan if error is None else error for error in row] for row in found.errors])
     edges = _edges(np.log(found.ratios))
     rows = np.arange(len(found.rows) + 1)
@@ -92,3 +85,14 @@ def _frame(axes: Axes, ends: np.ndarray, row: float) -> None:
     """A thin frame around one cell."""
     size = float(ends[1] - ends[0])
     axes.add_patch(Rectangle((float(ends[0]), row), size, 1.0, fill=False, edgecolor=BLACK, linewidth=0.5))
+
+
+CHART = PanelChart(
+    title="Signed errors",
+    caption=CAPTION,
+    columns=COLUMNS,
+    rows=_rows,
+    panel=_draw_map,
+    size=(5.0, 3.1),
+    finish=_add_bar,
+)

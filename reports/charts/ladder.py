@@ -2,25 +2,22 @@
 
 import math
 from collections.abc import Iterable, Sequence
-from functools import partial
 from itertools import groupby
 
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
+from cases.measurements.measurement import grouped
 from cases.results.records.reliability import Ladder, Rung
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
-from reports.figures.axes_grid import numbered_parts, panel_grid
 from reports.figures.figure import Cell, ReportFigure
+from reports.figures.panel_chart import PanelChart
 from reports.figures.style import look_of, mark_decades
 from reports.words.method_names import display_name
 from reports.words.outcomes import worded
 
 # Significant digits of a double, the unit roundoff as digits.
 DOUBLE_DIGITS = -math.log10(2.0**-53)
-# A figure has so many panels: one page.
-PANELS_A_FIGURE = 6
 COLUMNS = (
     "ladder", "parameter", "unit", "method", "quantity", "value", "status", "digits", "iterations", "residuals",
     "reason",
@@ -33,35 +30,19 @@ CAPTION = (
 
 
 def figures(case: CaseResult) -> list[ReportFigure]:
-    """The ladders of a case, six panels a figure: one panel a ladder, the methods overlaid."""
-    panels: dict[tuple[str, str], list[Ladder]] = {}
-    for ladder in case.ladders:
-        panels.setdefault((ladder.name, ladder.quantity), []).append(ladder)
-    return [
-        ReportFigure(
-            name=f"{case.name}-ladders-{number}",
-            title="Stability: digits left where it gets hard",
-            caption=CAPTION,
-            paint=partial(draw, part),
-            columns=COLUMNS,
-            rows=tuple(_row(ladder, rung) for panel in part for ladder in panel for rung in ladder.rungs),
-        )
-        for number, part in numbered_parts(list(panels.values()), PANELS_A_FIGURE)
-    ]
+    """The ladders of a case: one panel a ladder, the methods overlaid."""
+    panels = list(grouped(case.ladders, lambda ladder: (ladder.name, ladder.quantity)).values())
+    return CHART.figures(f"{case.name}-ladders", panels)
+
+
+def _rows(ladders: Sequence[Ladder]) -> Iterable[tuple[Cell, ...]]:
+    return (_row(ladder, rung) for ladder in ladders for rung in ladder.rungs)
 
 
 def _row(ladder: Ladder, rung: Rung) -> tuple[Cell, ...]:
     names = (ladder.name, ladder.parameter, ladder.unit, ladder.method, ladder.quantity)
     residuals = " ".join(f"{name}={value!r}" for name, value in rung.residuals.items())
     return *names, rung.value, str(rung.status), rung.digits, rung.iterations, residuals, rung.reason
-
-
-def draw(panels: Sequence[Sequence[Ladder]]) -> Drawing:
-    """Panels in rows of two."""
-    drawing, all_axes = panel_grid(len(panels), 2, (5.0, 2.9))
-    for axes, ladders in zip(all_axes, panels, strict=True):
-        _draw_panel(axes, ladders)
-    return drawing
 
 
 def _draw_panel(axes: Axes, ladders: Sequence[Ladder]) -> None:
@@ -96,6 +77,16 @@ def _draw_ladder(axes: Axes, ladder: Ladder) -> None:
 def _falls(rungs: Sequence[Rung]) -> bool:
     """Whether the parameter is walked downwards: then the axis turns, so that hard stands on the right."""
     return rungs[-1].value < rungs[0].value
+
+
+CHART = PanelChart(
+    title="Stability: digits left where it gets hard",
+    caption=CAPTION,
+    columns=COLUMNS,
+    rows=_rows,
+    panel=_draw_panel,
+    size=(5.0, 2.9),
+)
 
 
 def refusals(case: CaseResult) -> Iterable[str]:

@@ -1,16 +1,14 @@
 """Seconds against size, with the slope that theory expects."""
 
-from collections.abc import Sequence
-from functools import partial
+from collections.abc import Iterator
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure as Drawing
 
 from cases.results.records.cost import ScalingFit
 from cases.results.records.run import CaseResult
-from reports.figures.axes_grid import panel_grid
-from reports.figures.figure import ReportFigure
+from reports.figures.figure import Cell, ReportFigure
+from reports.figures.panel_chart import PanelChart
 from reports.figures.style import GREY, look_of, mark_decades
 from reports.words.method_names import display_name
 
@@ -25,27 +23,11 @@ CAPTION = (
 
 def figures(case: CaseResult) -> list[ReportFigure]:
     """One figure for all fits, if there are any."""
-    drawn = ReportFigure(
-        name=f"{case.name}-seconds",
-        title="Seconds against size",
-        caption=CAPTION,
-        paint=partial(draw, case.scaling),
-        columns=COLUMNS,
-        rows=tuple(
-            (fit.method, fit.size, size, seconds)
-            for fit in case.scaling
-            for size, seconds in zip(fit.sizes, fit.seconds, strict=True)
-        ),
-    )
-    return [drawn] if case.scaling else []
+    return [CHART.figure(f"{case.name}-seconds", case.scaling)] if case.scaling else []
 
 
-def draw(fits: Sequence[ScalingFit]) -> Drawing:
-    """Panels in rows of three."""
-    drawing, all_axes = panel_grid(len(fits), 3, (3.6, 2.7))
-    for axes, fit in zip(all_axes, fits, strict=True):
-        _draw_fit(axes, fit)
-    return drawing
+def _rows(fit: ScalingFit) -> Iterator[tuple[Cell, ...]]:
+    return ((fit.method, fit.size, *point) for point in zip(fit.sizes, fit.seconds, strict=True))
 
 
 def _draw_fit(axes: Axes, fit: ScalingFit) -> None:
@@ -69,3 +51,14 @@ def _at_least_a_decade(low: float, high: float) -> tuple[float, float]:
     """Limits so far apart that the noise of times that do not grow looks like noise."""
     middle, half = (low * high) ** 0.5, max((high / low) ** 0.5, 10**0.5)
     return middle / half, middle * half
+
+
+CHART = PanelChart(
+    title="Seconds against size",
+    caption=CAPTION,
+    columns=COLUMNS,
+    rows=_rows,
+    panel=_draw_fit,
+    size=(3.6, 2.7),
+    across=3,
+)

@@ -4,8 +4,8 @@ import numpy as np
 
 from cases.results.records.figure import Figure, Panel, Series
 from contact import UNITS, HistoryPath, ImpactHistory, Solution
-from reports.tables.solution_table import SYMBOLS
 from reports.words.numbers import prefix_for
+from reports.words.quantity_names import SYMBOLS
 
 COLUMNS_DRAWN = {
     "force over depth": ("indentation_depth", "normal_force"),

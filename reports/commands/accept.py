@@ -10,9 +10,8 @@ from cases.gate.accept import accept, refusals, refusals_beforehand
 from cases.gate.baseline import read_baselines
 from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
 from cases.gate.proposal import BaselineChange, Proposal, propose
-from cases.gate.race.against import SOURCE
 from cases.gate.spread import measured_spreads
-from cases.gate.write_permission import write_conditions
+from cases.gate.write_permission import SOURCE, write_conditions
 from cases.results.files import read_run
 from cases.results.records.run import CaseResult, RunResult
 from contact import InvalidInput
@@ -107,10 +106,12 @@ def _accept_ladders(study: CaseResult, result: RunResult, request: AcceptRequest
 def _watched(case: Case, result: RunResult) -> CaseResult:
     """The case as it ran, without what only the nightly suite solves: what is accepted is that of the suite ci."""
     ran, unwatched = result.case(case.name), nightly_only(case)
+    at_night = {claim.name for claim in case.claims if claim.nightly}
+    claims = (claim for claim in ran.claims if claim.name not in at_night)
     return replace(
         ran,
         runs=tuple(row for row in ran.runs if (row.scene, row.method) not in unwatched),
-        claims=tuple(c for c in ran.claims if not any((c.scene, method) in unwatched for method in c.methods)),
+        claims=tuple(c for c in claims if not any((c.scene, method) in unwatched for method in c.methods)),
     )
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from cases.gate.accuracy_figures import accuracy_figures
 from cases.gate.baseline import read_baselines
-from cases.measurements.evidence import shipped
+from cases.measurements.evidence.records import shipped
 from cases.results.files import write_whole
 from contact import InvalidInput
 from reports.pages.accuracy import accuracy_page

@@ -56,7 +56,7 @@ def compare_runs(first: Path, second: Path) -> int:
     terminal = console()
     terminal.print(words, style=STYLES[tone])
     for table in (claim_table(comparison.claims), number_table(comparison.numbers, most=ROWS_IN_TERMINAL)):
-        if table is not None and table.rows:
+        if table is not None:
             show_table(table, on=terminal)
     terminal.print(f"comparison: {page}")
     return _code(*runs)

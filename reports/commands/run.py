@@ -21,6 +21,7 @@ from reports.pages.matrix import run_matrix
 from reports.tables.table import Table
 from reports.terminal.progress import RunDisplay
 from reports.terminal.terminal import STYLES, console, show_table
+from reports.words.moves import moves
 from reports.words.outcomes import headline, outcomes
 
 # The terminal shows so many failed checks; the page shows all.
@@ -64,6 +65,8 @@ def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
     rows = outcomes(result)
     if not quiet:
         show_table(matrix_table(result), on=terminal)
+    for sentence in moves(result):
+        terminal.print(sentence)
     failed = [row for row in rows if row.tone == "bad"][:WORST_SHOWN]
     for row in failed:
         terminal.print(Text.assemble((row.word, STYLES["bad"]), f" {row.case}: {row.place} ({row.who}): {row.message}"))

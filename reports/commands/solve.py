@@ -3,12 +3,11 @@
 import inspect
 from pathlib import Path
 
-import numpy as np
-
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.results.files import write_whole
 from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
+from contact.answer.accuracy import shortfalls, told_where_less
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
 from reports.words.numbers import duration
@@ -22,8 +21,11 @@ def solve(
     method: str,
     accuracy: float | None,
     outputs: list[Path],
+    pressure_accuracy: float | None = None,
     within: float | None = None,
     evidence: Path | None = None,
+    uncertain: str = "",
+    samples: int = 0,
 ) -> None:
     """Solve the scene of a TOML file, print the answer and write it to `outputs`, whose endings choose the format.
 
@@ -36,31 +38,56 @@ def solve(
         _check_ending(path)
     if (within is not None or evidence is not None) and (accuracy is None or method):
         raise InvalidInput("--within and --evidence choose a method for an --accuracy; give one, and no --method")
+    _check_accuracies(accuracy, pressure_accuracy)
+    if samples and not uncertain:
+        raise InvalidInput("--samples: of what? name the inputs with --uncertain")
     scene = load_scene(scene_file)
+    if uncertain:
+        answer = _solve_uncertain(scene, uncertain, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
+        _write_all(answer, outputs)
+        return
     facts: list[tuple[str, str]] = []
     if accuracy is not None and not method:
-        solution, facts = _by_evidence(scene, accuracy, within, evidence)
+        solution, facts = _by_evidence(scene, accuracy, pressure_accuracy, within, evidence)
     else:
-        solution = _solver(method or "mdr", accuracy).solve(scene)
+        solution = _solver(method or "mdr", accuracy, pressure_accuracy).solve(scene)
     if accuracy is not None:
-        _refuse_less(solution, accuracy)
+        _refuse_less(solution, accuracy, pressure_accuracy)
+        solution = told_where_less(solution, accuracy, pressure_accuracy)
     terminal = console()
     show_table(solution_table(solution), on=terminal)
     show_facts(solution_facts(solution) + facts, on=terminal)
+    _write_all(solution, outputs)
+
+
+def _write_all(solution: Solution, outputs: list[Path]) -> None:
     for path in outputs:
         _write(solution, path)
-        terminal.print(f"written: {path}")
+        console().print(f"written: {path}")
+
+
+def _solve_uncertain(scene: Scene, uncertain: str, samples: int, method: Method) -> Solution:
+    """Solve a scene with uncertain inputs, print what they make of the answer, and return the one at their middle."""
+    from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
+    from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above
+
+    found = propagate(scene, uncertain, method=method, samples=samples)
+    show_table(solution_table(found.answer), on=console())
+    show_table(propagated_table(found), on=console())
+    return found.answer
 
 
 def _by_evidence(
-    scene: Scene, accuracy: float, within: float | None, file: Path | None
+    scene: Scene, accuracy: float, pressure_accuracy: float | None, within: float | None, file: Path | None
 ) -> tuple[Solution, list[tuple[str, str]]]:
     """The answer with measured settings, and what was expected of them."""
     from cases.measurements.evidence import solve as solve_by_evidence  # noqa: PLC0415 - only where it is asked for
     from cases.measurements.evidence.records import read  # noqa: PLC0415 - as above
 
     measured = None if file is None else read(file)
-    found = solve_by_evidence(scene, accuracy=accuracy, within=within, evidence=measured)
+    found = solve_by_evidence(
+        scene, accuracy=accuracy, pressure_accuracy=pressure_accuracy, within=within, evidence=measured
+    )
     choice = found.choice
     settings = ", ".join(f"{name} = {value}" for name, value in choice.settings.items())
     expected = f"error {choice.expected_error:.1e} in {duration(choice.expected_seconds)}"
@@ -72,23 +99,30 @@ def _by_evidence(
     ]
 
 
-def _solver(name: str, accuracy: float | None) -> Method:
-    """The method, with the accuracy as a setting where it has such a setting."""
-    if accuracy is not None and not 0.0 < accuracy < 1.0:
-        raise InvalidInput(f"--accuracy {accuracy:g}: a relative accuracy lies between 0 and 1")
-    settable = "accuracy" in inspect.signature(load(name)).parameters
-    return build_guarded(name, {"accuracy": accuracy} if settable and accuracy is not None else {})
+def _check_accuracies(accuracy: float | None, pressure_accuracy: float | None) -> None:
+    for name, wanted in (("accuracy", accuracy), ("pressure-accuracy", pressure_accuracy)):
+        if wanted is not None and not 0.0 < wanted < 1.0:
+            raise InvalidInput(f"--{name} {wanted:g}: a relative accuracy lies between 0 and 1")
+    if pressure_accuracy is not None and accuracy is None:
+        raise InvalidInput("--pressure-accuracy is asked besides an --accuracy of the numbers; give both")
 
 
-def _refuse_less(solution: Solution, accuracy: float) -> None:
-    """Refuse an answer that states a larger error of any quantity than was asked for, or none at all."""
-    stated = {name: float(np.max(error)) for name, error in solution.error_estimate.items()}
-    worst = max(stated, key=lambda name: stated[name], default="all quantities")
-    estimate = stated.get(worst, np.inf)
-    if estimate > accuracy:
+def _solver(name: str, accuracy: float | None, pressure_accuracy: float | None) -> Method:
+    """The method, with the accuracies as settings where it has such settings."""
+    asked = {"accuracy": accuracy, "pressure_accuracy": pressure_accuracy}
+    settable = inspect.signature(load(name)).parameters
+    return build_guarded(name, {key: value for key, value in asked.items() if key in settable and value is not None})
+
+
+def _refuse_less(solution: Solution, accuracy: float, pressure_accuracy: float | None) -> None:
+    """Refuse an answer that states a larger error than was asked for of what was asked, or none at all."""
+    less = shortfalls(solution, accuracy, pressure_accuracy)
+    if less:
+        worst = max(less, key=lambda name: less[name])
+        wanted = pressure_accuracy if worst == "pressure" else accuracy
         raise NotConvergedError(
-            f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {estimate:.1e}, asked for "
-            f"{accuracy:.1e}; name another method with --method, or ask for less"
+            f"{solution.method} estimates the relative error of {worst.replace('_', ' ')} at {less[worst]:.1e}, asked "
+            f"for {wanted:.1e}; name another method with --method, or ask for less"
         )
 
 

@@ -10,14 +10,6 @@ from matplotlib.figure import Figure as Drawing
 T = TypeVar("T")
 
 
-def panel_grid(panels: int, columns: int, panel_size: tuple[float, float]) -> tuple[Drawing, list[Axes]]:
-    """A figure with so many axes in rows of `columns`; `panel_size` is width and height of one [inches]."""
-    columns = min(columns, panels)
-    width, height = panel_size
-    drawing = Drawing(figsize=(width * columns, height * math.ceil(panels / columns)), layout="constrained")
-    return drawing, axes_of(drawing, panels, columns)
-
-
 def axes_of(drawing: Drawing, panels: int, columns: int) -> list[Axes]:
     """So many axes in rows of `columns`; the rest of the last row stays empty."""
     axes = list(drawing.subplots(math.ceil(panels / columns), columns, squeeze=False).flat)

@@ -37,7 +37,7 @@ NARROWEST_BAND = 1e-3
 SYMBOLS_ON_A_CURVE = 24
 LINE_METHODS = ("mdr",)
 FULL_WIDTH, THIN_WIDTH = 1.5, 1.0
-SYMBOL_METHODS = ("fem", "bem", "integral_equation", "literature", "paper")
+SYMBOL_METHODS = ("fem", "bem", "integral_equation", "literature", "paper", "reference")
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -161,14 +161,29 @@ def _compact(svg: str, key: str) -> str:
     """What a page needs of Matplotlib's SVG: no prologue, no unused ids, each thing said once."""
     svg = svg[svg.index("<svg") :]  # an inline figure has no XML declaration and no document type
     svg = re.sub(r"<[^>]*>", lambda tag: _two_decimals(tag[0]), svg)  # places only: the words keep their numbers
-    referenced = set(re.findall(r"#([\w.-]+)", svg))
-    svg = re.sub(r' id="([^"]*)"', lambda name: f' id="{key}-{name[1]}"' if name[1] in referenced else "", svg)
-    svg = re.sub(r'(xlink:href="#|url\(#)', rf"\g<1>{key}-", svg)
+    referenced = re.findall(r'(?:xlink:href="#|url\(#)([\w.-]+)', svg)
+    short = {name: f"{key}-{number}" for number, name in enumerate(dict.fromkeys(referenced))}
+    svg = re.sub(r' id="([^"]*)"', lambda name: f' id="{short[name[1]]}"' if name[1] in short else "", svg)
+    svg = re.sub(r'(xlink:href="#|url\(#)([\w.-]+)', lambda place: place[1] + short[place[2]], svg)
     svg = svg.replace("font-family: 'DejaVu Sans'; ", "").replace("; font-family: 'DejaVu Sans'", "")
     svg = svg.replace("<svg ", f'<svg style="font-family: {FONT_FAMILY}" ', 1)
     svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
     svg = re.sub(r"\s+", " ", svg).replace("> <", "><")  # between the letters of a formula a line end would be a space
-    return re.sub(r"><(g|path|use|defs)\b", r">\n<\1", svg).strip() + "\n"
+    svg = re.sub(r' transform="rotate\(-?0 [^)]*\)"', "", svg)
+    svg = re.sub(r'style="[^"]*"', lambda style: re.sub(r"([:;]) ", r"\1", style[0]), svg)
+    return re.sub(r"><(g|path|use|defs)\b", r">\n<\1", _without_plain_groups(svg)).strip() + "\n"
+
+
+def _without_plain_groups(svg: str) -> str:
+    """The figure without groups that say nothing: Matplotlib opens one around every tick and line."""
+    kept: list[bool] = []
+    parts: list[str] = []
+    for part in re.split(r"(<g\b[^>]*>|</g>)", svg):
+        if part.startswith("<g"):
+            kept.append(part != "<g>")
+        if not part.startswith(("<g", "</g>")) or (kept.pop() if part == "</g>" else kept[-1]):
+            parts.append(part)
+    return "".join(parts)
 
 
 def _two_decimals(tag: str) -> str:

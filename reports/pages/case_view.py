@@ -1,7 +1,7 @@
 """Everything a page shows of one case, in the order of the page."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from typing import Any
 
 from cases.results.records.cost import WorkPrecision
 from cases.results.records.run import CaseResult
@@ -9,78 +9,47 @@ from reports.charts import agreement, convergence, coverage, error_map, ladder, 
 from reports.figures.figure import ReportFigure
 from reports.figures.figure_files import FigureFolder, PlacedFigure
 from reports.figures.renderer import report_figure
-from reports.pages.claim_blocks import ClaimBlock, claim_blocks
+from reports.pages.claim_blocks import claim_blocks
 from reports.tables import case_tables, cost_tables, hard_tables
 from reports.tables.table import Table
-from reports.words.outcomes import CheckOutcome, case_outcomes, severity
+from reports.words.outcomes import case_outcomes, severity
 
-
-@dataclass(frozen=True, kw_only=True)
-class TimedView:
-    """Error against seconds with its two tables beside it."""
-
-    drawn: PlacedFigure
-    cheapest: Table
-    prices: Table | None
-    settings: Table | None
-
-
-@dataclass(frozen=True, kw_only=True)
-class CaseView:
-    """A case on the page; `refusals` are sentences, `outcomes` come worst first."""
-
-    result: CaseResult
-    claims: tuple[ClaimBlock, ...]
-    figures: tuple[PlacedFigure, ...]
-    agreement: tuple[PlacedFigure, ...]
-    answers: Table | None
-    convergence: tuple[PlacedFigure, ...]
-    work: tuple[TimedView, ...]
-    ladders: tuple[PlacedFigure, ...]
-    breakdowns: Table | None
-    coverage: tuple[PlacedFigure, ...]
-    covered: Table | None
-    maps: tuple[PlacedFigure, ...]
-    good_ranges: Table | None
-    scaling: tuple[PlacedFigure, ...]
-    refusals: tuple[str, ...]
-    effects: Table | None
-    stages: Table | None
-    outcomes: tuple[CheckOutcome, ...]
+CaseView = dict[str, Any]
 
 
 def case_view(case: CaseResult, folder: FigureFolder, command: str) -> CaseView:
-    """Draw and tabulate a case; `command` makes its numbers and figures again."""
+    """Draw and tabulate a case by the names of the page; `command` makes its numbers and figures again."""
 
     def placed(figures: Iterable[ReportFigure]) -> tuple[PlacedFigure, ...]:
         return folder.place(figures, command)
 
-    return CaseView(
-        result=case,
-        claims=claim_blocks(case),
-        figures=placed(report_figure(figure, case.name) for figure in case.figures),
-        agreement=placed(agreement.figures(case)),
-        answers=case_tables.answers(case),
-        convergence=placed(convergence.figures(case)),
-        work=tuple(map(_timed, placed(work_precision.figures(case)), case.work_precision)),
-        ladders=placed(ladder.figures(case)),
-        breakdowns=hard_tables.ladders(case),
-        coverage=placed(coverage.figures(case)),
-        covered=hard_tables.coverage(case),
-        maps=placed(error_map.figures(case)),
-        good_ranges=hard_tables.good_ranges(case),
-        scaling=placed(scaling.figures(case)),
-        refusals=tuple(ladder.refusals(case)),
-        effects=case_tables.effects(case),
-        stages=case_tables.stages(case),
-        outcomes=tuple(sorted(case_outcomes(case), key=severity)),
-    )
+    return {
+        "result": case,
+        "claims": claim_blocks(case),
+        "figures": placed(report_figure(figure, case.name) for figure in case.figures),
+        "agreement": placed(agreement.figures(case)),
+        "answers": case_tables.answers(case),
+        "convergence": placed(convergence.figures(case)),
+        "work": tuple(map(_timed, placed(work_precision.figures(case)), case.work_precision)),
+        "ladders": placed(ladder.figures(case)),
+        "breakdowns": hard_tables.ladders(case),
+        "coverage": placed(coverage.figures(case)),
+        "covered": hard_tables.coverage(case),
+        "maps": placed(error_map.figures(case)),
+        "good_ranges": hard_tables.good_ranges(case),
+        "scaling": placed(scaling.figures(case)),
+        "refusals": tuple(ladder.refusals(case)),
+        "effects": case_tables.effects(case),
+        "stages": case_tables.stages(case),
+        "outcomes": tuple(sorted(case_outcomes(case), key=severity)),
+    }
 
 
-def _timed(drawn: PlacedFigure, work: WorkPrecision) -> TimedView:
-    return TimedView(
-        drawn=drawn,
-        cheapest=case_tables.cheapest(work),
-        prices=case_tables.digit_prices(work),
-        settings=cost_tables.settings(work),
-    )
+def _timed(drawn: PlacedFigure, work: WorkPrecision) -> dict[str, PlacedFigure | Table | None]:
+    """Error against seconds with its tables beside it."""
+    return {
+        "drawn": drawn,
+        "cheapest": case_tables.cheapest(work),
+        "prices": case_tables.digit_prices(work),
+        "settings": cost_tables.settings(work),
+    }

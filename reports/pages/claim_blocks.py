@@ -6,6 +6,7 @@ A table of scenes by claims would be wider than any page; every single check sta
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from cases.measurements.measurement import grouped
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
@@ -55,11 +56,13 @@ class ClaimBlock:
 
 def claim_blocks(case: CaseResult) -> tuple[ClaimBlock, ...]:
     """The claims in the order of their kinds; the many comparisons with accepted numbers make one row a method."""
-    same: dict[tuple[str, ...], list[Claim]] = {}
-    for claim in sorted(case.claims, key=lambda claim: list(Kind).index(claim.kind)):
-        reason = (str(claim.kind), claim.because, *(() if _is_accepted(claim) else (claim.derived_from, claim.source)))
-        same.setdefault(reason, []).append(claim)
-    return tuple(_block(case.name, claims) for claims in same.values())
+    ordered = sorted(case.claims, key=lambda claim: list(Kind).index(claim.kind))
+    return tuple(_block(case.name, claims) for claims in grouped(ordered, _reason).values())
+
+
+def _reason(claim: Claim) -> tuple[str, ...]:
+    """What claims share that stand in one block."""
+    return str(claim.kind), claim.because, *(() if _is_accepted(claim) else (claim.derived_from, claim.source))
 
 
 def is_wide(claim: Claim) -> bool:
@@ -77,10 +80,8 @@ def _is_accepted(claim: Claim) -> bool:
 
 
 def _block(case: str, claims: Sequence[Claim]) -> ClaimBlock:
-    first, alike = claims[0], dict[tuple[str, ...], list[Claim]]()
-    for claim in claims:
-        name = "accepted numbers" if _is_accepted(claim) else claim.name
-        alike.setdefault((name, *claim.methods), []).append(claim)
+    first = claims[0]
+    alike = grouped(claims, lambda claim: ("accepted numbers" if _is_accepted(claim) else claim.name, *claim.methods))
     return ClaimBlock(
         kind=str(first.kind),
         because=first.because,

@@ -1,13 +1,14 @@
 """comparison.html: two runs side by side, what ends otherwise first, then numbers by how far they moved, then times."""
 
 from collections import Counter
+from collections.abc import Iterable
 from pathlib import Path
 
 from cases.results.compare_runs import ChangeKind, ClaimChange, NumberChange, RunComparison, TimeChange
 from cases.results.files import write_whole
 from cases.results.records.run import RunResult
 from reports.pages.report import stamp_lines, stylesheet, template
-from reports.tables.table import Table
+from reports.tables.table import Table, tabulated
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, scaled_unit, small
 
@@ -62,62 +63,55 @@ def _got_worse(change: ClaimChange) -> bool:
 
 def claim_table(claims: tuple[ClaimChange, ...]) -> Table | None:
     """Checks that end otherwise, the worse ones first."""
-    if not claims:
-        return None
-    ordered = sorted(claims, key=lambda change: not _got_worse(change))
-    return Table(
+    return tabulated(
+        sorted(claims, key=lambda change: not _got_worse(change)),
+        {
+            "case": lambda change: change.case,
+            "check": lambda change: change.claim,
+            "scene": lambda change: change.scene,
+            "methods": lambda change: " against ".join(change.methods),
+            "first": lambda change: str(change.statuses[0] or "absent"),
+            "second": lambda change: str(change.statuses[1] or "absent"),
+            "fraction first": lambda change: _small(change.fractions[0]),
+            "fraction second": lambda change: _small(change.fractions[1]),
+            "seen in the second": lambda change: change.message,
+        },
         title="Checks that end otherwise",
         note="Fraction: error over tolerance.",
-        heads=(
-            "case",
-            "check",
-            "scene",
-            "methods",
-            "first",
-            "second",
-            "fraction first",
-            "fraction second",
-            "seen in the second",
-        ),
-        rows=tuple(_claim_row(change) for change in ordered),
         words=9,
     )
 
 
-def _claim_row(change: ClaimChange) -> tuple[str, ...]:
-    statuses = ["absent" if status is None else str(status) for status in change.statuses]
-    fractions = ["" if fraction is None else small(fraction) for fraction in change.fractions]
-    return (
-        change.case,
-        change.claim,
-        change.scene,
-        " against ".join(change.methods),
-        *statuses,
-        *fractions,
-        change.message,
-    )
+def _small(value: float | None) -> str:
+    return "" if value is None else small(value)
 
 
-def number_table(numbers: tuple[NumberChange, ...], most: int = MOST_ROWS) -> Table:
+def _against(methods: Iterable[str]) -> str:
+    return " against ".join(dict.fromkeys(display_name(method) for method in methods))
+
+
+def number_table(numbers: tuple[NumberChange, ...], most: int = MOST_ROWS) -> Table | None:
     """Every number that moved, the furthest first."""
     moved = [number for number in numbers if number.change is not ChangeKind.IDENTICAL]
     moved.sort(key=lambda number: (ORDER.index(number.change), -abs(number.difference or 0.0)))
     left_out = len(moved) - most
     rest = f" {left_out} smaller changes are not listed." if left_out > 0 else ""
-    return Table(
+    return tabulated(
+        moved[:most],
+        {
+            "change": lambda number: str(number.change),
+            "scene": lambda number: f"{number.case} / {number.scene}",
+            "quantity": lambda number: number.quantity.replace("_", " "),
+            "methods": lambda number: _against(number.methods),
+            "first": lambda number: _value(number, 0),
+            "second": lambda number: _value(number, 1),
+            "difference": lambda number: _small(number.difference),
+            "uncertainty": lambda number: _small(number.uncertainty),
+        },
         title="Numbers that moved",
         note=f"Difference: second minus first, over the scale of the quantity, at the step where it is largest.{rest}",
-        heads=("change", "scene", "quantity", "methods", "first", "second", "difference", "uncertainty"),
-        rows=tuple(_number_row(number) for number in moved[:most]),
         words=4,
     )
-
-
-def _number_row(number: NumberChange) -> tuple[str, ...]:
-    methods = " against ".join(dict.fromkeys(display_name(method) for method in number.methods))
-    names = (str(number.change), f"{number.case} / {number.scene}", number.quantity.replace("_", " "), methods)
-    sizes = ("" if size is None else small(size) for size in (number.difference, number.uncertainty))
-    return *names, _value(number, 0), _value(number, 1), *sizes
 
 
 def _value(number: NumberChange, place: int) -> str:
@@ -131,19 +125,17 @@ def _value(number: NumberChange, place: int) -> str:
 
 def time_table(times: tuple[TimeChange, ...]) -> Table | None:
     """Seconds of both runs; a ratio, not a verdict, because nothing says that the machine was idle."""
-    if not times:
-        return None
-    ordered = sorted(times, key=lambda change: -change.ratio)
-    return Table(
+    return tabulated(
+        sorted(times, key=lambda change: -change.ratio)[:MOST_ROWS],
+        {
+            "case": lambda change: change.case,
+            "scene": lambda change: change.scene,
+            "methods": lambda change: _against(change.methods),
+            "first": lambda change: duration(change.seconds[0]),
+            "second": lambda change: duration(change.seconds[1]),
+            "ratio": lambda change: f"{change.ratio:.2f}",
+        },
         title="Times",
-        note="One run each: a hint. `contact-verify gate` measures times alternately and judges them.",
-        heads=("case", "scene", "methods", "first", "second", "ratio"),
-        rows=tuple(_time_row(change) for change in ordered[:MOST_ROWS]),
+        note="One run each: a hint. `python -m benchmarks.race` measures times alternately and judges them.",
         words=3,
     )
-
-
-def _time_row(change: TimeChange) -> tuple[str, ...]:
-    names = tuple(dict.fromkeys(display_name(method) for method in change.methods))
-    seconds = [duration(value) for value in change.seconds]
-    return change.case, change.scene, " against ".join(names), *seconds, f"{change.ratio:.2f}"

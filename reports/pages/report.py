@@ -17,9 +17,11 @@ from reports.figures.figure_files import FigureFolder
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.matrix import run_matrix
-from reports.tables import cost_tables
-from reports.tables.table import Table
+from reports.tables import convergence_table, cost_tables
+from reports.tables.sharing_tables import shared_things
+from reports.tables.table import Table, tabulated
 from reports.words.file_names import file_name
+from reports.words.moves import moves
 from reports.words.numbers import duration, small
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 
@@ -77,6 +79,8 @@ def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
         matrix=run_matrix(run) if rows else None,
         costs=cost_tables.shortest_times(run),
         speed_ups=cost_tables.speed_ups(run),
+        shared=shared_things(run),
+        orders=convergence_table.orders(run),
         cases=cases,
         notable=notable,
         tolerances=tolerance_history(run.acceptances),
@@ -92,30 +96,28 @@ def baseline_sentence(run: RunResult) -> str:
     if not compared:
         return "Not compared with a baseline."
     changed = sum(claim.status is not Status.PASS for claim in compared)
-    return f"Since the baseline: {changed} of {len(compared)} numbers changed."
+    groups = "; ".join(moves(run))
+    return f"Since the baseline: {changed} of {len(compared)} numbers changed{groups and ': '}{groups}."
 
 
 def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:
     """Every accepted change of a number or a tolerance, latest first; a loosened tolerance says so."""
-    if not acceptances:
-        return None
-    latest_first = sorted(acceptances, key=lambda entry: entry.date, reverse=True)
-    return Table(
+    return tabulated(
+        sorted(acceptances, key=lambda entry: entry.date, reverse=True),
+        {
+            "date": lambda entry: entry.date,
+            "case": lambda entry: entry.case,
+            "method": lambda entry: entry.method,
+            "quantity": lambda entry: entry.quantity,
+            "old": lambda entry: _accepted(entry.old, entry.old_tolerance),
+            "new": lambda entry: _accepted(entry.new, entry.new_tolerance),
+            "old tolerance": lambda entry: _tolerance(entry.old_tolerance),
+            "new tolerance": lambda entry: _tolerance(entry.new_tolerance) + " LOOSENED" * _loosened(entry),
+            "reason": lambda entry: entry.reason,
+            "revision": lambda entry: entry.revision[:12],
+        },
         title="Accepted changes",
         note="Only `contact-verify accept` writes baselines; it loosens a tolerance only when told to.",
-        heads=(
-            "date",
-            "case",
-            "method",
-            "quantity",
-            "old",
-            "new",
-            "old tolerance",
-            "new tolerance",
-            "reason",
-            "revision",
-        ),
-        rows=tuple(_acceptance_row(entry) for entry in latest_first),
         words=10,
     )
 
@@ -125,13 +127,12 @@ def _accepted(value: float | None, tolerance: float | None) -> str:
     return "" if value is None else value_text(value, None if tolerance is None else tolerance * abs(value))
 
 
-def _acceptance_row(entry: Acceptance) -> tuple[str, ...]:
-    old, new = _accepted(entry.old, entry.old_tolerance), _accepted(entry.new, entry.new_tolerance)
-    tolerances = ["" if t is None else small(t) for t in (entry.old_tolerance, entry.new_tolerance)]
-    loosened = entry.old_tolerance is not None and (entry.new_tolerance or 0.0) > entry.old_tolerance
-    tolerances[1] += " LOOSENED" if loosened else ""
-    names = (entry.date, entry.case, entry.method, entry.quantity)
-    return *names, old, new, *tolerances, entry.reason, entry.revision[:12]
+def _tolerance(value: float | None) -> str:
+    return "" if value is None else small(value)
+
+
+def _loosened(entry: Acceptance) -> bool:
+    return entry.old_tolerance is not None and (entry.new_tolerance or 0.0) > entry.old_tolerance
 
 
 def stamp_lines(run: RunResult) -> list[tuple[str, str]]:

@@ -9,7 +9,7 @@ from cases.measurements.cost.cost_of_accuracy import (
 from cases.measurements.cost.overview import SHOWN, first_speed_up, methods, shortest, speed_up
 from cases.results.records.cost import WorkPoint, WorkPrecision
 from cases.results.records.run import RunResult
-from reports.tables.table import Table
+from reports.tables.table import Table, tabulated
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, memory, small
 
@@ -89,38 +89,39 @@ def _ratios(work: WorkPrecision, method: str, tolerance: float) -> str:
 
 def settings(work: WorkPrecision) -> Table | None:
     """Every setting that gave an answer: size, time, bound, and what the time went into."""
-    rows = tuple(_settings_row(point) for point in work.points if point.bound)
-    if not rows:
-        return None
-    return Table(
+    return tabulated(
+        (point for point in work.points if point.bound),
+        {
+            "method": lambda point: display_name(point.method),
+            "setting": lambda point: point.label,
+            "most time goes into": _stages,
+            "U": lambda point: small(_bound(point)),
+            "time": lambda point: duration(point.seconds),
+            "quartiles": lambda point: f"{duration(point.lower_quartile)} - {duration(point.upper_quartile)}",
+            "first": lambda point: duration(point.cold_seconds),
+            "memory": lambda point: memory(point.peak_memory_bytes) if point.peak_memory_bytes else "",
+            "unknowns": lambda point: f"{point.unknowns}",
+            "DoA": lambda point: f"{degree_of_accuracy(_bound(point)):.1f}",
+            "DoS": lambda point: f"{degree_of_size(_unknowns(point)):.1f}",
+            "DoE": lambda point: f"{degree_of_efficacy(_bound(point), point.seconds):.1f}",
+            "true static scaling [1/s]": lambda point: small(
+                true_static_scaling(_unknowns(point), point.seconds, _bound(point))
+            ),
+        },
         title="All settings",
         note="Degree of accuracy DoA = -log10 U, of size DoS = log10 N, of efficacy DoE = -log10(U T); true static "
         "scaling (N/T)(DoA/DoS). Time: median and quartiles.",
-        heads=(
-            "method", "setting", "most time goes into", "U", "time", "quartiles", "first", "memory", "unknowns",
-            "DoA", "DoS", "DoE", "true static scaling [1/s]",
-        ),
-        rows=rows,
         words=3,
-    )  # fmt: skip
-
-
-def _settings_row(point: WorkPoint) -> tuple[str, ...]:
-    bound, unknowns = point.bound or 0.0, max(point.unknowns, 2)
-    degrees = degree_of_accuracy(bound), degree_of_size(unknowns), degree_of_efficacy(bound, point.seconds)
-    return (
-        display_name(point.method),
-        point.label,
-        _stages(point),
-        small(bound),
-        duration(point.seconds),
-        f"{duration(point.lower_quartile)} - {duration(point.upper_quartile)}",
-        duration(point.cold_seconds),
-        memory(point.peak_memory_bytes) if point.peak_memory_bytes else "",
-        f"{point.unknowns}",
-        *(f"{degree:.1f}" for degree in degrees),
-        small(true_static_scaling(unknowns, point.seconds, bound)),
     )
+
+
+def _bound(point: WorkPoint) -> float:
+    return point.bound or 0.0
+
+
+def _unknowns(point: WorkPoint) -> int:
+    """At least two: the logarithm of one is no size."""
+    return max(point.unknowns, 2)
 
 
 def _stages(point: WorkPoint) -> str:

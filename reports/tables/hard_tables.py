@@ -1,120 +1,118 @@
 """Tables of hard cases: where ladders break and with how many digits, and how well stated errors hold."""
 
-from cases.measurements.advice.error_maps import UNBONDED, good_range
-from cases.measurements.campaigns.coverage import at_90
-from cases.measurements.ladders.ladders import breakdown, fewest_digits
-from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
+from collections.abc import Callable, Iterable, Iterator
+from functools import partial
+
+from cases.results.records.reliability import UNBONDED, CoverageRecord, ErrorMap, Ladder, Rung
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
-from reports.tables.table import Table
+from reports.tables.table import Table, per_cent, tabulated
 from reports.words.method_names import display_name
 from reports.words.numbers import small
 
-STATED, SECOND = "stated error", "second opinion"
+STATED = "stated error"
 
 
 def ladders(case: CaseResult) -> Table | None:
     """One row a ladder and method: range, breakdown, digits, iterations, residuals."""
-    if not case.ladders:
-        return None
-    return Table(
+    return tabulated(
+        case.ladders,
+        {
+            "ladder": lambda ladder: ladder.name,
+            "method": lambda ladder: display_name(ladder.method),
+            "parameter": lambda ladder: ladder.parameter,
+            "walked": lambda ladder: _with_unit(
+                ladder, f"{small(ladder.rungs[0].value)} .. {small(ladder.rungs[-1].value)}"
+            ),
+            "how far": _how_far,
+            "fewest digits": lambda ladder: "" if ladder.fewest_digits is None else f"{ladder.fewest_digits:.1f}",
+            "iterations": lambda ladder: f"{max(found)}" if (found := _iterations(ladder)) else "",
+            "residual": lambda ladder: largest(
+                v for r in _climbed(ladder) for k, v in r.residuals.items() if k != STATED
+            ),
+            "stated": lambda ladder: largest(value for name, value in _residuals(ladder) if name == STATED),
+        },
         title="Breakdown rungs and digits",
         note="Digits are those that perturbed repeats share on the worst rung that was climbed. Residual: the largest "
         "of any law of mechanics there, independent answers included, and the largest error the method states. Why a "
         "method refused is said below the figures.",
-        heads=(
-            "ladder",
-            "method",
-            "parameter",
-            "walked",
-            "how far",
-            "fewest digits",
-            "iterations",
-            "residual",
-            "stated",
-        ),
-        rows=tuple(map(_ladder_row, case.ladders)),
         words=3,
     )
 
 
-def _ladder_row(ladder: Ladder) -> tuple[str, ...]:
-    stop, digits = breakdown(ladder), fewest_digits(ladder)
-    unit = "" if ladder.unit == "1" else f" {ladder.unit}"
-    climbed = [rung for rung in ladder.rungs if rung.digits is not None]
-    laws = [value for rung in climbed for name, value in rung.residuals.items() if name != STATED]
-    stated = [rung.residuals[STATED] for rung in climbed if STATED in rung.residuals]
-    iterations = [rung.iterations for rung in climbed if rung.iterations is not None]
-    return (
-        ladder.name,
-        display_name(ladder.method),
-        ladder.parameter,
-        f"{small(ladder.rungs[0].value)} .. {small(ladder.rungs[-1].value)}{unit}",
-        "climbed to the end" if stop is None else f"{_gave_up(ladder, stop)} {small(stop)}{unit}",
-        "" if digits is None else f"{digits:.1f}",
-        f"{max(iterations)}" if iterations else "",
-        small(max(laws)) if laws else "",
-        small(max(stated)) if stated else "",
-    )
+def _climbed(ladder: Ladder) -> list[Rung]:
+    return [rung for rung in ladder.rungs if rung.digits is not None]
 
 
-def _gave_up(ladder: Ladder, stop: float) -> str:
-    (rung,) = (rung for rung in ladder.rungs if rung.value == stop)
-    return "fails at" if rung.status is Status.FAIL else "refuses"
+def _iterations(ladder: Ladder) -> list[int]:
+    return [rung.iterations for rung in _climbed(ladder) if rung.iterations is not None]
+
+
+def _residuals(ladder: Ladder) -> Iterator[tuple[str, float]]:
+    return (residual for rung in _climbed(ladder) for residual in rung.residuals.items())
+
+
+def _with_unit(ladder: Ladder, text: str) -> str:
+    return text if ladder.unit == "1" else f"{text} {ladder.unit}"
+
+
+def _how_far(ladder: Ladder) -> str:
+    stop = ladder.breakdown
+    if stop is None:
+        return "climbed to the end"
+    return _with_unit(ladder, f"{'fails at' if stop.status is Status.FAIL else 'refuses'} {small(stop.value)}")
+
+
+def largest(values: Iterable[float]) -> str:
+    """The largest of some errors; empty where there are none."""
+    found = list(values)
+    return small(max(found)) if found else ""
 
 
 def coverage(case: CaseResult) -> Table | None:
     """One row a method, family of scenes and quantity."""
-    if not case.coverage:
-        return None
-    return Table(
+    return tabulated(
+        case.coverage,
+        {
+            "method": lambda record: display_name(record.method),
+            "settings": lambda record: (
+                ", ".join(f"{name} {value}" for name, value in record.settings.items()) or "as they come"
+            ),
+            "scenes": lambda record: record.family,
+            "quantity": lambda record: record.quantity.replace("_", " "),
+            "scenes drawn": lambda record: f"{record.scenes}",
+            "refused": lambda record: f"{record.refused}",
+            "answers": lambda record: f"{record.checks}",
+            "covered": lambda record: per_cent(record.covered),
+            "sharpness": lambda record: largest(sharpness([record])),
+            "at 90 %": lambda record: largest(r.at_90 for r in told([record])),
+        },
         title="Coverage and sharpness",
         note="Covered: share of answers whose true error lies within the stated one (with the referee's own "
         "uncertainty). Sharpness: stated over true error, in the median and at 90 % of those above the referee's "
         "uncertainty and a hundred roundings.",
-        heads=(
-            "method",
-            "settings",
-            "scenes",
-            "quantity",
-            "scenes drawn",
-            "refused",
-            "answers",
-            "covered",
-            "sharpness",
-            "at 90 %",
-        ),
-        rows=tuple(map(_coverage_row, case.coverage)),
         words=4,
     )
 
 
-def _coverage_row(record: CoverageRecord) -> tuple[str, ...]:
-    settings = ", ".join(f"{name} {value}" for name, value in record.settings.items()) or "as they come"
-    return (
-        display_name(record.method),
-        settings,
-        record.family,
-        record.quantity.replace("_", " "),
-        f"{record.scenes}",
-        f"{record.refused}",
-        f"{record.checks}",
-        f"{100 * record.covered:.1f} %",
-        "" if record.sharpness is None else small(record.sharpness),
-        "" if record.sharpness is None else small(at_90(record)),
-    )
+def told(records: Iterable[CoverageRecord]) -> list[CoverageRecord]:
+    """Those of which true errors could be told."""
+    return [record for record in records if record.sharpness is not None]
+
+
+def sharpness(records: Iterable[CoverageRecord]) -> list[float]:
+    """Stated over true error in the median, of those of which true errors could be told."""
+    return [record.sharpness or 0.0 for record in told(records)]
 
 
 def good_ranges(case: CaseResult) -> Table | None:
     """Where each formula or method is good to one percent, one column a map."""
-    if not case.maps:
-        return None
-    rows = list(dict.fromkeys(row for found in case.maps for row in found.rows))
-    return Table(
+    columns: dict[str, Callable[[str], str]] = {found.title: partial(_range, found) for found in case.maps}
+    return tabulated(
+        dict.fromkeys(row for found in case.maps for row in found.rows),
+        {"layer": _layer} | columns,
         title="Range of a/h that is good to 1 %",
         note="Smallest and largest a/h of the map with an error of at most 1 %; between them a hole may lie.",
-        heads=("layer", *(found.title for found in case.maps)),
-        rows=tuple((_layer(row), *(_range(found, row) for found in case.maps)) for row in rows),
     )
 
 
@@ -123,7 +121,7 @@ def _layer(row: str) -> str:
 
 
 def _range(found: ErrorMap, row: str) -> str:
-    good = good_range(found, row) if row in found.rows else None
+    good = found.good_range(row) if row in found.rows else None
     if good is None:
         return "nowhere" if row in found.rows else ""
     return f"{good[0]:.2g} .. {good[1]:.2g}"

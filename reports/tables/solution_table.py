@@ -6,22 +6,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
+from cases.declare.quantities import single_numbers
 from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, memory, prefix_for, scaled_unit, small
+from reports.words.quantity_names import SYMBOLS
 
-SYMBOLS = {
-    "time": "t",
-    "contact_radius": "a",
-    "indentation_depth": "δ",
-    "velocity": "v",
-    "normal_force": "F",
-    "contact_stiffness": "k_N",
-    "kinetic_energy": "E_kin",
-    "stored_energy": "E_el",
-    "dissipated_energy": "E_diss",
-}
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none."
 )
@@ -109,12 +100,7 @@ def solution_facts(solution: Solution) -> list[tuple[str, str]]:
 
 def _critical_values(solution: Solution) -> list[tuple[str, str]]:
     """Pull-off of a detachment, restitution and peaks of an impact; nothing for a plain path."""
-    names: tuple[str, ...] = ()
-    if isinstance(solution, DetachmentPath):
-        names = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
-    elif isinstance(solution, ImpactHistory):
-        names = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
-    return [(name.replace("_", " "), _critical_value(solution, name)) for name in names]
+    return [(name.replace("_", " "), _critical_value(solution, name)) for name in single_numbers(solution)]
 
 
 def _critical_value(solution: Solution, name: str) -> str:

@@ -2,8 +2,8 @@
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from cases.results.records.claim import Claim, Kind, Verdict
 from cases.results.records.run import CaseResult, RunResult
@@ -26,6 +26,9 @@ WORST_FIRST = (
     Status.PASS,
 )
 
+# What stands in place of a kind of claim where a row is the solution of a scene.
+SOLUTION = "solution"
+
 EXPLANATIONS: Mapping[Status, str] = {
     Status.PASS: "within tolerance",
     Status.FAIL: "outside its tolerance",
@@ -33,9 +36,9 @@ EXPLANATIONS: Mapping[Status, str] = {
     Status.PERF: "slower than the accepted baseline",
     Status.INVALID: "a number that is not finite, or a solver that broke down",
     Status.INCOMPARABLE: "shape, unit or specification differ",
-    Status.INCONCLUSIVE: "the numerical uncertainty is larger than the tolerance",
+    Status.INCONCLUSIVE: "the numerical uncertainty does not allow a verdict",
     Status.TIMEOUT: "stopped at its time limit",
-    Status.SKIP: "the method does not model this scene",
+    Status.SKIP: "a method does not model some scenes; one for each reason",
     Status.XFAIL: "fails, as declared with a reason",
     Status.XPASS: "declared to fail, yet it passes: the declaration is out of date",
 }
@@ -46,7 +49,7 @@ class CheckOutcome:
     """One check in words: a claim, or the solution of one scene by one method.
 
     `fraction` is error over tolerance, -1 where nothing could be compared. `tone` is the class of colour:
-    "bad", "warn", "skip" or "good".
+    "bad", "warn", "skip" or "good"; `identity` says why a comparison holds by construction.
     """
 
     case: str
@@ -56,13 +59,19 @@ class CheckOutcome:
     what: str
     status: Status
     word: str
-    fraction: float
-    observed: str
-    tolerance: str
-    origin: str
     message: str
-    because: str
-    seconds: float
+    fraction: float = -1.0
+    observed: str = ""
+    tolerance: str = ""
+    origin: str = ""
+    because: str = ""
+    seconds: float = 0.0
+    identity: str = ""
+
+    @property
+    def is_counted(self) -> bool:
+        """Whether this is a comparison that could fail; a solution counts only where it broke down."""
+        return self.tone == "bad" or (self.what != SOLUTION and not self.identity)
 
     @property
     def tone(self) -> str:
@@ -93,9 +102,38 @@ def tone_of(status: Status) -> str:
 
 
 def outcomes(run: RunResult) -> tuple[CheckOutcome, ...]:
-    """Every check of the run, worst first."""
+    """Every check of the run, worst first; skips for one and the same reason are one row."""
     rows = [row for case in run.cases for row in case_outcomes(case)]
-    return tuple(sorted(rows, key=severity))
+    skips: dict[str, list[CheckOutcome]] = {}
+    for row in rows:
+        if row.status is Status.SKIP:
+            skips.setdefault(_reason(row), []).append(row)
+    others = [row for row in rows if row.status is not Status.SKIP]
+    return tuple(sorted([*others, *(_joined(same) for same in skips.values())], key=severity))
+
+
+def _reason(row: CheckOutcome) -> str:
+    """Why a check was skipped, without the method's name before it."""
+    return next(
+        (row.message.removeprefix(f"{m}: ") for m in row.methods if row.message.startswith(f"{m}: ")), row.message
+    )
+
+
+def _joined(same: Sequence[CheckOutcome]) -> CheckOutcome:
+    """One row for skips of one reason: how many, and where."""
+    first = same[0]
+    if len(same) == 1:
+        return first
+    cases = list(dict.fromkeys(row.case for row in same))
+    skippers = [row.methods for row in same if row.what == SOLUTION] or [first.methods]
+    return replace(
+        first,
+        case=cases[0] if len(cases) == 1 else f"{len(cases)} cases",
+        scene=f"{len({(row.case, row.scene) for row in same})} scenes",
+        name=f"{len(same)} skips",
+        methods=tuple(dict.fromkeys(method for methods in skippers for method in methods)),
+        message=_reason(first),
+    )
 
 
 def case_outcomes(case: CaseResult) -> tuple[CheckOutcome, ...]:
@@ -110,14 +148,14 @@ def severity(row: CheckOutcome) -> tuple[int, float]:
 
 
 def counts(rows: Iterable[CheckOutcome]) -> tuple[tuple[Status, int], ...]:
-    """How many checks ended with which status, worst first."""
-    tally = Counter(row.status for row in rows)
+    """How many comparisons ended with which status, worst first; solutions made and identities are not counted."""
+    tally = Counter(row.status for row in rows if row.is_counted or row.status is Status.SKIP)
     return tuple((status, tally[status]) for status in WORST_FIRST if tally[status])
 
 
 def headline(run: RunResult, rows: Iterable[CheckOutcome]) -> tuple[str, str]:
     """The verdict in a few words, and its tone."""
-    tally = Counter(row.tone for row in rows)
+    tally = Counter(row.tone for row in rows if row.is_counted)
     checks = sum(tally.values()) - tally["skip"]
     if checks == 0:
         found = _measured(run)
@@ -149,15 +187,21 @@ def claim_outcome(case: str, claim: Claim) -> CheckOutcome:
         methods=claim.methods,
         what=f"{claim.kind}: {claim.quantity}",
         status=claim.status,
-        word=str(claim.status if claim.verdict is Verdict.NONE or claim.status.is_failure else claim.verdict),
+        word=_word(claim),
         fraction=-1.0 if claim.fraction is None else claim.fraction,
         observed=observed_text(claim),
         tolerance=f"{small(claim.tolerance)}{_unit(claim.unit)}",
         origin=f"{claim.origin}: {claim.source}",
-        message=worded(f"{claim.message} ({claim.relaxed})" if claim.relaxed else claim.message),
+        message=worded("; ".join(part for part in (claim.message, claim.identity, claim.relaxed) if part)),
         because=claim.because,
-        seconds=0.0,
+        identity=claim.identity,
     )
+
+
+def _word(claim: Claim) -> str:
+    if claim.identity and claim.status is Status.PASS:
+        return "IDENTITY"
+    return str(claim.status if claim.verdict is Verdict.NONE or claim.status.is_failure else claim.verdict)
 
 
 def _solved(case: str, run: SceneRun) -> CheckOutcome:
@@ -166,15 +210,10 @@ def _solved(case: str, run: SceneRun) -> CheckOutcome:
         scene=run.scene,
         name=f"solves {run.scene}",
         methods=(run.method,),
-        what="solution",
+        what=SOLUTION,
         status=run.status,
         word=str(run.status),
-        fraction=-1.0,
-        observed="",
-        tolerance="",
-        origin="",
         message=worded(run.reason),
-        because="",
         seconds=run.cost.wall_seconds if run.cost else 0.0,
     )
 

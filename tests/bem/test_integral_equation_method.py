@@ -112,6 +112,16 @@ def test_flat_punch_pressure_on_a_layer():
     assert direct.indentation_depth[0] == pytest.approx(mdr.indentation_depth[0], rel=1e-12, abs=0.0)
 
 
+def test_rounding_of_the_kernel_is_stated_where_all_discretisations_suffer_it_alike():
+    """k_bar is 2e4 here: answers on fewer nodes agreed to 1e-13 by chance and were 7e-12 off."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=53.208222873974776), loading=IndentationDepths([1.0]))
+    direct, mdr = IntegralEquationMethod().solve(scene), Mdr().solve(scene)
+    for name in ("normal_force", "contact_stiffness"):
+        difference = np.abs(getattr(direct, name) / getattr(mdr, name) - 1)
+        assert np.all(difference <= direct.error_estimate[name] + mdr.error_estimate[name]), name
+
+
 def test_own_error_estimate_covers_the_error_of_coarse_settings():
     scene = Scene(
         layer=LAYERS["incompressible"], indenter=Paraboloid(radius_of_curvature=0.02), loading=ContactRadii(RADII)
@@ -173,9 +183,9 @@ def test_refusals():
     )
     with pytest.raises(UnsupportedSceneError, match="Adhesion"):
         IntegralEquationMethod().solve(adhesive)
-    with pytest.raises(UnsupportedSceneError, match="a/h = 100"):
+    with pytest.raises(UnsupportedSceneError, match="a/h = 200"):
         IntegralEquationMethod().solve(
-            Scene(layer=LAYERS["bonded"], indenter=Cone(slope=0.1), loading=ContactRadii([0.1]))
+            Scene(layer=LAYERS["bonded"], indenter=Cone(slope=0.1), loading=ContactRadii([0.2]))
         )
     tip = IntegralEquationMethod().solve(
         Scene(layer=LAYERS["bonded"], indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]))

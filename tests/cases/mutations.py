@@ -27,8 +27,10 @@ from bem.tables.file import read_table, write_table
 from bem.tables.table import FlatPunchTable, chebyshev_radii
 from cases.declare.task import Task
 from cases.gate.baseline import baseline_path, read_baselines
+from cases.gate.history import append_history, history_path, read_history
 from cases.measurements.evidence import records
 from cases.results.files import read_run, write_run
+from cases.results.records.run import Acceptance
 from cases.run.keys import content_key, key_parts
 from cases.run.store import TaskStore
 from contact import ContactPath, Cost, InvalidInput
@@ -101,6 +103,26 @@ def stored_baseline(folder: Path) -> Stored:
     return Stored(baseline_path(accepted(folder), CASE, "mdr"), lambda: read_baselines(folder))
 
 
+def stored_history(folder: Path) -> Stored:
+    entries = [
+        Acceptance(
+            date="2026-11-22",
+            case=CASE,
+            method=method,
+            quantity="normal_force of half-space",
+            old=1.5,
+            new=1.25,
+            old_tolerance=1e-12,
+            new_tolerance=1e-12,
+            reason="a better quadrature",
+            revision="0" * 40,
+        )
+        for method in ("mdr", "fem", "bem")
+    ]
+    append_history(folder, entries)
+    return Stored(history_path(folder), lambda: read_history(folder))
+
+
 def stored_solution(folder: Path) -> Stored:
     scene, numbers = scene_of(0.3), np.array([1.0, 2.0])
     solution = ContactPath(
@@ -126,6 +148,7 @@ KINDS: dict[str, Callable[[Path], Stored]] = {
     "table": stored_table,
     "baseline": stored_baseline,
     "h5": stored_solution,
+    "history": stored_history,
 }
 
 
@@ -304,6 +327,32 @@ JSON = (
 )
 
 
+def line_removed(draw: Draw, text: str) -> str:
+    lines = text.splitlines(keepends=True)
+    del lines[draw.integers(len(lines))]
+    return "".join(lines)
+
+
+def lines_swapped(draw: Draw, text: str) -> str:
+    lines = text.splitlines(keepends=True)
+    first, second = draw.choice(len(lines), 2, replace=False)
+    lines[first], lines[second] = lines[second], lines[first]
+    return "".join(lines)
+
+
+LINES = (
+    digit_changed,
+    number_multiplied,
+    letter_changed,
+    word_changed,
+    key_repeated,
+    space_added,
+    other_newlines,
+    line_removed,
+    lines_swapped,
+)
+
+
 def _of_text(change: Callable[[Draw, str], str]) -> Callable[[Draw, bytes], bytes]:
     def changed(draw: Draw, data: bytes) -> bytes:
         return change(draw, data.decode("utf-8")).encode("utf-8")
@@ -350,7 +399,8 @@ def trials(kind: str, seed: int, count: int) -> list[Trial]:
     with tempfile.TemporaryDirectory() as folder:
         stored = KINDS[kind](Path(folder))
         sound, content = stored.file.read_bytes(), stored.content()
-        damages = (*ANY, *map(_of_text, JSON)) if stored.file.suffix == ".json" else (*ANY, number_stored)
+        own = {".json": map(_of_text, JSON), ".jsonl": map(_of_text, LINES)}.get(stored.file.suffix, (number_stored,))
+        damages = (*ANY, *own)
         found = []
         for number in range(count):
             draw = np.random.default_rng([seed, list(KINDS).index(kind), number])

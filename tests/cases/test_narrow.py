@@ -46,6 +46,14 @@ def test_a_nightly_method_is_missing_in_ci_only_where_it_is_declared():
     assert lost == {(night, "slow")} == nightly_only(case)
 
 
+def test_a_nightly_claim_is_left_to_the_nightly_suite():
+    case = fake_case()
+    last = dataclasses.replace(case.claims[-1], nightly=True)
+    case = dataclasses.replace(case, claims=(*case.claims[:-1], last))
+    assert last.name not in {claim.name for claim in in_suite(case, "ci").claims}
+    assert in_suite(case, "nightly").claims == case.claims
+
+
 def test_ci_loses_no_claim_that_its_methods_can_answer():
     case = with_a_nightly_method()
     night = case.scenes[1].name

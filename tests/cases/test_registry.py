@@ -97,5 +97,6 @@ def test_settings_reach_the_method():
     assert FAST.build().stated == 1e-12
 
 
-def test_every_origin_is_one_of_four():
-    assert len(Origin) == 4
+def test_every_origin_is_one_of_five():
+    """The four of the contribution rules; a method that shares something is told apart from an independent one."""
+    assert len(Origin) == 5

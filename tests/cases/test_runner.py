@@ -67,9 +67,15 @@ def test_a_wrong_factor_disagrees(tmp_path):
 
 
 def test_a_wrong_closed_form_fails_exactly_there(tmp_path):
-    result = run(fake_case(fast=use("fast", cell=1e-7, stated=1e-6)), tmp_path)
+    result = run(fake_case(fast=use("fast", cell=1e-7, stated=1e-9)), tmp_path)
     assert statuses(result, "closed form") == {Status.FAIL}
     assert statuses(result, "force agrees") == {Status.PASS}
+
+
+def test_an_error_beyond_the_tolerance_that_the_method_states_itself_is_inconclusive(tmp_path):
+    result = run(fake_case(fast=use("fast", cell=1e-7, stated=1e-6)), tmp_path)
+    assert statuses(result, "closed form") == {Status.INCONCLUSIVE}
+    assert claim(result, "closed form").uncertainty["fast"] > 0
 
 
 def test_a_coarse_method_is_inconclusive(tmp_path):
@@ -77,7 +83,7 @@ def test_a_coarse_method_is_inconclusive(tmp_path):
     assert statuses(result, "force agrees") == {Status.INCONCLUSIVE}
     assert "refine slow" in claim(result, "force agrees").message
     assert exit_code(result.statuses) is ExitCode.PASSED
-    assert exit_code(result.statuses, strict=True) is ExitCode.GATE_FAILED
+    assert exit_code(result.statuses, strict=True) is ExitCode.UNDECIDED
 
 
 def test_a_wrong_order_fails(tmp_path):

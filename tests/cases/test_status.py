@@ -18,9 +18,11 @@ def test_an_unexpected_pass_and_a_timeout_fail():
     assert exit_code([Status.PASS, Status.TIMEOUT]) is ExitCode.GATE_FAILED
 
 
-def test_inconclusive_warns_and_fails_only_under_strict():
+def test_inconclusive_warns_and_has_an_exit_code_of_its_own_under_strict():
     assert exit_code([Status.PASS, Status.INCONCLUSIVE]) is ExitCode.PASSED
-    assert exit_code([Status.PASS, Status.INCONCLUSIVE], strict=True) is ExitCode.GATE_FAILED
+    assert exit_code([Status.PASS, Status.INCONCLUSIVE], strict=True) is ExitCode.UNDECIDED
+    assert exit_code([Status.FAIL, Status.INCONCLUSIVE], strict=True) is ExitCode.GATE_FAILED
+    assert exit_code([Status.PASS], strict=True) is ExitCode.PASSED
 
 
 def test_skips_and_declared_failures_pass():

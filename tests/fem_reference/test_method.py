@@ -17,7 +17,7 @@ from contact import (
     Scene,
     TruncatedCone,
 )
-from fem_reference import Fem
+from fem_reference import Fem, adaptive
 from fem_reference.elastic import prescribed_radius
 from tests.fem_reference.integral_equation import solve_contact, truncated_cone
 
@@ -68,6 +68,37 @@ def test_default_settings_reach_1e_5_with_covering_error_bars():
 def test_requested_accuracy_is_reached():
     path = Fem(accuracy=1e-4).solve(cone_scene(2, 0.3))
     assert_covered(path, true_errors(path, 2, 0.3, "bonded"), 1e-4)
+
+
+@pytest.mark.parametrize("loading", [ContactRadii([1e-3]), IndentationDepths([1e-4]), NormalForces([0.2])], ids=str)
+def test_every_loading_is_refined_until_its_own_errors_hold(loading):
+    """Where the radius is searched for, it counts too; the pressure states more, and the answer says so."""
+    scene = Scene(layer=layer(0.49), indenter=TruncatedCone(flat_radius=0.5e-3, slope=0.2), loading=loading)
+    path = Fem(accuracy=1e-4).solve(scene)
+    assert max(path.error_estimate[name][0] for name in path.ARRAYS) <= 1e-4
+    pressure = path.error_estimate["pressure"][0]
+    assert pressure > 1e-4
+    assert path.notes == (
+        f"less accurate than the 0.0001 asked for, by the stated relative errors: pressure {pressure:.1e}",
+    )
+
+
+def test_an_accuracy_of_the_pressure_is_asked_by_its_own_name():
+    path = Fem(accuracy=1e-2, pressure_accuracy=1e-3).solve(cone_scene(1))
+    assert (
+        path.error_estimate["pressure"][0]
+        <= 1e-3
+        < Fem(accuracy=1e-2).solve(cone_scene(1)).error_estimate["pressure"][0]
+    )
+    assert path.notes == ()
+    with pytest.raises(InvalidInput, match="besides an accuracy"):
+        Fem(pressure_accuracy=1e-3)
+
+
+def test_an_accuracy_out_of_reach_names_the_quantity(monkeypatch):
+    monkeypatch.setattr(adaptive, "ATTEMPTS", 1)
+    with pytest.raises(NotConvergedError, match=r"accuracy 1e-06 of the pressure was not reached"):
+        Fem(accuracy=1e-2, pressure_accuracy=1e-6).solve(cone_scene(1))
 
 
 def test_half_space_truncated_cone():

@@ -16,6 +16,7 @@ from contact import (
     StageLog,
     Tabulated,
     TruncatedCone,
+    UnsupportedSceneError,
 )
 from fem_reference import Fem
 from fem_reference.discrete_layer.settings import Discretisation
@@ -109,7 +110,7 @@ def test_a_curve_of_depths_needs_one_factorisation():
 
 def test_ring_contact_is_refused():
     rings = Tabulated(radii=[0, 0.4e-3, 0.8e-3, 2e-3], heights=[0, -2e-5, 2e-5, 1e-3])
-    with pytest.raises(InvalidInput, match="one circle"):
+    with pytest.raises(UnsupportedSceneError, match="no single circle"):
         QUICK.solve(Scene(layer=LAYER, indenter=rings, loading=IndentationDepths([1e-6])))
 
 

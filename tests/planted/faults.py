@@ -537,8 +537,8 @@ def _event():
 def sign_ignored(judge):
     """error <= tolerance: every number that is too small passes."""
 
-    def wrong(error, tolerance, message):
-        return judge(max(error, 0.0), tolerance, message)
+    def wrong(error, tolerance, message, *failure):
+        return judge(max(error, 0.0), tolerance, message, *failure)
 
     return wrong
 
@@ -769,11 +769,11 @@ BASELINES = [
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(
-            "cases.run.timing:is_slower",
+            "benchmarks.race.race:is_slower",
             lambda f: lambda measured, d: f(dataclasses.replace(measured, lower=measured.lower / 1.5), d),
         ),
         Test(
-            "cases.gate.test_race:test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_60_races"
+            "benchmarks.test_race:test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_60_races"
         ),
     ),
 ]

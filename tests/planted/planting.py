@@ -3,7 +3,7 @@
 import importlib
 import sys
 
-OWN = ("contact", "bem", "mdr", "fem_reference", "cases", "reports", "tests")
+OWN = ("contact", "bem", "mdr", "fem_reference", "cases", "reports", "benchmarks", "tests")
 
 
 def found(place):

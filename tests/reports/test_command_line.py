@@ -139,7 +139,7 @@ def test_a_wrong_number_fails_the_run(library, tmp_path, capsys):
 def test_an_open_verdict_fails_only_when_strict(library, tmp_path):
     library(fake_case(slow=spoiled(SLOW, stated=1e-3)))
     assert run_here(tmp_path) == 0
-    assert run_here(tmp_path, "--resume", "--strict") == 1
+    assert run_here(tmp_path, "--resume", "--strict") == 6
 
 
 @pytest.mark.usefixtures("library")
@@ -229,6 +229,35 @@ def test_solve_refuses_an_answer_less_accurate_than_asked(hertz, capsys, monkeyp
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "1e-3"]) == 1
     assert "asked for 1.0e-03" in capsys.readouterr().err
     assert run(["solve", hertz, "--method", "fake", "--accuracy", "-1"]) == 4
+
+
+@pytest.fixture
+def punch(tmp_path):
+    """The quickest scene of finite elements; its pressure is singular at the rim."""
+    scene = tmp_path / "punch.toml"
+    scene.write_text(
+        "[layer]\nthickness = 1e-3\nyoungs_modulus = 1e6\npoissons_ratio = 0.3\n"
+        '[indenter]\nkind = "flat_punch"\nradius = 1e-3\n'
+        '[loading]\nkind = "indentation_depths"\nvalues = [1e-5]\n',
+        encoding="utf-8",
+    )
+    return str(scene)
+
+
+def test_an_accuracy_is_no_accuracy_of_the_pressure(punch, capsys):
+    fem = ["solve", punch, "--method", "fem", "--accuracy", "1e-3"]
+    assert run(fem) == 0
+    note = r"note: less accurate than the 0.001 asked for, by the stated relative errors: pressure \d\.\de-0\d"
+    assert re.search(note, capsys.readouterr().out.replace("\n", " "))
+    assert run([*fem, "--pressure-accuracy", "2e-2"]) == 0
+    assert "note:" not in capsys.readouterr().out
+    assert (
+        run(["solve", punch, "--method", "integral_equation", "--accuracy", "1e-4", "--pressure-accuracy", "1e-15"])
+        == 1
+    )
+    assert "relative error of pressure" in capsys.readouterr().err.replace("\n", " ")
+    assert run(["solve", punch, "--pressure-accuracy", "1e-3"]) == 4
+    assert "besides an --accuracy" in capsys.readouterr().err.replace("\n", " ")
 
 
 @pytest.mark.parametrize("within", ["0.25", "0.25s", "250ms"])

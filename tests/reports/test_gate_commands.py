@@ -158,19 +158,3 @@ def test_without_a_name_all_cases_of_the_run_are_accepted(tmp_path):
     run_cases()
     assert accept_case("--write", name="") == 0
     assert sorted(path.name for path in (tmp_path / "baselines" / "fake_hertz").iterdir()) == ["fast.json", "slow.json"]
-
-
-@pytest.mark.usefixtures("here")
-def test_an_unknown_revision_is_one_clear_line(capsys):
-    run_cases()
-    accept_case("--write")
-    assert gate_run("--against", "no-such-revision") == 4
-    assert "rev-parse" in capsys.readouterr().err
-
-
-@pytest.mark.usefixtures("here")
-def test_only_cases_of_the_run_can_be_timed(capsys):
-    run_cases()
-    accept_case("--write")
-    assert gate_run("--against", "HEAD", "--only", "nothing") == 4
-    assert "the run does not have nothing; it has fake_hertz" in capsys.readouterr().err

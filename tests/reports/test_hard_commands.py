@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import pytest
 
@@ -51,7 +52,11 @@ def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
     plan = dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8)
     monkeypatch.setattr("cases.measurements.campaigns.coverage.PLANS", (plan,))
     assert run(["coverage", "--method", "mdr", "--out", str(tmp_path)]) == 0
-    assert "100.0 % of 8 covered" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert "100.0 % of 8 covered" in shown
+    assert re.search(r"bem\.layer_equation\.FACTOR\.spring_safety +all quantities +2\.5 +\d+ +100\.0 %", shown)
+    assert re.search(r"mdr\.springs\.LEAVING_SHARE +contact time +0\.25 +0 *\n", shown)
+    assert "fem_reference" not in shown
     page = (tmp_path / "report.html").read_text(encoding="utf-8")
     assert "Coverage and sharpness" in page
     assert (tmp_path / "figures" / "coverage-stated-over-true.csv").is_file()

@@ -37,8 +37,12 @@ def test_reading_order_names_every_status_once():
 def test_failures_come_first_and_every_claim_and_solution_has_a_row():
     run = example_run()
     rows = outcomes(run)
-    assert len(rows) == len(run.statuses)
-    assert dict(counts(rows)) == {status: run.statuses.count(status) for status in set(run.statuses)}
+    skips = run.statuses.count(Status.SKIP)
+    assert len(rows) == len(run.statuses) - skips + 1
+    claims = [claim.status for case in run.cases for claim in case.claims]
+    broken = [one.status for case in run.cases for one in case.runs if one.status.is_failure]
+    expected = {status: [*claims, *broken].count(status) for status in {*claims, *broken}} | {Status.SKIP: 1}
+    assert dict(counts(rows)) == expected
     tones = [row.tone for row in rows]
     assert tones[: tones.count("bad")] == ["bad"] * tones.count("bad")
     assert rows[-1].status is Status.PASS
@@ -47,15 +51,37 @@ def test_failures_come_first_and_every_claim_and_solution_has_a_row():
 @pytest.mark.parametrize(
     ("run", "words"),
     [
-        (example_run(), "FAILED: 4 of 13 checks"),
-        (only(passing_case()), "PASSED: all 7 checks"),
-        (only(passing_case(), complete=False), "INCOMPLETE: 7 checks so far, none failed"),
+        (example_run(), "FAILED: 4 of 8 checks"),
+        (only(passing_case()), "PASSED: all 3 checks"),
+        (only(passing_case(), complete=False), "INCOMPLETE: 3 checks so far, none failed"),
         (only(), "Nothing ran"),
-        (only(failing_case(), complete=False), "FAILED: 4 of 6 checks"),
+        (only(failing_case(), complete=False), "FAILED: 4 of 5 checks"),
     ],
 )
 def test_headline(run, words):
     assert headline(run, outcomes(run))[0] == words
+
+
+def test_an_identity_is_shown_and_not_counted():
+    case = passing_case()
+    first, *others = case.claims
+    case = dataclasses.replace(case, claims=(dataclasses.replace(first, identity="the kernel has no nu"), *others))
+    rows = outcomes(only(case))
+    assert headline(only(case), rows)[0] == "PASSED: all 2 checks"
+    (row,) = [row for row in rows if row.identity]
+    assert (row.word, row.status) == ("IDENTITY", Status.PASS)
+    assert "the kernel has no nu" in row.message
+
+
+def test_skips_of_one_reason_are_one_row():
+    case = failing_case()
+    (skip,) = [one for one in case.runs if one.status is Status.SKIP]
+    again = [dataclasses.replace(skip, scene=f"scene {i}") for i in range(3)]
+    other = dataclasses.replace(skip, reason="models no punches")
+    rows = outcomes(only(dataclasses.replace(case, runs=(skip, *again, other))))
+    words = {row.message: (row.name, row.scene) for row in rows if row.status is Status.SKIP}
+    assert set(words) == {skip.reason, "models no punches"}
+    assert words[skip.reason][0].endswith(" skips")
 
 
 def test_summary_puts_failures_first_and_says_what_was_left_out():

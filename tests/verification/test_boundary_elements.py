@@ -13,6 +13,7 @@ from bem.grid.quadrant import prolonged
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.method import Bem
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.tables.from_grid import FftTable
 from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
@@ -95,7 +96,8 @@ def wide_pressure(exact, ratio, rho):
     """q from the density on panels eight thicknesses wide, where the integral equation stores no pressure."""
     density = exact.densities[ratio]
     width = np.full(len(density), ratio / len(density))
-    known = ContactDensity(None, np.cumsum(width) - width, width, np.ones_like(density), density - 1.0)
+    panels = MappedGrid.between(np.append(0.0, np.cumsum(width)), density.shape[1])
+    known = ContactDensity(None, np.ones_like(density), MappedFunction(panels, density - 1.0, 0.0))
     edge = ratio * np.sqrt(1.0 - rho**2)
     return (1.0 + known.edge_value - edge * known.abel_integral(ratio * rho)) / (
         2.0 * exact.normalized_contact_stiffness(ratio)

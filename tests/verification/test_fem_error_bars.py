@@ -217,6 +217,15 @@ def test_a_load_on_a_coarse_mesh_beside_a_flat_end_is_found():
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("number", [1, 4])
+def test_a_load_that_a_coarse_mesh_does_not_carry_is_solved_on_finer_ones(number):
+    """Beside a flat end the first mesh of accuracy 1e-3 ended in a radius that does not settle."""
+    scene = random_scene(np.random.default_rng([53, number]), "elastic", (0.1, 5.0))
+    path = Fem(accuracy=1e-3).solve(scene)
+    assert max(path.error_estimate[name].max() for name in path.ARRAYS) <= 1e-3
+
+
+@pytest.mark.slow
 @pytest.mark.parametrize(("settings", "seed"), [({}, 5), ({"accuracy": 1e-2}, 3), ({"accuracy": 1e-4}, 1)])
 def test_error_bars_at_a_load_are_sharp(settings, seed):
     assert_sharp(at_loads(range(30), settings, seed))

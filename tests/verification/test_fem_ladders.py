@@ -9,7 +9,7 @@ import pytest
 from cases.declare.methods import build
 from cases.measurements.ladders.ladder_study import CLIMBERS
 from cases.measurements.ladders.ladder_table import LADDERS
-from cases.measurements.ladders.ladders import breakdown, climb, fewest_digits
+from cases.measurements.ladders.ladders import climb
 
 RUNGS = {
     "nearly incompressible": (1e-1, 1e-12, 1e-17),
@@ -27,5 +27,5 @@ RUNGS = {
 def test_rungs_are_climbed_within_their_stated_errors(name):
     plan = next(plan for plan in LADDERS if plan.name == name)
     ladder = climb(dataclasses.replace(plan, values=RUNGS[name]), build("fem", CLIMBERS["fem"]))
-    assert breakdown(ladder) is None, ladder.rungs
-    assert fewest_digits(ladder) > 4.0  # one ulp may turn one triangle: 5.3 at a/h = 1e-3, 12 and more elsewhere
+    assert ladder.breakdown is None, ladder.rungs
+    assert ladder.fewest_digits > 4.0  # one ulp may turn one triangle: 5.3 at a/h = 1e-3, 12 and more elsewhere

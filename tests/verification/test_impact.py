@@ -22,7 +22,6 @@ from contact import (
 )
 from mdr import equivalent_system
 from mdr.closed_forms.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
-from mdr.closed_forms.impact_numbers import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
 from mdr.impact.solver import impact_batch, solve_impact
 from mdr.impact.units import relaxation_of
 from tests.mdr.impact_explicit import explicit_impact
@@ -37,6 +36,7 @@ from tests.mdr.viscoelastic_scenes import (
     kelvin_voigt_punch,
     kelvin_voigt_sphere,
 )
+from tests.verification.impact_numbers import bonded_thin_layer_number, half_space_number, unbonded_thin_layer_number
 
 PUNCH = IntegralEquation()
 

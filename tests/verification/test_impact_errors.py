@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from cases.measurements.campaigns.campaign import IMPACT_NUMBERS
+from cases.declare.quantities import IMPACT_NUMBERS
 from cases.measurements.campaigns.random_scenes import random_scenes
 from mdr.impact.solver import impact_batch
 

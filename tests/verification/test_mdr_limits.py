@@ -13,8 +13,8 @@ from mdr.closed_forms.asymptotic import (
     thin_profile,
     thin_spring_stiffness,
 )
-from mdr.closed_forms.power_law import stiffness_exponent, stiffness_prefactor
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
+from tests.verification.power_law import stiffness_exponent, stiffness_prefactor
 
 SOURCE = IntegralEquation(nodes=16)  # 2e-9 by its own estimate, far below what a limit at finite a/h can show
 LAYERS = {

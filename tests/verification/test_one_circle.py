@@ -40,6 +40,7 @@ LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 INCOMPRESSIBLE = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)
 MDR, DIRECT, FEM, BEM = Mdr(), IntegralEquationMethod(), Fem(accuracy=1e-3), Bem(points=128)
 METHODS = pytest.mark.parametrize("method", [MDR, DIRECT, FEM, BEM], ids=lambda m: m.name)
+EXACT_EDGES = pytest.mark.parametrize("method", [MDR, DIRECT, FEM], ids=lambda m: m.name)
 
 # Two measured profiles with a second dip, at r = 2 mm and at r = 0.8 mm.
 DIPPED = Tabulated(radii=np.linspace(0, 4e-3, 9), heights=np.array([0, 20, 30, 25, 5, 6, 20, 60, 150]) * 1e-6)
@@ -71,6 +72,29 @@ def test_a_second_dip_below_the_surface_is_refused_with_its_radius(method, inden
 def test_no_method_answers_where_a_wider_contact_would_swallow_the_dip(method):
     with pytest.raises(ContactError, match="circle"):
         method.solve(scene_of(NARROW, IndentationDepths(values=[6e-6])))
+
+
+@EXACT_EDGES
+@pytest.mark.parametrize(("indenter", "depth"), [(NARROW, 6e-6), (STEPPED, 3e-5)])
+def test_rings_are_refused_as_what_the_method_does_not_model(method, indenter, depth):
+    with pytest.raises(UnsupportedSceneError, match="no single circle"):
+        method.solve(scene_of(indenter, IndentationDepths(values=[depth])))
+
+
+@EXACT_EDGES
+@pytest.mark.parametrize(
+    ("indenter", "radius"), [(DIPPED, 2.4e-3), (DIPPED, 3e-3), (NARROW, 0.9e-3), (STEPPED, 2.5e-3)]
+)
+def test_a_prescribed_contact_that_would_be_pulled_inside_is_refused(method, indenter, radius):
+    with pytest.raises(UnsupportedSceneError, match="no single circle"):
+        method.solve(scene_of(indenter, ContactRadii(values=[radius])))
+
+
+@pytest.mark.parametrize("method", [DIRECT, FEM], ids=lambda m: m.name)
+@pytest.mark.parametrize(("indenter", "radius"), [(DIPPED, 3.6e-3), (NARROW, 1.2e-3)])
+def test_a_wider_contact_that_presses_everywhere_is_answered(method, indenter, radius):
+    path = method.solve(scene_of(indenter, ContactRadii(values=[radius])))
+    assert np.all(path.pressure(np.linspace(0.001, 0.999, 200) * radius) > 0.0)
 
 
 @METHODS

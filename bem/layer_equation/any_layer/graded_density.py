@@ -9,7 +9,7 @@ import numpy as np
 
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels
-from bem.polynomials.equal_panels import chebyshev_sum
+from bem.polynomials.chebyshev import chebyshev_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact.records.validation import FloatArray
 

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bem.layer_equation.error_model import FACTOR
-from bem.layer_equation.flat_punch_solution import EPS, IntegralEquationSolution
+from bem.layer_equation.flat_punch_solution import EPS, IntegralEquationSolution, polynomial_truncation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import (
     STRIP,
@@ -24,13 +24,13 @@ from bem.layer_equation.one_factorisation import (
     schur_kernels,
 )
 from bem.layer_equation.triangular import equation_factor
-from bem.polynomials.equal_panels import EqualPanels
 from bem.polynomials.gauss_panels import (
     chebyshev_from_nodes,
     gauss_nodes,
     lagrange_matrix,
     partial_panel_interpolation,
 )
+from bem.polynomials.mapped import MappedFunction
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
@@ -42,22 +42,6 @@ FIRST_SHARE: Final = 1.0
 INTERPOLATED_SHARE: Final = 0.2
 # Halvings of the first panel in any case, since edge values change over a part of the thickness on every layer.
 LEAST_HALVINGS: Final = 2
-
-
-@dataclass(frozen=True)
-class UnequalPanels(EqualPanels):
-    """Piecewise polynomial on panels of any widths.
-
-    Attributes:
-        ends: Panel ends from zero, shape (P + 1,).
-    """
-
-    ends: FloatArray
-
-    def locate(self, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
-        """Number of the panel and relative position in it; a point between two panels belongs to the left one."""
-        panels = np.clip(np.searchsorted(self.ends, x, side="left") - 1, 0, len(self.coefficients) - 1)
-        return panels, (x - self.ends[panels]) / np.diff(self.ends)[panels]
 
 
 @dataclass(frozen=True)
@@ -98,6 +82,11 @@ class GradedFactor(VolterraFactor):
         """Where the last panel ends."""
         return float(self.ends[-1])
 
+    @property
+    def all_ends(self) -> FloatArray:
+        """Of the panels, from zero on."""
+        return self.ends
+
     def widths(self, panels: int) -> FloatArray:
         """Of the first panels."""
         return np.diff(self.ends[: panels + 1])
@@ -117,10 +106,6 @@ class GradedFactor(VolterraFactor):
     def panels_to(self, x: float) -> int:
         """How many panels cover [0, x]."""
         return max(int(np.searchsorted(self.ends, x, side="left")), 1)
-
-    def interpolant(self, values: FloatArray) -> UnequalPanels:
-        """The function with these values at the nodes of all panels, shape (P, m)."""
-        return UnequalPanels(self.panel_width, values @ chebyshev_from_nodes(values.shape[1]).T, self.ends)
 
     def root_weights(self, panels: int) -> FloatArray:
         """Square roots of the weights of the first panels, shape (panels, m)."""
@@ -181,7 +166,7 @@ class AnyLayerSolution(IntegralEquationSolution):
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
         length = np.maximum(ratio, np.finfo(float).tiny)
-        truncated = self._contact_stiffness.truncation(ratio) / k + self._before(length) / (length * k)
+        truncated = polynomial_truncation(self._contact_stiffness, ratio) / k + self._before(length) / (length * k)
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def panel_ends(self, ratio: float) -> FloatArray:
@@ -201,13 +186,13 @@ class AnyLayerSolution(IntegralEquationSolution):
         middles = (ends[1:] + ends[:-1]) / 2
         density = self._spring_truncation(middles) * self.normalized_spring_stiffness(middles)
         each = FACTOR.own_panel * density * np.diff(ends)
-        panel, _ = self._edge_density.locate(ratio)
+        panel, _ = self._panels.locate(ratio)
         earlier = np.append(0.0, np.cumsum(each))[panel]
         own = np.minimum(each[panel], density[panel] * ratio)
         return np.asarray(earlier + own)
 
     @cached_property
-    def _contact_stiffness(self) -> EqualPanels:
+    def _contact_stiffness(self) -> MappedFunction:
         """k_bar at every node, as for equal panels."""
         tau, omega = gauss_nodes(self.factor.count)
         widths, starts = np.diff(self.factor.ends)[:, None], self.factor.ends[:-1, None]
@@ -215,4 +200,4 @@ class AnyLayerSolution(IntegralEquationSolution):
         y = self._edge_density(x)
         partial = widths * tau * ((partial_panel_interpolation(tau.size) @ y[:, None, :, None])[..., 0] ** 2 @ omega)
         full = np.concatenate([[0.0], np.cumsum(widths[:, 0] * (y**2 @ omega))[:-1]])
-        return self.factor.interpolant((full[:, None] + partial) / x)
+        return MappedFunction(self._panels, (full[:, None] + partial) / x, 0.0)

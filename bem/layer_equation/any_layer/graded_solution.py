@@ -17,7 +17,7 @@ from bem.layer_equation.any_layer.edge_systems import EdgeSystems
 from bem.layer_equation.any_layer.graded_density import GradedDensity
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.protocol import FlatPunchSolution
-from bem.polynomials.equal_panels import piecewise_sum
+from bem.polynomials.chebyshev import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from bem.polynomials.mapped import MappedFunction
 from bem.polynomials.truncation import at_end, orders_beyond

@@ -10,7 +10,7 @@ import numpy as np
 
 from bem.kernels.protocol import SurfaceKernel
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.polynomials.equal_panels import piecewise_sum
+from bem.polynomials.chebyshev import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact.records.validation import FloatArray
 

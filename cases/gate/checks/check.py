@@ -1,6 +1,7 @@
 """One comparison with the accepted baseline, and the claim it becomes in the run."""
 
 from dataclasses import dataclass
+from typing import Any
 
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.results.records.claim import Claim, Kind, Origin
@@ -47,39 +48,19 @@ class BaselineCheck:
         )
 
 
-def regression_claim(
-    name: str,
-    judgement: Judgement,
-    *,
-    scene: str,
-    methods: tuple[str, ...],
-    quantity: str,
-    source: str,
-    because: str,
-    derived_from: str,
-    expected: float | None,
-    tolerance: float,
-    unit: str = "1",
-) -> Claim:
-    """Return a comparison with own earlier output as a claim; the arguments are those of `Claim`."""
+def regression_claim(name: str, judgement: Judgement, *, unit: str = "1", **words: Any) -> Claim:
+    """Return a comparison with own earlier output as a claim; `words` are the other fields of `Claim`."""
     return Claim(
         name=name,
         kind=Kind.REGRESSION,
-        scene=scene,
-        methods=methods,
-        quantity=quantity,
         unit=unit,
         status=judgement.status,
         verdict=judgement.verdict,
         observed=judgement.observed,
-        expected=expected,
-        tolerance=tolerance,
         fraction=judgement.fraction,
         origin=Origin.OWN_EARLIER_OUTPUT,
-        source=source,
-        because=because,
-        derived_from=derived_from,
         message=judgement.message,
+        **words,
     )
 
 

@@ -42,14 +42,20 @@ class Agreement(DeclaredClaim):
         """Judge each scene by its worst step."""
         for scene in self.scenes_of(case):
             fast, reference = (answers.of(case.task(scene, case.use(scene, m))) for m in self.labels(case, scene))
-            labels = self.labels(case, scene)
+            labels, shared = self.labels(case, scene), self.shared(case, fast, reference)
             judged = first_missing(fast, reference)
             if judged is not None:
-                yield self.record(judged, scene.name, labels)
+                yield self.record(judged, scene.name, labels, shared=shared)
                 continue
             judged, uncertainty = self._compared(fast, reference)
             yield self.record(
-                judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared(fast, reference)
+                judged,
+                scene.name,
+                labels,
+                expected=0.0,
+                uncertainty=uncertainty,
+                shared=shared,
+                identity=self.identity(scene, labels),
             )
 
     def _compared(self, fast: SceneRun, reference: SceneRun) -> tuple[Judgement, dict[str, float]]:
@@ -74,11 +80,6 @@ class Agreement(DeclaredClaim):
         worst = worst_judgement(judgements)
         step = judgements.index(worst)
         return worst, {fast.method: u_fast[step], reference.method: u_reference[step]}
-
-
-def shared(first: SceneRun, second: SceneRun) -> tuple[str, ...]:
-    """Return the inputs both answers used: their agreement says nothing about those."""
-    return tuple(name for name in first.shared_inputs if name in second.shared_inputs)
 
 
 def _incomparable(a: Quantity, b: Quantity, first: str, second: str) -> Judgement | None:

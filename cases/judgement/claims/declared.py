@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 from typing import ClassVar, Self
 
 from cases.declare.case import Case, CaseScene
+from cases.declare.shared import in_common
 from cases.declare.task import Answers, Task
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.tolerance import positive_tolerance
@@ -13,6 +14,9 @@ from cases.results.records.claim import Claim, Kind, Origin
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from contact import InvalidInput
+
+# On the half-space MDR on a table reads no table: it is MDR itself, by construction.
+TABLE, NO_TABLE = "mdr_table", "on the half-space no table is read"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -50,6 +54,8 @@ class DeclaredClaim(ABC):
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
         relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
+        identities: of methods for which it holds by construction, by label: why; such checks are not counted.
+        nightly: whether it takes too long for the suite "ci".
     """
 
     kind: ClassVar[Kind]
@@ -61,6 +67,8 @@ class DeclaredClaim(ABC):
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
     relaxed: Mapping[str, str] = field(default_factory=dict)
+    identities: Mapping[str, str] = field(default_factory=dict)
+    nightly: bool = False
 
     def __post_init__(self) -> None:
         """Refuse a claim without a reason, and a tolerance of the wrong sign."""
@@ -105,6 +113,15 @@ class DeclaredClaim(ABC):
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge the finished answers, one record a scene and method."""
 
+    def shared(self, case: Case, first: SceneRun, second: SceneRun) -> tuple[str, ...]:
+        """Return what both answers rest on: their agreement says nothing about it."""
+        return in_common(first.shared_inputs, second.shared_inputs, quantity=self.quantity, case=case.name)
+
+    def identity(self, scene: CaseScene, labels: Iterable[str]) -> str:
+        """Return why the comparison cannot fail on ``scene``, empty where it can."""
+        known = {TABLE: NO_TABLE} if scene.scene.layer.is_half_space else {}
+        return next((why[label] for why in (self.identities, known) for label in labels if label in why), "")
+
     def record(
         self,
         judgement: Judgement,
@@ -115,6 +132,7 @@ class DeclaredClaim(ABC):
         uncertainty: Mapping[str, float] | None = None,
         shared: tuple[str, ...] = (),
         tolerance: float = 0.0,
+        identity: str = "",
     ) -> Claim:
         """Return the record of a judgement."""
         status, message = self._declared(judgement)
@@ -132,14 +150,20 @@ class DeclaredClaim(ABC):
             tolerance=tolerance or self.tolerance,
             fraction=judgement.fraction,
             uncertainty=dict(uncertainty or {}),
-            origin=self.reason.origin,
+            origin=self._origin(shared),
             source=self.reason.source,
             because=self.reason.because,
             derived_from=self.reason.derived_from,
             shared_inputs=shared,
             message=message,
+            identity=identity,
             relaxed="; ".join(self.relaxed[label] for label in methods if label in self.relaxed),
         )
+
+    def _origin(self, shared: tuple[str, ...]) -> Origin:
+        """Return the declared origin; a method is independent only where nothing is shared."""
+        independent = self.reason.origin is Origin.INDEPENDENT_METHOD
+        return Origin.RELATED_METHOD if independent and shared else self.reason.origin
 
     def _declared(self, judgement: Judgement) -> tuple[Status, str]:
         """Turn a declared failure into XFAIL, and its unexpected success into XPASS."""

@@ -4,6 +4,9 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+from numpy.typing import ArrayLike
+
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers
 from cases.judgement.claims.declared import PerMethod, missing
@@ -34,12 +37,23 @@ class Exact(PerMethod):
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene and method by its worst step."""
         for scene, label, run, tolerance in self.answered(case, answers):
-            expected = self._expected(scene)
-            judged = missing(run) or _worst_step(run.quantity(self.quantity), expected, tolerance)
+            expected = self.expected_on(scene)
+            judged, stated = missing(run), None
+            if judged is None:
+                judged, stated, _ = worst_step(run.quantity(self.quantity), expected, tolerance)
             single = expected[0] if len(expected) == 1 else None
-            yield self.record(judged, scene.name, (label,), expected=single, tolerance=tolerance)
+            yield self.record(
+                judged,
+                scene.name,
+                (label,),
+                expected=single,
+                uncertainty={} if stated is None else {label: stated},
+                tolerance=tolerance,
+                identity=self.identity(scene, (label,)),
+            )
 
-    def _expected(self, scene: CaseScene) -> Sequence[float]:
+    def expected_on(self, scene: CaseScene) -> Sequence[float]:
+        """Return the expected values on one scene."""
         if not isinstance(self.expected, Mapping):
             return [float(value) for value in self.expected(scene.scene)]
         if scene.name not in self.expected:
@@ -47,10 +61,31 @@ class Exact(PerMethod):
         return self.expected[scene.name]
 
 
-def _worst_step(quantity: Quantity, expected: Sequence[float], tolerance: float) -> Judgement:
+def worst_step(
+    quantity: Quantity, expected: Sequence[float], tolerance: float, inputs: ArrayLike = 0.0
+) -> tuple[Judgement, float | None, int]:
+    """Judge every step.
+
+    Args:
+        quantity: along the steps.
+        expected: values, one a step.
+        tolerance: relative.
+        inputs: absolute uncertainty of the values by their inputs, one number or one a step.
+
+    Returns:
+        The judgement of the worst step, the error that the method states there, relative (None if it states none),
+        and which step it is.
+    """
     if len(expected) != len(quantity.values):
         message = f"{len(quantity.values)} steps for {len(expected)} expected values of {quantity.name}"
-        return nothing_compared(Status.INCOMPARABLE, message)
+        return nothing_compared(Status.INCOMPARABLE, message), None, 0
     scale = quantity.scale if any(value == 0 for value in expected) else 0.0
-    pairs = zip(quantity.values, expected, strict=True)
-    return worst_judgement([judge_exact(v, e, scale=scale, tolerance=tolerance) for v, e in pairs])
+    stated = quantity.uncertainty or (0.0,) * len(expected)
+    total = np.hypot(stated, inputs)
+    judged = [
+        judge_exact(v, e, scale=scale, tolerance=tolerance, uncertainty=float(u))
+        for v, e, u in zip(quantity.values, expected, total, strict=True)
+    ]
+    worst = worst_judgement(judged)
+    step = judged.index(worst)
+    return worst, stated[step] / max(abs(expected[step]), scale) if quantity.uncertainty else None, step

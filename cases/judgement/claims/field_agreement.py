@@ -8,7 +8,6 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers, Task
-from cases.judgement.claims.agreement import shared
 from cases.judgement.claims.declared import DeclaredClaim, first_missing
 from cases.judgement.rules.agreement import judge_agreement
 from cases.judgement.rules.judgement import Judgement, nothing_compared
@@ -62,7 +61,8 @@ class FieldAgreement(DeclaredClaim):
             judged, uncertainty = first_missing(*runs), dict[str, float]()
             if judged is None:
                 judged, uncertainty = self._compared(case, scene, answers, runs)
-            yield self.record(judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared(*runs))
+            shared = self.shared(case, *runs)
+            yield self.record(judged, scene.name, labels, expected=0.0, uncertainty=uncertainty, shared=shared)
 
     def _compared(
         self, case: Case, scene: CaseScene, answers: Answers, runs: list[SceneRun]

@@ -1,8 +1,9 @@
 """The observed order of convergence of one method on one scene."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass
-from typing import Any, ClassVar
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, TypeAlias
 
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
@@ -17,6 +18,9 @@ from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from contact import Scene
 
+# The settings of one grid, or of several grids that make one refinement.
+Grids: TypeAlias = Mapping[str, Any] | tuple[Mapping[str, Any], ...]
+
 
 @dataclass(frozen=True, kw_only=True)
 class Order(DeclaredClaim):
@@ -24,67 +28,91 @@ class Order(DeclaredClaim):
 
     Attributes:
         method: label of the method in the case.
-        ladder: settings of each grid, coarsest first, in place of those of the case.
+        ladder: settings of each refinement, coarsest first, in place of those of the case; several grids of one
+            refinement, whose errors scatter, count by their root mean square.
         ratio: of the discretisation lengths of neighbours.
         formal_order: p_f of this case, quantity and mesh family; None claims spectral convergence.
         least_digits: digits per refinement, for spectral convergence.
         mesh_family: what the formal order belongs to.
         reference: the value at vanishing length, or None.
-        reference_uncertainty: relative.
+        against: the method whose answer is the reference, where there is no such value: its label in the case, or one
+            with settings of its own.
+        reference_uncertainty: relative, of the reference; zero for what the method itself states.
         floor: round-off floor, relative.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
 
     method: str
-    ladder: tuple[Mapping[str, Any], ...]
+    ladder: tuple[Grids, ...]
     ratio: float = 2.0
     formal_order: float | None = None
     least_digits: float = 1.0
     mesh_family: str
     reference: Callable[[Scene], float] | None = None
+    against: str | MethodUse = ""
     reference_uncertainty: float = 0.0
     floor: float = 1e-14
 
     def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
-        """Return the one label."""
-        return (self.method,)
+        """Return the label of the method, and that of the one of the case that it is compared with."""
+        return (self.method, self.against) if self.against and isinstance(self.against, str) else (self.method,)
 
     def tasks(self, case: Case) -> Iterable[Task]:
         """Return the grids of every scene, coarsest first."""
-        for scene in self.scenes_of(case):
-            yield from self._grids(case, scene)
+        return (task for scene in self.scenes_of(case) for task in self._tasks(case, scene))
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene."""
         for scene in self.scenes_of(case):
-            runs = [answers.of(task) for task in self._grids(case, scene)]
-            judged = first_missing(*runs) or self._judged(self._study(scene, runs))
+            judged = first_missing(*self._runs(case, scene, answers)) or self._judged(self._study(case, scene, answers))
             yield self.record(judged, scene.name, (self.method,), expected=self.formal_order)
 
     def studies(self, case: Case, answers: Answers) -> Iterator[ConvergenceStudy]:
         """Return the convergence study of each scene whose grids were all solved."""
         for scene in self.scenes_of(case):
-            runs = [answers.of(task) for task in self._grids(case, scene)]
-            if first_missing(*runs) is None:
-                yield self._study(scene, runs)
+            if first_missing(*self._runs(case, scene, answers)) is None:
+                yield self._study(case, scene, answers)
 
-    def _grids(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+    def _levels(self, case: Case, scene: CaseScene) -> Iterator[tuple[Task, ...]]:
+        """The tasks of each refinement, named after their settings: claims about other quantities share them."""
         use = case.use(scene, self.method)
-        task = case.task(scene, use)
-        for level, settings in enumerate(self.ladder):
-            solver = MethodUse(label=use.label, method=use.method, settings=settings).build()
-            yield task.changed(f"{self.name}, grid {level}", solver=solver)
+        for level in self.ladder:
+            grids = (level,) if isinstance(level, Mapping) else level
+            yield tuple(self._task(case, scene, replace(use, settings=settings)) for settings in grids)
 
-    def _study(self, scene: CaseScene, runs: list[SceneRun]) -> ConvergenceStudy:
-        finest_first = runs[::-1]
+    def _task(self, case: Case, scene: CaseScene, use: MethodUse) -> Task:
+        words = ", ".join(f"{name}={value}" for name, value in use.settings.items())
+        return case.task(scene, use).changed(f"grid {words}")
+
+    def _referee(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        """The task whose answer is the reference, if one is."""
+        if isinstance(self.against, MethodUse):
+            yield self._task(case, scene, self.against)
+        elif self.against:
+            yield case.task(scene, case.use(scene, self.against))
+
+    def _tasks(self, case: Case, scene: CaseScene) -> Iterator[Task]:
+        """Every answer the study needs."""
+        yield from (task for level in self._levels(case, scene) for task in level)
+        yield from self._referee(case, scene)
+
+    def _runs(self, case: Case, scene: CaseScene, answers: Answers) -> list[SceneRun]:
+        return [answers.of(task) for task in self._tasks(case, scene)]
+
+    def _study(self, case: Case, scene: CaseScene, answers: Answers) -> ConvergenceStudy:
+        levels = [[answers.of(task) for task in level] for level in self._levels(case, scene)][::-1]
+        runs = [level[0] for level in levels]
+        quantity = runs[0].quantity(self.quantity)
+        reference, uncertainty = self._reference(case, scene, answers)
         sequence = Refinements(
             lengths=tuple(self.ratio**-level for level in range(len(runs)))[::-1],
-            values=tuple(run.quantity(self.quantity).values[-1] for run in finest_first),
-            unknowns=tuple(run.cost.unknowns if run.cost else 0 for run in finest_first),
-            seconds=tuple(run.cost.cpu_seconds if run.cost else 0.0 for run in finest_first),
+            values=tuple(self._last(run) for run in runs),
+            unknowns=tuple(run.cost.unknowns if run.cost else 0 for run in runs),
+            seconds=tuple(run.cost.cpu_seconds if run.cost else 0.0 for run in runs),
+            errors=tuple(self._distance(level, reference) for level in levels) if reference is not None else (),
+            stated=tuple((run.quantity(self.quantity).uncertainty or (None,))[-1] for run in runs),
         )
-        quantity = finest_first[0].quantity(self.quantity)
         return study_of(
             sequence,
             scene=scene.name,
@@ -92,11 +120,30 @@ class Order(DeclaredClaim):
             quantity=quantity,
             formal_order=self.formal_order,
             mesh_family=self.mesh_family,
-            reference=self.reference(scene.scene) if self.reference else None,
-            reference_uncertainty=self.reference_uncertainty,
-            reference_source=self.reason.source,
+            reference=reference,
+            reference_uncertainty=uncertainty,
+            reference_source=self._referee_name or self.reason.source,
             floor=self.floor,
         )
+
+    @property
+    def _referee_name(self) -> str:
+        return self.against.label if isinstance(self.against, MethodUse) else self.against
+
+    def _reference(self, case: Case, scene: CaseScene, answers: Answers) -> tuple[float | None, float]:
+        """The value at vanishing length, and its relative uncertainty."""
+        for task in self._referee(case, scene):
+            found = answers.of(task).quantity(self.quantity)
+            stated = (found.uncertainty or (0.0,))[-1] / found.scale
+            return found.values[-1], self.reference_uncertainty or stated
+        return self.reference(scene.scene) if self.reference else None, self.reference_uncertainty
+
+    def _last(self, run: SceneRun) -> float:
+        return run.quantity(self.quantity).values[-1]
+
+    def _distance(self, level: Sequence[SceneRun], reference: float) -> float:
+        """Root mean square distance of the grids of one refinement."""
+        return math.sqrt(sum((self._last(run) - reference) ** 2 for run in level) / len(level))
 
     def _judged(self, study: ConvergenceStudy) -> Judgement:
         if self.formal_order is not None:

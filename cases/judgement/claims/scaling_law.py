@@ -40,7 +40,8 @@ class ScalingLaw(PerMethod):
         for scene, label, original, tolerance in self.answered(case, answers):
             changed = answers.of(self._changed(case.task(scene, case.use(scene, label))))
             judged = first_missing(original, changed) or self._judged(original, changed, tolerance)
-            yield self.record(judged, scene.name, (label,), tolerance=tolerance)
+            identity = self.identity(scene, (label,))
+            yield self.record(judged, scene.name, (label,), tolerance=tolerance, identity=identity)
 
     def _changed(self, task: Task) -> Task:
         return task.changed(self.name, problem=self.change(task.problem))

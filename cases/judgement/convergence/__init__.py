@@ -5,6 +5,7 @@
 - ``least_squares``: four grids and more (Eca and Hoekstra 2014)
 - ``behaviour``: monotone, oscillatory, divergent, floor, too few
 - ``asymptotic``: whether the grids lie in the asymptotic range, by tests that can fail
+- ``known_errors``: order and asymptotic range where the errors themselves are known
 - ``spectral``: digits gained per refinement
 - ``study``: all of it for one sequence
 """

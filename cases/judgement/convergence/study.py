@@ -1,10 +1,12 @@
 """Everything this package can say about one sequence of refinements."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cases.judgement.convergence.asymptotic import is_asymptotic
 from cases.judgement.convergence.behaviour import behaviour
 from cases.judgement.convergence.extrapolation import extrapolated, grid_convergence_index, safety_factor
+from cases.judgement.convergence.known_errors import behaviour_of_errors, errors_follow_order, order_of_errors
 from cases.judgement.convergence.least_squares import fit
 from cases.judgement.convergence.observed_order import observed_order
 from cases.judgement.convergence.spectral import digits_per_refinement
@@ -17,12 +19,23 @@ _HAS_ORDER = {ConvergenceClass.MONOTONE, ConvergenceClass.OSCILLATORY, Convergen
 
 @dataclass(frozen=True, kw_only=True)
 class Refinements:
-    """A quantity on successive grids, finest first; lengths are relative to the coarsest."""
+    """A quantity on successive refinements, finest first.
+
+    Attributes:
+        lengths: of the discretisation, relative to the coarsest.
+        values: of the first grid of each refinement.
+        unknowns: of that grid.
+        seconds: of that grid.
+        errors: absolute, against the reference; empty without one.
+        stated: errors that the method states, absolute; None where it states none; empty where none are kept.
+    """
 
     lengths: tuple[float, ...]
     values: tuple[float, ...]
     unknowns: tuple[int, ...]
     seconds: tuple[float, ...]
+    errors: tuple[float, ...] = ()
+    stated: tuple[float | None, ...] = ()
 
 
 def study_of(
@@ -38,14 +51,29 @@ def study_of(
     reference_source: str,
     floor: float,
 ) -> ConvergenceStudy:
-    """Return the study of ``sequence``; ``formal_order`` None means spectral convergence."""
-    errors = tuple(None if reference is None else abs(value - reference) for value in sequence.values)
+    """Return the study of ``sequence``; ``formal_order`` None means spectral convergence.
+
+    The order is that of the errors where the reference is ten times as exact as the finest grid, else of the values.
+    """
+    measured = sequence.errors or tuple(abs(value - reference) for value in sequence.values if reference is not None)
+    errors: tuple[float | None, ...] = measured or (None,) * len(sequence.values)
+    is_known = bool(measured) and measured[0] > 10 * reference_uncertainty * quantity.scale
     if formal_order is None:
-        kind, order, limit = ConvergenceClass.SPECTRAL, None, None
+        found = _Found(ConvergenceClass.SPECTRAL)
+    elif is_known:
+        found = _of_errors(measured, sequence.lengths, formal_order, floor * quantity.scale)
     else:
-        kind = behaviour(sequence.values, floor=floor * quantity.scale)
-        order, limit = _order_and_limit(sequence, formal_order) if kind in _HAS_ORDER else (None, None)
-    indices = _indices(sequence, order, formal_order, quantity.scale)
+        found = _of_values(sequence, formal_order, floor * quantity.scale)
+    grids = zip(
+        sequence.lengths,
+        sequence.unknowns,
+        sequence.seconds,
+        sequence.values,
+        errors,
+        _indices(sequence, found.order, formal_order, quantity.scale),
+        sequence.stated or (None,) * len(errors),
+        strict=True,
+    )
     return ConvergenceStudy(
         scene=scene,
         method=method,
@@ -53,22 +81,43 @@ def study_of(
         unit=quantity.unit,
         scale=quantity.scale,
         mesh_family=mesh_family,
-        kind=kind,
+        kind=found.kind,
         grids=tuple(
-            Grid(length=h, unknowns=n, seconds=s, value=v, error=e, gci=g)
-            for h, n, s, v, e, g in zip(
-                sequence.lengths, sequence.unknowns, sequence.seconds, sequence.values, errors, indices, strict=True
-            )
+            Grid(length=h, unknowns=n, seconds=s, value=v, error=e, gci=g, stated=u) for h, n, s, v, e, g, u in grids
         ),
         formal_order=formal_order,
-        observed_order=order,
+        observed_order=found.order,
         digits_per_refinement=None if formal_order else _digits(errors, sequence, quantity.scale, floor),
-        extrapolated=limit,
-        asymptotic=is_asymptotic(sequence.values, sequence.lengths, formal_order) if order and formal_order else None,
+        extrapolated=found.limit,
+        asymptotic=found.asymptotic,
         reference=reference,
         reference_uncertainty=reference_uncertainty * quantity.scale,
         reference_source=reference_source,
     )
+
+
+@dataclass(frozen=True)
+class _Found:
+    """Class, order, limit and asymptotic range of one sequence."""
+
+    kind: ConvergenceClass
+    order: float | None = None
+    limit: float | None = None
+    asymptotic: bool | None = None
+
+
+def _of_errors(errors: Sequence[float], lengths: Sequence[float], formal: float, floor: float) -> _Found:
+    kind = behaviour_of_errors(errors, floor=floor)
+    if kind not in _HAS_ORDER:
+        return _Found(kind)
+    return _Found(kind, order_of_errors(errors, lengths), None, errors_follow_order(errors, lengths, formal))
+
+
+def _of_values(sequence: Refinements, formal: float, floor: float) -> _Found:
+    kind = behaviour(sequence.values, floor=floor)
+    if kind not in _HAS_ORDER:
+        return _Found(kind)
+    return _Found(kind, *_order_and_limit(sequence, formal), is_asymptotic(sequence.values, sequence.lengths, formal))
 
 
 def _order_and_limit(sequence: Refinements, formal: float) -> tuple[float, float | None]:

@@ -7,12 +7,21 @@ from cases.judgement.rules.tolerance import positive_tolerance
 from cases.results.status import Status
 
 
-def judge_exact(value: float, expected: float, *, scale: float, tolerance: float) -> Judgement:
-    """Judge |value - expected| / max(|expected|, scale) <= tolerance."""
+def judge_exact(
+    value: float, expected: float, *, scale: float, tolerance: float, uncertainty: float = 0.0
+) -> Judgement:
+    """Judge |value - expected| / max(|expected|, scale) <= tolerance.
+
+    The tolerance is a requirement. An error beyond it that the method's own ``uncertainty`` (absolute) explains is
+    inconclusive: the method says itself that it is too coarse to be judged.
+    """
     positive_tolerance(tolerance)
     if not (math.isfinite(value) and math.isfinite(expected)):
         return nothing_compared(Status.INVALID, f"value {value}, expected {expected}: both must be finite")
     size = max(abs(expected), scale)
     error = (value - expected) / size
     message = f"{value:.10g} against {expected:.10g}: relative error {error:.1e}, tolerance {tolerance:.0e}"
-    return passed_or_failed(error, tolerance, message)
+    explained = abs(error) > tolerance and abs(error) - uncertainty / size <= tolerance
+    if explained:
+        message += f"; stated error {uncertainty / size:.1e}: refine"
+    return passed_or_failed(error, tolerance, message, Status.INCONCLUSIVE if explained else Status.FAIL)

@@ -37,7 +37,8 @@ def passed_or_failed(error: float, tolerance: float, message: str, failure: Stat
 
 def decided(good: bool, observed: float, fraction: float, message: str, failure: Status = Status.FAIL) -> Judgement:
     """Return the judgement of a comparison that passes or ends with ``failure``; the rest as in `Judgement`."""
-    status, verdict = (Status.PASS, Verdict.PASS) if good else (failure, Verdict.FAIL)
+    open_verdict = Verdict.INCONCLUSIVE if failure is Status.INCONCLUSIVE else Verdict.FAIL
+    status, verdict = (Status.PASS, Verdict.PASS) if good else (failure, open_verdict)
     return Judgement(status=status, verdict=verdict, observed=observed, fraction=fraction, message=message)
 
 

@@ -13,10 +13,12 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
-from cases.library._claims import BEM_TOLERANCE, TABLE_TOLERANCES, agreements, names_of, scaling_law
+from cases.library._claims import agreements, names_of, scaling_law
+from cases.library._convergence import EDGE_CELL, NODES, POINTS, fem_cells, studies
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons
+from cases.library._requirements import required
 from cases.measurements.cost.settings import elastic_costs
 from contact import CoatedPair, ContactRadii, InvalidInput, Paraboloid, Scene
 
@@ -91,6 +93,15 @@ def thinness(scene: Scene) -> float:
     return scene.layer.thickness / float(prescribed_radii(scene)[0])
 
 
+FORCE_AND_DEPTH = ("normal_force", "indentation_depth")
+ORDERS = (
+    *studies(SYMMETRIC[1:2], NODES, FORCE_AND_DEPTH, against="integral_equation"),
+    *studies(SYMMETRIC[:1], EDGE_CELL, {"normal_force": 1.0}, against="integral_equation"),
+    *studies(SYMMETRIC[:1], fem_cells(3), dict.fromkeys(FORCE_AND_DEPTH, 6.0), against="mdr", nightly=True),
+    *studies(SYMMETRIC[:1], POINTS, {"normal_force": 2.0}, against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="coated_pair",
     title="Two coated bodies",
@@ -119,10 +130,8 @@ CASE = Case(
             tolerance=0.2,
             reason=WHY["series"],
         ),
-        *agreements(
-            SYMMETRIC,
-            {"fem": 3e-6, "bem": BEM_TOLERANCE, "integral_equation": 1e-9, "mdr_table": TABLE_TOLERANCES},
-        ),
+        *agreements(SYMMETRIC, required("fem", "bem", "integral_equation", "mdr_table")),
+        *ORDERS,
     ),
     work=elastic_costs(SYMMETRIC[0].name),
 )

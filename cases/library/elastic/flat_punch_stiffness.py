@@ -2,7 +2,7 @@
 
 A cylindrical flat punch of radius a is pressed into a layer of thickness h. Its contact stiffness over that of the
 half-space, kbar = k_N / (2 E* a), depends on a/h, on the support, and on nu for a bonded layer only. It is the input of
-MDR, so it is checked first: against a separate solution of the Fredholm equation, against the table of Hayes et al.
+MDR, so it is checked first: against the Fredholm equation in extended precision, against the table of Hayes et al.
 (1972), which drifts low for thin incompressible layers, against the fits of Hermanowicz (2021), against finite elements
 and against direct boundary elements.
 
@@ -17,11 +17,23 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers, Sampling
 from cases.library._claims import agreements, exact
+from cases.library._convergence import (
+    EQUATION_NODES,
+    FEW_ROWS,
+    FINEST_MDR,
+    MANY_ROWS,
+    NODES,
+    PUNCH_POINTS,
+    TABLE_CELLS,
+    fem_cells,
+    studies,
+)
 from cases.library._figures import paper_figure
 from cases.library._figures._symbols import pressure_symbols, series
 from cases.library._layers import THICKNESS, contact_modulus, edges, layer_of, scene_name
 from cases.library._methods import BEM, EVERY, FEM, MDR
 from cases.library._reasons import SHARED, reasons
+from cases.library._references import numbers
 from cases.measurements.cost.settings import elastic_costs
 from cases.results.records.figure import Figure, Series
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
@@ -37,15 +49,12 @@ LAYERS: dict[str, Layer] = {
 }
 
 
-# Normalised stiffness kbar at a/h = 0.2, 1 and 2.
-STIFFNESS: dict[str, tuple[float, float, float]] = {
-    "bonded nu=0.3": (1.20655824090, 2.48352462914, 4.35324429030),
-    "bonded nu=0.4": (1.23225336443, 2.79376800243, 5.29854688001),
-    "bonded nu=0.45": (1.25233991738, 3.09140806745, 6.42058801854),
-    "bonded nu=0.5": (1.28063660581, 3.61873584896, 9.14945045204),
-    "unbonded": (1.17102775645, 2.19862136567, 3.72760647995),
-}
 STIFFNESS_RATIOS = (0.2, 1.0, 2.0)
+# Normalised stiffness kbar at these ratios.
+STIFFNESS = {
+    label: tuple(float(numbers("stiffness")[scene_name(label, ratio)][0]) for ratio in STIFFNESS_RATIOS)
+    for label in LAYERS
+}
 
 HAYES_RATIOS = (0.2, 0.4, 0.6, 0.8, 1.0, 2.0)
 HAYES: dict[str, tuple[float, ...]] = {
@@ -54,15 +63,9 @@ HAYES: dict[str, tuple[float, ...]] = {
     "bonded nu=0.5": (1.281, 1.683, 2.211, 2.855, 3.609, 9.069),
 }
 HERMANOWICZ_RATIOS = tuple(float(r) for r in np.geomspace(0.1, 30, 25))
-PRESSURE_RATIOS = (0.5, 1.0, 2.0, 5.0)
 PRESSURE_AT = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95)
 # p / p_mean at the radii PRESSURE_AT on a bonded layer with nu = 0.5, by a/h.
-PRESSURE: dict[float, tuple[float, ...]] = {
-    0.5: (0.57272, 0.57955, 0.60398, 0.66357, 0.83551, 1.11163, 1.52375),
-    1.0: (0.77986, 0.77516, 0.76447, 0.76275, 0.83249, 1.01177, 1.31895),
-    2.0: (1.03449, 1.02196, 0.98222, 0.91203, 0.83638, 0.87139, 1.02691),
-    5.0: (1.33947, 1.31010, 1.22200, 1.07478, 0.85774, 0.71988, 0.68681),
-}
+PRESSURE = {ratio: numbers("pressure")[scene_name("bonded nu=0.5", ratio)] for ratio in (0.5, 1.0, 2.0, 5.0)}
 
 
 def punch(label: str, ratio: float) -> CaseScene:
@@ -159,7 +162,7 @@ ON_PATHS = {
 }
 CLAIMS = (
     *exact(
-        SHARED["separate solution"],
+        SHARED["reference"],
         {"stiffness to ten digits": ("contact_stiffness", tabulated())},
         tolerance=1e-10,
         tolerances={"fem": 3e-6, "bem": 3e-5, "mdr_table": 3e-4},
@@ -188,8 +191,8 @@ def figure_5(case: Case, answers: Answers) -> Iterator[Figure]:
 def figure_4(case: Case, answers: Answers) -> Iterator[Figure]:
     """Fig. 4: pressure under the flat punch on a bonded incompressible layer, over its mean."""
     symbols = pressure_symbols(case, answers, {ratio: scene_name("bonded nu=0.5", ratio) for ratio in (1.0, 2.0)})
-    separate = (_symbols(f"a/h={ratio:g}", PRESSURE_AT, PRESSURE[ratio], "literature") for ratio in PRESSURE_RATIOS)
-    yield paper_figure(4, [*symbols, *separate])
+    reference = (_symbols(f"a/h={ratio:g}", PRESSURE_AT, row, "reference") for ratio, row in PRESSURE.items())
+    yield paper_figure(4, [*symbols, *reference])
 
 
 def _punch_symbols(case: Case, answers: Answers) -> Iterator[Series]:
@@ -210,6 +213,19 @@ def _symbols(group: str, x: Sequence[float], y: Sequence[float], method: str) ->
     return series(f"{method} {group}", method, group, x, y)
 
 
+AT_ONE, AT_TWO = (tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.5", ratio)) for ratio in (1.0, 2.0))
+COMPRESSIBLE = tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.3", 1.0))
+ORDERS = (
+    *studies(AT_ONE, PUNCH_POINTS, {"contact_stiffness": 2.5}, against="integral_equation"),
+    *studies(AT_ONE, TABLE_CELLS, {"contact_stiffness": 2.5}, against="integral_equation", nightly=True),
+    *studies(AT_TWO, FEW_ROWS, {"contact_stiffness": 6.0}, against=MANY_ROWS, uncertainty=1e-13, nightly=True),
+    *studies(AT_TWO, NODES, ("contact_stiffness",), against="integral_equation"),
+    *studies(AT_TWO, EQUATION_NODES, ("contact_stiffness",), against=FINEST_MDR),
+    *studies(COMPRESSIBLE, fem_cells(2), {"contact_stiffness": 4.0}, against="integral_equation", nightly=True),
+    *studies(COMPRESSIBLE, fem_cells(3), {"contact_stiffness": 6.0}, against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="flat_punch_stiffness",
     title="Stiffness of the cylindrical flat punch",
@@ -218,7 +234,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*PUNCHES, *HAYES_WALKS, *HERMANOWICZ_WALKS),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     work=elastic_costs("bonded nu=0.5 a/h=2", ("contact_stiffness",)),
     figures=(figure_3, figure_4, figure_5),
 )

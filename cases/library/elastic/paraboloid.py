@@ -1,29 +1,44 @@
 """A paraboloid on layers: prescribed radii, depths and forces, five methods, and the fits of the literature.
 
 A rigid paraboloid f(r) = r^2/(2R) presses on bonded and unbonded layers. Depth and force at five contact radii are
-compared with a separate solution of the Fredholm equation to its printed digits, with the fit of Hermanowicz (2021) for
+compared with the Fredholm equation in extended precision, with the fit of Hermanowicz (2021) for
 the incompressible bonded layer, with finite elements, direct boundary elements, the direct integral equation, and MDR
 on FFT flat-punch tables as published. The same states are then asked for by depth and by force: the contact radius must
 come back.
 """
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Sampling
 from cases.library._claims import (
-    BEM_TOLERANCE,
-    TABLE_TOLERANCES,
+    PATH_QUANTITIES,
     agreements,
     exact,
     pressure_agreements,
     same_in_millimetres,
 )
+from cases.library._convergence import (
+    EDGE_CELL,
+    EQUATION_NODES,
+    FINEST_MDR,
+    MANY_ROWS,
+    NODES,
+    OUTER_RADIUS,
+    POINTS,
+    ROWS,
+    fem_cells,
+    studies,
+)
 from cases.library._layers import LAYERS, THICKNESS, contact_modulus, edges, layer, scene_name
 from cases.library._methods import EVERY
 from cases.library._reasons import reasons
+from cases.library._references import numbers
+from cases.library._requirements import COARSE as COARSE_REQUIRED
+from cases.library._requirements import required
 from cases.measurements.cost.settings import elastic_costs
 from contact import ContactRadii, IndentationDepths, Loading, NormalForces, Paraboloid, Scene
 
@@ -35,8 +50,8 @@ RATIOS = (0.2, 1.0, 2.0, 5.0, 10.0)
 QUICK_RATIO = 1.0
 
 
-# By a/h: delta R/h^2 and F R/(E* h^3).
-TABULATED: dict[str, dict[float, tuple[float, float]]] = {
+# Depths delta R/h^2 and forces F R/(E* h^3) that are prescribed, by a/h: those that belong to it, to seven digits.
+PRESCRIBED: dict[str, dict[float, tuple[float, float]]] = {
     "bonded nu=0.5": {
         0.2: (0.034253, 0.010733),
         1.0: (0.559415, 1.880667),
@@ -46,17 +61,28 @@ TABULATED: dict[str, dict[float, tuple[float, float]]] = {
     },
     "unbonded": {1.0: (0.673981, 1.578123), 2.0: (2.360922, 17.83896), 5.0: (13.397682, 564.7204)},
 }
-PLACES = tuple((label, ratio) for label, rows in TABULATED.items() for ratio in rows)
+PLACES = tuple((label, ratio) for label, rows in PRESCRIBED.items() for ratio in rows)
 
 
 def depth(label: str, ratio: float) -> float:
-    """Return the tabulated depth [m]."""
-    return TABULATED[label][ratio][0] * THICKNESS**2 / RADIUS_OF_CURVATURE
+    """Return the prescribed depth [m]."""
+    return PRESCRIBED[label][ratio][0] * THICKNESS**2 / RADIUS_OF_CURVATURE
 
 
 def force(label: str, ratio: float) -> float:
-    """Return the tabulated force [N]."""
-    return TABULATED[label][ratio][1] * contact_modulus(layer(label)) * THICKNESS**3 / RADIUS_OF_CURVATURE
+    """Return the prescribed force [N]."""
+    return PRESCRIBED[label][ratio][1] * force_unit(label)
+
+
+def force_unit(label: str) -> float:
+    """E* h^3/R [N]."""
+    return contact_modulus(layer(label)) * THICKNESS**3 / RADIUS_OF_CURVATURE
+
+
+def reference(number: int, unit: Callable[[str], float]) -> dict[str, tuple[float, ...]]:
+    """Return the reference depths (0) or forces (1) at the prescribed radii, by scene."""
+    names = {scene_name(*place): unit(place[0]) for place in PLACES}
+    return {name: (numbers("paraboloid")[name][number] * scale,) for name, scale in names.items()}
 
 
 def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScene:
@@ -95,33 +121,29 @@ def hermanowicz(reduced_depth: float) -> float:
 
 def fitted_forces() -> dict[str, tuple[float, ...]]:
     """Return the fitted force [N] at each tabulated depth."""
-    unit = contact_modulus(layer("bonded nu=0.5")) * THICKNESS**3 / RADIUS_OF_CURVATURE
+    unit = force_unit("bonded nu=0.5")
     return {
         scene_name("bonded nu=0.5", ratio) + " by depth": (hermanowicz(row[0]) * unit,)
-        for ratio, row in TABULATED["bonded nu=0.5"].items()
+        for ratio, row in PRESCRIBED["bonded nu=0.5"].items()
     }
 
 
-COARSE_TABLE = (
-    "three times what it states at a/h = 10, where a cell is a sixth of the thickness: depth 3e-3, force 1.5e-2, "
-    "stiffness 2e-3"
-)
+COARSE_TABLE = "a requirement: depth 1e-2, force 5e-2, stiffness 5e-3 where a cell is a sixth of the thickness"
 
-THIN_TABLE = {"indentation_depth": 1e-2, "normal_force": 5e-2, "contact_stiffness": 5e-3}
 LOOSER = {"fem": 4e-5, "bem": 1e-3, "mdr_table": 5e-3}
 SEARCHED = (*BY_DEPTH, *BY_FORCE)
 CLAIMS = (
     *exact(
-        WHY["printed"],
-        {"tabulated depth": ("indentation_depth", {scene_name(*place): (depth(*place),) for place in PLACES})},
-        tolerance=3e-5,
-        tolerances=LOOSER,
+        WHY["reference"],
+        {"tabulated depth": ("indentation_depth", reference(0, lambda _: THICKNESS**2 / RADIUS_OF_CURVATURE))},
+        tolerance=1e-9,
+        tolerances=LOOSER | {"fem": 3e-6},
     ),
     *exact(
-        WHY["printed"],
-        {"tabulated force": ("normal_force", {scene_name(*place): (force(*place),) for place in PLACES})},
-        tolerance=5e-5,
-        tolerances=LOOSER | {"fem": 6e-5, "mdr_table": 1.5e-2},
+        WHY["reference"],
+        {"tabulated force": ("normal_force", reference(1, force_unit))},
+        tolerance=1e-9,
+        tolerances=LOOSER | {"fem": 3e-6, "mdr_table": 1.5e-2},
     ),
     *exact(
         WHY["return"],
@@ -141,19 +163,38 @@ CLAIMS = (
         tolerance=1e-3,
         tolerances={"bem": 2e-3, "mdr_table": 1.5e-2},
     ),
-    *agreements(BY_RADIUS, {"fem": 3e-6, "bem": BEM_TOLERANCE, "integral_equation": 1e-9}),
-    *agreements(RESOLVED, {"mdr_table": TABLE_TOLERANCES}),
-    *agreements(COARSE, {"mdr_table": THIN_TABLE}, derived_from=COARSE_TABLE, suffix=", thin layers"),
-    *agreements(SEARCHED, {"bem": BEM_TOLERANCE, "integral_equation": 1e-9}, ("contact_radius",)),
-    *agreements(
-        SEARCHED,
-        {"fem": 2e-5},
-        ("contact_radius",),
-        derived_from="three times the error that finite elements state of a radius, 6e-6",
-    ),
+    *agreements(BY_RADIUS, required("fem", "bem", "integral_equation")),
+    *agreements(RESOLVED, required("mdr_table")),
+    *agreements(COARSE, COARSE_REQUIRED, derived_from=COARSE_TABLE, suffix=", thin layers"),
+    *agreements(SEARCHED, required("bem", "integral_equation"), ("contact_radius",)),
+    *agreements(SEARCHED, required("fem"), ("contact_radius",), derived_from="a requirement: 2e-5 of a radius"),
     *pressure_agreements(BY_RADIUS, {"pressure: MDR and fem": "weighted L2"}, "the root at r = a limits"),
     same_in_millimetres((scene_name(label, 1.0) for label in ("bonded nu=0.5", "unbonded")), (1e3, 1.0)),
 )
+
+AT_ONE = tuple(s for s in BY_RADIUS if s.name == scene_name("bonded nu=0.5", 1.0))
+AT_FIVE = tuple(s for s in BY_RADIUS if s.name == scene_name("bonded nu=0.5", 5.0))
+PRESSED = tuple(s for s in BY_DEPTH if s.name == scene_name("bonded nu=0.5", 1.0) + " by depth")
+ORDERS = (
+    *studies(AT_ONE, fem_cells(2), dict.fromkeys(PATH_QUANTITIES, 4.0), against="integral_equation", nightly=True),
+    *studies(AT_ONE, fem_cells(3), dict.fromkeys(PATH_QUANTITIES, 6.0), against="integral_equation", nightly=True),
+    # Depth and force reach the rounding of such meshes, 3e-11, on the finest one.
+    *studies(AT_ONE, fem_cells(4), {"contact_stiffness": 8.0}, against="integral_equation", nightly=True),
+    *studies(AT_ONE, EDGE_CELL, {"normal_force": 1.0, "contact_stiffness": 1.0}, against="integral_equation"),
+    *studies(AT_ONE, OUTER_RADIUS, ("contact_stiffness",), against="integral_equation"),
+    *studies(PRESSED, POINTS, {"normal_force": 2.0}, against="integral_equation", nightly=True),
+    *studies(AT_FIVE, NODES, PATH_QUANTITIES, against="integral_equation"),
+    *studies(AT_FIVE, EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
+    *studies(
+        AT_ONE,
+        ROWS,
+        {"normal_force": 4.0, "indentation_depth": 4.0},
+        against=MANY_ROWS,
+        uncertainty=1e-10,
+        nightly=True,
+    ),
+)
+
 
 CASE = Case(
     name="paraboloid",
@@ -163,6 +204,6 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*BY_RADIUS, *BY_DEPTH, *BY_FORCE),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     work=elastic_costs(scene_name("bonded nu=0.5", 2.0), periodic=True),
 )

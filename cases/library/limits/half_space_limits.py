@@ -13,9 +13,20 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import exact
-from cases.library._layers import LAYERS, THICKNESS, contact_modulus, half_space, layer, prescribed_radii, scene_name
+from cases.library._convergence import EDGE_CELL, HALF_SPACE, HALF_SPACE_FORCE, studies
+from cases.library._layers import (
+    LAYERS,
+    THICKNESS,
+    YOUNGS_MODULUS,
+    contact_modulus,
+    half_space,
+    layer,
+    prescribed_radii,
+    scene_name,
+)
 from cases.library._methods import EVERY
 from cases.library._reasons import reasons
+from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import elastic_costs
 from contact import (
@@ -34,18 +45,19 @@ from contact import (
 WHY = reasons("half_space_limits")
 
 RADIUS = 1e-3  # m
+POISSONS_RATIO = 0.3  # of the half-space
 SLOPE = 0.1
 RADIUS_OF_CURVATURE = 1e-2  # m
 DEPTH = 1e-5  # m
 THICK_RATIOS = (0.02, 0.01)
 
 
-ALPHA = {"unbonded": 0.743303, "bonded nu=0.3": 0.876533, "bonded nu=0.45": 1.034807, "bonded nu=0.5": 1.126955}
+ALPHA = {label: float(numbers("first_order")[label][0]) for label in LAYERS}
 
 
 def on_half_space(name: str, indenter: Profile, loading: Loading) -> CaseScene:
     """Return a scene on the half-space."""
-    scene = Scene(layer=half_space(), indenter=indenter, loading=loading)
+    scene = Scene(layer=half_space(POISSONS_RATIO), indenter=indenter, loading=loading)
     return CaseScene(name=f"half-space, {name}", parameters={"layer": "half-space", "a_over_h": 0.0}, scene=scene)
 
 
@@ -97,8 +109,9 @@ def force(scene: Scene) -> list[float]:
 
 
 def punch_force(scene: Scene) -> list[float]:
-    """F = 2 E* a delta."""
-    return [2 * contact_modulus(scene.layer) * RADIUS * DEPTH]
+    """F = 2 E* a delta, from the numbers above: what the records of the scene make of them is judged, too."""
+    del scene
+    return [2 * YOUNGS_MODULUS / (1 - POISSONS_RATIO**2) * RADIUS * DEPTH]
 
 
 def thick_limit(label: str) -> Callable[[Scene], float]:
@@ -127,13 +140,13 @@ CLAIMS = (
         tolerance=1e-10,
         tolerances={"fem": 3e-6, "bem": 1e-3},
     ),
-    # Boundary elements have no tolerance of their own here: they measure their disc of cells by this very force.
     *exact(
         WHY["sneddon"],
         {"force of the flat punch": ("normal_force", punch_force)},
         scenes=(PUNCH,),
         tolerance=1e-10,
         tolerances={"fem": 3e-6},
+        identities={"bem": "the disc of cells is calibrated by this very force"},
     ),
     *(
         Approach(
@@ -151,6 +164,15 @@ CLAIMS = (
     ),
 )
 
+# At a given radius a base far away costs no force to first and second order of a/h.
+THICKNESS_ORDERS = {"indentation_depth": 1.0, "contact_stiffness": 1.0}
+ORDERS = (
+    *studies(CURVED[1:2], HALF_SPACE, THICKNESS_ORDERS, against="mdr"),
+    *studies(CURVED[1:2], HALF_SPACE_FORCE, {"normal_force": 3.0}, against="mdr", nightly=True),
+    *studies(CURVED[:1], EDGE_CELL, {"normal_force": 1.0}, against="mdr", nightly=True),
+)
+
+
 CASE = Case(
     name="half_space_limits",
     title="Limits of thick layers",
@@ -159,7 +181,7 @@ CASE = Case(
     text=text_of(__doc__),
     scenes=(*CURVED, PUNCH, *THICK),
     methods=EVERY,
-    claims=CLAIMS,
+    claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene="bonded nu=0.3 a/h=0.01"),),
     work=elastic_costs("half-space, paraboloid"),
 )

@@ -13,9 +13,11 @@ from cases.declare.methods import MethodUse
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.even_accuracy import EvenAccuracy
 from cases.library._claims import agreements, exact
+from cases.library._convergence import EDGE_CELL, NODES, OUTER_RADIUS, fem_cells, studies
 from cases.library._layers import THICKNESS, contact_modulus, layer_of
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import SHARED, reasons
+from cases.library._references import numbers
 from cases.measurements.cost.settings import elastic_costs
 from contact import FlatPunch, IndentationDepths, Scene
 
@@ -26,8 +28,7 @@ RATIOS_OF_POISSON = (0.3, 0.4, 0.45, 0.49, 0.499, 0.4999, 0.49999, 0.4999999, 0.
 ONE_MESH = MethodUse(
     label="fem one mesh", method="fem", settings={"order": 4, "growth": 0.5, "edge_cell": 1e-7, "outer_distance": 10.0}
 )
-KBAR_INCOMPRESSIBLE = 3.61873584896
-KBAR = {0.3: 2.48352462914, 0.4: 2.79376800243, 0.45: 3.09140806745, 0.5: KBAR_INCOMPRESSIBLE}
+KBAR = {nu: float(numbers("stiffness")[f"bonded nu={nu:g} a/h=1"][0]) for nu in (0.3, 0.4, 0.45, 0.5)}
 
 
 def scene_name(poissons_ratio: float) -> str:
@@ -56,12 +57,21 @@ def compressibility(scene: Scene) -> float:
 
 def incompressible_stiffness(scene: Scene) -> float:
     """k_N of the incompressible layer with the scene's contact modulus."""
-    return 2 * contact_modulus(scene.layer) * THICKNESS * KBAR_INCOMPRESSIBLE
+    return 2 * contact_modulus(scene.layer) * THICKNESS * KBAR[0.5]
 
 
 def tabulated() -> dict[str, tuple[float, ...]]:
     """Return k_N of the tabulated layers."""
     return {scene_name(nu): (2 * contact_modulus(layer_of(nu)) * THICKNESS * kbar,) for nu, kbar in KBAR.items()}
+
+
+ALMOST = tuple(s for s in SCENES if s.name == scene_name(0.4999999))
+ORDERS = (
+    *studies(ALMOST, NODES, ("contact_stiffness",), against="integral_equation"),
+    *studies(ALMOST, EDGE_CELL, {"contact_stiffness": 1.0}, against="integral_equation"),
+    *studies(ALMOST, OUTER_RADIUS, ("contact_stiffness",), against="integral_equation", nightly=True),
+    *studies(ALMOST, fem_cells(3), {"contact_stiffness": 6.0}, against="integral_equation", nightly=True),
+)
 
 
 CASE = Case(
@@ -101,6 +111,7 @@ CASE = Case(
             methods=("mdr", "fem", "integral_equation"),
             reason=WHY["regular limit"],
         ),
+        *ORDERS,
     ),
     work=elastic_costs("bonded nu=0.4999 a/h=1", ("normal_force",)),
 )

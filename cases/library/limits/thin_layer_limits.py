@@ -14,9 +14,11 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import agreements
+from cases.library._convergence import EQUATION_NODES, FINEST_MDR, NODES, fem_cells, studies
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import reasons
+from cases.library._requirements import COARSEST, required
 from cases.measurements.cost.settings import elastic_costs
 from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
@@ -106,10 +108,6 @@ def thinness(scene: Scene) -> float:
     return scene.layer.thickness / _radius(scene)
 
 
-GRID_TOLERANCES = {"indentation_depth": 1.5e-2, "normal_force": 1.2e-2, "contact_stiffness": 1.5e-3}
-TABLE_TOLERANCES = {"indentation_depth": 4e-2, "normal_force": 1.8e-1, "contact_stiffness": 2e-2}
-
-
 def approach(
     what: str, quantity: str, scenes: Callable[[str, float], CaseScene], limit: Callable[[Scene], float]
 ) -> tuple[Approach, ...]:
@@ -136,6 +134,15 @@ CONES = tuple(cone(label, ratio) for label in LABELS for ratio in (*RATIOS, CHEC
 CHECKED = tuple(s for s in (*PARABOLOIDS, *CONES) if not s.methods)
 FAR = tuple(s for s in (*PARABOLOIDS, *CONES) if s.methods)
 
+THIN = tuple(s for s in CHECKED if s.name == f"{scene_name(QUICK_LABEL, CHECKED_RATIO)}, paraboloid")
+QUANTITIES = ("normal_force", "indentation_depth")
+ORDERS = (
+    *studies(THIN, NODES, QUANTITIES, against="integral_equation"),
+    *studies(THIN, EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
+    *studies(THIN, fem_cells(3, thin=True), dict.fromkeys(QUANTITIES, 6.0), against="integral_equation", nightly=True),
+)
+
+
 CASE = Case(
     name="thin_layer_limits",
     title="Limits of thin layers",
@@ -149,9 +156,10 @@ CASE = Case(
         *approach("depth of the paraboloid", "indentation_depth", paraboloid, depth),
         *approach("depth of the truncated cone", "indentation_depth", cone, cone_depth),
         *approach("force of the truncated cone", "normal_force", cone, cone_force),
-        *agreements(CHECKED, {"fem": 3e-6, "integral_equation": 1e-9}),
-        *agreements(CHECKED, {"bem": GRID_TOLERANCES, "mdr_table": TABLE_TOLERANCES}, reason=WHY["coarse grids"]),
-        *agreements(FAR, {"fem": 3e-6}, suffix=", far"),
+        *agreements(CHECKED, required("fem", "integral_equation")),
+        *agreements(CHECKED, COARSEST, reason=WHY["coarse grids"]),
+        *agreements(FAR, required("fem"), suffix=", far"),
+        *ORDERS,
     ),
     work=elastic_costs("bonded nu=0.45 a/h=40, paraboloid"),
 )

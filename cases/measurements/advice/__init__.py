@@ -5,8 +5,8 @@
 - ``advise``: both, as advice
 """
 
-from cases.measurements.advice.ablation import Ablation, ablations
+from cases.measurements.advice.ablation import ablations
 from cases.measurements.advice.advise import Advice, advise
 from cases.measurements.advice.dimensionless_numbers import Number, numbers
 
-__all__ = ["Ablation", "Advice", "Number", "ablations", "advise", "numbers"]
+__all__ = ["Advice", "Number", "ablations", "advise", "numbers"]

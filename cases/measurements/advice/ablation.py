@@ -3,69 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 
-import numpy as np
-
+from cases.declare.quantities import relative_change, single_numbers, values_of
+from cases.results.records.cost import EffectEntry
 from cases.run.empty_caches import forget
-from contact import ContactError, Detachment, ImpactHistory, Layer, Method, Scene, Solution
-from contact.records.validation import FloatArray
+from contact import Adhesion, ContactError, Detachment, Layer, Method, Scene, Solution
 
-NUMBERS = (
-    "coefficient_of_restitution",
-    "contact_time",
-    "peak_force",
-    "peak_depth",
-    "peak_contact_radius",
-)
 THICKNESS = "finite thickness"
 _IMPORTS_COUNT = 2.0  # seconds: a longer solution hides them
+NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Ablation:
-    """One part of the scene left out.
-
-    Attributes:
-        part: "Adhesion", "StandardSolid", .., or "finite thickness".
-        changes: Largest relative change of each quantity without it; empty where the scene has no answer without it.
-        seconds_with: Processor time of the whole scene [s], the stages of its own log.
-        seconds_without: The same without the part [s].
-        remark: Why there is no change to tell, or "".
-    """
-
-    part: str
-    changes: dict[str, float]
-    seconds_with: float
-    seconds_without: float
-    remark: str = ""
-
-    @property
-    def largest_change(self) -> float:
-        """Over all quantities; infinite where nothing is left without the part."""
-        return max(self.changes.values(), default=float("inf"))
-
-    @property
-    def share_of_time(self) -> float:
-        """How much of the time goes into it, not below zero."""
-        return max(0.0, 1.0 - self.seconds_without / self.seconds_with) if self.seconds_with else 0.0
-
-    def matters(self, accuracy: float) -> bool:
-        """Whether leaving it out would move a quantity by more than the accuracy."""
-        return self.largest_change > accuracy
-
-    @property
-    def line(self) -> str:
-        """For the report: "viscosity: 61 % of the time, moves peak force by 0.02 %"."""
-        if not self.changes:
-            return f"{self.part}: {self.remark}"
-        quantity = max(self.changes, key=lambda name: self.changes[name])
-        moved = f"moves {quantity.replace('_', ' ')} by {100 * self.changes[quantity]:.2g} %"
-        return f"{self.part}: {100 * self.share_of_time:.0f} % of the time, {moved}"
-
-
-def ablations(method: Method, scene: Scene) -> list[Ablation]:
+def ablations(method: Method, scene: Scene) -> list[EffectEntry]:
     """Each listed effect, and the layer's finite thickness, left out in turn.
 
     Raises:
@@ -84,7 +35,7 @@ def first_solution(method: Method, scene: Scene) -> Solution:
     return method.solve(scene)
 
 
-def ablations_of(method: Method, whole: Solution) -> list[Ablation]:
+def ablations_of(method: Method, whole: Solution) -> list[EffectEntry]:
     """The same for a scene that was solved."""
     return [_ablation(method, whole, part) for part in parts_of(whole.scene)]
 
@@ -98,7 +49,7 @@ def parts_of(scene: Scene) -> tuple[str, ...]:
 def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> float:
     """Largest relative change of any quantity with all these parts left out at once."""
     less = method.solve(without(whole.scene, parts))
-    return max(_change(whole, less, quantity) for quantity in _quantities(whole))
+    return max(_changes(whole, less).values())
 
 
 def without(scene: Scene, parts: Sequence[str]) -> Scene:
@@ -116,34 +67,22 @@ def on_half_space(scene: Scene) -> Scene:
     )
 
 
-def _ablation(method: Method, whole: Solution, part: str) -> Ablation:
-    spent = _seconds(whole)
-    if part == "Adhesion" and isinstance(whole.scene.loading, Detachment):
-        remark = "without it nothing pulls; the whole detachment is its work"
-        return Ablation(part=part, changes={}, seconds_with=spent, seconds_without=0.0, remark=remark)
+def _ablation(method: Method, whole: Solution, part: str) -> EffectEntry:
+    entry = partial(EffectEntry, scene="", method=method.name, effect=part, seconds=_seconds(whole))
+    if part == Adhesion.__name__ and isinstance(whole.scene.loading, Detachment):
+        return entry(seconds_without=None, remark=NOTHING_PULLS)
     try:
         forget()
         less = method.solve(without(whole.scene, [part]))
     except ContactError as error:
-        remark = f"no answer without it ({error!s:.120})"
-        return Ablation(part=part, changes={}, seconds_with=spent, seconds_without=0.0, remark=remark)
-    changes = {q: _change(whole, less, q) for q in _quantities(whole)}
-    return Ablation(part=part, changes=changes, seconds_with=spent, seconds_without=_seconds(less))
+        return entry(seconds_without=None, remark=f"no answer without it ({error!s:.120})")
+    return entry(changes=_changes(whole, less), seconds_without=_seconds(less))
 
 
-def _quantities(answer: Solution) -> tuple[str, ...]:
-    if isinstance(answer, ImpactHistory):
-        return NUMBERS
-    return answer.SCALARS or STATIC
-
-
-def _change(whole: Solution, less: Solution, quantity: str) -> float:
-    before, after = _values(whole, quantity), _values(less, quantity)
-    return float(np.max(np.abs(before - after)) / max(np.max(np.abs(before)), np.finfo(float).tiny))
-
-
-def _values(answer: Solution, quantity: str) -> FloatArray:
-    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
+def _changes(whole: Solution, less: Solution) -> dict[str, float]:
+    """Relative change of what the answer ends with, or of its path."""
+    names = single_numbers(whole) or STATIC
+    return {name: relative_change(values_of(whole, name), values_of(less, name)) for name in names}
 
 
 def _seconds(answer: Solution) -> float:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cases.measurements.advice.ablation import Ablation, ablations_of, change_without, first_solution
+from cases.measurements.advice.ablation import ablations_of, change_without, first_solution
 from cases.measurements.advice.dimensionless_numbers import Number, numbers
+from cases.results.records.cost import EffectEntry
 from contact import InvalidInput, Method, Scene, Solution, refuse_other_layers
 
 
@@ -22,8 +23,8 @@ class Advice:
     """
 
     accuracy: float
-    needed: tuple[Ablation, ...]
-    droppable: tuple[Ablation, ...]
+    needed: tuple[EffectEntry, ...]
+    droppable: tuple[EffectEntry, ...]
     together: float
     numbers: tuple[Number, ...]
 
@@ -55,7 +56,7 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
     refuse_other_layers("advise", scene.layer)
     whole = first_solution(method, scene)
     parts = ablations_of(method, whole)
-    droppable = tuple(part for part in parts if not part.matters(accuracy))
+    droppable = tuple(part for part in parts if part.may_be_dropped(accuracy))
     together, droppable = _together(method, whole, droppable, accuracy)
     needed = tuple(part for part in parts if part not in droppable)
     found = numbers(scene, whole, accuracy)
@@ -63,11 +64,11 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
 
 
 def _together(
-    method: Method, whole: Solution, droppable: tuple[Ablation, ...], accuracy: float
-) -> tuple[float, tuple[Ablation, ...]]:
+    method: Method, whole: Solution, droppable: tuple[EffectEntry, ...], accuracy: float
+) -> tuple[float, tuple[EffectEntry, ...]]:
     """Small changes may add up: as long as they do, the part that moves most is needed after all."""
     while len(droppable) > 1:
-        change = change_without(method, whole, [part.part for part in droppable])
+        change = change_without(method, whole, [part.effect for part in droppable])
         if change <= accuracy:
             return change, droppable
         most = max(droppable, key=lambda part: part.largest_change)

@@ -4,14 +4,14 @@ from collections.abc import Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 
 from cases.declare.case import Case
+from cases.declare.quantities import IMPACT_NUMBERS
 from cases.declare.task import Answers, Task
-from cases.measurements.advice.ablation import NUMBERS, STATIC, parts_of, without
+from cases.measurements.advice.ablation import NOTHING_PULLS, STATIC, parts_of, without
 from cases.results.records.cost import EffectEntry
 from cases.results.records.scene_run import SceneRun
 from contact import Adhesion, Detachment
 
-NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
-_COMPARED = (*NUMBERS, "pull_off_force", "pull_off_depth", "pull_off_contact_radius", *STATIC)
+_COMPARED = (*IMPACT_NUMBERS, "pull_off_force", "pull_off_depth", "pull_off_contact_radius", *STATIC)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -12,13 +12,12 @@ import numpy as np
 from bem.polynomials.gauss import legendre_rule
 from cases.declare.methods import build
 from cases.measurements.study import Say, silent, study_case, told
-from cases.results.records.reliability import ErrorMap
+from cases.results.records.reliability import UNBONDED, ErrorMap
 from cases.results.records.run import CaseResult
 from contact import ContactError, ContactPath, ContactRadii, Layer, Method, Paraboloid, Scene
 from contact.records.validation import FloatArray
 
 NAME: Final = "error_maps"
-UNBONDED: Final = "unbonded"
 RATIOS: Final = tuple(np.geomspace(1e-3, 1e3, 37).tolist())
 ROWS: Final = (UNBONDED, "0", "0.2", "0.3", "0.4", "0.45", "0.48", "0.49", "0.499", "0.5")
 FEW_RATIOS: Final = tuple(np.geomspace(1e-2, 20.0, 12).tolist())
@@ -146,17 +145,10 @@ def _row(plan: MapPlan, row: str) -> tuple[float | None, ...]:
     return tuple(float(error) if np.isfinite(error) else None for error in errors)
 
 
-def good_range(found: ErrorMap, row: str, limit: float = 1e-2) -> tuple[float, float] | None:
-    """Smallest and largest a/h of a row with errors within the limit; None where there is no such."""
-    errors = zip(found.ratios, found.errors[found.rows.index(row)], strict=True)
-    good = [ratio for ratio, error in errors if error is not None and abs(error) <= limit]
-    return (min(good), max(good)) if good else None
-
-
 def summary(found: ErrorMap) -> str:
     """One line: the largest error, and the range that is good to one percent for the incompressible bonded layer."""
     known = [abs(error) for row in found.errors for error in row if error is not None]
-    good = good_range(found, "0.5")
+    good = found.good_range("0.5")
     words = "nowhere good to 1 %" if good is None else f"good to 1 % for a/h in [{good[0]:.3g}, {good[1]:.3g}]"
     return f"{found.title}: errors up to {max(known, default=0.0):.1e}; bonded nu = 0.5 {words}"
 

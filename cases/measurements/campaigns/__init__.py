@@ -1,8 +1,9 @@
-"""Where the methods break: random scenes by the thousand, each answer against one that shares no code with it.
+"""Where the methods break: random scenes by the thousand, each answer against another one.
 
 - ``units``: the same scene in another system of units
 - ``random_scenes``: seeded scenes over the whole range of every parameter
-- ``referee``, ``referee_profiles``: an answer to elastic scenes that shares no code with any method
+- ``referee``: the direct integral equation on more nodes, which shares only the layer's kernel with MDR
+- ``referee_profiles``: slopes of half-space profiles in closed form, written a second time
 - ``campaign``: random scenes against their referee, coverage and sharpness of stated errors
 - ``pressures``, ``pressure_referee``: pressure fields against their own referee, their integral and single radii
 """

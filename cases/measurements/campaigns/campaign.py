@@ -8,13 +8,14 @@ is also solved in other units, where it must give the same answer, and with its 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
+from cases.declare.quantities import IMPACT_NUMBERS, single_numbers, values_of
 from cases.measurements.campaigns.random_scenes import RATIO, Family, random_scenes
 from cases.measurements.campaigns.referee import LARGEST_RATIO, adhesive_states, second_opinion
 from cases.measurements.campaigns.restated import changes_when_restated
@@ -37,7 +38,6 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Viscoelasticity
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
-IMPACT_NUMBERS = ("coefficient_of_restitution", "contact_time", "peak_force", "peak_depth", "peak_contact_radius")
 _MOTION = ("indentation_depth", "normal_force")
 UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
 
@@ -77,16 +77,27 @@ def campaign(
         other_units: Whether each scene is solved in other units as well.
     """
     scenes = random_scenes(seed, count, family, ratio)
-    chosen = range(count) if numbers is None else numbers
-    return [
-        row
-        for n in chosen
-        for row in measured(
-            partial(method.solve, scenes[n]),
-            partial(_judged, method, number=n, other=referee, restated=other_units),
-            of=Measurement(method=method.name, scene=f"{n}", parameters={"family": family}, seed=seed),
-        )
-    ]
+    chosen = ((n, scenes[n]) for n in (range(count) if numbers is None else numbers))
+    of = Measurement(method=method.name, parameters={"family": family}, seed=seed)
+    return list(answered(method, chosen, partial(_judged, method, other=referee, restated=other_units), of))
+
+
+def answered(
+    method: Method,
+    scenes: Iterable[tuple[int, Scene]],
+    judge: Callable[..., Iterable[Measurement]],
+    of: Measurement,
+) -> Iterator[Measurement]:
+    """Rows of numbered scenes, each answered and judged by its number.
+
+    Args:
+        method: Who answers.
+        scenes: Their numbers, and the scenes.
+        judge: Compares an answer to the scene of a number, which is its keyword `number`.
+        of: What all rows share.
+    """
+    for n, scene in scenes:
+        yield from measured(partial(method.solve, scene), partial(judge, number=n), of=replace(of, scene=f"{n}"))
 
 
 def _judged(
@@ -128,7 +139,7 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
     for q in _comparable(answer, finer):
         if q in answer.error_estimate:
             allowance = np.atleast_1d(finer.error_estimate.get(q, 0.0))
-            yield _check(answer, q, _values(finer, q), allowance, reference=reference)
+            yield _check(answer, q, values_of(finer, q), allowance, reference=reference)
 
 
 def _is_followed_by_springs(scene: Scene) -> bool:
@@ -159,19 +170,13 @@ def _branch_checks(answer: DetachmentPath) -> tuple[Measurement, ...]:
 
 def _comparable(answer: Solution, other: Solution) -> tuple[str, ...]:
     """Quantities of two answers that stand for the same states; an impact's samples lie where its steps fall."""
-    if isinstance(answer, ImpactHistory):
-        return IMPACT_NUMBERS
-    if isinstance(answer, DetachmentPath):  # states of two branches lie at different radii
-        return tuple(answer.SCALARS)
+    if isinstance(answer, ImpactHistory | DetachmentPath):  # states of two branches lie at different radii
+        return single_numbers(answer)
     if isinstance(answer, HistoryPath):  # its contact radius jumps where contact is lost
         same = isinstance(other, HistoryPath) and np.array_equal(answer.time, other.time)
         return tuple(answer.error_estimate) if same else ()
     names = (*answer.ARRAYS, *answer.SCALARS)
     return tuple(q for q in names if np.shape(getattr(other, q)) == np.shape(getattr(answer, q)))
-
-
-def _values(answer: Solution, quantity: str) -> FloatArray:
-    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
 
 
 def _check(
@@ -185,7 +190,7 @@ def _check(
 ) -> Measurement:
     """The step, among those chosen, with the largest excess of distance over what is allowed."""
     scale = np.maximum(answer.scale(quantity), np.finfo(float).tiny)
-    values = _values(answer, quantity)
+    values = values_of(answer, quantity)
     error = np.abs(values[chosen] - expected) / np.broadcast_to(scale, values.shape)[chosen]
     stated = _fitted(answer.error_estimate.get(quantity, np.array(_UNLISTED_MOST)), values.shape)[chosen]
     allowance = _fitted(np.maximum(allowance, _ROUNDING), error.shape)
@@ -240,7 +245,7 @@ def _in_other_units(method: Method, answer: Solution) -> tuple[Measurement, ...]
             method=answer.method,
             quantity=f"{q} in other units",
             error=float(
-                np.max(np.abs(_values(answer, q) - _values(other, q) / OTHER_UNITS.factor(q)) / _scale(answer, q))
+                np.max(np.abs(values_of(answer, q) - values_of(other, q) / OTHER_UNITS.factor(q)) / _scale(answer, q))
             ),
             stated=UNITS_AGREEMENT,
             uncertainty=_largest_stated(answer, q) + _largest_stated(other, q),

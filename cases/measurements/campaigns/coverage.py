@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import partial
 from itertools import count as counting
 from typing import Any, Final
@@ -11,14 +11,13 @@ from typing import Any, Final
 import numpy as np
 
 from cases.declare.methods import build
-from cases.measurements.campaigns.campaign import refereed
+from cases.measurements.campaigns.campaign import answered, refereed
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
-from cases.measurements.driver import measured
 from cases.measurements.measurement import Measurement, answers, by_quantity, covered, median, sharpness
 from cases.measurements.study import Say, silent, study_case, told, within_limit
 from cases.results.records.claim import Claim
-from cases.results.records.reliability import CoverageRecord
+from cases.results.records.reliability import PERCENTILES, CoverageRecord
 from cases.results.records.run import CaseResult
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch, Method, Scene
@@ -33,7 +32,6 @@ LARGEST_AT_90: Final = 100.0
 FEWEST_RATIOS: Final = 10
 # Seed of the scenes on which bars are judged. Error terms are chosen on other seeds, never on this one.
 SEED: Final = 1401
-PERCENTILES: Final = tuple(range(0, 101, 2))
 _SMALLEST_RATIO: Final = 1e-2  # contact radius over thickness
 _LARGEST_SHOWN: Final = 1e9
 
@@ -123,9 +121,7 @@ def rows_of(plan: CoveragePlan, seed: int) -> Iterator[Measurement]:
     """Every scene of the plan, answered and judged by the fast method at its finest where no second opinion reaches."""
     method, finest = build(plan.method, plan.settings), build("mdr", {"nodes": 32, "accuracy": 1e-12})
     of = Measurement(method=plan.method, settings=plan.settings, parameters={"family": plan.family}, seed=seed)
-    for n, scene in enumerate(_scenes(plan, seed, method)):
-        judge = partial(refereed, method, number=n, other=finest)
-        yield from measured(partial(method.solve, scene), judge, of=replace(of, scene=f"{n}"))
+    yield from answered(method, enumerate(_scenes(plan, seed, method)), partial(refereed, method, other=finest), of)
 
 
 def _scenes(plan: CoveragePlan, seed: int, method: Method) -> Iterator[Scene]:
@@ -169,7 +165,7 @@ def summary(record: CoverageRecord) -> str:
     """One line: how often, and how sharp."""
     sharp = ""
     if record.sharpness is not None:
-        sharp = f", stated over true error {record.sharpness:.3g} in the median and {at_90(record):.3g} at 90 %"
+        sharp = f", stated over true error {record.sharpness:.3g} in the median and {record.at_90:.3g} at 90 %"
         sharp += f" of {record.decided}"
     ends = f"{record.scenes} scenes, {record.refused} refused, {record.crashed} crashed"
     share = f"{100 * record.covered:.1f} % of {record.checks} covered"
@@ -201,17 +197,12 @@ def _told_of(record: CoverageRecord) -> dict[str, Any]:
     }
 
 
-def at_90(record: CoverageRecord) -> float:
-    """Stated over true error at 90 %, zero where no true error could be told."""
-    return record.percentiles[PERCENTILES.index(90)] if record.percentiles else 0.0
-
-
 def errors_are_sharp(record: CoverageRecord) -> Claim:
     """The claim that stated errors exceed true ones tenfold at most in the median and a hundredfold at 90 %.
 
     Without true errors above a hundred roundings there is nothing to give away; a few leave the verdict open.
     """
-    fraction = max((record.sharpness or 0.0) / LARGEST_MEDIAN, at_90(record) / LARGEST_AT_90)
+    fraction = max((record.sharpness or 0.0) / LARGEST_MEDIAN, record.at_90 / LARGEST_AT_90)
     return within_limit(
         f"stated errors are sharp, {record.quantity.replace('_', ' ')}",
         fraction,

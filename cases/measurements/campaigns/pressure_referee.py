@@ -2,8 +2,8 @@
 
     p(r) = (E*/pi) [phi(a)/sqrt(a^2 - r^2) + int_r^a g'(t)/sqrt(t^2 - r^2) dt - int_r^a psi'(t)/sqrt(t^2 - r^2) dt]
 
-g' is written out in `referee_profiles`, psi is the layer's share of the plain linear system of `referee`, a sum
-of cosines that is differentiated term by term. The integrals are taken in u = sqrt(t - hi), hi the larger of r and the
+g' is written out in `referee_profiles`, psi is the layer's share of the density of `referee`, a sum of cosines that is
+differentiated term by term. The integrals are taken in u = sqrt(t - hi), hi the larger of r and the
 start of the stretch, on panels that double with their distance from u = 0 and from a sphere's equator. Against 40-digit
 arithmetic: `tests/cases/measurements/stability/test_pressures.py`.
 """
@@ -16,8 +16,8 @@ from typing import Final
 
 import numpy as np
 
-from cases.measurements.campaigns.referee import layer_share
-from cases.measurements.campaigns.referee_profiles import equivalent_excess, equivalent_slope
+from cases.measurements.campaigns.referee import direct_density
+from cases.measurements.campaigns.referee_profiles import equivalent_slope
 from contact import FlatPunch, Layer, Profile
 from contact.records.validation import FloatArray
 
@@ -46,10 +46,10 @@ def reference_pressure(
     bracket = np.array([_profile_integral(indenter, excess, *pair) for pair in zip(radius, offset, strict=True)])
     edge = 0.0 if depth is None else depth
     if not layer.is_half_space:
-        share = layer_share(layer, indenter, a, equivalent_excess(indenter, excess))
-        amplitudes = share.amplitudes(depth)
-        bracket += _cosine_integrals(share.wavenumbers, amplitudes, radius / layer.thickness, a / layer.thickness)
-        edge += layer.thickness * float(amplitudes @ np.cos(share.wavenumbers * share.ratio))
+        density, h = direct_density(layer, indenter, excess), layer.thickness
+        amplitudes = density.amplitudes @ [density.depth if depth is None else depth / h, -1.0]
+        bracket += _cosine_integrals(density.wavenumbers, amplitudes, radius / h, a / h)
+        edge += h * float(amplitudes @ np.cos(density.wavenumbers * density.contact_radius))
     if depth is not None:
         bracket += edge / np.sqrt((excess - offset) * (a + radius))
     modulus = layer.youngs_modulus / (1 - layer.poissons_ratio**2)

@@ -1,4 +1,4 @@
-"""Equivalent plane profile g(x) = x int_0^x f'(r) / sqrt(x^2 - r^2) dr of every indenter, in closed form.
+"""Slope of the equivalent plane profile g(x) = x int_0^x f'(r) / sqrt(x^2 - r^2) dr of every indenter, in closed form.
 
 Popov, Hess and Willert, Handbook of Contact Mechanics (2019), chapter 2, gives these forms; a tabulated profile is a
 cubic between its radii, for which the integral is elementary as well. They are written here a second time on purpose.
@@ -17,7 +17,6 @@ from scipy.interpolate import PchipInterpolator
 
 from contact import (
     Cone,
-    FlatPunch,
     InvalidInput,
     Paraboloid,
     PowerLaw,
@@ -30,78 +29,6 @@ from contact import (
 from contact.records.validation import FloatArray
 
 Extended: TypeAlias = NDArray[np.longdouble]
-
-
-@singledispatch
-def equivalent_profile(indenter: Profile, x: FloatArray) -> FloatArray:
-    """g(x) [m] at x [m].
-
-    Raises:
-        InvalidInput: For a profile of which no closed form is known here.
-    """
-    raise InvalidInput(f"{type(indenter).__name__}: no closed form of its half-space profile stands here; add it")
-
-
-@equivalent_profile.register
-def _(indenter: FlatPunch, x: FloatArray) -> FloatArray:
-    return np.zeros_like(x)
-
-
-@equivalent_profile.register
-def _(indenter: Paraboloid, x: FloatArray) -> FloatArray:
-    return x**2 / indenter.radius_of_curvature
-
-
-@equivalent_profile.register
-def _(indenter: Sphere, x: FloatArray) -> FloatArray:
-    R = indenter.radius
-    return x * 0.5 * np.log1p(2 * x / (R - x))
-
-
-@equivalent_profile.register
-def _(indenter: Cone, x: FloatArray) -> FloatArray:
-    return 0.5 * math.pi * indenter.slope * x
-
-
-@equivalent_profile.register
-def _(indenter: TruncatedCone, x: FloatArray) -> FloatArray:
-    b = indenter.flat_radius
-    angle: FloatArray = np.arctan2(_leg(x, b), b)  # arccos(b/x) without cancellation at x = b
-    return indenter.slope * x * angle
-
-
-@equivalent_profile.register
-def _(indenter: TruncatedParaboloid, x: FloatArray) -> FloatArray:
-    leg: FloatArray = _leg(x, indenter.flat_radius)
-    return x * leg / indenter.radius_of_curvature
-
-
-@equivalent_profile.register
-def _(indenter: PowerLaw, x: FloatArray) -> FloatArray:
-    n = indenter.exponent
-    kappa = math.sqrt(math.pi) * math.exp(math.lgamma(n / 2 + 1) - math.lgamma((n + 1) / 2))
-    return kappa * indenter.reference_height * (x / indenter.reference_radius) ** n
-
-
-@equivalent_profile.register
-def _(indenter: Tabulated, x: FloatArray) -> FloatArray:
-    curve = PchipInterpolator(indenter.radii, indenter.heights)
-    extended = np.asarray(x, dtype=np.longdouble)  # the three integrals of a piece cancel where it is narrow
-    integral = np.zeros_like(extended)
-    for (start, end), cubic in zip(pairwise(indenter.radii.astype(np.longdouble)), curve.c.T, strict=True):
-        integral += _piece(extended, start, end, cubic)
-    return np.asarray(extended * integral, dtype=np.float64)
-
-
-def equivalent_excess(indenter: Profile, excess: float) -> float:
-    """g(b + excess) [m], with all its digits close to the rim of a flat end."""
-    b = indenter.flat_radius
-    leg = math.sqrt(excess * (excess + 2 * b))
-    if isinstance(indenter, TruncatedCone):
-        return indenter.slope * (b + excess) * math.atan2(leg, b)
-    if isinstance(indenter, TruncatedParaboloid):
-        return (b + excess) * leg / indenter.radius_of_curvature
-    return float(equivalent_profile(indenter, np.array([b + excess]))[0])
 
 
 @singledispatch
@@ -132,7 +59,9 @@ def _(indenter: Cone, excess: FloatArray, room: FloatArray) -> FloatArray:
 
 @equivalent_slope.register
 def _(indenter: PowerLaw, excess: FloatArray, room: FloatArray) -> FloatArray:
-    return indenter.exponent * equivalent_profile(indenter, excess) / excess
+    n, R = indenter.exponent, indenter.reference_radius
+    kappa = math.sqrt(math.pi) * math.exp(math.lgamma(n / 2 + 1) - math.lgamma((n + 1) / 2))
+    return kappa * n * indenter.reference_height / R * (excess / R) ** (n - 1)
 
 
 @equivalent_slope.register

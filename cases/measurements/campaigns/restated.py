@@ -11,9 +11,9 @@ from typing import Final
 
 import numpy as np
 
+from cases.declare.quantities import relative_change, values_of
 from cases.measurements.campaigns.units import Units, in_units
 from contact import Method, PronySeries, Scene, Solution
-from contact.records.validation import FloatArray
 from contact.scene.effects import Viscoelasticity
 
 OTHER_TIME: Final = Units(time=3.7)
@@ -85,14 +85,7 @@ def changes_when_restated(method: Method, answer: Solution, quantities: tuple[st
         scene = restate(answer.scene)
         if scene is not None:
             other = method.solve(scene)
-            found[name] = max(_change(answer, other, quantity, units) for quantity in quantities)
+            found[name] = max(
+                relative_change(values_of(answer, q), values_of(other, q) / units.factor(q)) for q in quantities
+            )
     return found
-
-
-def _change(answer: Solution, other: Solution, quantity: str, units: Units) -> float:
-    own, there = _values(answer, quantity), _values(other, quantity) / units.factor(quantity)
-    return float(np.abs(own - there).max() / max(float(np.abs(own).max()), np.finfo(float).tiny))
-
-
-def _values(answer: Solution, quantity: str) -> FloatArray:
-    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))

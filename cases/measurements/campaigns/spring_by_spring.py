@@ -13,7 +13,7 @@ from typing import Final
 import numpy as np
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from cases.measurements.campaigns.referee_profiles import equivalent_profile
+from bem.layer_equation.one_radius import half_space_load
 from contact import DepthHistory, FlatPunch, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
@@ -113,7 +113,7 @@ def _corners(indenter: Profile, end: float) -> FloatArray:
 
 def _gap(scene: Scene, x: FloatArray) -> FloatArray:
     if scene.layer.is_half_space:
-        return np.asarray(equivalent_profile(scene.indenter, x), dtype=np.float64)
+        return half_space_load(scene.indenter, x - scene.indenter.flat_radius)
     return equivalent_system(scene.layer, scene.indenter, float(x[-1]), IntegralEquation()).mdr_profile(x)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
@@ -44,6 +45,7 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "work_of_adhesion": (1, 1, 0),
     "slope": _NUMBER,
     "exponent": _NUMBER,
+    "coefficient": _NUMBER,
     "poissons_ratio": _NUMBER,
     "contact_radius": _LENGTH,
     "indentation_depth": _LENGTH,
@@ -82,31 +84,38 @@ class Units:
 
 def in_units(scene: Scene, units: Units) -> Scene:
     """The same scene with every number in other units."""
+
+    def scaled(item: Record, name: str, value: Any) -> Any:
+        """The number of one field, whose name tells its dimension; of `values` the record's name does."""
+        if isinstance(value, DepthFunction):
+            return value.scaled(1.0 / units.length, 1.0 / units.factor(name))
+        number = value * units.factor(f"{type(item).__name__}.{name}" if name == "values" else name)
+        return number if isinstance(value, np.ndarray) else float(number)
+
+    return with_numbers(scene, scaled)
+
+
+def with_numbers(scene: Scene, change: Callable[[Record, str, Any], Any]) -> Scene:
+    """The scene with every number, or array of numbers, replaced by `change` of its record, field and value."""
     return Scene(
-        layer=_converted(scene.layer, units),
-        indenter=_converted(scene.indenter, units),
-        loading=_converted(scene.loading, units),
-        effects=tuple(_converted(effect, units) for effect in scene.effects),
+        layer=_changed(scene.layer, change),
+        indenter=_changed(scene.indenter, change),
+        loading=_changed(scene.loading, change),
+        effects=tuple(_changed(effect, change) for effect in scene.effects),
     )
 
 
-def _converted(item: R, units: Units) -> R:
-    changes = {
-        field.name: _scaled(item, field.name, getattr(item, field.name), units)
-        for field in dataclasses.fields(item)  # type: ignore[arg-type]  # all records are dataclasses
-    }
-    return item.replace(**changes)
+def _changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
+    values = {field.name: getattr(item, field.name) for field in dataclasses.fields(item)}  # type: ignore[arg-type]  # all records are dataclasses
+    numbers = {name: value for name, value in values.items() if value is not None and not isinstance(value, str)}
+    return item.replace(**{name: _changed_value(item, name, value, change) for name, value in numbers.items()})
 
 
-def _scaled(item: Record, name: str, value: Any, units: Units) -> Any:
-    if value is None or isinstance(value, str):
-        return value
+def _changed_value(item: Record, name: str, value: Any, change: Callable[[Record, str, Any], Any]) -> Any:
+    """A number, or the parts of a layer."""
     if isinstance(value, tuple):
-        return tuple(_scaled(item, name, one, units) for one in value)
-    if isinstance(value, DepthFunction):
-        return value.scaled(1.0 / units.length, 1.0 / units.factor(name))
-    if isinstance(value, Record):
-        return _converted(value, units)
-    key = f"{type(item).__name__}.{name}" if name == "values" else name
-    scaled = value * units.factor(key)
-    return scaled if isinstance(value, np.ndarray) else float(scaled)
+        return tuple(_changed_value(item, name, one, change) for one in value)
+    if isinstance(value, str):
+        return value
+    is_part = isinstance(value, Record) and not isinstance(value, DepthFunction)
+    return _changed(value, change) if is_part else change(item, name, value)

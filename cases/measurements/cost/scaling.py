@@ -29,6 +29,7 @@ from contact import (
     Solution,
 )
 from contact.records.validation import FloatArray
+from contact.scene.loading import Loading
 
 NAME: Final = "scaling"
 REPEATS: Final = 7
@@ -74,19 +75,17 @@ class ScalingPlan:
     repeats: int = REPEATS
 
 
-def _layer(poissons_ratio: float = 0.45) -> Layer:
-    return Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=poissons_ratio, support="bonded")
+def _at_radii(values: FloatArray) -> Scene:
+    layer = Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=0.45, support="bonded")
+    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=values))
 
 
 def _at_ratio(ratio: float) -> Scene:
-    return Scene(
-        layer=_layer(), indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([ratio]))
-    )
+    return _at_radii(np.array([ratio]))
 
 
 def _radii(count: float) -> Scene:
-    values = np.linspace(0.01, 2.0, int(count))
-    return Scene(layer=_layer(), indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=values))
+    return _at_radii(np.linspace(0.01, 2.0, int(count)))
 
 
 def _prony(terms: int) -> PronySeries:
@@ -96,13 +95,13 @@ def _prony(terms: int) -> PronySeries:
     )
 
 
+def _viscoelastic(loading: Loading, terms: int) -> Scene:
+    layer = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
+    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=loading, effects=(_prony(terms),))
+
+
 def _terms(count: float) -> Scene:
-    return Scene(
-        layer=Layer.incompressible(thickness=1.0, shear_modulus=1.0),
-        indenter=Paraboloid(radius_of_curvature=1.0),
-        loading=Impact(mass=0.05, velocity=0.1),
-        effects=(_prony(int(count)),),
-    )
+    return _viscoelastic(Impact(mass=0.05, velocity=0.1), int(count))
 
 
 def _steps(count: float) -> Scene:
@@ -110,12 +109,7 @@ def _steps(count: float) -> Scene:
     n = int(count)
     depth = 0.05 * np.sin(np.pi * np.arange(n + 1) / n) ** 2
     depth[0] = depth[-1] = 0.0
-    return Scene(
-        layer=Layer.incompressible(thickness=1.0, shear_modulus=1.0),
-        indenter=Paraboloid(radius_of_curvature=1.0),
-        loading=DepthHistory(time=np.arange(n + 1) / n, depth=depth),
-        effects=(_prony(1),),
-    )
+    return _viscoelastic(DepthHistory(time=np.arange(n + 1) / n, depth=depth), 1)
 
 
 PLANS: Final = (

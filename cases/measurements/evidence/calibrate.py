@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from cases.declare.methods import build
-from cases.measurements.campaigns.campaign import IMPACT_NUMBERS
+from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import second_opinion
 from cases.measurements.driver import CoarseReference, measured
@@ -22,7 +22,7 @@ from cases.measurements.measurement import Measurement
 from cases.measurements.study import Say, silent
 from cases.results.status import Status
 from contact import ContactError, ContactPath, ImpactHistory, Scene, Solution
-from contact.records.validation import FloatArray
+from contact.answer.accuracy import asked_errors
 
 FAMILIES: Final[Mapping[str, Family]] = {
     "radii": "elastic",
@@ -150,8 +150,8 @@ def judged_by_reference(answer: Solution) -> list[Measurement]:
 
 
 def largest_stated_error(answer: Solution) -> float:
-    """The largest relative error the answer states for any of its quantities."""
-    return max((float(np.max(error)) for error in answer.error_estimate.values()), default=0.0)
+    """The largest relative error the answer states for any quantity that an accuracy is asked of: not the pressure."""
+    return max(asked_errors(answer).values(), default=0.0)
 
 
 def error_bound(answer: Solution) -> float:
@@ -185,14 +185,12 @@ def _common(answer: Solution, finest: Solution) -> tuple[str, ...]:
     """Stated quantities; along a detachment's branch only its critical numbers stand at the same state."""
     names = answer.SCALARS or tuple(answer.error_estimate)
     return tuple(
-        q for q in names if q in answer.error_estimate and np.shape(_of(answer, q)) == np.shape(_of(finest, q))
+        q
+        for q in names
+        if q in answer.error_estimate and np.shape(values_of(answer, q)) == np.shape(values_of(finest, q))
     )
 
 
-def _of(answer: Solution, quantity: str) -> FloatArray:
-    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
-
-
 def _distance(answer: Solution, finest: Solution, quantity: str) -> float:
-    expected, uncertainty = _of(finest, quantity), float(np.max(finest.error_estimate.get(quantity, 0.0)))
-    return float(np.max(np.abs(_of(answer, quantity) - expected)) / np.max(np.abs(expected))) + uncertainty
+    expected, uncertainty = values_of(finest, quantity), float(np.max(finest.error_estimate.get(quantity, 0.0)))
+    return float(np.max(np.abs(values_of(answer, quantity) - expected)) / np.max(np.abs(expected))) + uncertainty

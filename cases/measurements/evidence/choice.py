@@ -29,6 +29,7 @@ from contact import (
     Solution,
     refuse_other_layers,
 )
+from contact.answer.accuracy import shortfalls, told_where_less
 
 AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
 
@@ -63,7 +64,7 @@ class Outcome(Generic[AnswerT]):
     Attributes:
         choice: What it was solved with.
         answer: The solution.
-        stated_error: Largest relative error that the answer states for itself, at most the accuracy asked for.
+        stated_error: Largest relative error that the answer states of what an accuracy is asked of; at most that.
         seconds: Processor time it took [s], attempts that stated more included.
     """
 
@@ -131,7 +132,12 @@ def _ever_finer(measurements: Iterable[MeasuredSetting]) -> Iterable[MeasuredSet
 
 @overload
 def solve(
-    scene: Scene[EquilibriumLoading], *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+    scene: Scene[EquilibriumLoading],
+    *,
+    accuracy: float,
+    pressure_accuracy: float | None = None,
+    within: float | None = None,
+    evidence: Evidence | None = None,
 ) -> Outcome[ContactPath]: ...
 @overload
 def solve(
@@ -147,16 +153,28 @@ def solve(
 ) -> Outcome[HistoryPath]: ...
 @overload
 def solve(
-    scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+    scene: Scene,
+    *,
+    accuracy: float,
+    pressure_accuracy: float | None = None,
+    within: float | None = None,
+    evidence: Evidence | None = None,
 ) -> Outcome: ...
 def solve(
-    scene: Scene, *, accuracy: float, within: float | None = None, evidence: Evidence | None = None
+    scene: Scene,
+    *,
+    accuracy: float,
+    pressure_accuracy: float | None = None,
+    within: float | None = None,
+    evidence: Evidence | None = None,
 ) -> Outcome[Any]:
     """The first answer that states no larger error than wanted, settings tried in the order of `choices`.
 
     Args:
         scene: What is to be solved.
-        accuracy: Largest relative error wanted, of any quantity; the answer states no larger one.
+        accuracy: Largest relative error wanted of what an accuracy is asked of (`Solution.ASKED`): radius, depth, force
+            and stiffness, or critical numbers, or restitution and peaks. What states more is told in the notes.
+        pressure_accuracy: The same of the contact pressure; None if it does not matter.
         within: Processor time that may be spent [s], as far as it was measured on such scenes.
         evidence: Measurements; by default those shipped with the package.
 
@@ -173,7 +191,8 @@ def solve(
         answer, failure = _tried(choice, scene)
         seconds += time.process_time() - start
         stated = np.inf if answer is None else largest_stated_error(answer)
-        if answer is not None and stated <= accuracy:
+        if answer is not None and not shortfalls(answer, accuracy, pressure_accuracy):
+            answer = told_where_less(answer, accuracy, pressure_accuracy)
             return Outcome(choice=choice, answer=answer, stated_error=stated, seconds=seconds)
         best, why = min(best, stated), failure or why
     found = f"answers to this scene state {best:.1e} at best" if best < np.inf else f"no answer ({why})"

@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from cases.measurements.campaigns.referee_profiles import equivalent_profile
+from bem.layer_equation.one_radius import half_space_load
 from contact import (
     Adhesion,
     ContactRadii,
@@ -22,24 +22,19 @@ from contact import (
 from contact.records.validation import FloatArray
 
 BANDS: Final = (1.0, 10.0, 25.0)  # upper ends of a/h; evidence reaches as far as an independent reference
+KINDS: Final = {
+    ContactRadii: "radii",
+    Detachment: "detachment",
+    Impact: "impact",
+    DepthHistory: "history",
+    ForceHistory: "creep",
+}
 _TRIALS: Final = np.geomspace(1e-9, 1e9, 400)  # radii in units of a length of the scene
 
 
 def kind_of(scene: Scene) -> str:
     """The kind of loading: "radii", "equilibrium", "detachment", "impact", "history" or "creep"."""
-    match scene.loading:
-        case ContactRadii():
-            return "radii"
-        case Detachment():
-            return "detachment"
-        case Impact():
-            return "impact"
-        case DepthHistory():
-            return "history"
-        case ForceHistory():
-            return "creep"
-        case _:
-            return "equilibrium"
+    return KINDS.get(type(scene.loading), "equilibrium")
 
 
 def band_of(scene: Scene) -> float:
@@ -70,7 +65,7 @@ def rough_radius(scene: Scene) -> float:
     if isinstance(scene.loading, ContactRadii):
         return float(scene.loading.values[-1])
     radii = _trial_radii(scene)
-    g = equivalent_profile(scene.indenter, radii)
+    g = half_space_load(scene.indenter, radii - scene.indenter.flat_radius)
     load = 2 * (radii * g - np.concatenate([[0.0], np.cumsum(np.diff(radii) * (g[1:] + g[:-1]) / 2)]))  # F / E*
     measure, wanted = _wanted(scene, g, load, radii)
     return float(np.interp(wanted, measure, radii))

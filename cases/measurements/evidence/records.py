@@ -6,15 +6,13 @@ import statistics
 from functools import cache
 from importlib.resources import files
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import ConfigDict, Field, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, TypeAdapter
 from pydantic.dataclasses import dataclass
 
 from cases.results.files import write_whole
-from cases.results.sealed import read_sealed, sealed_text, unsealed
-from contact import InvalidInput
-from contact.records.record import shown
+from cases.results.sealed import read_sealed, sealed_text, unsealed, validated
 
 _RECORD = ConfigDict(extra="forbid")
 _REMEDY = "measure it anew with contact-verify calibrate"
@@ -96,8 +94,9 @@ _ADAPTER: TypeAdapter[Evidence] = TypeAdapter(Evidence)
 @cache
 def shipped() -> Evidence:
     """The evidence that comes with the package."""
-    data = files("cases.measurements.evidence").joinpath("measured.json").read_bytes()
-    return _validated(unsealed(data, place="measured.json", remedy=_REMEDY), "measured.json")
+    place = "measured.json"
+    data = files("cases.measurements.evidence").joinpath(place).read_bytes()
+    return validated(_ADAPTER, unsealed(data, place=place, remedy=_REMEDY), place=place, remedy=_REMEDY)
 
 
 def read(path: Path) -> Evidence:
@@ -106,19 +105,9 @@ def read(path: Path) -> Evidence:
     Raises:
         InvalidInput: In one line, if the file is none, or was changed after it was written.
     """
-    return _validated(read_sealed(path, remedy=_REMEDY), str(path))
+    return validated(_ADAPTER, read_sealed(path, remedy=_REMEDY), place=str(path), remedy=_REMEDY)
 
 
 def write(path: Path, evidence: Evidence) -> None:
     """Write evidence as sealed JSON, whole or not at all."""
     write_whole(path, sealed_text(_ADAPTER.dump_python(evidence, mode="json")))
-
-
-def _validated(tree: dict[str, Any], place: str) -> Evidence:
-    try:
-        return _ADAPTER.validate_python(tree)
-    except ValidationError as error:
-        first = error.errors()[0]
-        where = ".".join(str(part) for part in first["loc"])
-        wrong = f"{place}: {where:.200}: {first['msg']}, got {shown(first['input'])}"
-        raise InvalidInput(f"{wrong}; {_REMEDY}") from None

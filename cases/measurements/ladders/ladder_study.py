@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, Final
 
 from cases.declare.methods import build
-from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits
+from cases.measurements.ladders.ladders import LadderPlan, climb
 from cases.measurements.study import Say, silent, study_case, told, within_limit
 from cases.results.records.claim import Claim
 from cases.results.records.reliability import Ladder
@@ -68,9 +68,9 @@ def climbs(plan: LadderPlan, name: str, method: Method) -> bool:
 
 def summary(ladder: Ladder) -> str:
     """One line: where it stops and how many digits are left."""
-    stop, digits = breakdown(ladder), fewest_digits(ladder)
-    end = "climbed to the end" if stop is None else f"stops at {ladder.parameter} = {stop:g}"
-    return f"{ladder.name}, {ladder.method}: {end}, at least {0.0 if digits is None else digits:.1f} digits"
+    stop = ladder.breakdown
+    end = "climbed to the end" if stop is None else f"stops at {ladder.parameter} = {stop.value:g}"
+    return f"{ladder.name}, {ladder.method}: {end}, at least {ladder.fewest_digits or 0.0:.1f} digits"
 
 
 def refusals(ladder: Ladder) -> list[str]:

@@ -10,6 +10,7 @@ from functools import partial
 import numpy as np
 
 from cases.declare.methods import build
+from cases.declare.quantities import values_of
 from cases.measurements.campaigns.invariants import invariant_residuals
 from cases.measurements.driver import measured
 from cases.measurements.ladders.repeats import digits_of, relative_spread, repeated
@@ -110,7 +111,7 @@ def _beside_the_fast_method(method: Method, answer: Solution, quantity: str) -> 
         other = fast.solve(answer.scene)
     except ContactError:
         return {}
-    found, expected = (np.atleast_1d(getattr(path, quantity)) for path in (answer, other))
+    found, expected = (values_of(path, quantity) for path in (answer, other))
     distance = np.max(np.abs(found - expected) / np.maximum(np.abs(found), np.abs(expected)))
     return {"fast method": max(float(distance) - _stated(other, quantity), 0.0)}
 
@@ -118,33 +119,3 @@ def _beside_the_fast_method(method: Method, answer: Solution, quantity: str) -> 
 def _stated(answer: Solution, quantity: str) -> float:
     """The largest relative error the method states for the quantity; zero where it states none."""
     return float(np.max(answer.error_estimate.get(quantity, np.zeros(1))))
-
-
-def breakdown(ladder: Ladder) -> float | None:
-    """The first value that was refused or failed; None if the whole ladder was climbed."""
-    return next((rung.value for rung in ladder.rungs if rung.status is not Status.PASS), None)
-
-
-def fewest_digits(ladder: Ladder) -> float | None:
-    """The fewest digits of a rung that was climbed; None if none was."""
-    return min((rung.digits for rung in ladder.rungs if rung.digits is not None), default=None)
-
-
-def worsened(ladder: Ladder, baseline: Ladder) -> list[str]:
-    """What is worse than an accepted ladder: an earlier breakdown, a digit lost on a rung, or a rung not walked."""
-    walked = {rung.value: rung for rung in ladder.rungs}
-    found = []
-    for before in baseline.rungs:
-        if before.digits is None:
-            continue
-        rung = walked.get(before.value, _not_walked(before.value))
-        place = f"{ladder.name}, {ladder.method}, {ladder.parameter} = {rung.value:g}"
-        if rung.digits is None:
-            found.append(f"{place}: {rung.reason or rung.status}, but {before.digits:.1f} digits were accepted")
-        elif rung.digits < before.digits - 1.0:
-            found.append(f"{place}: {rung.digits:.1f} digits, but {before.digits:.1f} were accepted")
-    return found
-
-
-def _not_walked(value: float) -> Rung:
-    return Rung(value=value, status=Status.INVALID, reason="not walked", digits=None)

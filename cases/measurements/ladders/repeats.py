@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Iterator, Sequence
-from typing import Any, Final, TypeVar
+from typing import Any, Final
 
 import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
-from cases.measurements.campaigns.units import Units, in_units
+from cases.declare.quantities import values_of
+from cases.measurements.campaigns.units import Units, in_units, with_numbers
 from contact import ContactRadii, IndentationDepths, Method, NormalForces, Scene, Solution
-from contact.records.record import Record
-
-R = TypeVar("R", bound=Record)
 
 DOUBLE_DIGITS: Final = -float(np.log10(2.0**-53))
 NUDGES: Final = 3
@@ -53,22 +50,10 @@ def digits_of(spread: float) -> float:
 
 def nudged(scene: Scene, draw: np.random.Generator) -> Scene:
     """Every number of the scene one unit in the last place up or down, or left alone, at random."""
-    return Scene(
-        layer=_moved(scene.layer, draw),
-        indenter=_moved(scene.indenter, draw),
-        loading=_moved(scene.loading, draw),
-        effects=tuple(_moved(effect, draw) for effect in scene.effects),
-    )
-
-
-def _moved(item: R, draw: np.random.Generator) -> R:
-    names = [field.name for field in dataclasses.fields(item)]  # type: ignore[arg-type]  # all records are dataclasses
-    return item.replace(**{name: _one_ulp(name, getattr(item, name), draw) for name in names})
+    return with_numbers(scene, lambda _, name, value: _one_ulp(name, value, draw))
 
 
 def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
-    if value is None or isinstance(value, str):
-        return value
     steps = draw.integers(-1, 2, np.shape(value))
     moved = np.where(steps == 0, value, np.nextafter(value, np.where(steps > 0, np.inf, -np.inf)))
     moved = np.where(np.asarray(value) == 0.0, value, moved)  # zero has no last place
@@ -90,4 +75,4 @@ def amid_other_steps(scene: Scene) -> Scene | None:
 
 
 def _last(answer: Solution, quantity: str) -> float:
-    return float(np.atleast_1d(getattr(answer, quantity))[-1])
+    return float(values_of(answer, quantity)[-1])

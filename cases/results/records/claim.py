@@ -20,11 +20,12 @@ class Kind(StrEnum):
 
 
 class Origin(StrEnum):
-    """Where an expected number comes from; the four are never mixed."""
+    """Where an expected number comes from; they are never mixed."""
 
     CLOSED_FORM = "closed form"
     LITERATURE = "literature"
-    INDEPENDENT_METHOD = "independent method"
+    INDEPENDENT_METHOD = "independent method"  # shares neither code nor data with what it checks
+    RELATED_METHOD = "related method"  # shares what `shared_inputs` names
     OWN_EARLIER_OUTPUT = "own earlier output"
 
 
@@ -65,6 +66,7 @@ class Claim:
         shared_inputs: what the compared answers share; agreement says nothing about those.
         message: what was seen, one sentence.
         relaxed: whose own claim of accuracy has widened the tolerance, and from what; empty when nobody's has.
+        identity: why the comparison holds by construction, empty where it can fail; identities are not counted.
     """
 
     name: str
@@ -87,3 +89,4 @@ class Claim:
     shared_inputs: tuple[str, ...] = ()
     message: str
     relaxed: str = ""
+    identity: str = ""

@@ -20,7 +20,14 @@ class ConvergenceClass(StrEnum):
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class Grid:
-    """One refinement of a convergence study; ``gci`` is relative, None where it is not defined."""
+    """One refinement of a convergence study.
+
+    Attributes:
+        length: of the discretisation, relative to the coarsest.
+        error: distance to the reference, absolute; the root mean square where several grids make one refinement.
+        gci: what neighbouring refinements suggest as error, relative; None where it is not defined.
+        stated: error that the method itself states, absolute; None where it states none.
+    """
 
     length: Positive
     unknowns: int
@@ -28,6 +35,7 @@ class Grid:
     value: Finite
     error: NotNegative | None
     gci: NotNegative | None
+    stated: NotNegative | None = None
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)

@@ -154,6 +154,20 @@ class EffectEntry:
             return 1.0
         return max(0.0, 1.0 - self.seconds_without / self.seconds) if self.seconds else 0.0
 
+    @property
+    def largest_change(self) -> float:
+        """Over all quantities; infinite where nothing is left without the part."""
+        return max(self.changes.values(), default=float("inf"))
+
     def may_be_dropped(self, accuracy: float) -> bool:
         """Whether leaving the part out moves no quantity by more than the accuracy."""
-        return bool(self.changes) and max(self.changes.values()) <= accuracy
+        return self.largest_change <= accuracy
+
+    @property
+    def line(self) -> str:
+        """In words: "viscosity: 61 % of the time, moves peak force by 0.02 %"."""
+        if not self.changes:
+            return f"{self.effect}: {self.remark}"
+        quantity = max(self.changes, key=lambda name: self.changes[name])
+        moved = f"moves {quantity.replace('_', ' ')} by {100 * self.changes[quantity]:.2g} %"
+        return f"{self.effect}: {100 * self.share_of_time:.0f} % of the time, {moved}"

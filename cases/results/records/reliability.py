@@ -9,6 +9,11 @@ from pydantic.dataclasses import dataclass
 from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative, Positive, Vector
 from cases.results.status import Status
 
+# Where the distribution of stated over true errors is kept, in per cent.
+PERCENTILES = tuple(range(0, 101, 2))
+# The row of a map for the layer that does not see Poisson's ratio.
+UNBONDED = "unbonded"
+
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class Rung:
@@ -51,6 +56,32 @@ class Ladder:
     quantity: str
     rungs: tuple[Rung, ...]
 
+    @property
+    def breakdown(self) -> Rung | None:
+        """The first rung that was refused or failed; None if the whole ladder was climbed."""
+        return next((rung for rung in self.rungs if rung.status is not Status.PASS), None)
+
+    @property
+    def fewest_digits(self) -> float | None:
+        """The fewest digits of a rung that was climbed; None if none was."""
+        return min((rung.digits for rung in self.rungs if rung.digits is not None), default=None)
+
+    def worse_than(self, accepted: "Ladder") -> list[str]:
+        """What is worse than an accepted ladder: an earlier breakdown, a digit lost on a rung, or a rung not walked."""
+        walked = {rung.value: rung for rung in self.rungs}
+        found = []
+        for before in accepted.rungs:
+            if before.digits is None:
+                continue
+            missing = Rung(value=before.value, status=Status.INVALID, reason="not walked", digits=None)
+            rung = walked.get(before.value, missing)
+            place = f"{self.name}, {self.method}, {self.parameter} = {rung.value:g}"
+            if rung.digits is None:
+                found.append(f"{place}: {rung.reason or rung.status}, but {before.digits:.1f} digits were accepted")
+            elif rung.digits < before.digits - 1.0:
+                found.append(f"{place}: {rung.digits:.1f} digits, but {before.digits:.1f} were accepted")
+        return found
+
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class CoverageRecord:
@@ -84,6 +115,11 @@ class CoverageRecord:
     sharpness: NotNegative | None
     percentiles: tuple[NotNegative, ...] = ()
 
+    @property
+    def at_90(self) -> float:
+        """Stated over true error at 90 %, zero where no true error could be told."""
+        return self.percentiles[PERCENTILES.index(90)] if self.percentiles else 0.0
+
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class ErrorMap:
@@ -106,6 +142,12 @@ class ErrorMap:
     ratios: Vector
     rows: tuple[str, ...]
     errors: tuple[tuple[Finite | None, ...], ...]
+
+    def good_range(self, row: str, limit: float = 1e-2) -> tuple[float, float] | None:
+        """Smallest and largest a/h of a row with errors within the limit; None where there is no such."""
+        errors = zip(self.ratios, self.errors[self.rows.index(row)], strict=True)
+        good = [ratio for ratio, error in errors if error is not None and abs(error) <= limit]
+        return (min(good), max(good)) if good else None
 
     @model_validator(mode="after")
     def _full(self) -> Self:

@@ -5,8 +5,9 @@ import json
 import pytest
 
 from cases.gate.baseline import baseline_path, read_baselines
-from cases.gate.history import append_history, history_path, read_history
+from cases.gate.history import append_history, history_path, read_history, write_history
 from cases.gate.specification import specification_hash
+from cases.gate.write_permission import SOURCE
 from cases.results.sealed import sealed_text
 from contact import InvalidInput
 from tests.cases.example_run import acceptance
@@ -71,18 +72,33 @@ def test_no_folder_has_no_baselines_and_no_history(tmp_path):
 
 def test_the_history_is_only_appended_to(tmp_path):
     append_history(tmp_path, [acceptance()])
-    first = history_path(tmp_path).read_text(encoding="utf-8")
+    first, _ = history_path(tmp_path).read_text(encoding="utf-8").splitlines()
     append_history(tmp_path, [acceptance(), acceptance()])
     assert history_path(tmp_path).read_text(encoding="utf-8").startswith(first)
     assert read_history(tmp_path) == (acceptance(),) * 3
 
 
-def test_a_damaged_history_names_its_line(tmp_path):
+def test_a_line_that_is_no_acceptance_is_named(tmp_path):
     append_history(tmp_path, [acceptance()])
-    with history_path(tmp_path).open("a", encoding="utf-8") as stream:
-        stream.write("{}\n")
+    first, _ = history_path(tmp_path).read_bytes().splitlines(keepends=True)
+    write_history(tmp_path, [first, b"{}\n"])
     with pytest.raises(InvalidInput, match="line 2"):
         read_history(tmp_path)
+
+
+@pytest.mark.parametrize("edit", [lambda text: text.replace("1", "2", 1), lambda text: text + "{}\n", lambda _: ""])
+def test_a_history_edited_by_hand_is_neither_read_nor_appended_to(edit, tmp_path):
+    append_history(tmp_path, [acceptance()])
+    path = history_path(tmp_path)
+    path.write_text(edited := edit(path.read_text(encoding="utf-8")), encoding="utf-8")
+    for touch in (read_history, lambda folder: append_history(folder, [acceptance()])):
+        with pytest.raises(InvalidInput, match="changed after it was written"):
+            touch(tmp_path)
+    assert path.read_text(encoding="utf-8") == edited
+
+
+def test_the_accepted_history_of_this_project_is_sealed():
+    assert len(read_history(SOURCE / "baselines")) > 2000
 
 
 def test_the_specification_is_the_same_where_only_the_last_bit_differs():

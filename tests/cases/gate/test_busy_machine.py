@@ -1,5 +1,5 @@
-"""The gate by its own command, in a repository of its own, on a busy machine: twenty times the same code, twenty times
-a planted slowdown, and a planted change of 1e-7."""
+"""Race and gate by their own commands, in a repository of its own, on a busy machine: twenty times the same code,
+twenty times a planted slowdown, and a planted change of 1e-7."""
 
 import os
 import shutil
@@ -82,14 +82,17 @@ def gated(accepted):
 
 RUN = ("--method", "mdr", "--no-timing", "--quiet", "--jobs", "1", "--out", "../run")
 GATE = ("gate", "../run", "--baseline", "../accepted", "--quiet")
-AGAINST = ("--against", "HEAD", "--only", CASE)
+RACE = (sys.executable, "-m", "benchmarks.race", "HEAD", CASE)
 
 
 def verify(folder, *words):
     """The exit code of the console command, run in the repository's own source."""
+    return exit_code(folder, *COMMAND, *map(str, words))
+
+
+def exit_code(folder, *words):
     environment = {**os.environ, "PYTHONPATH": str(folder / "source"), "CI": ""}
-    done = subprocess.run([*COMMAND, *map(str, words)], cwd=folder / "source", env=environment, check=False)
-    return done.returncode
+    return subprocess.run(words, cwd=folder / "source", env=environment, check=False).returncode
 
 
 def plant(folder, text):
@@ -98,8 +101,8 @@ def plant(folder, text):
 
 
 def exit_codes(folder):
-    """How twenty gates end, each with a worktree and processes of its own."""
-    codes = Counter(verify(folder, *GATE, *AGAINST) for _ in range(TIMES))
+    """How twenty races end, each with a worktree and processes of its own."""
+    codes = Counter(exit_code(folder, *RACE) for _ in range(TIMES))
     print(f"exit codes: {dict(codes)}", flush=True)  # noqa: T201 - the measured numbers, shown by pytest -s
     return codes
 

@@ -14,6 +14,7 @@ FAMILIES = {
     "paraboloid_adhesion",
     "flat_punch_impact",
     "sphere_impact",
+    "held_indentation",
     "thin_layer_limits",
     "half_space_limits",
     "coated_pair",

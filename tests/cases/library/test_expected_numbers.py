@@ -59,7 +59,7 @@ def test_damping_ratio_of_the_scenes():
         assert eta * math.sqrt(2 * a / (mass * modulus)) == pytest.approx(damping, rel=1e-12, abs=0.0)
 
 
-def test_hermanowicz_fits_are_continuous_and_close_to_the_separate_solution():
+def test_hermanowicz_fits_are_continuous_and_close_to_the_reference():
     for fit, joint in (
         (flat_punch_stiffness.hermanowicz_bonded, 1.2),
         (flat_punch_stiffness.hermanowicz_unbonded, 1.65),
@@ -71,7 +71,7 @@ def test_hermanowicz_fits_are_continuous_and_close_to_the_separate_solution():
     assert unbonded == pytest.approx(flat_punch_stiffness.STIFFNESS["unbonded"], rel=8e-4, abs=0.0)
 
 
-def test_hayes_agrees_with_the_separate_solution_as_well_as_stated():
+def test_hayes_agrees_with_the_reference_as_well_as_stated():
     for label, row in flat_punch_stiffness.HAYES.items():
         at = dict(zip(flat_punch_stiffness.HAYES_RATIOS, row, strict=True))
         for ratio, kbar in zip((0.2, 1.0, 2.0), flat_punch_stiffness.STIFFNESS[label], strict=True):
@@ -79,7 +79,7 @@ def test_hayes_agrees_with_the_separate_solution_as_well_as_stated():
 
 
 def test_hermanowicz_force_of_the_paraboloid():
-    for depth, force in paraboloid.TABULATED["bonded nu=0.5"].values():
+    for depth, force in paraboloid.PRESCRIBED["bonded nu=0.5"].values():
         assert paraboloid.hermanowicz(depth) == pytest.approx(force, rel=1e-3, abs=0.0)
 
 

@@ -8,13 +8,19 @@ from cases.declare.registry import load_cases
 from cases.library import _reasons
 from contact import InvalidInput
 
-OWN = [name for name in _reasons.TABLE if name != "shared"]
+OWN = [name for name in _reasons.TABLE if name not in ("shared", "convergence")]
 
 
 @pytest.mark.parametrize("case", OWN)
 def test_every_reason_of_a_case_is_given_by_one_of_its_claims(case):
     given = {dataclasses.astuple(claim.reason) for claim in load_cases()[case].claims}
     unused = [name for name, reason in _reasons.reasons(case).items() if dataclasses.astuple(reason) not in given]
+    assert unused == []
+
+
+def test_every_reason_of_convergence_is_given_by_a_claim_of_some_case():
+    given = {dataclasses.astuple(claim.reason) for case in load_cases().values() for claim in case.claims}
+    unused = [name for name, why in _reasons.reasons("convergence").items() if dataclasses.astuple(why) not in given]
     assert unused == []
 
 

@@ -19,6 +19,13 @@ def test_exact_passes_within_and_fails_beyond():
     assert judge_exact(1.0 - 2e-10, 1.0, scale=1.0, tolerance=1e-10).status is Status.FAIL
 
 
+def test_an_error_that_the_method_states_itself_is_inconclusive_and_one_beyond_that_fails():
+    judged = judge_exact(1.0 + 2e-6, 1.0, scale=1.0, tolerance=1e-6, uncertainty=1.5e-6)
+    assert (judged.status, judged.verdict) == (Status.INCONCLUSIVE, Verdict.INCONCLUSIVE)
+    assert judge_exact(1.0 + 2e-6, 1.0, scale=1.0, tolerance=1e-6, uncertainty=0.5e-6).status is Status.FAIL
+    assert judge_exact(1.0 + 0.9e-6, 1.0, scale=1.0, tolerance=1e-6, uncertainty=1.0).status is Status.PASS
+
+
 def test_exact_near_zero_uses_the_declared_scale():
     assert judge_exact(1e-13, 0.0, scale=1.0, tolerance=1e-12).status is Status.PASS
 

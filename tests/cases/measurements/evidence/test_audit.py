@@ -63,7 +63,7 @@ def test_evidence_that_promises_too_much_costs_answers_but_no_accuracy():
 
 
 def test_answers_that_promise_too_much_are_found_out(monkeypatch):
-    monkeypatch.setattr(choice, "largest_stated_error", lambda _: 0.0)
+    monkeypatch.setattr(choice, "shortfalls", lambda *_: {})
     met, _ = audit_case(count=3, seed=2, evidence=promising({8: 1e-12})).claims
     assert met.status is Status.FAIL
 

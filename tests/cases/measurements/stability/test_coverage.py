@@ -7,12 +7,12 @@ import pytest
 
 from cases.measurements.campaigns import coverage
 from cases.measurements.campaigns.coverage import (
-    PERCENTILES,
     CoveragePlan,
     coverage_case,
     errors_are_covered,
     errors_are_sharp,
 )
+from cases.results.records.reliability import PERCENTILES
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch
 from mdr import Mdr

@@ -11,7 +11,7 @@ from cases.measurements.campaigns.invariants import LAWS, invariant_residuals
 from cases.measurements.ladders import ladders
 from cases.measurements.ladders.ladder_study import climbs, ladder_case, no_silent_failure
 from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
-from cases.measurements.ladders.ladders import LadderPlan, breakdown, climb, fewest_digits, worsened
+from cases.measurements.ladders.ladders import LadderPlan, climb
 from cases.measurements.ladders.repeats import DOUBLE_DIGITS, digits_of, nudged, relative_spread, repeated
 from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
@@ -77,8 +77,8 @@ def test_a_nudge_moves_numbers_by_one_unit_in_the_last_place_and_nothing_else():
 
 def test_the_fast_method_climbs_with_nearly_all_digits():
     ladder = climb(PLAN, Mdr())
-    assert breakdown(ladder) is None
-    assert fewest_digits(ladder) > 13.5  # roundings of a dozen operations on well-conditioned numbers
+    assert ladder.breakdown is None
+    assert ladder.fewest_digits > 13.5  # roundings of a dozen operations on well-conditioned numbers
     assert set(ladder.rungs[0].residuals) >= {"second opinion", "twice the modulus", "stated error"}
 
 
@@ -91,7 +91,7 @@ def test_digits_that_repeats_do_not_share_are_not_counted():
 def test_a_wrong_number_is_a_failure_even_if_all_repeats_agree():
     ladder = climb(PLAN, Faulty(wrong))
     assert [rung.status for rung in ladder.rungs] == [Status.PASS, Status.FAIL, Status.FAIL]
-    assert breakdown(ladder) == 0.1
+    assert ladder.breakdown.value == 0.1
 
 
 def test_a_wrong_number_in_motion_is_found_beside_the_fast_method():
@@ -128,11 +128,11 @@ def ladder(*digits):
 
 def test_an_earlier_breakdown_and_a_lost_digit_are_worse():
     accepted = ladder(14.0, 12.0, 9.0, None)
-    assert worsened(ladder(14.0, 11.5, 8.2, None), accepted) == []
-    assert worsened(ladder(14.0, 12.0, 9.0, 5.0), accepted) == []
-    assert worsened(ladder(14.0, 12.0, 7.9, None), accepted) == ["n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"]
-    assert "NotConvergedError: x, but 12.0 digits" in worsened(ladder(14.0, None, 9.0, None), accepted)[0]
-    assert worsened(ladder(14.0, 12.0), accepted) == ["n, mdr, p = 0.01: not walked, but 9.0 digits were accepted"]
+    assert ladder(14.0, 11.5, 8.2, None).worse_than(accepted) == []
+    assert ladder(14.0, 12.0, 9.0, 5.0).worse_than(accepted) == []
+    assert ladder(14.0, 12.0, 7.9, None).worse_than(accepted) == ["n, mdr, p = 0.01: 7.9 digits, but 9.0 were accepted"]
+    assert "NotConvergedError: x, but 12.0 digits" in ladder(14.0, None, 9.0, None).worse_than(accepted)[0]
+    assert ladder(14.0, 12.0).worse_than(accepted) == ["n, mdr, p = 0.01: not walked, but 9.0 digits were accepted"]
 
 
 def test_a_method_climbs_only_what_it_supports_and_what_it_is_asked_to():

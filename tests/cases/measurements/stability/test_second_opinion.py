@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
+from bem.layer_equation.one_radius import half_space_load
 from cases.measurements.campaigns.referee import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
-from cases.measurements.campaigns.referee_profiles import equivalent_profile
 from contact import (
     Adhesion,
     Cone,
@@ -102,7 +102,7 @@ INDENTERS = [
 
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda i: type(i).__name__)
 @pytest.mark.parametrize("x", [0.41, 0.77, 1.1])
-def test_closed_forms_are_the_integral(indenter, x):
+def test_the_load_is_the_integral_of_the_slope(indenter, x):
     kinks = [math.asin(b / x) for b in indenter.breakpoints if b < x]
     ends = [0.0, *kinks, math.pi / 2]
 
@@ -110,19 +110,21 @@ def test_closed_forms_are_the_integral(indenter, x):
         return float(indenter.slope_at(x * math.sin(angle)))
 
     pieces = [quad(slope, low, high, epsabs=1e-13, epsrel=1e-13)[0] for low, high in pairwise(ends)]
-    assert float(equivalent_profile(indenter, np.array([x]))[0]) == pytest.approx(x * sum(pieces), rel=1e-11, abs=0.0)
+    assert float(half_space_load(indenter, np.array([x - indenter.flat_radius]))[0]) == pytest.approx(
+        x * sum(pieces), rel=1e-11, abs=0.0
+    )
 
 
 @pytest.mark.parametrize("x", [0.20001, 0.8600011965566239, 0.9999])
 def test_narrow_pieces_of_a_table_lose_no_digits(x):
-    """Their integrals are small differences of large numbers; Gauss quadrature of each piece has no difference."""
+    """Each piece takes its own Gauss nodes."""
     radii = np.linspace(0.0, 1.0, 41)
     table = Tabulated(radii=radii, heights=radii**2.5 * (1 + 0.01 * np.sin(37 * radii)))
     ends = np.arcsin(np.append(radii[radii < x], x) / x)
     nodes, weights = np.polynomial.legendre.leggauss(8)
     angles = ends[:-1, None] + np.diff(ends)[:, None] * (1 + nodes) / 2
     expected = x * float(np.diff(ends) / 2 @ table.slope_at(x * np.sin(angles)) @ weights)
-    assert float(equivalent_profile(table, np.array([x]))[0]) == pytest.approx(expected, rel=5e-15, abs=0.0)
+    assert float(half_space_load(table, np.array([x]))[0]) == pytest.approx(expected, rel=5e-15, abs=0.0)
 
 
 def test_beyond_its_reach_it_says_so():

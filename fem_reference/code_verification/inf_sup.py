@@ -4,7 +4,8 @@
 
 the square root of the smallest eigenvalue of ``B H^-1 B^T q = beta^2 M q``, with H the product of displacement
 gradients and M the pressure mass.  A stable pair keeps beta bounded below; where it falls, or spurious pressures make
-it vanish, the pair is flagged.
+it vanish, the pair is flagged.  Where nu < 1/2, compressibility holds the pressure too: the mixed form then has the
+constant sqrt(beta^2 + mu/K), as small as beta at nu = 1/2 only.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ from contact import InvalidInput
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.elements import ElementPair
+from fem_reference.discrete_layer.material import moduli
 from fem_reference.discrete_layer.mesh import named_layer_mesh
 
 
@@ -56,12 +58,23 @@ def measure_inf_sup(pair: ElementPair, cells: Sequence[int] = (2, 4, 8)) -> InfS
     """
     if not pair.is_mixed:
         raise InvalidInput(f"{pair.name} has no pressure; take a mixed pair such as P3P2")
-    return InfSup(pair, tuple(cells), np.array([_inf_sup_constant(pair, n) for n in cells]))
+    return InfSup(pair, tuple(cells), np.array([inf_sup_constant(pair, uniform_mesh(n)) for n in cells]))
 
 
-def _inf_sup_constant(pair: ElementPair, cells: int) -> float:
+def with_compressibility(constant: float, poissons_ratio: float) -> float:
+    """The constant of the mixed form at nu, from that of its pair."""
+    material = moduli(poissons_ratio)
+    return float(np.sqrt(constant**2 + material.shear * material.compressibility))
+
+
+def uniform_mesh(cells: int) -> MeshTri:
+    """A bonded section one thick and two wide, with so many cells across its thickness."""
     uniform = MeshTri.init_tensor(np.linspace(0, 2, 2 * cells + 1), np.linspace(0, 1, cells + 1))
-    mesh = named_layer_mesh(uniform.p, uniform.t).mesh
+    return named_layer_mesh(uniform.p, uniform.t).mesh
+
+
+def inf_sup_constant(pair: ElementPair, mesh: MeshTri) -> float:
+    """Beta on a mesh whose axis and base are named."""
     displacement = Basis(mesh, ElementVector(pair.displacement))
     pressure = displacement.with_element(pair.pressure)
     axis = displacement.get_dofs("axis").all(["u^1"])

@@ -7,15 +7,15 @@ import sys
 import numpy as np
 import pytest
 
-from cases.declare.case import Case
-from cases.gate.race import race as race_module
-from cases.gate.race import version
-from cases.gate.race.against import SOURCE, subjects, with_times_against
-from cases.gate.race.race import Race, judge_race, race
-from cases.gate.race.version import Subject, Version, subject
-from cases.gate.race.worktree import worktree
-from cases.gate.write_permission import git
-from cases.results.records.claim import Kind
+from benchmarks.race import __main__ as race_command
+from benchmarks.race import race as race_module
+from benchmarks.race import version
+from benchmarks.race.__main__ import main, raced, subjects
+from benchmarks.race.race import Race, judge_race, race
+from benchmarks.race.version import Subject, Version, subject
+from benchmarks.race.worktree import worktree
+from cases.gate.write_permission import SOURCE, git
+from cases.judgement.rules.judgement import nothing_compared
 from cases.results.status import Status
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
@@ -152,47 +152,53 @@ def test_a_version_that_dies_is_no_endless_wait(repository, monkeypatch):
         Version(repository)
 
 
-def test_each_method_of_a_case_is_raced_on_the_first_scene_it_solved():
+def test_each_method_of_a_case_is_raced_on_the_first_scene_it_solves_in_the_suite_ci():
     case = fake_case()
-    run = run_of(case)
-    assert [(s.case, s.scene, s.method) for s in subjects(run, [case])] == [
+    first, *others = case.scenes
+    slow_later = dataclasses.replace(case, scenes=(dataclasses.replace(first, nightly=("slow",)), *others))
+    assert [(s.case, s.scene, s.method) for s in subjects([case])] == [
         ("fake_hertz", "half-space nu=0.3", "fast"),
         ("fake_hertz", "half-space nu=0.3", "slow"),
     ]
+    assert {s.method: s.scene for s in subjects([slow_later])} == {"fast": first.name, "slow": others[0].name}
 
 
 @pytest.mark.usefixtures("short")
-def test_the_claims_about_time_stand_in_the_run(monkeypatch, repository):
-    case = fake_case()
-    monkeypatch.setattr("cases.gate.race.against.subject", lambda *_: dataclasses.replace(busy(), case=case.name))
-    claims = with_times_against(run_of(case), "quick", [case], repository=repository, pairs=7).case(case.name).claims
-    timed = [claim for claim in claims if claim.quantity == "cpu_seconds"]
-    assert {(claim.kind, claim.status, claim.name) for claim in timed} == {
-        (Kind.REGRESSION, Status.PERF, "no slower than quick")
-    }
-    assert all(0.4 < claim.observed < 0.6 for claim in timed)
+def test_a_slower_tree_ends_with_perf_and_what_the_revision_cannot_solve_is_skipped_with_its_words(repository):
+    found = list(raced("quick", [busy(), busy(fail=True)], repository=repository, pairs=7))
+    assert [judged.status for _, judged in found] == [Status.PERF, Status.SKIP]
+    assert 0.4 < found[0][1].observed < 0.6
+    assert "ZeroDivisionError" in found[1][1].message
 
 
-def run_of(case: Case):
-    from cases.declare.task import Answers
-    from cases.judgement.judge import case_result
-    from cases.run.solve_task import solve
-    from tests.cases.gate.example_baselines import clean_run
-
-    rows = {task.identity: solve(task, "") for task in case.tasks()}
-    return clean_run(case_result(case, Answers(rows), complete=True))
+@pytest.fixture
+def fake_library(monkeypatch):
+    monkeypatch.setattr(race_command, "load_cases", lambda: {"fake_hertz": fake_case()})
 
 
-@pytest.mark.usefixtures("short")
-def test_what_the_revision_cannot_solve_is_skipped_with_its_words(monkeypatch, repository):
-    case = fake_case()
-    monkeypatch.setattr(
-        "cases.gate.race.against.subject", lambda *_: dataclasses.replace(busy(fail=True), case=case.name)
-    )
-    claims = with_times_against(run_of(case), "quick", [case], repository=repository, pairs=7).case(case.name).claims
-    timed = [claim for claim in claims if claim.quantity == "cpu_seconds"]
-    assert {claim.status for claim in timed} == {Status.SKIP}
-    assert all("ZeroDivisionError" in claim.message for claim in timed)
+@pytest.mark.parametrize(
+    ("statuses", "strict", "code"),
+    [
+        ((Status.PASS, Status.SKIP), False, 0),
+        ((Status.PASS, Status.PERF), False, 1),
+        ((Status.INCONCLUSIVE,), False, 0),
+        ((Status.INCONCLUSIVE,), True, 1),
+        ((Status.SKIP,), False, 5),
+    ],
+)
+@pytest.mark.usefixtures("fake_library")
+def test_the_exit_code_of_the_command(statuses, strict, code, monkeypatch, capsys):
+    judged = [(busy(), nothing_compared(status, "as planted")) for status in statuses]
+    monkeypatch.setattr(race_command, "raced", lambda *_, **__: iter(judged))
+    assert main(["HEAD", *(["--strict"] if strict else [])]) == code
+    assert f"{statuses[0]}: little / busy / busy: as planted" in capsys.readouterr().out
+
+
+@pytest.mark.usefixtures("fake_library")
+@pytest.mark.parametrize(("words", "said"), [(["no-such-revision"], "rev-parse"), (["HEAD", "nothing"], "nothing")])
+def test_an_unknown_revision_or_case_is_one_clear_line(words, said, capsys):
+    assert main(words) == 4
+    assert said in capsys.readouterr().err
 
 
 def test_a_subject_is_understood_without_the_library():

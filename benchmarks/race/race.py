@@ -8,11 +8,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cases.gate.race.version import Subject, Version
+from benchmarks.race.slowdown import Slowdown, is_ambiguous, is_slower, slowdown
+from benchmarks.race.version import Subject, Version
 from cases.judgement.rules.judgement import Judgement
 from cases.results.records.claim import Verdict
 from cases.results.status import Status
-from cases.run.timing import SHORTEST, Slowdown, is_ambiguous, is_slower, slowdown
+from cases.run.timing import SHORTEST
 
 # A race takes so many pairs of times; the user may ask for more.
 PAIRS = 15

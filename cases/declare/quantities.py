@@ -1,0 +1,32 @@
+"""The numbers of an answer by name, as every study, run and table reads them."""
+
+from typing import Final
+
+import numpy as np
+
+from contact import ImpactHistory, Solution
+from contact.records.validation import FloatArray
+
+# What sums up an impact: its samples lie where the steps of a method fall and cannot be compared.
+IMPACT_NUMBERS: Final = (
+    "coefficient_of_restitution",
+    "contact_time",
+    "peak_force",
+    "peak_depth",
+    "peak_contact_radius",
+)
+
+
+def values_of(answer: Solution, quantity: str) -> FloatArray:
+    """All values of a quantity, shape (n,); one of a single number."""
+    return np.atleast_1d(np.asarray(getattr(answer, quantity), dtype=np.float64))
+
+
+def single_numbers(answer: Solution) -> tuple[str, ...]:
+    """What an answer ends with beside its path: restitution and peaks of an impact, the pull-off of a detachment."""
+    return IMPACT_NUMBERS if isinstance(answer, ImpactHistory) else answer.SCALARS
+
+
+def relative_change(values: FloatArray, others: FloatArray) -> float:
+    """The largest difference over the largest of the first values."""
+    return float(np.max(np.abs(values - others)) / max(float(np.max(np.abs(values))), np.finfo(float).tiny))

@@ -1,0 +1,186 @@
+"""What two methods share: one list, from which claims, reports and tests of planted faults all read.
+
+Agreement of two methods says nothing about what both use. Whatever is listed here is planted wrong by one per cent in
+`tests/planted/sharing.py`; the table of what then fails is `docs/shared.md`.
+"""
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+FAST = ("mdr", "mdr_table")
+EQUATIONS = ("mdr", "integral_equation")
+GRIDS = ("bem", "mdr_table")
+# All but finite elements.
+ON_THE_KERNEL = ("mdr", "mdr_table", "bem", "integral_equation")
+EVERY = (*ON_THE_KERNEL, "fem")
+
+
+class Sharing(StrEnum):
+    """What kind of thing is shared."""
+
+    CODE = "code"  # lines that compute numbers of the answer
+    QUESTION = "question"  # the scene as the user gave it: without it there is nothing to compare
+    RECORD = "record"  # how answers are kept and compared, whoever gave them
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shared:
+    """Something that several methods use.
+
+    Attributes:
+        name: as reports and records call it.
+        kind: code counts against independence; the question and the records are common to every comparison.
+        place: module of the sources.
+        methods: names in the method table.
+        guard: what notices a mistake that the sharing methods make together.
+        quantities: the compared quantities it enters; empty for all.
+        cases: the cases it enters; empty for all.
+    """
+
+    name: str
+    kind: Sharing
+    place: str
+    methods: tuple[str, ...]
+    guard: str
+    quantities: tuple[str, ...] = ()
+    cases: tuple[str, ...] = ()
+
+    def enters(self, quantity: str, case: str) -> bool:
+        """Whether a comparison of ``quantity`` in ``case`` rests on it."""
+        return (not self.quantities or quantity in self.quantities) and (not self.cases or case in self.cases)
+
+
+LAYER_KERNEL = "layer kernel"
+NOT_SAID = "not said by its package"
+
+SHARED: tuple[Shared, ...] = (
+    Shared(
+        name=LAYER_KERNEL,
+        kind=Sharing.CODE,
+        place="bem.kernels.layer",
+        methods=ON_THE_KERNEL,
+        guard="agreement with finite elements; values of the kernel in extended precision",
+    ),
+    Shared(
+        name="contact modulus",
+        kind=Sharing.CODE,
+        place="bem.kernels.moduli",
+        methods=ON_THE_KERNEL,
+        guard="agreement with finite elements; closed forms of the half-space",
+    ),
+    Shared(
+        name="springs and profile of MDR",
+        kind=Sharing.CODE,
+        place="mdr.springs",
+        methods=FAST,
+        guard="agreement with finite elements and with the integral equation",
+    ),
+    Shared(
+        name="slopes of the half-space transform",
+        kind=Sharing.CODE,
+        place="bem.kernels.profile_slope",
+        methods=EQUATIONS,
+        guard="agreement with finite elements",
+        quantities=("pressure",),
+    ),
+    Shared(
+        name="Gauss rules and Chebyshev panels",
+        kind=Sharing.CODE,
+        place="bem.polynomials",
+        methods=(*EQUATIONS, "mdr_table"),
+        guard="agreement with finite elements; closed forms of the half-space",
+    ),
+    Shared(
+        name="boundary elements on a grid",
+        kind=Sharing.CODE,
+        place="bem.grid",
+        methods=GRIDS,
+        guard="agreement with MDR on the integral equation",
+    ),
+    Shared(
+        name="heights of profiles",
+        kind=Sharing.CODE,
+        place="contact.scene.profiles",
+        methods=GRIDS,
+        guard="agreement with MDR and with finite elements, which write profiles down themselves",
+    ),
+    Shared(
+        name="interpolation of tabulated profiles",
+        kind=Sharing.CODE,
+        place="contact.scene.profiles",
+        methods=ON_THE_KERNEL,
+        guard="agreement with finite elements, which interpolate themselves",
+        cases=("measured_profile",),
+    ),
+    Shared(
+        name="relaxation functions",
+        kind=Sharing.CODE,
+        place="contact.scene.effects",
+        methods=FAST,
+        guard="agreement with finite elements, which write them down themselves",
+        cases=("flat_punch_impact", "sphere_impact"),
+    ),
+    Shared(
+        name="restitution and duration of an impact",
+        kind=Sharing.CODE,
+        place="contact.answer.solution",
+        methods=EVERY,
+        guard="closed forms of the flat punch's impact",
+        quantities=("coefficient_of_restitution", "contact_time"),
+    ),
+    Shared(
+        name="reduction of two coated bodies, Eqs. (23)-(25)",
+        kind=Sharing.CODE,
+        place="contact.scene.coated_pair",
+        methods=EVERY,
+        guard="mirror symmetry: half the approach on one body",
+        cases=("coated_pair",),
+    ),
+    Shared(
+        name="numbers of the scene",
+        kind=Sharing.QUESTION,
+        place="contact.scene",
+        methods=EVERY,
+        guard="closed forms and tabulated values, which start from constants of the case",
+    ),
+    Shared(
+        name="record of an answer",
+        kind=Sharing.RECORD,
+        place="cases.run.recording",
+        methods=EVERY,
+        guard="closed forms and tabulated values",
+    ),
+    Shared(
+        name="rings on which pressures are compared",
+        kind=Sharing.RECORD,
+        place="cases.judgement.rules.norms",
+        methods=EVERY,
+        guard="the sampled pressure carries the force",
+        quantities=("pressure",),
+    ),
+)
+BY_NAME = {one.name: one for one in SHARED}
+
+
+def used_by(method: str) -> tuple[str, ...]:
+    """Names of what a built-in method may have in common with others; nothing is known of other methods."""
+    return tuple(one.name for one in SHARED if method in one.methods) or (NOT_SAID,)
+
+
+def in_common(first: tuple[str, ...], second: tuple[str, ...], *, quantity: str, case: str) -> tuple[str, ...]:
+    """Names of the code that two answers rest on both, so that their agreement says nothing about it.
+
+    Args:
+        first: what one answer used (`used_by`, or what a method of another package says itself).
+        second: what the other used.
+        quantity: that is compared.
+        case: name of the case.
+    """
+    both = [name for name in first if name in second]
+    counted = [name for name in both if name not in BY_NAME or _counts(BY_NAME[name], quantity, case)]
+    unknown = NOT_SAID in {*first, *second} and NOT_SAID not in both
+    return (*counted, *((NOT_SAID,) if unknown else ()))
+
+
+def _counts(one: Shared, quantity: str, case: str) -> bool:
+    return one.kind is Sharing.CODE and one.enters(quantity, case)

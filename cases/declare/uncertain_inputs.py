@@ -1,0 +1,181 @@
+"""Uncertain inputs of a scene: which number, by how much, and which of them vary together."""
+
+import math
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from contact import InvalidInput, Scene
+from contact.records.record import shown
+from contact.records.validation import FloatArray
+
+PARTS = ("layer", "indenter", "loading")
+# A range is taken as equally likely throughout; its standard deviation is its width over this.
+WIDTH_OVER_DEVIATION = math.sqrt(12)
+EXAMPLE = 'write "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8"'
+
+
+@dataclass(frozen=True, kw_only=True)
+class UncertainInput:
+    """One number of a scene, or a list of them that is uncertain as a whole.
+
+    Attributes:
+        name: of its field, with the part of the scene before a dot where two parts have one.
+        deviation: standard deviation: absolute of a range, relative otherwise.
+        low: smallest value of a range; None for a percentage, which is normally distributed.
+        high: largest value of a range.
+    """
+
+    name: str
+    deviation: float
+    low: float | None = None
+    high: float | None = None
+
+    @property
+    def is_range(self) -> bool:
+        """Whether all values between two are equally likely."""
+        return self.low is not None
+
+    def moved(self, deviations: float, value: Any) -> Any:
+        """The value so many standard deviations from the middle."""
+        if self.low is None or self.high is None:
+            return value * (1 + deviations * self.deviation)
+        return (self.low + self.high) / 2 + deviations * self.deviation
+
+    def drawn(self, normal: float, value: Any) -> Any:
+        """The value for a standard normal number: in a range the place with the same share of values below it."""
+        if self.low is None or self.high is None:
+            return self.moved(normal, value)
+        return self.low + (self.high - self.low) * (1 + math.erf(normal / math.sqrt(2))) / 2
+
+    def in_words(self) -> str:
+        """As people read it: "3 %" or "0.48 to 0.5"."""
+        return f"{self.low:g} to {self.high:g}" if self.is_range else f"{100 * self.deviation:g} %"
+
+
+@dataclass(frozen=True, kw_only=True)
+class UncertainInputs:
+    """What is uncertain about a scene.
+
+    Attributes:
+        inputs: each of them.
+        correlation: of their normal deviations, shape (n, n).
+    """
+
+    inputs: tuple[UncertainInput, ...]
+    correlation: FloatArray
+
+    def moved(self, scene: Scene, deviations: FloatArray) -> Scene:
+        """The scene with each input so many standard deviations from its middle, shape (n,).
+
+        Raises:
+            InvalidInput: if it has no such number, or not with that value.
+        """
+        for one, number in zip(self.inputs, deviations, strict=True):
+            scene = _changed(scene, one, partial(one.moved, float(number)))
+        return scene
+
+    def drawn(self, scene: Scene, normal: FloatArray) -> Scene:
+        """The scene with inputs drawn by standard normal numbers, shape (n,); raises as `moved` does."""
+        for one, number in zip(self.inputs, normal, strict=True):
+            scene = _changed(scene, one, partial(one.drawn, float(number)))
+        return scene
+
+
+def read_inputs(text: str) -> UncertainInputs:
+    """Read "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8" (the last is a correlation).
+
+    Raises:
+        InvalidInput: for what is no such text; nothing is guessed.
+    """
+    inputs, pairs = list[UncertainInput](), dict[tuple[str, str], float]()
+    for part in filter(None, (part.strip() for part in text.split(","))):
+        name, equals, value = (piece.strip() for piece in part.partition("="))
+        if not equals:
+            raise InvalidInput(f"uncertain {shown(part)}: {EXAMPLE}")
+        if "~" in name:
+            first, _, second = (piece.strip() for piece in name.partition("~"))
+            pairs[first, second] = _number(part, value, -1.0, 1.0)
+        else:
+            inputs.append(_input(part, name, value))
+    names = [one.name for one in inputs]
+    if not inputs or len(set(names)) < len(names):
+        raise InvalidInput(f"uncertain {shown(text)}: name at least one input, each once; {EXAMPLE}")
+    return UncertainInputs(inputs=tuple(inputs), correlation=_correlation(names, pairs))
+
+
+def _input(part: str, name: str, value: str) -> UncertainInput:
+    if value.endswith("%"):
+        return UncertainInput(name=name, deviation=_number(part, value[:-1], 0.0, 100.0) / 100)
+    low, dots, high = value.partition("..")
+    if not dots:
+        raise InvalidInput(f"uncertain {shown(part)}: give a percentage or a range a..b; {EXAMPLE}")
+    ends = [_number(part, end, -math.inf, math.inf) for end in (low, high)]
+    if not ends[0] < ends[1]:
+        raise InvalidInput(f"uncertain {shown(part)}: the range must increase; {EXAMPLE}")
+    return UncertainInput(name=name, deviation=(ends[1] - ends[0]) / WIDTH_OVER_DEVIATION, low=ends[0], high=ends[1])
+
+
+def _number(part: str, text: str, low: float, high: float) -> float:
+    found = re.fullmatch(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?", text.strip())
+    value = float(text) if found else math.nan
+    if not (math.isfinite(value) and low <= value <= high):
+        raise InvalidInput(f"uncertain {shown(part)}: {shown(text)} is no number from {low:g} to {high:g}; {EXAMPLE}")
+    return value
+
+
+def _correlation(names: list[str], pairs: Mapping[tuple[str, str], float]) -> FloatArray:
+    matrix = np.eye(len(names))
+    for (first, second), value in pairs.items():
+        for name in (first, second):
+            if name not in names:
+                raise InvalidInput(f"uncertain {first}~{second}: {name} has no uncertainty of its own; {EXAMPLE}")
+        i, j = names.index(first), names.index(second)
+        matrix[i, j] = matrix[j, i] = value
+    if np.linalg.eigvalsh(matrix)[0] < -1e-12:
+        raise InvalidInput("uncertain: these correlations contradict each other; make them smaller")
+    return matrix
+
+
+def _changed(scene: Scene, one: UncertainInput, change: Callable[[Any], Any]) -> Scene:
+    part, field = _place(scene, one.name)
+    if part.startswith("effects"):
+        number = int(part.removeprefix("effects"))
+        changed = _with(scene.effects[number], field, one, change)
+        return scene.replace(effects=(*scene.effects[:number], changed, *scene.effects[number + 1 :]))
+    return scene.replace(**{part: _with(getattr(scene, part), field, one, change)})
+
+
+def _with(record: Any, field: str, one: UncertainInput, change: Callable[[Any], Any]) -> Any:
+    value = getattr(record, field)
+    if one.is_range and isinstance(value, np.ndarray):
+        raise InvalidInput(f"uncertain {one.name}: it is a list of numbers; give a percentage for all of them")
+    return record.replace(**{field: change(value)})
+
+
+def _place(scene: Scene, name: str) -> tuple[str, str]:
+    """Part of the scene and field of a number.
+
+    Raises:
+        InvalidInput: if there is none of that name, or several.
+    """
+    wanted_part, _, wanted = name.rpartition(".")
+    parts = {part: getattr(scene, part) for part in PARTS}
+    parts |= {f"effects{i}": effect for i, effect in enumerate(scene.effects)}
+    numbers = [
+        (part, field.name)
+        for part, record in parts.items()
+        for field in fields(record)
+        if isinstance(getattr(record, field.name), float | np.ndarray)
+        and np.all(np.isfinite(getattr(record, field.name)))
+    ]
+    found = [place for place in numbers if place[1] == wanted and place[0].startswith(wanted_part)]
+    if len(found) != 1:
+        known = ", ".join(f"{part.rstrip('0123456789')}.{field}" for part, field in numbers)
+        problem = "stands in several parts of the scene" if found else "is no number of the scene"
+        raise InvalidInput(f"uncertain {shown(name)} {problem}; there are {known}")
+    return found[0]

@@ -1,0 +1,18 @@
+"""What the paper says, and what the methods measure: each statement with the computation that checks it.
+
+- ``statement``: what a statement is, and its verdict
+- ``flat_punch``, ``profiles``, ``detachment``, ``impacts``, ``slips``: the statements by section of the paper
+"""
+
+from collections.abc import Iterator
+
+from cases.library._paper.statement import Statement
+
+
+def statements() -> Iterator[Statement]:
+    """Every statement in the order of the paper."""
+    # These imports load MDR, so they wait until the page is written.
+    from cases.library._paper import detachment, flat_punch, impacts, profiles, slips  # noqa: PLC0415
+
+    for section in (slips, flat_punch, profiles, detachment, impacts):
+        yield from section.statements()

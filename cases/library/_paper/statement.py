@@ -1,0 +1,84 @@
+"""A statement of the paper: where it stands, what it says, what is computed to check it, and when it holds."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import StrEnum
+
+# "Good approximation" is taken as within 5 %, "agrees almost exactly" and "the same" as within half a per cent.
+GOOD = 0.05
+SAME = 0.005
+
+MDR = "MDR, integral equation"
+FORMULA = "written formula"
+
+
+class Verdict(StrEnum):
+    """How a statement ends."""
+
+    HOLDS = "holds"
+    LOOSER = "looser than the numbers"
+    SLIP = "slip of the print"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A number with its error, absolute; ``in_percent`` shows it as a deviation."""
+
+    value: float
+    error: float = 0.0
+    in_percent: bool = False
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement.
+
+    Attributes:
+        place: equation, section or figure.
+        says: in a few words.
+        printed: the value that the paper prints, or what it claims.
+        what: the number that is computed.
+        measure: computes it.
+        holds: whether the statement is true of the number.
+        method: what computes it.
+        otherwise: the verdict where it is not.
+    """
+
+    place: str
+    says: str
+    printed: str
+    what: str
+    measure: Callable[[], Measured]
+    holds: Callable[[float], bool]
+    method: str = MDR
+    otherwise: Verdict = Verdict.LOOSER
+
+    def judged(self) -> tuple[Measured, Verdict]:
+        """Compute the number and say whether the statement holds."""
+        found = self.measure()
+        return found, Verdict.HOLDS if self.holds(found.value) else self.otherwise
+
+
+def deviation(value: float, reference: float, relative_error: float = 0.0) -> Measured:
+    """How far a value is from a reference, in per cent."""
+    return Measured(value / reference - 1, abs(value / reference) * relative_error, in_percent=True)
+
+
+def within(share: float) -> Callable[[float], bool]:
+    """Whether a deviation is at most a share."""
+    return lambda value: abs(value) <= share
+
+
+def reads(printed: float, half_unit: float) -> Callable[[float], bool]:
+    """Whether a number rounds to the printed one."""
+    return lambda value: abs(value - printed) <= half_unit
+
+
+def above(other: Callable[[], Measured]) -> Callable[[float], bool]:
+    """Whether a number is larger than another one that is computed."""
+    return lambda value: value > other().value
+
+
+def below(other: Callable[[], Measured]) -> Callable[[float], bool]:
+    """Whether a number is smaller than another one that is computed."""
+    return lambda value: value < other().value

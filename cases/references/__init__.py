@@ -1,0 +1,8 @@
+"""Reference numbers of the library: written formulas in extended precision, and the numbers they gave.
+
+- ``layer_equation``: flat punches and profiles on layers, `mpmath`
+- ``sphere_impact``: the springs of Fig. 12 in time, `mpmath`
+- ``table``: which numbers there are; ``python -m cases.references.table`` computes them all into ``numbers.toml``
+
+Cases read ``numbers.toml`` only, so that a run needs no `mpmath`; the nightly tests compute every number again.
+"""

@@ -1,0 +1,135 @@
+"""Which reference numbers there are; ``python -m cases.references.table`` computes them into ``numbers.toml``."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cache, partial
+from pathlib import Path
+
+from mpmath import mp, mpf
+
+from cases.references import layer_equation, sphere_impact
+
+PLACE = Path(__file__).with_name("numbers.toml")
+LAYERS: dict[str, str | None] = {f"bonded nu={nu}": nu for nu in ("0.3", "0.4", "0.45", "0.5")} | {"unbonded": None}
+# Gauss nodes that give at least twelve digits up to this a/h.
+NODES = {"0.1": 16, "0.2": 16, "0.5": 18, "1": 20, "2": 24, "5": 34, "10": 50}
+PRESSURE_AT = ("0", "0.2", "0.4", "0.6", "0.8", "0.9", "0.95")
+PARABOLOIDS = {"bonded nu=0.5": ("0.2", "1", "2", "5", "10"), "unbonded": ("1", "2", "5")}
+CONES = {"bonded nu=0.5": ("0.1", "1", "2", "5"), "bonded nu=0.45": ("1", "2", "5"), "unbonded": ("1", "2", "5")}
+ELONGATIONS = {"0.5": "0.46", "0.45": "0.6", "0.4": "0.914"}
+# Thickness [mm] of the impacted layers; zero stands for the half-space.
+THICKNESSES = ("0", "1", "2", "3")
+# Time steps to the largest depth: the restitution has ten digits.
+STEPS = 200
+# Digits that are kept, and to how many a second computation on other nodes must agree.
+KEPT = 14
+
+HEAD = """# Reference numbers, computed by `python -m cases.references.table` in extended precision; do not edit.
+# What each list holds stands in `cases/references/table.py`.
+"""
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One list of numbers.
+
+    Attributes:
+        kind: section of ``numbers.toml``.
+        name: within the section.
+        compute: returns the numbers; takes nodes (or steps) to add to the usual ones.
+        digits: that a computation with other nodes repeats.
+    """
+
+    kind: str
+    name: str
+    compute: Callable[[int], list[mpf]]
+    digits: int = 12
+
+
+def entries() -> Iterator[Entry]:
+    """Return every entry, those of one kind together."""
+    for label, nu in LAYERS.items():
+        for ratio in ("0.2", "1", "2"):
+            yield _entry("stiffness", label, ratio, _single(layer_equation.stiffness, ratio, nu))
+    yield _entry("spring", "bonded nu=0.5", "1", _single(layer_equation.spring, "1", "0.5"))
+    for ratio in ("0.5", "1", "2", "5"):
+        yield _entry("pressure", "bonded nu=0.5", ratio, partial(_pressure, ratio))
+    for function, places in ((layer_equation.paraboloid, PARABOLOIDS), (layer_equation.truncated_cone, CONES)):
+        for label, ratios in places.items():
+            for ratio in ratios:
+                yield _entry(function.__name__, label, ratio, _pair(function, ratio, LAYERS[label]))
+    for label, nu in LAYERS.items():
+        yield Entry("first_order", label, partial(_first_order, nu))
+    for nu, near in ELONGATIONS.items():
+        yield Entry("largest_elongation", f"bonded nu={nu}", partial(_elongation, nu, near), digits=10)
+    for thickness in THICKNESSES:
+        name = f"h={thickness} mm" if thickness != "0" else "half-space"
+        yield Entry("sphere_impact", name, partial(_impact, thickness), digits=8)
+
+
+def _entry(kind: str, label: str, ratio: str, compute: Callable[[int], list[mpf]]) -> Entry:
+    def with_nodes(more: int) -> list[mpf]:
+        return compute(NODES[ratio] + more)
+
+    # The equation of a thin incompressible layer magnifies roundings: one digit less at a/h = 10.
+    return Entry(kind, f"{label} a/h={ratio}", with_nodes, 11 if ratio == "10" else 12)
+
+
+def _single(function: Callable[..., mpf], ratio: str, nu: str | None) -> Callable[[int], list[mpf]]:
+    return lambda nodes: [function(ratio, nu, nodes)]
+
+
+def _pair(function: Callable[..., tuple[mpf, mpf]], ratio: str, nu: str | None) -> Callable[[int], list[mpf]]:
+    return lambda nodes: list(function(ratio, nu, nodes))
+
+
+def _pressure(ratio: str, nodes: int) -> list[mpf]:
+    return layer_equation.pressure(ratio, "0.5", nodes, PRESSURE_AT)
+
+
+def _first_order(nu: str | None, _: int) -> list[mpf]:
+    return [layer_equation.first_order(nu)]
+
+
+def _elongation(nu: str, near: str, more: int) -> list[mpf]:
+    return list(layer_equation.largest_elongation(nu, near, 18 + more))
+
+
+def _impact(thickness: str, more: int) -> list[mpf]:
+    """Restitution and largest force [N]."""
+    steps = STEPS + 10 * more
+    with mp.workdps(20):
+        springs = sphere_impact.Springs()
+        if thickness != "0":
+            springs = sphere_impact.springs_of(mpf(thickness) / 1000, _springs())
+        found = sphere_impact.impact(springs, steps)
+    return [found.restitution, found.peak_force]
+
+
+@cache
+def _springs() -> tuple[list[mpf], list[mpf]]:
+    with mp.workdps(layer_equation.DIGITS):
+        return sphere_impact.tabulated_springs()
+
+
+def computed(entry: Entry, more: int = 0) -> list[mpf]:
+    """The numbers of an entry, on so many more nodes than usual."""
+    with mp.workdps(layer_equation.DIGITS):
+        return entry.compute(more)
+
+
+def main() -> None:
+    """Compute every number and write ``numbers.toml``."""
+    lines, kind = [HEAD], ""
+    for entry in entries():
+        if entry.kind != kind:
+            kind = entry.kind
+            lines.append(f"\n[{kind}]\n")
+        kept = KEPT if entry.digits > 10 else entry.digits
+        values = ", ".join(mp.nstr(value, kept, strip_zeros=False) for value in computed(entry))
+        lines.append(f'"{entry.name}" = [{values}]\n')
+    PLACE.write_text("".join(lines), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

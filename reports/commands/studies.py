@@ -1,0 +1,186 @@
+"""Commands that measure: what matters in a scene, what breaks, how well errors are stated, what accuracy costs.
+
+Each is declared here once, with its options; what it needs is imported when it is called.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, cast
+
+import typer
+
+if TYPE_CHECKING:
+    from cases.results.records.run import CaseResult
+
+FAILED = 1
+
+Words = Annotated[list[str] | None, typer.Argument(metavar="[WORD]...", help="Only those with such a name.")]
+Methods = Annotated[list[str] | None, typer.Option(help="Only this method. Repeatable.")]
+Report = Annotated[Path | None, typer.Option(help="Folder for a report with figures and data.")]
+Measured = Annotated[Path | None, typer.Option(help="Measurements of this machine from calibrate.")]
+Seed = Annotated[int, typer.Option(help="Of the random scenes.")]
+
+
+def advise(
+    scene: Annotated[Path, typer.Argument(help="Scene in TOML.")],
+    accuracy: Annotated[float, typer.Option(help="Relative change that does not matter.")] = 1e-2,
+    method: Annotated[str, typer.Option(help="Method that solves with and without.")] = "mdr",
+) -> None:
+    """Say which effects, and whether the layer's finite thickness, matter at an accuracy: solved with and without."""
+    from cases.declare.guarded_method import build_guarded  # noqa: PLC0415 - see the first lines of this module
+    from cases.measurements.advice import advise as advice_on  # noqa: PLC0415
+    from contact import load_scene  # noqa: PLC0415
+
+    for line in advice_on(build_guarded(method, {}), load_scene(scene), accuracy).lines:
+        _say(line)
+
+
+def ladders(names: Words = None, method: Methods = None, out: Report = None) -> int:
+    """Walk hard parameters until something breaks: digits left, and the rung where a method gives up by name.
+
+    MDR climbs if no method is named.
+    """
+    from cases.measurements.ladders.ladder_study import CLIMBERS, chosen, ladder_case  # noqa: PLC0415
+    from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
+
+    plans, climbers = chosen(LADDERS, names or []), {name: CLIMBERS.get(name, {}) for name in method or ["mdr"]}
+    return published(lambda: ladder_case(plans, climbers, progress=_say), out)
+
+
+def coverage(
+    method: Methods = None,
+    *,
+    family: Annotated[list[str] | None, typer.Option(help="Only this kind of scenes. Repeatable.")] = None,
+    seed: Annotated[int | None, typer.Option(help="Of the random scenes; by default one that tuned nothing.")] = None,
+    out: Report = None,
+) -> int:
+    """Compare stated with true errors over hundreds of random scenes: how often they hold, how much they give away.
+
+    At the end, each coefficient of the error models beside what was achieved for the errors it shapes.
+    """
+    from cases.measurements.campaigns.coverage import PLANS, SEED, coverage_case  # noqa: PLC0415
+    from contact import InvalidInput  # noqa: PLC0415
+    from reports.tables.coefficient_table import error_coefficients  # noqa: PLC0415
+    from reports.terminal.terminal import console, show_table  # noqa: PLC0415
+
+    plans = [p for p in PLANS if (not method or p.method in method) and (not family or p.family in family)]
+    if not plans:
+        raise InvalidInput(f"no such plan; methods are {', '.join(dict.fromkeys(plan.method for plan in PLANS))}")
+
+    def study() -> CaseResult:
+        """Measure, then show the coefficients."""
+        case = coverage_case(plans, SEED if seed is None else seed, progress=_say)
+        if table := error_coefficients(case):
+            show_table(table, on=console())
+        return case
+
+    return published(study, out)
+
+
+def accuracy(
+    count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 300,
+    *,
+    seed: Seed = 2,
+    evidence: Measured = None,
+    out: Report = None,
+) -> int:
+    """Solve random scenes to random accuracies: are they met, and how near is the time to the shortest?"""
+    from cases.measurements.evidence.audit import audit_case  # noqa: PLC0415
+    from cases.measurements.evidence.records import read  # noqa: PLC0415
+
+    measured = None if evidence is None else read(evidence)
+    return published(lambda: audit_case(count, seed, measured, progress=_say), out)
+
+
+def scaling(out: Report = Path("build/scaling")) -> int:
+    """Measure how the time grows with a/h, radii, Prony terms, pieces of a history, grid cells, against theory."""
+    from cases.measurements.cost.scaling import scaling_case  # noqa: PLC0415
+
+    return published(lambda: scaling_case(progress=_say), out)
+
+
+def maps(names: Words = None, out: Report = Path("build/maps")) -> int:
+    """Map the signed error of each closed form and method over a/h and Poisson's ratio: where it is good to 1 %."""
+    from cases.measurements.advice.error_maps import FORMULAS, METHODS, map_case  # noqa: PLC0415
+    from contact import InvalidInput  # noqa: PLC0415
+
+    plans = [plan for plan in (*FORMULAS, *METHODS) if not names or plan.name in names]
+    if not plans and names:
+        raise InvalidInput(f"no map of {names[0]!r}; there are {', '.join(p.name for p in (*FORMULAS, *METHODS))}")
+    return published(lambda: map_case(plans, progress=_say), out)
+
+
+def calibrate(
+    out: Annotated[Path, typer.Argument(help="File for the measurements, JSON.")],
+    seed: Seed = 1,
+) -> None:
+    """Measure on this machine how accurate and how fast the settings are; takes some minutes, alone on the machine."""
+    from cases.measurements.evidence.calibrate import calibrate as measured  # noqa: PLC0415
+    from cases.measurements.evidence.records import write  # noqa: PLC0415
+    from cases.run.stamp import revision  # noqa: PLC0415
+    from contact import InvalidInput  # noqa: PLC0415
+
+    if out.is_dir() or not out.parent.is_dir():
+        raise InvalidInput(f"{out}: no file can be there; check that the folder exists")
+    write(out, measured(seed=seed, revision=revision(), progress=_say))
+    _say(f"written: {out}; use it with solve --accuracy .. --evidence {out}")
+
+
+def campaign(
+    family: Annotated[
+        str, typer.Argument(help="elastic, pressure, adhesive, impact, history (of depth) or creep (force).")
+    ] = "elastic",
+    method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
+    count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
+    seed: Seed = 1,
+) -> int:
+    """Solve random scenes and check each answer: within its stated error of an independent one, or refused by name."""
+    from cases.declare.guarded_method import build_guarded  # noqa: PLC0415
+    from cases.measurements import measurement  # noqa: PLC0415
+    from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
+    from cases.measurements.campaigns.pressures import pressure_campaign  # noqa: PLC0415
+    from cases.measurements.campaigns.random_scenes import FAMILIES, Family  # noqa: PLC0415
+    from contact import InvalidInput  # noqa: PLC0415
+
+    if family not in (*FAMILIES, "pressure"):
+        raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, 'pressure'))}")
+    if family == "pressure":
+        found = pressure_campaign(build_guarded(method, {}), seed=seed, count=count)
+    else:
+        found = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=cast("Family", family))
+    for line in measurement.report(found):
+        _say(line)
+    wrong = measurement.defects(found)
+    for scene, end, why in wrong:
+        _say(f"scene {scene} of seed {seed}: {end}: {why}")
+    return FAILED if wrong else 0
+
+
+COMMANDS = (advise, ladders, coverage, accuracy, scaling, maps, calibrate, campaign)
+
+
+def published(study: Callable[[], CaseResult], out: Path | None) -> int:
+    """Carry out a study, write it as a run of its own if asked, and return 1 if it failed."""
+    from cases.measurements.suites import run_of  # noqa: PLC0415
+    from cases.run.lock import locked  # noqa: PLC0415
+    from contact import InvalidInput  # noqa: PLC0415
+    from reports.commands.report import write_pages  # noqa: PLC0415
+
+    if out is None:
+        return FAILED if study().status.is_failure else 0
+    # This is said before the study, not after it.
+    if out.exists() and not out.is_dir():
+        raise InvalidInput(f"--out {out}: a file is in the way; name a folder")
+    with locked(out):
+        run = run_of((make() for make in [study]), out)
+        write_pages(run, out)
+    _say(f"report: {out / 'report.html'}")
+    return FAILED if any(status.is_failure for status in run.statuses) else 0
+
+
+def _say(line: str) -> None:
+    from reports.terminal.terminal import console  # noqa: PLC0415
+
+    console().print(line, markup=False, highlight=False, soft_wrap=True)

@@ -1,0 +1,283 @@
+"""What methods share, each thing planted wrong by one per cent, and the checks that must notice it.
+
+`python -m tests.planted.sharing_table` plants each in turn and writes `docs/shared.md`.
+"""
+
+import dataclasses
+import functools
+import importlib
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from cases.declare.registry import load_cases
+from cases.declare.selection import only_scenes
+from cases.declare.shared import EVERY, SHARED
+from tests.planted.planting import override, swap
+
+WRONG = 1.01
+
+
+@dataclass(frozen=True)
+class Probe:
+    """Scenes of a library case and the methods that solve them: what a fault is looked at with."""
+
+    case: str
+    scenes: tuple[str, ...]
+    methods: tuple[str, ...] = ("mdr", "fem", "integral_equation")
+
+    def narrowed(self, case, methods, kinds):
+        """The case with these scenes and the claims of some kinds that some methods answer."""
+        left = only_scenes(case, self.scenes, [m for m in self.methods if m in methods])
+        claims = tuple(claim for claim in left.claims if claim.kind in kinds)
+        return dataclasses.replace(left, claims=claims, work=(), ablations=(), figures=())
+
+
+@dataclass(frozen=True)
+class SharedFault:
+    """A shared thing, one per cent wrong.
+
+    Attributes:
+        shared: its name in `cases.declare.shared`.
+        what: what is wrong, in words.
+        plant: switches it on with a monkeypatch.
+        probes: names of the probes it is looked at with.
+        reloaded: case modules that compute with it when they are imported.
+    """
+
+    shared: str
+    what: str
+    plant: Callable
+    probes: tuple[str, ...]
+    reloaded: tuple[str, ...] = ()
+
+
+PROBES = {
+    "half-space": Probe("half_space_limits", ("half-space, paraboloid", "half-space, flat punch")),
+    "cone": Probe("truncated_cone", ("bonded nu=0.45 a/h=1",)),
+    "paraboloid": Probe("paraboloid", ("bonded nu=0.5 a/h=1", "bonded nu=0.5 a/h=1 by depth")),
+    "grids": Probe("paraboloid", ("bonded nu=0.5 a/h=1",), ("mdr", "bem", "mdr_table", "integral_equation")),
+    "table": Probe("measured_profile", ("nine points, bonded nu=0.5",)),
+    "pair": Probe("coated_pair", ("equal bodies, bonded a/h=0.5",)),
+    "punch impact": Probe("flat_punch_impact", ("bonded a/h=1 D_HS=0.3",), ("mdr", "fem")),
+    "sphere impact": Probe("sphere_impact", ("bonded h=2 mm",), ("mdr", "fem")),
+    "pull-off": Probe("flat_punch_adhesion", ("half-space, force",), ("mdr", "bem")),
+}
+ELASTIC = ("half-space", "cone", "paraboloid")
+
+
+def times(original):
+    """The function, its answer one per cent too large; what hangs on it (such as `dispatch`) stays."""
+
+    @functools.wraps(original)
+    def wrong(*arguments, **named):
+        return WRONG * original(*arguments, **named)
+
+    return wrong
+
+
+def heavier(original):
+    """Gauss weights one per cent too large."""
+
+    def wrong(*arguments):
+        nodes, weights = original(*arguments)
+        return nodes, WRONG * weights
+
+    return wrong
+
+
+def too_large(*, of):
+    """A field of a record, read one per cent too large."""
+    module, _, name = of.rpartition(":")
+    cls, _, field = name.partition(".")
+
+    def plant(patch):
+        owner = getattr(importlib.import_module(module), cls)
+        read = property(
+            lambda self: WRONG * self.__dict__[field], lambda self, value: self.__dict__.__setitem__(field, value)
+        )
+        patch.setattr(owner, field, read, raising=False)
+
+    return plant
+
+
+def wrong_property(place, name):
+    """A property that is one per cent too large."""
+    return override(place, name, lambda original: property(times(original)))
+
+
+def wrong_method(place, name):
+    """A method whose answer is one per cent too large."""
+    return override(place, name, times)
+
+
+def both(*plants):
+    """Several mistakes at once."""
+
+    def plant(patch):
+        for one in plants:
+            one(patch)
+
+    return plant
+
+
+def longer_relaxation(original):
+    """Relaxation times one per cent too long."""
+
+    def wrong(self):
+        right = original(self)
+        return dataclasses.replace(right, times=WRONG * right.times, viscosity=WRONG * right.viscosity)
+
+    return property(wrong)
+
+
+def wrong_reduction(**change):
+    """The scene of a coated pair with one number one per cent too large."""
+
+    def wrong(original):
+        def scene(self):
+            right = original(self)
+            part, field = next(iter(change.items()))
+            record = getattr(right, part)
+            return right.replace(**{part: record.replace(**{field: WRONG * getattr(record, field)})})
+
+        return scene
+
+    return override("contact.scene.coated_pair:CoatedPair", "scene", wrong)
+
+
+def misread(original):
+    """Quantities recorded one per cent too large."""
+
+    def wrong(*arguments):
+        right = original(*arguments)
+        return dataclasses.replace(right, values=tuple(WRONG * value for value in right.values))
+
+    return wrong
+
+
+def shrunk_rings(original):
+    """Nodes of rings one per cent too far inside, their weights those of the right places."""
+
+    def wrong(*arguments):
+        right = original(*arguments)
+        return dataclasses.replace(right, radius=right.radius / WRONG)
+
+    return wrong
+
+
+LAYER, PROFILES, LOADING = "contact.scene.layer:Layer", "contact.scene.profiles", "contact.scene.loading"
+NUMBERS = {
+    "Young's modulus": (f"{LAYER}.youngs_modulus", ("half-space", "cone")),
+    "Poisson's ratio": (f"{LAYER}.poissons_ratio", ("half-space", "cone")),
+    "thickness": (f"{LAYER}.thickness", ("cone", "paraboloid")),
+    "radius of curvature": (f"{PROFILES}:Paraboloid.radius_of_curvature", ("half-space", "paraboloid")),
+    "slope of the cone": (f"{PROFILES}:TruncatedCone.slope", ("cone",)),
+    "radius of the flat end": (f"{PROFILES}:TruncatedCone.flat_radius", ("cone",)),
+    "radius of the punch": (f"{PROFILES}:FlatPunch.radius", ("half-space", "punch impact")),
+    "prescribed contact radius": (f"{LOADING}:ContactRadii.values", ("cone", "paraboloid")),
+    "prescribed depth": (f"{LOADING}:IndentationDepths.values", ("half-space", "paraboloid")),
+    "mass": (f"{LOADING}:Impact.mass", ("punch impact",)),
+    "velocity": (f"{LOADING}:Impact.velocity", ("punch impact", "sphere impact")),
+    "viscosity": ("contact.scene.effects:KelvinVoigt.viscosity", ("punch impact",)),
+    "work of adhesion": ("contact.scene.effects:Adhesion.work_of_adhesion", ("pull-off",)),
+}
+HEIGHTS = both(
+    *(
+        wrong_method(f"{PROFILES}:{name}", "height")
+        for name in ("Paraboloid", "TruncatedCone", "PowerLaw", "Tabulated")
+    ),
+)
+
+FAULTS = (
+    SharedFault("layer kernel", "1 - chi", swap("bem.kernels.layer:one_minus_kernel", times), ("cone", "paraboloid")),
+    SharedFault(
+        "contact modulus", "E* of boundary elements and MDR", swap("bem.kernels.moduli:contact_modulus", times), ELASTIC
+    ),
+    SharedFault(
+        "springs and profile of MDR",
+        "half-space transform",
+        swap("mdr.springs.half_space_profile:half_space_profile", times),
+        ELASTIC,
+    ),
+    SharedFault(
+        "slopes of the half-space transform", "g'", swap("bem.kernels.profile_slope:profile_slope", times), ("cone",)
+    ),
+    SharedFault(
+        "Gauss rules and Chebyshev panels",
+        "Gauss weights",
+        swap("bem.polynomials.gauss_panels:gauss_nodes", heavier),
+        ("cone", "paraboloid"),
+    ),
+    SharedFault(
+        "boundary elements on a grid",
+        "influence of a loaded rectangle",
+        swap("bem.grid.influence:rectangle_influence", times),
+        ("grids",),
+    ),
+    SharedFault("heights of profiles", "heights", HEIGHTS, ("grids",)),
+    SharedFault(
+        "interpolation of tabulated profiles",
+        "slopes between the points",
+        both(HEIGHTS, wrong_method(f"{PROFILES}:Tabulated", "slope_at")),
+        ("table",),
+    ),
+    *(
+        SharedFault(
+            "relaxation functions",
+            f"{name}: times and viscosities",
+            override(f"contact.scene.effects:{name}", "relaxation", longer_relaxation),
+            (probe,),
+        )
+        for name, probe in (("KelvinVoigt", "punch impact"), ("StandardSolid", "sphere impact"))
+    ),
+    *(
+        SharedFault(
+            "restitution and duration of an impact",
+            what,
+            wrong_property("contact.answer.solution:ImpactHistory", name),
+            ("punch impact", "sphere impact"),
+        )
+        for what, name in (("restitution", "coefficient_of_restitution"), ("duration", "contact_time"))
+    ),
+    *(
+        SharedFault(
+            "reduction of two coated bodies, Eqs. (23)-(25)",
+            what,
+            wrong_reduction(**change),
+            ("pair",),
+            ("cases.library.elastic.coated_pair",),
+        )
+        for what, change in (
+            ("curvature, Eq. (23)", {"indenter": "radius_of_curvature"}),
+            ("modulus, Eq. (24)", {"layer": "youngs_modulus"}),
+            ("thickness, Eq. (25)", {"layer": "thickness"}),
+        )
+    ),
+    *(SharedFault("numbers of the scene", what, too_large(of=of), probes) for what, (of, probes) in NUMBERS.items()),
+    SharedFault("record of an answer", "values", swap("cases.run.recording:_quantity", misread), ELASTIC),
+    SharedFault(
+        "rings on which pressures are compared",
+        "places of the samples",
+        swap("cases.judgement.rules.norms:ring_quadrature", shrunk_rings),
+        ("cone",),
+    ),
+)
+# Shared by nobody, but planted as well: the same mistake in the other method.
+OWN = SharedFault(
+    "nothing: modulus of finite elements",
+    "G of finite elements",
+    swap("fem_reference.discrete_layer.material:shear_modulus", times),
+    ELASTIC,
+)
+
+
+def shared_by_all(fault):
+    """Whether MDR and finite elements share the faulty thing, so that their agreement cannot notice it."""
+    return any(one.name == fault.shared and one.methods == EVERY for one in SHARED)
+
+
+def cases_under(fault):
+    """The library with the fault in it, for faults that act when a case is imported."""
+    for module in fault.reloaded:
+        importlib.reload(importlib.import_module(module))
+    return load_cases()

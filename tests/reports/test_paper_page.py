@@ -1,0 +1,63 @@
+"""The page of the paper's statements: what it must say, and that a wrong number changes a verdict."""
+
+from pathlib import Path
+
+import pytest
+
+from cases.library._paper import statements
+from cases.library._paper.statement import Measured, Statement, Verdict
+from reports.pages.paper import paper_page
+
+ROOT = Path(__file__).resolve().parents[2]
+ALL = tuple(statements())
+
+
+def verdict_of(words):
+    (one,) = [one for one in ALL if words in f"{one.place} {one.says} {one.what}"]
+    return one.judged()
+
+
+def test_there_are_sixty_statements_and_no_two_alike():
+    assert len(ALL) >= 60
+    assert len({(one.place, one.says, one.what) for one in ALL}) == len(ALL)
+
+
+@pytest.mark.parametrize(
+    ("words", "value", "verdict"),
+    [
+        ("p from w_1D Eq", 0.0, Verdict.SLIP),
+        ("p from w_1D', as in", 0.0, Verdict.HOLDS),
+        ("the integral of the pressure runs to x", 0.0, Verdict.SLIP),
+        ("bonded nu=0.5: for a/h < 0.1", 0.126, Verdict.LOOSER),
+        ("bonded nu=0.5: for a/h > 50", -0.109, Verdict.LOOSER),
+        ("second maximum in the centre", 0.7885, Verdict.LOOSER),
+        ("nu = 0.5: the elongation has its maximum", 0.4619, Verdict.HOLDS),
+    ],
+)
+def test_known_verdicts(words, value, verdict):
+    words = words.removesuffix(" Eq")
+    found = [one.judged() for one in ALL if one.says == words] or [verdict_of(words)]
+    ((measured, seen),) = found
+    assert seen is verdict
+    if value:
+        assert measured.value == pytest.approx(value, abs=6e-4)
+
+
+def test_the_committed_page_has_every_statement():
+    page = (ROOT / "docs" / "paper.md").read_text(encoding="utf-8")
+    for one in ALL:
+        assert f"| {one.place} | {one.says} | {one.printed} | {one.what} | " in page
+    assert "nan" not in page
+
+
+@pytest.mark.slow
+def test_the_committed_page_is_what_is_computed_now():
+    assert (ROOT / "docs" / "paper.md").read_text(encoding="utf-8") == paper_page(ALL), (
+        "renew: contact-verify paper-page"
+    )
+
+
+def test_a_wrong_number_changes_the_verdict_and_errors_are_shown():
+    one = Statement("Eq. (1)", "is one", "1", "it", lambda: Measured(1.25, 0.03), lambda value: abs(value - 1) < 0.1)
+    assert one.judged()[1] is Verdict.LOOSER
+    assert "| 1.25(3) |" in paper_page([one]) or "| 1.250(30) |" in paper_page([one])

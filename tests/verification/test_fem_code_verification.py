@@ -1,0 +1,75 @@
+"""The page that verifies the finite elements as a program, and faults that it must see."""
+
+import numpy as np
+import pytest
+
+from cases.judgement.convergence.known_errors import behaviour_of_errors
+from cases.library._code_verification import finite_elements
+from cases.library._code_verification.finite_elements import (
+    MIXED,
+    finite_element_case,
+    inf_sup_claims,
+    locking_claims,
+    manufactured_studies,
+    order_claim,
+    patch_claims,
+)
+from cases.results.records.claim import Kind
+from cases.results.status import Status
+from fem_reference.code_verification import manufactured
+from fem_reference.discrete_layer.problem import LayerProblem
+
+LARGEST = {2: 3e-6, 3: 2e-7, 4: 2e-9}
+
+
+@pytest.fixture(scope="module")
+def case():
+    return finite_element_case()
+
+
+def test_every_claim_of_the_page_passes(case):
+    assert [(claim.name, claim.scene, claim.message) for claim in case.claims if claim.status is not Status.PASS] == []
+    assert {claim.kind for claim in case.claims} == {Kind.ORDER, Kind.INVARIANT}
+
+
+def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(case):
+    assert {study.scene for study in case.convergence} >= {f"{name}, nu={nu}" for name in MIXED for nu in (0.3, 0.5)}
+    for study in case.convergence:
+        degree = int(study.scene[1])
+        assert study.formal_order == (degree + 1 if "displacement" in study.quantity else degree)
+        if "displacement" in study.quantity:
+            assert study.grids[0].error < LARGEST[degree]
+
+
+def test_a_hundredth_of_the_body_force_missing_costs_the_order(monkeypatch):
+    own = manufactured.ManufacturedProblem._force
+    monkeypatch.setattr(manufactured.ManufacturedProblem, "_force", lambda self: 0.99 * own(self))
+    monkeypatch.setattr(finite_elements, "MIXED", ("P2P1",))
+    assert {order_claim(study).status for study in manufactured_studies()} == {Status.FAIL}
+
+
+def test_a_wrong_hoop_strain_fails_the_patch_claims(monkeypatch):
+    built = LayerProblem.__init__
+
+    def spoiled(self, *args):
+        built(self, *args)
+        self.space.__dict__["strains"] = self.space.strains * np.array([1, 1, 1 + 1e-6, 1])[:, None]
+
+    monkeypatch.setattr(LayerProblem, "__init__", spoiled)
+    assert {claim.status for claim in patch_claims()} == {Status.FAIL}
+
+
+def test_a_falling_inf_sup_constant_of_a_stable_pair_fails():
+    (fallen,) = inf_sup_claims("P2P1", (0.6, 0.5, 0.4, 0.6))
+    assert fallen.status is Status.FAIL
+    (steady,) = inf_sup_claims("P1P0", (0.6, 0.6, 0.6, 0.6))
+    assert steady.status is Status.FAIL
+
+
+def test_locking_of_a_mixed_pair_fails_and_so_does_a_displacement_that_seems_not_to_lock():
+    locked, even = ((0.2, 1e-5), (0.0, 1e-3)), ((0.2, 1e-5), (0.0, 1e-5))
+    assert [claim.status for claim in locking_claims({"P3P2": locked, "P3": even})] == [Status.FAIL, Status.FAIL]
+
+
+def test_errors_that_stall_at_the_floor_have_no_order():
+    assert behaviour_of_errors((1e-15, 1e-6, 1e-3), floor=1e-15) == "floor"
