@@ -32,6 +32,7 @@ from contact import (
     Supported,
     Unsupported,
     UnsupportedSceneError,
+    other_layer,
 )
 from contact.answer.one_circle import refuse_touching_path
 from contact.answer.one_thread import one_thread
@@ -97,6 +98,8 @@ class Bem(Record):
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
+        if (other := other_layer("bem", scene.layer)) is not None:
+            return other
         others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
         if others:
             return Unsupported(reason=f"bem models adhesion only, not {others[0]}; ask mdr or fem")

@@ -3,7 +3,7 @@
 Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
 """
 
-from contact.answer.method import Method, Supported, Unsupported
+from contact.answer.method import Method, Supported, Unsupported, other_layer, refuse_other_layers
 from contact.answer.solution import (
     UNITS,
     ContactPath,
@@ -19,6 +19,7 @@ from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_ma
 from contact.records.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
 from contact.records.validation import Numbers
 from contact.scene.coated_pair import CoatedPair
+from contact.scene.depth_functions import DepthFunction, ExponentialDepth, LinearDepth, PowerLawDepth, TabulatedDepth
 from contact.scene.effects import (
     Adhesion,
     Effect,
@@ -29,7 +30,10 @@ from contact.scene.effects import (
     StandardSolid,
     Viscoelasticity,
 )
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import Layer
+from contact.scene.layer_stack import ElasticBase, LayerStack, Sublayer
 from contact.scene.loading import (
     ContactRadii,
     DepthHistory,
@@ -53,11 +57,12 @@ from contact.scene.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
-from contact.scene.scene import Scene
+from contact.scene.scene import AnyScene, Scene
 
 __all__ = [
     "UNITS",
     "Adhesion",
+    "AnyScene",
     "CoatedPair",
     "Cone",
     "ContactError",
@@ -65,15 +70,20 @@ __all__ = [
     "ContactRadii",
     "Cost",
     "CriticalPoint",
+    "DepthFunction",
     "DepthHistory",
     "Detachment",
     "DetachmentPath",
     "Effect",
+    "ElasticBase",
+    "ElasticLayer",
     "EquilibriumLoading",
+    "ExponentialDepth",
     "Fields",
     "FlatPunch",
     "ForceHistory",
     "Friction",
+    "GradedLayer",
     "HistoryLoading",
     "HistoryPath",
     "Impact",
@@ -82,6 +92,8 @@ __all__ = [
     "InvalidInput",
     "KelvinVoigt",
     "Layer",
+    "LayerStack",
+    "LinearDepth",
     "Loading",
     "Method",
     "NormalForces",
@@ -89,6 +101,7 @@ __all__ = [
     "Numbers",
     "Paraboloid",
     "PowerLaw",
+    "PowerLawDepth",
     "Profile",
     "PronySeries",
     "Relaxation",
@@ -98,14 +111,18 @@ __all__ = [
     "StageLog",
     "StageRecord",
     "StandardSolid",
+    "Sublayer",
     "Supported",
     "Tabulated",
+    "TabulatedDepth",
     "TruncatedCone",
     "TruncatedParaboloid",
     "Unsupported",
     "UnsupportedSceneError",
     "Viscoelasticity",
     "load_scene",
+    "other_layer",
+    "refuse_other_layers",
     "scene_from_mapping",
     "scene_to_mapping",
 ]

@@ -30,6 +30,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
     Viscoelasticity,
+    other_layer,
 )
 from contact.answer.accuracy import told_where_less
 from contact.answer.one_thread import one_thread
@@ -112,6 +113,8 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
+        if (other := other_layer("fem", scene.layer)) is not None:
+            return other
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
         modelled = Viscoelasticity if in_time else Adhesion
         if all(isinstance(effect, modelled) for effect in scene.effects):

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -165,7 +165,7 @@ def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     unit_of = {ContactRadii: length, IndentationDepths: depth, NormalForces: stiffness * depth}
     kind = next(kind for kind in _PRESCRIBED if isinstance(scenes[0].loading, kind))
     ordered, place = np.unique(values / unit_of[kind], return_inverse=True)
-    shared = Scene(layer=units[0].layer, indenter=units[0].indenter, loading=kind(values=ordered))
+    shared: Scene[Any, Any] = Scene(layer=units[0].layer, indenter=units[0].indenter, loading=kind(values=ordered))
     path = solve_elastic(shared, flat_punch, {})
     answers = np.stack([path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness])
     return np.asarray(answers[:, place] * np.stack([length, depth, stiffness * depth, stiffness]))

@@ -20,7 +20,7 @@ from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO, RUNGS
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import CoatedPair, InvalidInput, Layer
+from contact import CoatedPair, ElasticLayer, InvalidInput, refuse_other_layers
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, in_range
 from mdr.springs.assembly import equivalent_system
@@ -43,20 +43,21 @@ class PairedCoatings(Record):
     share: Annotated[float, *in_range(_THINNEST, 1.0, "the thinner coating's thickness over the mean of both")]
     equation: IntegralEquation = IntegralEquation()
 
-    def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> IntegralEquationSolution:
         """The pair's flat punch up to at least a/h* = max_ratio; `layer` is the equivalent one, of the mean thickness.
 
         Raises:
             InvalidInput: If the ratio is beyond what the integral equation covers.
         """
+        plain = refuse_other_layers("the pair of coatings", layer)
         if not 0.0 < max_ratio <= LARGEST_FACTORISED_RATIO:
             raise InvalidInput(
                 f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_FACTORISED_RATIO:g}"
             )
         rung = next(rung for rung in RUNGS if rung >= max_ratio)
         # Poisson's ratio has no influence on an unbonded coating.
-        nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
-        return _solution(self, layer.support, nu, rung)
+        nu = plain.poissons_ratio if plain.support == "bonded" else 0.0
+        return _solution(self, plain.support, nu, rung)
 
     def refined(self) -> Self:
         """Panels half as wide."""
@@ -122,4 +123,4 @@ def _solution(
     weights = np.concatenate([one.weights / (2.0 * share) for share in shares])
     kernel, width = FredholmKernel(rates, weights), coatings.equation.panel_width
     factor = VolterraFactor.of_kernel(kernel, int(np.ceil(ratio / width)), width, coatings.equation.nodes)
-    return IntegralEquationSolution(support, nu, kernel, factor)
+    return IntegralEquationSolution(kernel, factor)

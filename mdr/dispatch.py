@@ -12,6 +12,7 @@ from contact import (
     DepthHistory,
     Detachment,
     Effect,
+    ElasticLayer,
     ForceHistory,
     Friction,
     Impact,
@@ -21,13 +22,12 @@ from contact import (
     Scene,
     Solution,
     Unsupported,
+    other_layer,
 )
 from contact.scene.effects import Viscoelasticity
 
 _EQUILIBRIA = (ContactRadii, IndentationDepths, NormalForces)
 _IN_TIME = (Impact, DepthHistory, ForceHistory)
-# Poisson's ratio of an incompressible layer, to which viscoelastic scenes are restricted.
-_INCOMPRESSIBLE = 0.5
 
 
 @dataclass(frozen=True)
@@ -69,15 +69,29 @@ SOLVERS = (
 )
 
 
+def _not_relaxing(layer: ElasticLayer, model: str) -> str:
+    """Why the layer does not relax as one: all of it must share one relaxation function and nu = 1/2."""
+    if layer.has_elastic_base:
+        return (
+            f"mdr models {model} where everything relaxes alike, and the elastic base does not: chi would depend on "
+            "time; use a rigid base"
+        )
+    if layer.is_incompressible:
+        return ""
+    return (
+        f"mdr models {model} in incompressible layers only, and layer.poissons_ratio = "
+        f"{layer.surface.poissons_ratio:g}; use Layer.incompressible, or a method that models compressible ones"
+    )
+
+
 def solver_of(scene: Scene) -> Solver | Unsupported:
     """The computation for a scene, or what stands in the way."""
     viscous = scene.effect(Viscoelasticity)
-    if viscous is not None and scene.layer.poissons_ratio != _INCOMPRESSIBLE:
-        return Unsupported(
-            f"mdr models {type(viscous).__name__} in incompressible layers only, and layer.poissons_ratio = "
-            f"{scene.layer.poissons_ratio:g}; use Layer.incompressible, or a method that models compressible ones"
-        )
+    if viscous is not None and (reason := _not_relaxing(scene.layer, type(viscous).__name__)):
+        return Unsupported(reason)
     friction = scene.effect(Friction)
+    if friction is not None and (other := other_layer("full stick by mdr", scene.layer)) is not None:
+        return other
     if friction is not None and not friction.is_stick:
         return Unsupported(
             f"mdr models full stick and frictionless contact, and Friction.coefficient = {friction.coefficient:g}; "

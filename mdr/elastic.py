@@ -9,13 +9,14 @@ import numpy as np
 
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
-from contact import ContactPath, ContactRadii, FlatPunch, IndentationDepths, Layer, Scene, StageLog
+from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
+from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors
@@ -39,6 +40,9 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
     refuse_touching_beside(scene, system, radius, depth)
+    errors = _errors(system, scene, radius, depth, force)
+    fields = PathFields(scene, system.flat_punch, excess, depth)
+    refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
         method="mdr",
@@ -47,10 +51,10 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=depth,
         normal_force=force,
         contact_stiffness=stiffness,
-        error_estimate=_errors(system, scene, radius, depth, force),
+        error_estimate=errors,
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
-        fields=PathFields(scene, system.flat_punch, excess, depth),
+        fields=fields,
     )
 
 
@@ -61,7 +65,7 @@ class LoggedSource:
     source: FlatPunchSource
     log: StageLog
 
-    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
         """As the source's; counts the solutions asked for, whether made or found in its cache."""
         with self.log.stage("flat_punch_data"):
             self.log.count("flat_punch_solutions")

@@ -7,7 +7,7 @@ m = cells/2, and the first cell's centre lies half a cell from both axes.
 
 from __future__ import annotations
 
-from math import isinf, pi
+from math import pi
 from typing import ClassVar, Final, Protocol
 
 import numpy as np
@@ -21,9 +21,9 @@ from bem.grid.transforms import (
     convolution_symbol,
     fast_period,
 )
-from bem.kernels.layer import compliance_kernel, zero_mode
 from bem.kernels.moduli import contact_modulus
-from contact import InvalidInput, Layer
+from bem.kernels.of_layer import surface_kernel
+from contact import ElasticLayer, InvalidInput, refuse_other_layers
 from contact.records.validation import FloatArray
 
 # Least answer of the mean mode over that of the next mode. Below it conjugate gradients with the mean mode's inverse
@@ -57,7 +57,7 @@ class GridOperator:
 
     def __init__(
         self,
-        layer: Layer,
+        layer: ElasticLayer,
         *,
         cell_size: float,
         cells: int,
@@ -79,9 +79,10 @@ class GridOperator:
 
     padded: ClassVar[bool]
 
-    def _influence(self, layer: Layer, offsets: int, cell_size: float) -> FloatArray:
+    def _influence(self, layer: ElasticLayer, offsets: int, cell_size: float) -> FloatArray:
         """Displacement by a unit pressure on one cell, lengths in cell sizes, E* = 1."""
-        return layer_influence(offsets, layer.thickness / cell_size, layer.support, layer.poissons_ratio)
+        plain = refuse_other_layers("the grid in free space", layer)
+        return layer_influence(offsets, plain.thickness / cell_size, plain.support, plain.poissons_ratio)
 
     def displacement(self, pressure: FloatArray) -> FloatArray:
         """u [m] by p [Pa], both of shape (m, m)."""
@@ -120,20 +121,22 @@ class BandLimitedHalfSpace(GridOperator):
 
     padded = True
 
-    def _influence(self, layer: Layer, offsets: int, cell_size: float) -> FloatArray:
+    def _influence(self, layer: ElasticLayer, offsets: int, cell_size: float) -> FloatArray:
         """Of the trigonometric interpolant of a unit pressure at one cell."""
         if not layer.is_half_space:
             raise InvalidInput(f"only a half-space is known in this form, got a layer with h = {layer.thickness:g}")
         return band_limited_influence(offsets)
 
 
-def layer_symbol(wavenumber: FloatArray, layer: Layer) -> FloatArray:
-    """u^(k) / p^(k) = 2 chi(kh) / (k E*) [m/Pa], Eq. (27), with its finite value at k = 0."""
+def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer) -> FloatArray:
+    """u^(k) / p^(k) = 2 chi(kh) / (k E*) [m/Pa], Eq. (27), with its finite value at k = 0 on a rigid base."""
     zero = wavenumber == 0.0
     k = np.where(zero, 1.0, wavenumber)
-    chi = 1.0 if isinf(layer.thickness) else compliance_kernel(k * layer.thickness, layer.support, layer.poissons_ratio)
-    at_zero = 0.0 if layer.is_half_space else layer.thickness * zero_mode(layer.support, layer.poissons_ratio)
-    return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, at_zero, chi / k))
+    if layer.is_half_space:
+        return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, 0.0, 1.0 / k))
+    kernel, h = surface_kernel(layer), layer.surface.thickness
+    at_zero = 0.0 if layer.has_elastic_base else h * kernel.zero_mode
+    return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, at_zero, kernel.chi(k * h) / k))
 
 
 def _wavenumbers(transform: Transform, cell_size: float) -> FloatArray:

@@ -1,5 +1,5 @@
-"""Surface compliance of a layer in Fourier space, Eqs. (27)-(31).
+"""Surface compliance of layers in Fourier space, Eqs. (27)-(31), and of stacks of layers.
 
-Enters: support, Poisson's ratio and wavenumbers times thickness. Leaves: chi, 1 - chi and the mean mode, to a few
-roundings. Read `layer` first.
+Enters: a layer, and wavenumbers times the thickness of what touches the indenter. Leaves: chi, 1 - chi and the mean
+mode, to a few roundings. Read `protocol` first, then `layer`, `stack` and `of_layer`.
 """

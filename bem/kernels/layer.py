@@ -53,7 +53,7 @@ def compliance_over_wavenumber(q: ArrayLike, support: Support, poissons_ratio: f
         chi_over_q: NDArray[Any] = S / (4 * D / S + 1 + D)
         return chi_over_q
     # In 2 kappa sinh 2q - 4q = 2 (kappa - 1) sinh 2q + 2 (sinh 2q - 2q) both terms are positive.
-    numerator: NDArray[Any] = 2 * (1 - 2 * _same_precision(poissons_ratio, q)) * S * (1 + D) + _shear_bracket_over_q(q)
+    numerator: NDArray[Any] = 2 * (1 - 2 * _same_precision(poissons_ratio, q)) * S * (1 + D) + shear_bracket_over_q(q)
     quotient: NDArray[Any] = numerator / _bonded_denominator(q, poissons_ratio)
     return quotient
 
@@ -103,7 +103,7 @@ def _bonded_denominator(q: NDArray[Any], poissons_ratio: float) -> NDArray[Any]:
     return denominator
 
 
-def _shear_bracket_over_q(q: NDArray[Any]) -> NDArray[Any]:
+def shear_bracket_over_q(q: NDArray[Any]) -> NDArray[Any]:
     """2 D (sinh 2q - 2q)/q with D = exp(-2q): series where the difference cancels, direct elsewhere."""
     small = np.abs(q) < SERIES_LIMIT
     D = np.exp(-2 * q)

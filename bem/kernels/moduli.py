@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 
-from contact import Layer
+from contact import ElasticLayer, Layer
 
 
-def contact_modulus(layer: Layer) -> float:
+def contact_modulus(layer: ElasticLayer) -> float:
     """E* = E / (1 - nu^2) [Pa], of the half-space that the surface resembles from near."""
-    nu = layer.poissons_ratio
-    return layer.youngs_modulus / ((1.0 - nu) * (1.0 + nu))
+    surface = layer.surface
+    nu = surface.poissons_ratio
+    return surface.youngs_modulus / ((1.0 - nu) * (1.0 + nu))
 
 
 def confined_modulus(layer: Layer) -> float:
@@ -19,6 +20,6 @@ def confined_modulus(layer: Layer) -> float:
     return math.inf if nu == 0.5 else layer.youngs_modulus * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu))
 
 
-def shear_modulus(layer: Layer) -> float:
-    """G = E / (2 (1 + nu)) [Pa]."""
-    return layer.youngs_modulus / (2.0 * (1.0 + layer.poissons_ratio))
+def shear_modulus(layer: ElasticLayer) -> float:
+    """G = E / (2 (1 + nu)) [Pa], at the surface."""
+    return layer.surface.youngs_modulus / (2.0 * (1.0 + layer.surface.poissons_ratio))

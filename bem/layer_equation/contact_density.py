@@ -52,7 +52,7 @@ class ContactDensity:
             ratio: a, in units of the thickness.
             load: Averages of W on the panels that cover [0, a], shape (q, m); the last panel ends at a.
         """
-        panels = MappedGrid.between(np.append(factor.panel_width * np.arange(len(load)), ratio), factor.count)
+        panels = MappedGrid.between(np.append(factor.starts(len(load)), ratio), factor.count)
         return cls(kernel, load, MappedFunction(panels, _solve(factor, panels.width[-1], load) - load, 0.0))
 
     @property
@@ -120,11 +120,11 @@ def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> Float
     """phi on whole panels and the last, shorter one: that from its Schur system, the others by back-substitution."""
     m, before = factor.count, (len(load) - 1) * factor.count
     tau, omega = gauss_nodes(m)
-    E = lagrange_matrix(m, last_width / factor.panel_width * tau)
+    E = lagrange_matrix(m, last_width / factor.widths(len(load))[-1] * tau)
     z, inherited = factor.eliminate(load)
     schur = E @ factor.schur[len(load) - 1] @ E.T
     last = np.linalg.solve(np.eye(m) - schur * (last_width * omega), load[-1] + E @ inherited[-1])
-    root = np.sqrt(factor.weights)
-    returned = factor.lower[before : before + m, :before].T @ (E.T @ (last_width * omega * last) / root)
+    root = np.broadcast_to(factor.root_weights(len(load)), load.shape)
+    returned = factor.lower[before : before + m, :before].T @ (E.T @ (last_width * omega * last) / root[-1])
     earlier = solve_lower(factor.lower[:before, :before], z[:before] - returned, transposed=True)
-    return np.vstack([earlier.reshape(-1, m) / root, last])
+    return np.vstack([earlier.reshape(-1, m) / root[:-1], last])

@@ -19,7 +19,6 @@ from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.truncation import between_nodes, orders_beyond, rate_of_decay
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 EPS = float(np.finfo(float).eps)
 
@@ -29,21 +28,17 @@ class IntegralEquationSolution(FlatPunchSolution):
     """The flat punch on one layer, every radius up to `max_ratio`.
 
     Attributes:
-        support: "bonded" or "unbonded".
-        poissons_ratio: nu.
         kernel: Kernel of the layer's equation.
         factor: Its factor.
     """
 
-    support: Support
-    poissons_ratio: float
     kernel: FredholmKernel
     factor: VolterraFactor
 
     @property
     def max_ratio(self) -> float:
         """Largest a/h that is covered."""
-        return self.factor.panels * self.factor.panel_width
+        return self.factor.reach
 
     @property
     def unknowns(self) -> int:
@@ -77,7 +72,7 @@ class IntegralEquationSolution(FlatPunchSolution):
             ratio: a/h.
             load: Averages of W as in `ContactDensity`; by default W = 1, the flat punch.
         """
-        panels = int(np.ceil(ratio / self.factor.panel_width))
+        panels = self.factor.panels_to(ratio)
         unit = np.ones((panels, self.factor.count))
         return ContactDensity.of_load(self.kernel, self.factor, ratio, unit if load is None else load)
 
@@ -95,7 +90,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
         share = np.minimum(1.0, FACTOR.own_panel * self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny))
-        truncated = _truncation(self._contact_stiffness, ratio) / k + share * self._spring_truncation(ratio)
+        truncated = polynomial_truncation(self._contact_stiffness, ratio) / k + share * self._spring_truncation(ratio)
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
@@ -127,9 +122,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     ) -> ContactDensity:
         """Solved for under W = delta - g_hs."""
         if load is None:
-            return self.density(
-                ratio, np.full((int(np.ceil(ratio / self.factor.panel_width)), self.factor.count), depth)
-            )
+            return self.density(ratio, np.full((self.factor.panels_to(ratio), self.factor.count), depth))
         averages = depth - contact_averages(self.factor, load, flat_radius)
         return self.density(ratio, averages)
 
@@ -140,7 +133,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all. Polynomials through the
         nodes are not even, so what they leave of the slope is not as small.
         """
-        share = 1 - 1 / self.normalized_contact_stiffness(ratio)
+        share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
         return np.asarray(share * (ratio**2 / (1 + ratio**2) * depth_error + self._slope_truncation(ratio)))
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
@@ -173,7 +166,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     def _spring_truncation(self, ratio: FloatArray) -> FloatArray:
         """Of c_bar = y1^2, relative: orders of y1 left out, and of the kernel that gives its values at the nodes."""
         panels, _ = self._edge_density.grid.locate(ratio)
-        own: FloatArray = _truncation(self._edge_density, ratio) / self.edge_density(ratio)
+        own: FloatArray = polynomial_truncation(self._edge_density, ratio) / self.edge_density(ratio)
         return 2 * (own + self.factor.truncation[panels])
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
@@ -186,8 +179,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     @cached_property
     def _panels(self) -> MappedGrid:
         """The factor's panels."""
-        ends = self.factor.panel_width * np.arange(self.factor.panels + 1.0)
-        return MappedGrid.between(ends, self.factor.count)
+        return MappedGrid.between(self.factor.all_ends, self.factor.count)
 
     @cached_property
     def _edge_density(self) -> MappedFunction:
@@ -206,7 +198,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         return MappedFunction(self._panels, (full[:, None] + partial) / (width * (panels + tau)), 0.0)  # Eqs. (6), (10)
 
 
-def _truncation(function: MappedFunction, x: FloatArray) -> FloatArray:
+def polynomial_truncation(function: MappedFunction, x: FloatArray) -> FloatArray:
     """Size of what the polynomials leave out at points x, as the decay of all their coefficients tells."""
     panels, s = function.grid.locate(x)
     beyond: FloatArray = orders_beyond(function.coefficients)[panels] * between_nodes(function.grid.count, 2 * s - 1)

@@ -8,11 +8,17 @@ from typing import Annotated, Final, Self
 import numpy as np
 from pydantic import Field
 
+from bem.kernels.of_layer import surface_kernel
+from bem.kernels.protocol import SurfaceKernel
+from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor
+from bem.layer_equation.any_layer.graded_solution import GradedSolution
+from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.protocol import FlatPunchSolution
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
-from contact import InvalidInput, Layer
+from contact import ElasticLayer, InvalidInput, Layer
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import positive
@@ -22,6 +28,15 @@ from contact.scene.layer import Support
 LARGEST_FACTORISED_RATIO: Final = 160.0
 # Ratios are rounded up to these, so that a larger cached factor never changes an answer's last digits.
 RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)
+
+# On a stack panels are so many times wider, over the thickness of the first sublayer: many contacts are much wider than
+# that is thick. 24 nodes on a panel of two thicknesses leave 4.2^-24 of a kernel that is analytic within two of them.
+ANY_WIDTH: Final = 2.0
+# As `RUNGS` on a stack.
+ANY_RUNGS: Final = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
+
+# The same on a graded layer.
+GRADED_RUNGS: Final = (1.0, 2.0, 4.0, 8.0, 16.0)
 
 
 @record
@@ -37,17 +52,23 @@ class IntegralEquation(Record):
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
 
     @one_thread
-    def solution(self, layer: Layer, max_ratio: float) -> IntegralEquationSolution | LargeRatioSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
         """The flat punch on this layer up to at least a/h = max_ratio, cached.
 
-        Beyond a/h = 160 answers come from `thin_layers`.
+        On a plain layer answers beyond a/h = 160 come from `thin_layers`. On a stack h is the first sublayer's
+        thickness, which sets how smooth its kernel is.
 
         Raises:
-            InvalidInput: If the ratio is beyond `LARGEST_RATIO`.
+            InvalidInput: If the ratio is beyond `LARGEST_RATIO`, or `ANY_RUNGS` on a stack.
             NotConvergedError: If the equation is singular to double precision.
         """
         if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
             raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
+        if not isinstance(layer, Layer):
+            surface = surface_kernel(layer)
+            if not surface.is_smooth:
+                return _graded_solution(surface, _any_rung(layer, max_ratio, GRADED_RUNGS))
+            return _any_solution(self, surface, _any_rung(layer, max_ratio, ANY_RUNGS))
         rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
         # Poisson's ratio has no influence on the unbonded layer.
         nu = layer.poissons_ratio if layer.support == "bonded" else 0.0
@@ -60,12 +81,36 @@ class IntegralEquation(Record):
         return self.replace(panel_width=self.panel_width / 2)
 
 
+def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> float:
+    for rung in rungs:
+        if rung >= ratio:
+            return rung
+    h = layer.surface.thickness
+    raise InvalidInput(
+        f"radius = {ratio * h:g} m: more than {rungs[-1]:g} times the thickness {h:g} m of the material at the "
+        "surface; ask for smaller contacts"
+    )
+
+
+@lru_cache(maxsize=8)
+def _graded_solution(surface: SurfaceKernel, ratio: float) -> GradedSolution:
+    return GradedSolution(PointKernel.of_surface(surface), ratio)
+
+
+# A factor for the largest ratio takes 110 MB.
+@lru_cache(maxsize=8)
+def _any_solution(settings: IntegralEquation, surface: SurfaceKernel, ratio: float) -> AnyLayerSolution:
+    kernel, width = FredholmKernel.of_surface(surface), ANY_WIDTH * settings.panel_width
+    factor = GradedFactor.of_any(kernel, int(np.ceil(ratio / width)), width, int(settings.nodes))
+    return AnyLayerSolution(kernel, factor)
+
+
 @lru_cache(maxsize=32)
 def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: float) -> IntegralEquationSolution:
     kernel = FredholmKernel.of_layer(support, nu)
     panels = int(np.ceil(ratio / settings.panel_width))
     factor = VolterraFactor.of_kernel(kernel, panels, settings.panel_width, int(settings.nodes))
-    return IntegralEquationSolution(support, nu, kernel, factor)
+    return IntegralEquationSolution(kernel, factor)
 
 
 # The factors of each take 280 MB.

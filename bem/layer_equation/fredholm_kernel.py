@@ -19,6 +19,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
 from bem.kernels.layer import one_minus_kernel
+from bem.kernels.protocol import SurfaceKernel
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -31,6 +32,14 @@ FINEST_PANEL: Final = -13
 COARSEST_PANEL: Final = 4
 # Gauss nodes on each of them.
 PANEL_NODES: Final = 20
+# The same for any layer. A stiff sheet on thin incompressible layers has poles near 30 degrees, since its bending
+# stiffness grows like k^4 and their compliance like k^2: k^6 is negative there. Half of that angle, with 24 nodes,
+# leaves 4e-15 of N on 300 random stacks of 1 to 4 layers (moduli 1e-4 to 1e4, thicknesses 1e-3 to 1, against 12
+# degrees and 64 nodes, distances 0.01 to 300, 2026-11-22); 20 degrees leave 1e-10.
+ANY_ANGLE: Final = np.radians(15.0)
+ANY_NODES: Final = 24
+# The first panel ends at 2^ANY_FINEST over the longest length on which the kernel varies.
+ANY_FINEST: Final = -6
 
 
 @dataclass(frozen=True)
@@ -54,6 +63,22 @@ class FredholmKernel:
         wavenumber = t * np.exp(1j * RAY_ANGLE)
         dk = np.exp(1j * RAY_ANGLE) * (np.diff(ends)[:, None] * weights).ravel()
         return cls(rates=-1j * wavenumber, weights=one_minus_kernel(wavenumber, support, poissons_ratio) * dk)
+
+    @classmethod
+    def of_surface(cls, kernel: SurfaceKernel, coarsest: int = COARSEST_PANEL) -> FredholmKernel:
+        """The kernel of any layer, lengths in units of the thickness of its surface material.
+
+        Args:
+            kernel: 1 - chi.
+            coarsest: Number of the last panel; beyond it 1 - chi is left out.
+        """
+        finest = min(FINEST_PANEL, int(np.floor(-np.log2(kernel.longest))) + ANY_FINEST)
+        nodes, weights = gauss_nodes(ANY_NODES)
+        ends = np.concatenate([[0.0], 2.0 ** np.arange(finest, coarsest + 2)])
+        t = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
+        turn = np.exp(1j * ANY_ANGLE)
+        dk = turn * (np.diff(ends)[:, None] * weights).ravel()
+        return cls(rates=-1j * t * turn, weights=kernel.one_minus_chi(t * turn) * dk)
 
     def __call__(self, distance: ArrayLike) -> FloatArray:
         """N at distances s >= 0 of any shape, in units of the thickness."""

@@ -64,13 +64,15 @@ class IntegralEquationMethod(Record):
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic contact of any profile with layers and half-spaces."""
+        if not scene.layer.is_piecewise_uniform:
+            return Unsupported(f"the direct integral equation does not model a {type(scene.layer).__name__}; ask mdr")
         if scene.effects:
             names = ", ".join(type(effect).__name__ for effect in scene.effects)
             return Unsupported(f"the direct integral equation models elastic contact only, not {names}")
         if not isinstance(scene.loading, ContactRadii | IndentationDepths | NormalForces):
             return Unsupported(f"the direct integral equation does not model {type(scene.loading).__name__}")
         if isinstance(scene.loading, ContactRadii):
-            ratio = float(scene.loading.values.max()) / scene.layer.thickness
+            ratio = float(scene.loading.values.max()) / scene.layer.surface.thickness
             return Supported() if ratio <= LARGEST_RATIO else Unsupported(_too_thin(ratio))
         return Supported()
 
@@ -229,7 +231,7 @@ class _Solver:
         return DirectContact(density, depth, True, modulus)
 
     def _density(self, excess: float) -> DirectDensity:
-        ratio = (self.scene.indenter.flat_radius + excess) / self.scene.layer.thickness
+        ratio = (self.scene.indenter.flat_radius + excess) / self.scene.layer.surface.thickness
         if ratio > LARGEST_RATIO:
             raise UnsupportedSceneError(_too_thin(ratio))
         self.log.count("factorisations", 0 if self.scene.layer.is_half_space else 1)
@@ -259,7 +261,7 @@ class _Solver:
     def _first_excess(self, value: float) -> float:
         layer, indenter = self.scene.layer, self.scene.indenter
         length = np.sqrt(value / contact_modulus(layer)) if isinstance(self.scene.loading, NormalForces) else value
-        return float(min(layer.thickness, 10 * length, indenter.max_radius / 2))
+        return float(min(layer.surface.thickness, 10 * length, indenter.max_radius / 2))
 
 
 def _refuse_tension(contact: DirectContact) -> None:

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.triangular import equation_factor, solve_lower
@@ -64,8 +65,8 @@ class VolterraFactor:
         own = 2 / np.pi * np.array([K[s : s + count, s : s + count] for s in range(0, len(K), count)])
         root = np.sqrt(panel_width * np.tile(gauss_nodes(count)[1], panels))
         lower = equation_factor(K, root, panels * panel_width)
-        schur = _schur_kernels(own, lower, root)
-        return cls(panel_width, lower, schur, _edge_resolvents(schur, panel_width))
+        schur = schur_kernels(own, lower, root)
+        return cls(panel_width, lower, schur, edge_resolvents(schur, panel_width))
 
     @property
     def panels(self) -> int:
@@ -76,6 +77,40 @@ class VolterraFactor:
     def count(self) -> int:
         """Nodes of a panel, m."""
         return int(self.schur.shape[1])
+
+    @property
+    def reach(self) -> float:
+        """Where the last panel ends."""
+        return self.panels * self.panel_width
+
+    @property
+    def all_ends(self) -> FloatArray:
+        """Of the panels, from zero on."""
+        return self.panel_width * np.arange(self.panels + 1.0)
+
+    def widths(self, panels: int) -> FloatArray:
+        """Of the first panels."""
+        return np.full(panels, self.panel_width)
+
+    def starts(self, panels: int) -> FloatArray:
+        """Where the first panels begin."""
+        return self.panel_width * np.arange(panels, dtype=np.float64)
+
+    def panel_of(self, x: FloatArray) -> NDArray[np.intp]:
+        """Number of the panel that a point inside one lies in."""
+        return np.asarray(np.floor(x / self.panel_width).astype(np.intp))
+
+    def position(self, x: FloatArray, panel: NDArray[np.intp]) -> FloatArray:
+        """Of points relative to their panels."""
+        return x / self.panel_width - panel
+
+    def panels_to(self, x: float) -> int:
+        """How many panels cover [0, x]."""
+        return int(np.ceil(x / self.panel_width))
+
+    def root_weights(self, panels: int) -> FloatArray:
+        """Square roots of the weights of the first panels, shape (m,) or (panels, m)."""
+        return np.sqrt(self.weights)
 
     @property
     def weights(self) -> FloatArray:
@@ -92,7 +127,7 @@ class VolterraFactor:
             z = C^-1 (sqrt(w) load), shape (q m,), and what each panel inherits from the earlier ones, K A^-1 W at its
             nodes, shape (q, m).
         """
-        n, root = load.size, np.sqrt(self.weights)
+        n, root = load.size, self.root_weights(len(load))
         z = solve_lower(self.lower[:n, :n], (root * load).ravel())
         starts = range(0, n, self.count)
         inherited = np.array([-self.lower[s : s + self.count, :s] @ z[:s] for s in starts]) / root
@@ -147,7 +182,7 @@ class VolterraFactor:
         return matrix
 
 
-def _schur_kernels(own: FloatArray, lower: FloatArray, root: FloatArray) -> FloatArray:
+def schur_kernels(own: FloatArray, lower: FloatArray, root: FloatArray) -> FloatArray:
     """K~ = K + K A^-1 K over the earlier panels, from the rows of the factor left of each diagonal block of K."""
     schur, count = own.copy(), own.shape[1]
     for p, kernel in enumerate(schur):
@@ -157,7 +192,7 @@ def _schur_kernels(own: FloatArray, lower: FloatArray, root: FloatArray) -> Floa
     return schur
 
 
-def _edge_resolvents(schur: FloatArray, panel_width: float) -> FloatArray:
+def edge_resolvents(schur: FloatArray, widths: float | FloatArray) -> FloatArray:
     """Resolvent of every panel for an edge at each of its nodes: (I - K~ w) G = K~(., edge) on [X, X + H tau_i]."""
     count = schur.shape[1]
     tau, omega = gauss_nodes(count)
@@ -165,7 +200,7 @@ def _edge_resolvents(schur: FloatArray, panel_width: float) -> FloatArray:
     # K~ between partial nodes and panel nodes.
     half = np.einsum("ijk,pkl->pijl", E, schur, optimize=True)
     kernel = half @ E.swapaxes(1, 2)
-    weights = panel_width * np.multiply.outer(tau, omega)
+    weights = np.multiply.outer(widths, np.multiply.outer(tau, omega)).reshape(-1, count, 1, count)
     to_edge = np.einsum("piji->pij", half)
-    resolvent: FloatArray = np.linalg.solve(np.eye(count) - kernel * weights[:, None, :], to_edge[..., None])[..., 0]
+    resolvent: FloatArray = np.linalg.solve(np.eye(count) - kernel * weights, to_edge[..., None])[..., 0]
     return resolvent

@@ -20,17 +20,19 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
-from bem.kernels.layer import one_minus_kernel
+from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
-from contact import Layer, NotConvergedError, Profile
+from contact import ElasticLayer, NotConvergedError, Profile
 from contact.records.validation import FloatArray
 
 # Wavenumber times thickness beyond which 1 - chi is below 1e-17 and left out.
 LARGEST_WAVENUMBER = 24.0
+# On a stack the first panel of wavenumbers is halved so many times more than the longest length asks for; chosen.
+LONG_HALVINGS = 4
 # Gauss nodes of a panel of wavenumbers, and the largest phase of a cosine on it: a rule of n nodes integrates cosines
 # over a phase below n to rounding, and 1 - chi is analytic within 2.5 of the real axis (panels are at most 2 wide).
 WAVE_NODES, PANEL_PHASE = 40, 48.0
@@ -74,7 +76,7 @@ class DirectDensity:
         amplitudes: Of psi = sum A cos(kx), shape (m, 2).
     """
 
-    layer: Layer
+    layer: ElasticLayer
     indenter: Profile
     unit: float
     excess: float
@@ -86,7 +88,7 @@ class DirectDensity:
     amplitudes: FloatArray
 
     @classmethod
-    def solve(cls, layer: Layer, indenter: Profile, excess: float, width: float, nodes: int) -> DirectDensity:
+    def solve(cls, layer: ElasticLayer, indenter: Profile, excess: float, width: float, nodes: int) -> DirectDensity:
         """Assemble and solve for one excess a - b [m], on pieces of at most `width` thicknesses with `nodes` nodes.
 
         Raises:
@@ -94,7 +96,7 @@ class DirectDensity:
         """
         flat = indenter.flat_radius
         a = flat + excess
-        unit = a if layer.is_half_space else layer.thickness
+        unit = a if layer.is_half_space else layer.surface.thickness
         pieces = graded_pieces(indenter, excess, unit, width, nodes)
         load = MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes) / unit, 0.0)
         grid = MappedGrid.equal(a / unit, int(np.ceil(a / unit / width)), nodes)
@@ -332,33 +334,46 @@ def _solve(grid: MappedGrid, k: FloatArray, weight: FloatArray, moments: FloatAr
     cosines = root * np.cos(np.multiply.outer(grid.nodes.ravel(), k))
     strength = 2 / np.pi * weight
     try:
-        psi: FloatArray = _resolved(cosines * np.sqrt(strength), cosines @ (strength[:, None] * moments)) / root
+        psi: FloatArray = (
+            _resolved(cosines * np.sqrt(np.abs(strength)), np.sign(strength), cosines @ (strength[:, None] * moments))
+            / root
+        )
     except np.linalg.LinAlgError:
         message = f"the equation at a/h = {grid.end:g} is singular to double precision; take a smaller a/h"
         raise NotConvergedError(message) from None
     return psi
 
 
-def _resolved(scaled: FloatArray, loads: FloatArray) -> FloatArray:
-    """(I - S S^T)^-1 loads for S of nodes times wavenumbers; the smaller of S S^T and S^T S is factorised.
+def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatArray:
+    """(I - S D S^T)^-1 loads for S of nodes times wavenumbers, D their signs.
 
-    (I - S S^T)^-1 = I + S (I - S^T S)^-1 S^T, and both have the same smallest eigenvalue.
+    Where all are positive the smaller of S S^T and S^T S is factorised: (I - S S^T)^-1 = I + S (I - S^T S)^-1 S^T, and
+    both have the same smallest eigenvalue.
     """
     nodes, waves = scaled.shape
-    if waves < nodes:
-        dual: FloatArray = loads + scaled @ _resolved(scaled.T, scaled.T @ loads) if waves else loads
+    if waves < nodes and np.all(sign > 0):
+        dual: FloatArray = loads + scaled @ _resolved(scaled.T, np.ones(nodes), scaled.T @ loads) if waves else loads
         return dual
-    factor = cho_factor(np.eye(nodes) - scaled @ scaled.T, lower=True, check_finite=False)
+    square = scaled @ scaled.T if np.all(sign > 0) else (scaled * sign) @ scaled.T
+    factor = cho_factor(np.eye(nodes) - square, lower=True, check_finite=False)
     solution: FloatArray = cho_solve(factor, loads, check_finite=False)
     return solution
 
 
-def _wavenumbers(layer: Layer, distance: float) -> tuple[FloatArray, FloatArray]:
+def _wavenumbers(layer: ElasticLayer, distance: float) -> tuple[FloatArray, FloatArray]:
     """Gauss nodes k and weights times 1 - chi(k), fine enough for cos(k distance); none on the half-space."""
     if layer.is_half_space:
         return np.zeros(0), np.zeros(0)
     nodes, weights = gauss_nodes(WAVE_NODES)
     panels = int(np.ceil(LARGEST_WAVENUMBER * max(distance / PANEL_PHASE, 0.5)))
     width = LARGEST_WAVENUMBER / panels
+    kernel = surface_kernel(layer)
     k = (width * (np.arange(panels)[:, None] + nodes)).ravel()
-    return k, one_minus_kernel(k, layer.support, layer.poissons_ratio) * np.tile(width * weights, panels)
+    weight = np.tile(width * weights, panels)
+    if not layer.is_uniform:
+        # The first panel is halved until it is short against every length on which the kernel varies.
+        ends = width * np.append(0.0, 2.0 ** np.arange(-int(np.ceil(np.log2(kernel.longest))) - LONG_HALVINGS, 1))
+        first = (ends[:-1, None] + np.diff(ends)[:, None] * nodes).ravel()
+        k = np.append(first, k[nodes.size :])
+        weight = np.append(np.multiply.outer(np.diff(ends), weights).ravel(), weight[nodes.size :])
+    return k, kernel.one_minus_chi(k) * weight

@@ -16,15 +16,28 @@ from typing import Protocol, Self, runtime_checkable
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bem.layer_equation.contact_density import ContactDensity
 from bem.polynomials.mapped import MappedFunction
-from contact import Layer, Profile
+from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
 
 # Multiplies the relative error of the depth, and gives that of the pressure, where the profile is fitted. Against
 # refined data the pressure's error was at most 0.5 of the depth's beyond a/h = 160 and 1.6 with tables; the rest is a
 # margin.
 FITTED_SHARE = 4.0
+
+
+class LayerShare(Protocol):
+    """The layer's share psi of the density under one contact of radius a, lengths in units of the solution."""
+
+    @property
+    def edge_value(self) -> float:
+        """psi(a)."""
+
+    def abel_integral(self, radius: FloatArray) -> FloatArray:
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
+
+    def outside(self, distance: FloatArray) -> FloatArray:
+        """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
 
 
 @runtime_checkable
@@ -81,7 +94,7 @@ class FlatPunchSolution(Protocol):
 
     def contact_density(
         self, load: MappedFunction | None, flat_radius: float, ratio: float, depth: float
-    ) -> ContactDensity | None:
+    ) -> LayerShare | None:
         """The layer's share psi of a contact's density; None where there is none or it is not known.
 
         Args:
@@ -152,7 +165,7 @@ class FlatPunchSolution(Protocol):
 class FlatPunchSource(Protocol):
     """Numerical settings that can produce a `FlatPunchSolution`."""
 
-    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchSolution:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchSolution:
         """The flat punch on this layer up to at least a/h = max_ratio; cached by the source.
 
         Raises:

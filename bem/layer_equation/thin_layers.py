@@ -19,6 +19,7 @@ from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 from scipy.ndimage import maximum_filter1d
 
+from bem.kernels.of_layer import UniformKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fourier_energy import energy_matrix, tail_left_out
 from bem.layer_equation.fredholm_kernel import FredholmKernel
@@ -179,13 +180,13 @@ class LargeRatioSolution(FlatPunchSolution):
         """Solution on wide panels, which has lost digits where the layer is nearly incompressible."""
         kernel, panels = FredholmKernel.of_layer(self.support, self.poissons_ratio), int(LARGEST_RATIO / PANEL_WIDTH)
         factor = VolterraFactor.of_kernel(kernel, panels, PANEL_WIDTH, PANEL_NODES)
-        return IntegralEquationSolution(self.support, self.poissons_ratio, kernel, factor)
+        return IntegralEquationSolution(kernel, factor)
 
     @cached_property
     def wide_alone(self) -> WideSolution:
         """The wide panels for all radii: seven digits, but for profiles with breakpoints anywhere."""
         wide = self.wide
-        return WideSolution(wide.support, wide.poissons_ratio, wide.kernel, wide.factor, self._lost)
+        return WideSolution(wide.kernel, wide.factor, self._lost)
 
     def _lost(self, ratio: FloatArray) -> FloatArray:
         """What `wide` makes of k_bar, from `FIRST_RATIO` on, and its polynomials."""
@@ -233,7 +234,7 @@ class LargeRatioSolution(FlatPunchSolution):
 
     @cached_property
     def _punches(self) -> tuple[FloatArray, FloatArray, FloatArray, dict[float, FloatArray]]:
-        return _wide_punches(self.wide)
+        return _wide_punches(self.wide, UniformKernel(self.support, self.poissons_ratio))
 
     def _stiffness(self, ratio: FloatArray) -> FloatArray:
         stiffness: FloatArray = np.exp(self.log_stiffness(np.log(np.maximum(ratio, FIRST_RATIO))))
@@ -272,11 +273,11 @@ class WideSolution(IntegralEquationSolution):
 
 
 def _wide_punches(
-    wide: IntegralEquationSolution,
+    wide: IntegralEquationSolution, surface: UniformKernel
 ) -> tuple[FloatArray, FloatArray, FloatArray, dict[float, FloatArray]]:
     """Ratios, k_bar there, its relative errors by what span and energies lack, and the densities."""
     ratios = _radii_at_panel_ends()
-    punches = [_ritz_punch(trial, wide) for trial in _trial_densities(wide.factor, ratios)]
+    punches = [_ritz_punch(trial, wide, surface) for trial in _trial_densities(wide.factor, ratios)]
     best, lacking = (np.array([punch[item] for punch in punches]) for item in (0, 1))
     densities = {float(a): punch[2] for a, punch in zip(ratios, punches, strict=True)}
     return ratios, best / ratios, lacking, densities
@@ -304,12 +305,14 @@ def _trial_densities(factor: VolterraFactor, ratios: FloatArray) -> list[FloatAr
     return [density[:, : round(a / width)] for density, a in zip(by_radius, ratios, strict=True)]
 
 
-def _ritz_punch(trial: FloatArray, wide: IntegralEquationSolution) -> tuple[float, float, FloatArray]:
+def _ritz_punch(
+    trial: FloatArray, wide: IntegralEquationSolution, surface: UniformKernel
+) -> tuple[float, float, FloatArray]:
     """F/(2 E*) of a flat punch pressed in by 1, its relative error, and its density.
 
     The error is what the last Ritz density makes, and what is left out of the energy, which is F itself.
     """
-    energy = energy_matrix(trial, wide.factor.panel_width, wide.support, wide.poissons_ratio)
+    energy = energy_matrix(trial, wide.factor.panel_width, surface.support, surface.poissons_ratio)
     load = np.sum(trial @ wide.factor.weights, axis=1)
     shares, fewer = _stationary(energy, load), _stationary(energy[:-1, :-1], load[:-1])
     force, density = float(load @ shares), np.tensordot(shares, trial, axes=1)

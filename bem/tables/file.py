@@ -21,7 +21,7 @@ from scipy.integrate import simpson
 from bem.grid.influence import correction_function
 from bem.kernels.layer import zero_mode
 from bem.tables.table import FlatPunchTable
-from contact import InvalidInput, Layer
+from contact import ElasticLayer, InvalidInput, refuse_other_layers
 from contact.files.storage import read_tree, write_tree
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -112,18 +112,19 @@ class TableFile(Record):
     support: Support | None = None
     poissons_ratio: float | None = None
 
-    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchTable:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchTable:
         """The stored table.
 
         Raises:
             InvalidInput: If it is of another kernel, or ends below `max_ratio`.
         """
+        plain = refuse_other_layers("the table of flat punches", layer)
         table = _stored(self)
-        same_nu = layer.support == "unbonded" or table.poissons_ratio == layer.poissons_ratio
-        if layer.is_half_space or table.support != layer.support or not same_nu:
+        same_nu = plain.support == "unbonded" or table.poissons_ratio == plain.poissons_ratio
+        if plain.is_half_space or table.support != plain.support or not same_nu:
             raise InvalidInput(
                 f"{self.path} is for a {table.support} layer with nu = {table.poissons_ratio:g}, "
-                f"not for a {layer.support} one with nu = {layer.poissons_ratio:g} and h = {layer.thickness:g}"
+                f"not for a {plain.support} one with nu = {plain.poissons_ratio:g} and h = {plain.thickness:g}"
             )
         # Asking for the error refuses a ratio beyond the table.
         table.relative_error(max_ratio)

@@ -13,7 +13,7 @@ from scipy.ndimage import maximum_filter1d
 from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
 from bem.grid.error_model import TABLES
 from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
-from contact import InvalidInput, Layer
+from contact import ElasticLayer, InvalidInput, refuse_other_layers
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -56,13 +56,14 @@ class FftTable(Record):
         if min(self.ratios, self.radii) < LEAST_HALVED:
             raise InvalidInput(f"ratios and radii must be at least {LEAST_HALVED}, got {self.ratios} and {self.radii}")
 
-    def solution(self, layer: Layer, max_ratio: float) -> FlatPunchTable:
+    def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchTable:
         """The table of this layer's kernel up to at least a/h = `max_ratio`; built once, then remembered.
 
         Raises:
             InvalidInput: If the layer is a half-space or the ratio is beyond 1000.
         """
-        if layer.is_half_space:
+        plain = refuse_other_layers("the table of flat punches", layer)
+        if plain.is_half_space:
             raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
         grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
         # A quotient of two lengths meant as 1000 may come out above it by rounding.
@@ -70,8 +71,8 @@ class FftTable(Record):
             raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
         rows = max(LEAST_HALVED, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1 + BEYOND)
         # Poisson's ratio plays no part in the unbonded layer.
-        poissons_ratio = layer.poissons_ratio if layer.support == "bonded" else 0.0
-        return _build(self, layer.support, poissons_ratio, min(rows, self.ratios))
+        poissons_ratio = plain.poissons_ratio if plain.support == "bonded" else 0.0
+        return _build(self, plain.support, poissons_ratio, min(rows, self.ratios))
 
     def refined(self) -> Self:
         """A copy with half the cell size."""

@@ -8,10 +8,13 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from contact.files.scene_file import kind_of
+from contact.files.layer_table import kind_of
 from contact.records.record import Record
+from contact.scene.depth_functions import DEPTH_FUNCTIONS, TabulatedDepth
 from contact.scene.effects import EFFECTS
+from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import Layer
+from contact.scene.layer_stack import MAX_SUBLAYERS, ElasticBase, LayerStack, Sublayer
 from contact.scene.loading import LOADINGS
 from contact.scene.profiles import PROFILES
 
@@ -21,7 +24,7 @@ DRAFT = "http://json-schema.org/draft-07/schema#"
 def scene_schema() -> dict[str, Any]:
     """Return the schema of what `load_scene` reads; what depends on several entries only `load_scene` checks."""
     parts = {
-        "layer": _layer(),
+        "layer": {"type": "object", "oneOf": [_layer(), _stack(), _graded()]},
         "indenter": _one_of(PROFILES),
         "loading": _one_of(LOADINGS),
         "effects": {"type": "array", "items": _one_of(EFFECTS), "maxItems": len(EFFECTS)},
@@ -44,6 +47,40 @@ def _layer() -> dict[str, Any]:
     thick: dict[str, Any] = {"required": ["thickness"]}
     infinite: dict[str, Any] = {"properties": {"half_space": {"const": True}}, "required": ["half_space"]}
     return schema | {"oneOf": [thick | {"not": infinite}, infinite | {"not": thick}]}
+
+
+def _stack() -> dict[str, Any]:
+    schema = _shallow(LayerStack)
+    one, name = _record(Sublayer), {"enum": ["bonded", "unbonded"]}
+    schema["properties"] |= {
+        "sublayers": {"type": "array", "items": one, "minItems": 1, "maxItems": MAX_SUBLAYERS},
+        "interfaces": {"type": "array", "items": name},
+        "support": _support(),
+    }
+    return schema | {"required": ["kind", "sublayers"]}
+
+
+def _graded() -> dict[str, Any]:
+    schema = _shallow(GradedLayer)
+    number = {"type": "number", "minimum": 0.0, "maximum": 0.5}
+    schema["properties"] |= {
+        "thickness": {"type": "number", "exclusiveMinimum": 0},
+        "youngs_modulus": _one_of(DEPTH_FUNCTIONS),
+        "poissons_ratio": {"oneOf": [number, _tagged(TabulatedDepth)]},
+        "support": _support(),
+    }
+    return schema | {"required": ["kind", "thickness", "youngs_modulus", "poissons_ratio"]}
+
+
+def _support() -> dict[str, Any]:
+    return {"oneOf": [{"enum": ["bonded", "unbonded"]}, _record(ElasticBase)]}
+
+
+def _shallow(cls: type[Record]) -> dict[str, Any]:
+    """A record with its kind, and no field yet."""
+    text = inspect.cleandoc(cls.__doc__ or "").partition("\n")[0]
+    properties = {"kind": {"const": kind_of(cls)}}
+    return {"type": "object", "description": text, "properties": properties, "additionalProperties": False}
 
 
 def _one_of(kinds: Iterable[type[Record]]) -> dict[str, Any]:

@@ -5,14 +5,15 @@ from __future__ import annotations
 import math
 from typing import Annotated, Literal, Self
 
-from contact.records.record import Record, record
+from contact.records.record import record
 from contact.records.validation import in_range, positive, positive_or_infinite
+from contact.scene.elastic_layer import ElasticLayer
 
 Support = Literal["bonded", "unbonded"]
 
 
 @record
-class Layer(Record):
+class Layer(ElasticLayer):
     """An elastic layer on a rigid base.
 
     Attributes:
@@ -45,14 +46,36 @@ class Layer(Record):
         return math.isinf(self.thickness)
 
     @property
-    def contact_modulus(self) -> float:
-        """E* = E / (1 - nu^2) [Pa]."""
-        return self.youngs_modulus / ((1.0 - self.poissons_ratio) * (1.0 + self.poissons_ratio))
+    def surface(self) -> Self:
+        """The layer itself: it is uniform."""
+        return self
 
     @property
-    def shear_modulus(self) -> float:
-        """G = E / (2 (1 + nu)) [Pa]."""
-        return self.youngs_modulus / (2.0 * (1.0 + self.poissons_ratio))
+    def is_uniform(self) -> bool:
+        """Whether it is of one material."""
+        return True
+
+    @property
+    def is_piecewise_uniform(self) -> bool:
+        """Whether it is of one material, or of several on top of each other."""
+        return True
+
+    @property
+    def is_incompressible(self) -> bool:
+        """Whether nu = 1/2."""
+        return self.poissons_ratio == 0.5
+
+    @property
+    def title(self) -> str:
+        """As in: bonded layer, nu = 0.45."""
+        below = "half-space" if self.is_half_space else f"{self.support} layer"
+        return f"{below}, nu = {self.poissons_ratio:g}"
+
+    def in_own_units(self) -> Self:
+        """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
+        nu = self.poissons_ratio
+        thickness = math.inf if self.is_half_space else 1.0
+        return self.replace(thickness=thickness, youngs_modulus=(1.0 - nu) * (1.0 + nu))
 
     @property
     def confined_modulus(self) -> float:

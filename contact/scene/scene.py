@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Generic, Self, overload
+from typing import TYPE_CHECKING, Annotated, Any, Generic, Self, TypeAlias, overload
 
 import numpy as np
-from pydantic import field_validator, model_validator
+from pydantic import AfterValidator, field_validator, model_validator
 from typing_extensions import TypeVar
 
 from contact.records.record import Record, record
 from contact.scene.effects import Adhesion, Effect, Friction, Viscoelasticity
+from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.layer import Layer
 from contact.scene.loading import ContactRadii, Detachment, IndentationDepths, Loading, NormalForces
 from contact.scene.profiles import FlatPunch, Profile
@@ -24,21 +25,26 @@ L = TypeVar("L", bound=Loading)
 
 # Type checkers know the loading of a scene, and so which kind of answer `solve` gives; `Scene` alone is any loading.
 LoadingT_co = TypeVar("LoadingT_co", bound=Loading, default=Loading, covariant=True)
+# Likewise the layer; `Scene` alone has a plain one.
+LayerT_co = TypeVar("LayerT_co", bound=ElasticLayer, default=Layer, covariant=True)
 
 
 @record
-class Scene(Record, Generic[LoadingT_co]):
+class Scene(Record, Generic[LoadingT_co, LayerT_co]):
     """One contact problem.
 
     Attributes:
-        layer: The elastic layer.
+        layer: The elastic layer: a `Layer`, `LayerStack` or `GradedLayer`; a stack of one becomes the `Layer` it is.
         indenter: The rigid profile pressed into it.
         loading: What is prescribed.
         effects: What is modelled beyond elastic frictionless contact; each kind at most once. Friction with a
             coefficient of zero is none, and is left out.
     """
 
-    layer: Layer
+    if TYPE_CHECKING:
+        layer: LayerT_co
+    else:
+        layer: Annotated[ElasticLayer, AfterValidator(lambda layer: layer.simplest())]
     indenter: Profile
     loading: LoadingT_co
     effects: tuple[Effect, ...] = ()
@@ -50,7 +56,7 @@ class Scene(Record, Generic[LoadingT_co]):
     if TYPE_CHECKING:  # at run time `Record.replace` does it
 
         @overload
-        def replace(self, *, loading: L, **changes: Any) -> Scene[L]: ...
+        def replace(self, *, loading: L, **changes: Any) -> Scene[L, LayerT_co]: ...
         @overload
         def replace(self, **changes: Any) -> Self: ...
         def replace(self, **changes: Any) -> Any:
@@ -70,7 +76,11 @@ class Scene(Record, Generic[LoadingT_co]):
         return self
 
 
-def _check_effects(scene: Scene) -> None:
+# A scene with any kind of layer.
+AnyScene: TypeAlias = Scene[Loading, ElasticLayer]
+
+
+def _check_effects(scene: AnyScene) -> None:
     kinds = [Viscoelasticity if isinstance(effect, Viscoelasticity) else type(effect) for effect in scene.effects]
     if len(set(kinds)) < len(kinds):
         names = ", ".join(type(effect).__name__ for effect in scene.effects)
@@ -79,7 +89,7 @@ def _check_effects(scene: Scene) -> None:
         raise ValueError("loading = Detachment needs adhesion; add Adhesion(work_of_adhesion=...) to the effects")
 
 
-def _check_radii(scene: Scene) -> None:
+def _check_radii(scene: AnyScene) -> None:
     if isinstance(scene.loading, ContactRadii):
         if isinstance(scene.indenter, FlatPunch):
             raise ValueError("loading = ContactRadii: a flat punch's contact radius is its own; give depths or forces")
@@ -94,7 +104,7 @@ def _check_radii(scene: Scene) -> None:
         _check_radius(scene, start, "loading.initial_contact_radius")
 
 
-def _check_radius(scene: Scene, radius: float, place: str) -> None:
+def _check_radius(scene: AnyScene, radius: float, place: str) -> None:
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
     if radius < flat or (radius == flat and not isinstance(scene.indenter, FlatPunch) and not scene.effects):
         raise ValueError(f"{place} = {radius:g}: the indenter's flat end already touches out to {flat:g} m; go beyond")
@@ -102,7 +112,7 @@ def _check_radius(scene: Scene, radius: float, place: str) -> None:
         raise ValueError(f"{place} = {radius:g}: the indenter ends at {end:g} m; stay within")
 
 
-def _check_signs(scene: Scene) -> None:
+def _check_signs(scene: AnyScene) -> None:
     if scene.effect(Adhesion) is not None or not isinstance(scene.loading, IndentationDepths | NormalForces):
         return
     if np.any(scene.loading.values <= 0.0):
@@ -112,7 +122,7 @@ def _check_signs(scene: Scene) -> None:
         )
 
 
-def _check_moduli(scene: Scene) -> None:
+def _check_moduli(scene: AnyScene) -> None:
     model = scene.effect(Viscoelasticity)
     if model is None:
         return

@@ -18,6 +18,9 @@ Array = NDArray[np.float64]
 # Relative error of the depth in a quick solution: three times the largest difference to MDR, 6e-5, on 16 random tables
 # (seed 2, 2026-11-22).
 QUICK_ERROR = 2e-4
+# The finer of two degrees errs by at most this share of their difference, where a degree more takes two thirds of an
+# error away; derived.
+FINE_SHARE = 0.5
 
 
 def refuse_pulled_contacts(scene: Scene, contacts: Iterable[ContactWithErrors]) -> None:
@@ -40,14 +43,14 @@ def refuse_pulled_contacts(scene: Scene, contacts: Iterable[ContactWithErrors]) 
 
 
 def pulled_radius(contact: ContactWithErrors) -> float | None:
-    """Centre / a of the first cell that is pulled in smooth contact, by more than the last degree changes there.
+    """Centre / a of the first cell that is pulled in smooth contact, by more than the finest degree errs there.
 
     Where a slope falls suddenly the pressure is minus infinity, like a logarithm; only cells that are pulled count.
     """
     low, high = (contact.levels[degree] for degree in sorted(contact.levels)[-2:])
     radius, weight = high.contact_trace.gauss(high.pair.degree + 1)
     fine, coarse = (level.pressure(radius.ravel(), level.smooth_depth).reshape(radius.shape) for level in (high, low))
-    pulled = np.flatnonzero(np.sum((fine + np.abs(fine - coarse)) * weight, axis=1) < 0)
+    pulled = np.flatnonzero(np.sum((fine + FINE_SHARE * np.abs(fine - coarse)) * weight, axis=1) < 0)
     return float(radius[pulled[0]].mean()) if pulled.size else None
 
 

@@ -214,7 +214,7 @@ def _first_radius(scene: Scene) -> float:
 
     On a layer much thinner than that radius the elongation is far shorter than on the half-space.
     """
-    flat, thickness = scene.indenter.flat_radius, scene.layer.thickness
+    flat, thickness = scene.indenter.flat_radius, scene.layer.surface.thickness
     first = flat + _FIRST_WAY * (balance_radius(scene) - flat)
     return first if first <= _THIN * thickness else max(FIRST_RATIO * thickness, 2.0 * flat)
 
@@ -343,10 +343,10 @@ def work_of_adhesion(scene: Scene) -> float:
 def _notes(scene: Scene, system: EquivalentSystem, radius: float) -> tuple[str, ...]:
     """A warning where the contact is likely to lose its circle before the theory lets it detach."""
     layer = scene.layer
-    if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio < _CONFINED:
+    if layer.is_half_space or (layer.is_uniform and (layer.support != "bonded" or layer.poissons_ratio < _CONFINED)):
         return ()
     # The branch's first radius may lie a rounding beyond the data.
-    ratio = min(radius / layer.thickness, system.flat_punch.max_ratio)
+    ratio = min(radius / system.length_unit, system.flat_punch.max_ratio)
     asked = min(ratio, _THINNEST)
     smooth = system.flat_punch.smooth_pressure(np.array([0.0, _INSIDE]), np.full(2, asked))
     pressure = smooth / np.sqrt(1.0 - np.array([0.0, _INSIDE]) ** 2)

@@ -16,7 +16,7 @@ import numpy as np
 
 from bem.layer_equation.stick.frictionless_slip import FrictionlessPunch, frictionless_punch
 from bem.polynomials.gauss_panels import gauss_nodes
-from contact import ContactPath, ContactRadii, FlatPunch, InvalidInput, Scene
+from contact import ContactPath, ContactRadii, FlatPunch, InvalidInput, Scene, refuse_other_layers
 from contact.records.validation import FloatArray
 
 # Gauss nodes of the integral of pressure times slip over the contact, in the angle arcsin(r/a).
@@ -76,7 +76,7 @@ def friction_effect(
 
 
 def _punch(scene: Scene, radius: float) -> FrictionlessPunch:
-    layer = scene.layer
+    layer = refuse_other_layers("the bound of friction", scene.layer)
     ratio = 0.0 if layer.is_half_space else radius / layer.thickness
     return frictionless_punch(ratio, layer.support, layer.poissons_ratio)
 

@@ -40,6 +40,7 @@ from mdr.springs.error_model import (
     SPRING_SHARES,
     SPRINGS_TO_MOTION,
 )
+from mdr.springs.pulling import refuse_pulling_at
 from mdr.springs.shared_tables import growing_radii, own_table
 from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 
@@ -112,6 +113,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("history"):
         radius = _radius(scene, table, found.track.y)
         refuse_touching_at(scene, flat_punch, float(radius.max()))
+        refuse_pulling_at(scene, flat_punch, float(radius.max()))
     log.count("springs", beds[0].y.size)
     log.count("instants", loading.time.size)
     return HistoryPath(

@@ -21,6 +21,7 @@ from mdr.impact.motion import Impacts, TableTooShort, impacts
 from mdr.impact.results import ImpactResults, joined, results
 from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, relaxation_of, scaled, table_of
 from mdr.springs.beside_contact import refuse_touching_at
+from mdr.springs.pulling import refuse_pulling_at
 
 ACCURACY = 1e-9
 _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
@@ -61,6 +62,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     log, accuracy = StageLog(), float(known["accuracy"] or ACCURACY)
     tolerance = step_tolerance(accuracy)
     if is_flat(scene):
+        refuse_pulling_at(scene, flat_punch, scene.indenter.max_radius)
         return flat_punch_history(scene, flat_punch, log, accuracy, tolerance=tolerance, settings=known)
     problem, motion = _pressed(scene, flat_punch, log, tolerance)
     legs = motion.way_in + motion.way_out
@@ -68,6 +70,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
     found = history(scene, problem, motion, log, accuracy, settings=known)
     refuse_touching_at(scene, flat_punch, found.peak_contact_radius)
+    refuse_pulling_at(scene, flat_punch, found.peak_contact_radius)
     return found
 
 
@@ -119,6 +122,7 @@ def impact_batch(
     answer = joined(found, np.argsort(order))
     for scene, radius in zip(scenes, answer.peak_contact_radius.tolist(), strict=True):
         refuse_touching_at(scene, flat_punch, radius)
+        refuse_pulling_at(scene, flat_punch, radius)
     return answer
 
 

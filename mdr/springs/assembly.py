@@ -8,12 +8,11 @@ from functools import partial
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.profiles.half_space_slope import profile_slope
-from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
-from contact import FlatPunch, InvalidInput, Layer, Profile, UnsupportedSceneError
+from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
@@ -35,12 +34,12 @@ _CLOSE = (1e-9, 1e-4, 1e-1)
 
 
 def equivalent_system(
-    layer: Layer, indenter: Profile, max_radius: float, flat_punch: FlatPunchSource
+    layer: ElasticLayer, indenter: Profile, max_radius: float, flat_punch: FlatPunchSource
 ) -> EquivalentSystem:
     """Springs and profile for contact radii up to max_radius; a few milliseconds once the flat-punch data exist.
 
     Args:
-        layer: Layer or half-space.
+        layer: Layer, stack or half-space.
         indenter: Profile of revolution.
         max_radius: Largest contact radius [m], above the indenter's flat radius, or equal to a flat punch's own.
         flat_punch: Where k_bar, c_bar and the profile transform come from.
@@ -50,7 +49,7 @@ def equivalent_system(
         SeveralContacts: If the contact would not be one circle.
     """
     _refuse_endless_depth(indenter, max_radius)
-    unit = max_radius if layer.is_half_space else layer.thickness
+    unit = max_radius if layer.is_half_space else layer.surface.thickness
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
     if not isinstance(indenter, FlatPunch):
         solution, max_radius = _for_profile(solution, indenter, unit, max_radius)
@@ -91,12 +90,12 @@ def _with_variants(system: EquivalentSystem, indenter: Profile, g_hs: MappedFunc
 
 
 def contact_fields(
-    layer: Layer, indenter: Profile, flat_punch: FlatPunchSolution, *, excess: float, depth: float, edge: bool
+    layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSolution, *, excess: float, depth: float, edge: bool
 ) -> ContactFields:
     """Pressure and displacement of one contact under a depth.
 
     Args:
-        layer: Layer or half-space.
+        layer: Layer, stack or half-space.
         indenter: Profile of revolution.
         flat_punch: The solution that the equivalent system was made of.
         excess: a - b [m] over the radius b of the flat end, which says more than the rounded a close to it.
@@ -104,7 +103,7 @@ def contact_fields(
         edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
     """
     contact_radius = indenter.flat_radius + excess
-    unit = contact_radius if layer.is_half_space else layer.thickness
+    unit = contact_radius if layer.is_half_space else layer.surface.thickness
     ratio, delta, flat = contact_radius / unit, depth / unit, indenter.flat_radius / unit
     flat_punch = flat_punch.one_contact(ratio)
     profile = _half_space_function(flat_punch, indenter, unit, excess)
@@ -126,7 +125,7 @@ def contact_fields(
     )
 
 
-def _edge_density(profile: MappedFunction, density: ContactDensity | None, delta: float) -> float:
+def _edge_density(profile: MappedFunction, density: LayerShare | None, delta: float) -> float:
     """phi(a) = delta - g_hs(a) + psi(a); with a table the spring displacement delta - g(a)."""
     share = 0.0 if density is None else density.edge_value
     return delta - float(profile(np.asarray(profile.grid.end))) + share

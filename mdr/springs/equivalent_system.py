@@ -38,7 +38,8 @@ class EquivalentSystem:
 
     Attributes:
         contact_modulus: E* [Pa].
-        length_unit: Length [m] in which the fields below count: the layer thickness, or a radius on the half-space.
+        length_unit: Length [m] in which the fields below count: the thickness of the layer, or of a stack's first
+            sublayer, or a radius on the half-space.
         flat_radius: b [m], where the profile begins to rise.
         max_radius: Largest contact radius [m] that is covered.
         flat_punch: Normalised stiffness of layer and springs, Eq. (10).

@@ -109,7 +109,7 @@ def _first_radius(scene: Scene) -> float:
     scale = np.sqrt(wanted / contact_modulus(scene.layer)) if is_force else wanted
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
     # A little short of the end, where a sphere is upright.
-    limit = min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.thickness, 1.5 * flat)) - flat
+    limit = min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.surface.thickness, 1.5 * flat)) - flat
     excess = np.minimum(scale * TRIAL_RADII, limit)
     depth, force = _half_space_answer(scene.indenter, excess)
     answer = contact_modulus(scene.layer) * force if is_force else depth

@@ -15,7 +15,7 @@ import numpy as np
 
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import Cone, InvalidInput, Layer, Paraboloid, PowerLaw, Profile
+from contact import Cone, ElasticLayer, InvalidInput, Paraboloid, PowerLaw, Profile
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_energy
 from mdr.springs.assembly import equivalent_system
@@ -42,14 +42,14 @@ class Reference:
         stiffness: What its unit of stiffness means [N/m].
     """
 
-    layer: Layer
+    layer: ElasticLayer
     indenter: Profile
     length: float
     depth: float
     stiffness: float
 
 
-def reference(layer: Layer, indenter: Profile, scale: float) -> Reference:
+def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> Reference:
     """The shared problem of a power law, or the scene itself in its own units.
 
     Args:
@@ -62,15 +62,10 @@ def reference(layer: Layer, indenter: Profile, scale: float) -> Reference:
         return Reference(layer, indenter, 1.0, 1.0, 1.0)
     coefficient, exponent = law
     length = scale if layer.is_half_space else layer.thickness
-    nu = layer.poissons_ratio
-    unit_layer = Layer(
-        thickness=math.inf if layer.is_half_space else 1.0,
-        youngs_modulus=(1.0 - nu) * (1.0 + nu),  # E* = 1
-        poissons_ratio=nu,
-        support=layer.support,
-    )
     unit_indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
-    return Reference(unit_layer, unit_indenter, length, coefficient * length**exponent, contact_modulus(layer) * length)
+    return Reference(
+        layer.in_own_units(), unit_indenter, length, coefficient * length**exponent, contact_modulus(layer) * length
+    )
 
 
 def power_law(indenter: Profile) -> tuple[float, float] | None:
@@ -85,7 +80,7 @@ def power_law(indenter: Profile) -> tuple[float, float] | None:
     return None
 
 
-def contact_scale(layer: Layer, indenter: Profile, energy: float) -> float:
+def contact_scale(layer: ElasticLayer, indenter: Profile, energy: float) -> float:
     """A typical contact radius [m], where E* r f(r)^2 (1 + r/h) equals the energy [J]."""
     law, volume = power_law(indenter), energy / contact_modulus(layer)
     if law is not None and layer.is_half_space:
@@ -95,7 +90,7 @@ def contact_scale(layer: Layer, indenter: Profile, energy: float) -> float:
 
 
 @lru_cache(maxsize=_KEPT)
-def _table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
+def _table(layer: ElasticLayer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
     """The spring table of a reference problem up to a radius; the last few dozen are kept."""
     springs = equivalent_system(layer, indenter, radius, flat_punch)
     return spring_table(
@@ -107,13 +102,13 @@ def _table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunch
     )
 
 
-def own_table(layer: Layer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
+def own_table(layer: ElasticLayer, indenter: Profile, radius: float, flat_punch: FlatPunchSource) -> SpringTable:
     """The spring table of one scene in SI units."""
     return _table(layer, indenter, radius, flat_punch)  # type: ignore[arg-type]  # sources are frozen records
 
 
 def table_for_energy(
-    layer: Layer, indenter: Profile, start: float, energy: float, flat_punch: FlatPunchSource
+    layer: ElasticLayer, indenter: Profile, start: float, energy: float, flat_punch: FlatPunchSource
 ) -> SpringTable:
     """A table whose springs hold at least this energy before the front leaves it.
 

@@ -15,9 +15,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.profiles.half_space_slope import profile_slope
-from bem.layer_equation.protocol import FlatPunchSolution
+from bem.layer_equation.protocol import FlatPunchSolution, LayerShare
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
@@ -58,7 +57,7 @@ class ContactFields:
     room: float
     indentation_depth: float
     profile: MappedFunction
-    density: ContactDensity | None
+    density: LayerShare | None
     table: FlatPunchSolution | None
     edge_density: float
 
@@ -165,7 +164,7 @@ class ContactFields:
             raise InvalidInput(f"radius = {infinite[0]:g} m: the pressure is infinite at this sharp rim; ask beside it")
 
 
-def _remainder(density: ContactDensity, reach: float) -> MappedFunction:
+def _remainder(density: LayerShare, reach: float) -> MappedFunction:
     """Phi(a + d) on shells of width 1, 1, 2, 4, ... up to d = reach."""
     shells = int(np.ceil(np.log2(max(reach, 1.0)))) + 1
     grid = MappedGrid.between(np.concatenate([[0.0], 2.0 ** np.arange(shells)]), NODES)

@@ -47,11 +47,9 @@ def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
 
 def _title(solution: Solution) -> str:
     """Method, indenter, layer: "MDR: TruncatedCone on a bonded layer, nu = 0.45"."""
-    layer = solution.scene.layer
-    below = "half-space" if layer.is_half_space else f"{layer.support} layer"
     effects = "".join(f", {type(effect).__name__}" for effect in solution.scene.effects)
     indenter = type(solution.scene.indenter).__name__
-    return f"{display_name(solution.method)}: {indenter} on a {below}, nu = {layer.poissons_ratio:g}{effects}"
+    return f"{display_name(solution.method)}: {indenter} on a {solution.scene.layer.title}{effects}"
 
 
 def _shown(states: int, longest: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:

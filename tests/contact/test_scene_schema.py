@@ -8,7 +8,7 @@ import jsonschema
 import pytest
 
 from contact import InvalidInput, Scene, scene_from_mapping, scene_to_mapping
-from contact.files.scene_file import kind_of
+from contact.files.layer_table import kind_of
 from contact.files.scene_schema import scene_schema
 from contact.scene.effects import EFFECTS
 from contact.scene.loading import LOADINGS

@@ -46,7 +46,9 @@ def test_a_ring_is_told_by_its_place():
     radii = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0]) * 1e-3
     ring = Tabulated(radii=radii, heights=np.array([0.0, 6, 8, 3, 2, 8, 30, 80]) * 1e-6)
     scene = Scene(layer=LAYER, indenter=ring, loading=IndentationDepths(values=[6e-6]))
-    with pytest.raises(UnsupportedSceneError, match=r"would (not press|touch) at r = 0\.000\d* m: it is no single circle"):
+    with pytest.raises(
+        UnsupportedSceneError, match=r"would (not press|touch) at r = 0\.000\d* m: it is no single circle"
+    ):
         Fem(accuracy=1e-2).solve(scene)
 
 

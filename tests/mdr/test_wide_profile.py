@@ -134,7 +134,7 @@ def test_breakpoints_far_out_take_the_wide_panels_alone(nu, largest):
         TruncatedCone(flat_radius=250.0, slope=1.0),
     )
     kernel = FredholmKernel.of_layer("bonded", nu)
-    narrower = IntegralEquationSolution("bonded", nu, kernel, VolterraFactor.of_kernel(kernel, 75, 4.0, 32))
+    narrower = IntegralEquationSolution(kernel, VolterraFactor.of_kernel(kernel, 75, 4.0, 32))
     system, x = equivalent_system(layer, indenter, 300.0, SOURCE), 250.0 + np.geomspace(1e-3, 50.0, 40)
     other, bound = equivalent_system(layer, indenter, 300.0, Given(narrower)), system.relative_error
     assert bound["indentation_depth"] < largest

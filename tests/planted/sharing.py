@@ -200,7 +200,10 @@ FAULTS = (
         ELASTIC,
     ),
     SharedFault(
-        "slopes of the half-space transform", "g'", swap("bem.layer_equation.profiles.half_space_slope:profile_slope", times), ("cone",)
+        "slopes of the half-space transform",
+        "g'",
+        swap("bem.layer_equation.profiles.half_space_slope:profile_slope", times),
+        ("cone",),
     ),
     SharedFault(
         "Gauss rules and Chebyshev panels",

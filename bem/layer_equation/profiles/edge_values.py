@@ -34,13 +34,14 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     Returns:
         Values at the nodes of the load's grid, shape (q, m).
     """
-    H, grid = factor.panel_width, load.grid
-    panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
-    position = (grid.nodes + flat_radius) / H - panel[:, None]
-    whole = (grid.power == 1) & np.isclose(grid.width, H, rtol=WHOLE, atol=0.0)
+    grid = load.grid
+    panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
+    position = factor.position(grid.nodes + flat_radius, panel[:, None])
+    widths = factor.widths(panel[-1] + 1)
+    whole = (grid.power == 1) & np.isclose(grid.width, widths[panel], rtol=WHOLE, atol=0.0)
     # Values near first touch are tiny and keep their relative accuracy only if integrated by themselves.
     whole[0] = False
-    averages = panel_averages(load, panel, position, np.full(panel[-1] + 1, H))
+    averages = panel_averages(load, panel, position, widths)
     # By moments, a width that is off by e would cost e over the last Gauss weight.
     averages[panel[whole]] = load.node_values[whole]
     _, inherited = factor.eliminate(averages)
@@ -55,12 +56,12 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
 
 def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
     """Averages of a load on the panels that cover the contact [0, b + end of the grid], the last ending there."""
-    H, grid = factor.panel_width, load.grid
+    grid = load.grid
     ratio = flat_radius + grid.end
-    panel = np.floor((grid.nodes[:, 0] + flat_radius) / H).astype(np.intp)
-    widths = np.full(panel[-1] + 1, H)
-    widths[-1] = ratio - panel[-1] * H
-    position = (grid.nodes + flat_radius - H * panel[:, None]) / widths[panel][:, None]
+    panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
+    starts, widths = factor.starts(panel[-1] + 1), factor.widths(panel[-1] + 1)
+    widths[-1] = ratio - starts[-1]
+    position = (grid.nodes + flat_radius - starts[panel][:, None]) / widths[panel][:, None]
     return panel_averages(load, panel, position, widths)
 
 
@@ -94,7 +95,7 @@ def _own_integral(
 
     u, omega = gauss_nodes(grid.count)
     inner = np.multiply.outer(u, u)
-    stretch = grid.width[piece] / factor.panel_width
+    stretch = grid.width[piece] / factor.widths(own + 1)[own]
     origin = position[piece, 0] - stretch * u[0] ** grid.power[piece]
     points = origin + stretch * inner ** grid.power[piece]
     weights = grid.width[piece] * grid.power[piece] * inner ** (grid.power[piece] - 1) * np.multiply.outer(u, omega)

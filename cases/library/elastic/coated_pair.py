@@ -13,13 +13,8 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
-<<<<<<< HEAD
 from cases.library._claims import agreements, names_of, scaling_law
-from cases.library._convergence import EDGE_CELL, NODES, POINTS, fem_cells, studies
-=======
-from cases.library._claims import BEM_TOLERANCE, TABLE_TOLERANCES, agreements, names_of, scaling_law
 from cases.library._convergence import EDGE_CELL, NODES, fem_cells, studies
->>>>>>> orders
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons

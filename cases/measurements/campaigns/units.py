@@ -9,7 +9,7 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from contact import Scene
+from contact import DepthFunction, Scene
 from contact.records.record import Record
 
 R = TypeVar("R", bound=Record)
@@ -87,6 +87,8 @@ def in_units(scene: Scene, units: Units) -> Scene:
 
     def scaled(item: Record, name: str, value: Any) -> Any:
         """The number of one field, whose name tells its dimension; of `values` the record's name does."""
+        if isinstance(value, DepthFunction):
+            return value.scaled(1.0 / units.length, 1.0 / units.factor(name))
         number = value * units.factor(f"{type(item).__name__}.{name}" if name == "values" else name)
         return number if isinstance(value, np.ndarray) else float(number)
 
@@ -106,4 +108,14 @@ def with_numbers(scene: Scene, change: Callable[[Record, str, Any], Any]) -> Sce
 def _changed(item: R, change: Callable[[Record, str, Any], Any]) -> R:
     values = {field.name: getattr(item, field.name) for field in dataclasses.fields(item)}  # type: ignore[arg-type]  # all records are dataclasses
     numbers = {name: value for name, value in values.items() if value is not None and not isinstance(value, str)}
-    return item.replace(**{name: change(item, name, value) for name, value in numbers.items()})
+    return item.replace(**{name: _changed_value(item, name, value, change) for name, value in numbers.items()})
+
+
+def _changed_value(item: Record, name: str, value: Any, change: Callable[[Record, str, Any], Any]) -> Any:
+    """A number, or the parts of a layer."""
+    if isinstance(value, tuple):
+        return tuple(_changed_value(item, name, one, change) for one in value)
+    if isinstance(value, str):
+        return value
+    is_part = isinstance(value, Record) and not isinstance(value, DepthFunction)
+    return _changed(value, change) if is_part else change(item, name, value)

@@ -27,6 +27,7 @@ from contact import (
     NotConvergedError,
     Scene,
     Solution,
+    refuse_other_layers,
 )
 from contact.answer.accuracy import shortfalls, told_where_less
 
@@ -96,6 +97,7 @@ def choices(
     Raises:
         InvalidInput: If nothing measured reaches that; the message says what is reachable.
     """
+    refuse_other_layers("the choice by accuracy", scene.layer)
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative error")
     if within is not None and not 0.0 < within < np.inf:

@@ -1,0 +1,190 @@
+"""Compliance of a layer whose constants change with depth, by the Riccati equation of its surface compliance.
+
+With C the compliance of all that lies below a plane, in units of 1/(2 G(z) k), and g = G'/G,
+
+    C' = g C + k [A C + C A^T - diag(2, (1 - 2 nu)/(1 - nu)) + C diag(1/(1 - nu), 0) C],
+    A = [[0, 1], [-nu/(1 - nu), 0]].
+
+It is integrated from below upwards, where errors die like exp(-2kz), and for the difference ``D = k (C - C_0)`` to the
+half-space of the local material: so 1 - chi, which falls like 1/k only, keeps its relative accuracy. At depths beyond
+`DEEP`/k nothing is felt. Above a frictionless base C is infinite; there the mixed form (Q, W) = M (U, P) is integrated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import inf
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ElasticBase, GradedLayer, NotConvergedError
+
+# Depth times |k| at which a half-space is assumed below: exp(-2 DEEP cos(15 degrees)) is 1e-17.
+DEEP: Final = 21.0
+# Relative tolerance of the integration.
+TOLERANCE: Final = 1e-12
+# The same, absolute, against quantities of order one.
+ABSOLUTE: Final = 1e-13
+
+Field = NDArray[Any]
+Rates = Callable[[Field, Field], Field]
+
+
+@dataclass(frozen=True)
+class GradedKernel:
+    """Kernel of a graded layer, lengths in units of its thickness.
+
+    Attributes:
+        layer: The layer, of thickness 1 and with E* = 1 at the surface.
+    """
+
+    layer: GradedLayer
+
+    @property
+    def longest(self) -> float:
+        """The thickness, or what stretches farther: stiff parts spread a load."""
+        depths = np.linspace(0.0, 1.0, 257)
+        moduli = self.layer.youngs_modulus.at(depths, 1.0)
+        base = self.layer.support
+        if isinstance(base, ElasticBase):
+            moduli = np.append(moduli, base.youngs_modulus)
+        return float(moduli.max() / moduli.min())
+
+    @property
+    def is_smooth(self) -> bool:
+        """1 - chi falls like 1/k."""
+        return False
+
+    @property
+    def zero_mode(self) -> float:
+        """chi/k at k = 0, from a wavenumber that is small enough; infinite on an elastic base."""
+        if isinstance(self.layer.support, ElasticBase):
+            return inf
+        k = 1e-6 / self.longest
+        return float(self.chi(np.array([k]))[0]) / k
+
+    @property
+    def edge_slope(self) -> float:
+        """c1 in chi = 1 + c1/k + ...: -[(2 - nu) E'/E ...]/(2 (1 - nu)) at the surface, in terms of G."""
+        nu, g = float(self.layer.ratio_at(0.0)), float(_logarithmic_slope(self.layer, np.zeros(1))[0])
+        return -((2 - nu) * g + float(self.layer.ratio_slope(0.0))) / (2 * (1 - nu))
+
+    def chi(self, wavenumber: Field) -> Field:
+        """chi at wavenumbers k > 0 or 0 <= arg k < pi/2, any shape."""
+        return np.asarray(1 - self.one_minus_chi(wavenumber))
+
+    def one_minus_chi(self, wavenumber: Field) -> Field:
+        """1 - chi, with its relative accuracy for large k too."""
+        k = np.ravel(wavenumber)
+        values = np.empty_like(k)
+        deep = np.abs(k) > DEEP
+        if deep.any():
+            values[deep] = self._difference(k[deep], DEEP / np.abs(k[deep]), None)
+        if not deep.all():
+            values[~deep] = self._above_base(k[~deep])
+        return values.reshape(np.shape(wavenumber))
+
+    def _above_base(self, k: Field) -> Field:
+        support = self.layer.support
+        slips = support.interface == "unbonded" if isinstance(support, ElasticBase) else support == "unbonded"
+        base = support if isinstance(support, ElasticBase) else None
+        return self._mixed(k, base) if slips else self._difference(k, np.ones(k.shape), base, on_base=True)
+
+    def _difference(self, k: Field, start: Field, base: ElasticBase | None, *, on_base: bool = False) -> Field:
+        """-D_WW/(2 (1 - nu) k) at the surface, from the local half-space, or from the base, at depths `start`."""
+        nu, beta0 = self.layer.ratio_at(start), 1 - float(self.layer.ratio_at(0.0))
+        D = np.zeros((3, k.size), dtype=k.dtype)
+        if on_base:
+            below = np.zeros((3, k.size)) if base is None else _half_space(base.poissons_ratio, k) * self._softer(base)
+            D = k * (below - _half_space(nu, k))
+
+        def rates(z: Field, D: Field) -> Field:
+            nu, slope, g = self.layer.ratio_at(z), self.layer.ratio_slope(z), _logarithmic_slope(self.layer, z)
+            beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
+            uu, uw, ww = D
+            drive = k * np.stack([2 * beta * g + 2 * slope, -eta * g - 2 * slope, 2 * beta * g + 2 * slope])
+            # The first column of C_0 is (2 beta, -eta).
+            linear = k * np.stack(
+                [
+                    2 * uw + 4 * uu,
+                    ww - m * uu + 2 * uw - eta / beta * uu,
+                    -2 * m * uw - 2 * eta / beta * uw,
+                ]
+            )
+            square = np.stack([uu * uu, uu * uw, uw * uw]) / beta
+            return np.asarray(drive + linear + g * D + square)
+
+        top = _integrated(rates, D, start)
+        return np.asarray(-top[2] / (2 * beta0 * k))
+
+    def _mixed(self, k: Field, base: ElasticBase | None) -> Field:
+        """1 - C_WW/(2 (1 - nu)) by the mixed form, from a frictionless base upwards."""
+        beta0 = 1 - float(self.layer.ratio_at(0.0))
+        M = np.zeros((4, k.size), dtype=k.dtype)
+        if base is not None:
+            M[3] = _half_space(base.poissons_ratio, k)[2] * self._softer(base)
+
+        def rates(z: Field, M: Field) -> Field:
+            nu, g = self.layer.ratio_at(z), _logarithmic_slope(self.layer, z)
+            beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
+            qu, qp, wu, wp = M
+            # M B with B = [[-2k, k], [-k, 0]].
+            left = np.stack([-2 * qu - qp, qu, -2 * wu - wp, wu])
+            product = np.stack(
+                [
+                    left[0] * qu + left[1] * wu,
+                    left[0] * qp + left[1] * wp,
+                    left[2] * qu + left[3] * wu,
+                    left[2] * qp + left[3] * wp,
+                ]
+            )
+            drive = np.stack([-1 / beta, m, -m, -eta / beta]) * np.ones(k.size)
+            stretched = np.stack([-g * qu, 0 * qp, 0 * wu, g * wp])
+            return np.asarray(k * (drive - product) + stretched)
+
+        qu, qp, wu, wp = _integrated(rates, M, np.ones(k.shape))
+        return np.asarray(1 - (wp - qp * wu / qu) / (2 * beta0))
+
+    def _softer(self, base: ElasticBase) -> float:
+        """G at the bottom of the layer over the base's."""
+        bottom = float(self.layer.youngs_modulus.at(1.0, 1.0)) / (2 * (1 + float(self.layer.ratio_at(1.0))))
+        return bottom / (base.youngs_modulus / (2 * (1 + base.poissons_ratio)))
+
+
+def _half_space(nu: Field | float, k: Field) -> Field:
+    """UU, UW, WW of a half-space times 2Gk."""
+    one = np.ones(k.size)
+    return np.stack([2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one])
+
+
+def _logarithmic_slope(layer: GradedLayer, depth: Field) -> Field:
+    """G'/G at depths, G = E/(2 (1 + nu))."""
+    modulus = layer.youngs_modulus
+    slope = modulus.slope(depth, 1.0) / modulus.at(depth, 1.0)
+    return np.asarray(slope - layer.ratio_slope(depth) / (1 + layer.ratio_at(depth)))
+
+
+def _integrated(rates: Rates, start_values: Field, start: Field) -> Field:
+    """Values at the surface of all wavenumbers together; each goes its own depth in the same shares.
+
+    Raises:
+        NotConvergedError: If the tolerance is not met.
+    """
+    # Only graded layers pay for this import.
+    from scipy.integrate import solve_ivp  # noqa: PLC0415
+
+    shape = start_values.shape
+
+    def shared(share: float, values: Field) -> Field:
+        slopes = rates(start * (1 - share), values.reshape(shape))
+        return np.asarray((-start * slopes).ravel())
+
+    found = solve_ivp(
+        shared, (0.0, 1.0), start_values.ravel(), method="DOP853", rtol=TOLERANCE, atol=ABSOLUTE, t_eval=[1.0]
+    )
+    if not found.success:
+        raise NotConvergedError(f"the kernel of the graded layer was not integrated: {found.message}")
+    return np.asarray(found.y[:, -1].reshape(shape))

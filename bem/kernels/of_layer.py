@@ -1,0 +1,96 @@
+"""The kernel of each kind of layer, in units of the thickness of its surface material."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import singledispatch
+from math import inf
+from typing import Any
+
+from numpy.typing import NDArray
+
+from bem.kernels.graded import GradedKernel
+from bem.kernels.layer import compliance_kernel, one_minus_kernel, zero_mode
+from bem.kernels.protocol import SurfaceKernel
+from bem.kernels.stack import Sheet, StackKernel
+from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack, UnsupportedSceneError
+from contact.scene.layer import Support
+
+
+@singledispatch
+def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
+    """The kernel of a layer that is no half-space.
+
+    Raises:
+        UnsupportedSceneError: If none is registered for this kind of layer.
+    """
+    raise UnsupportedSceneError(f"no kernel is known of a {type(layer).__name__}")
+
+
+@dataclass(frozen=True)
+class UniformKernel:
+    """Kernel of one layer on a rigid base.
+
+    Attributes:
+        support: "bonded" or "unbonded".
+        poissons_ratio: nu.
+    """
+
+    support: Support
+    poissons_ratio: float
+
+    @property
+    def longest(self) -> float:
+        """The thickness itself."""
+        return 1.0
+
+    @property
+    def is_smooth(self) -> bool:
+        """1 - chi falls exponentially."""
+        return True
+
+    @property
+    def zero_mode(self) -> float:
+        """chi/k at k = 0."""
+        return zero_mode(self.support, self.poissons_ratio)
+
+    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
+        """chi, Eqs. (29) and (31)."""
+        return compliance_kernel(wavenumber, self.support, self.poissons_ratio)
+
+    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
+        """1 - chi."""
+        return one_minus_kernel(wavenumber, self.support, self.poissons_ratio)
+
+
+@surface_kernel.register
+def _(layer: Layer) -> UniformKernel:
+    return UniformKernel(layer.support, layer.poissons_ratio)
+
+
+@surface_kernel.register
+def _(layer: LayerStack) -> StackKernel:
+    unit, modulus, rigid = layer.surface.thickness, layer.shear_modulus, layer.support
+    below = rigid.interface if isinstance(rigid, ElasticBase) else rigid
+    sheets = [
+        Sheet(one.thickness / unit, _shear(one.youngs_modulus, one.poissons_ratio) / modulus, one.poissons_ratio, slips)
+        for one, slips in zip(layer.sublayers, _slips((*layer.interfaces, below)), strict=True)
+    ]
+    base = None
+    if isinstance(rigid, ElasticBase):
+        nu = rigid.poissons_ratio
+        base = Sheet(inf, _shear(rigid.youngs_modulus, nu) / modulus, nu, slips_below=False)
+    return StackKernel(tuple(sheets), base)
+
+
+@surface_kernel.register
+def _(layer: GradedLayer) -> GradedKernel:
+    return GradedKernel(layer.in_own_units())
+
+
+def _shear(youngs_modulus: float, poissons_ratio: float) -> float:
+    return youngs_modulus / (2 * (1 + poissons_ratio))
+
+
+def _slips(faces: tuple[str, ...]) -> list[bool]:
+    return [face == "unbonded" for face in faces]

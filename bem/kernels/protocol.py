@@ -1,0 +1,34 @@
+"""What the equations behind it ask of the kernel of any layer.
+
+A surface pressure ``p^(k)`` displaces the surface by ``u^(k) = 2 chi(k)/(k E*) p^(k)``. Wavenumbers k count in units of
+1/h, h being the thickness of the uniform material at the surface (`ElasticLayer.surface`); chi tends to 1 for large k.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from typing import Any, Protocol
+
+from numpy.typing import NDArray
+
+
+class SurfaceKernel(Hashable, Protocol):
+    """Compliance of a layer's surface relative to the half-space of its surface material. Hashable."""
+
+    @property
+    def longest(self) -> float:
+        """Length over h beyond which chi has its limit for small k: chi is smooth on the scale of 1/longest."""
+
+    @property
+    def is_smooth(self) -> bool:
+        """Whether 1 - chi falls exponentially; on a graded surface it falls like 1/k."""
+
+    @property
+    def zero_mode(self) -> float:
+        """chi/k at k = 0, the answer to a uniform pressure; infinite on an elastic base."""
+
+    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
+        """chi at wavenumbers k > 0, or complex ones with 0 <= arg k < pi/2, any shape."""
+
+    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
+        """1 - chi, also where it is exponentially small."""

@@ -1,0 +1,78 @@
+"""The layer's equation on [0, x] for one x at a time, with rules that suit a logarithmic kernel.
+
+On the nodes of `relative_panels` the equation is ``phi = W + M phi``, and its value at the edge
+``y = W(x) + kappa phi``. So ``y = W(x) + row W`` with ``row = kappa (I - M)^-1``, which serves every load of that x.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from bem.layer_equation.any_layer.point_kernel import PointKernel
+from bem.layer_equation.any_layer.relative_panels import RelativePanels, relative_panels
+from contact.records.validation import FloatArray
+
+# Widest panel, in thicknesses; densities vary over one.
+WIDEST = 1.0
+# Widest of the relative panels before they are cut.
+MIDDLE = 0.375
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeState:
+    """What one edge says of all loads.
+
+    Attributes:
+        row: Shape (n,).
+        edge_density: y1, of a unit punch.
+        stiffness: int phi1 over x, k_bar.
+    """
+
+    row: FloatArray
+    edge_density: float
+    stiffness: float
+
+
+@dataclass(frozen=True, eq=False)
+class EdgeSystems:
+    """Solutions for one edge after the other, remembered.
+
+    Attributes:
+        kernel: N.
+        count: Nodes of each panel.
+    """
+
+    kernel: PointKernel
+    count: int
+    known: dict[float, EdgeState] = field(default_factory=dict)
+
+    def panels(self, x: float) -> RelativePanels:
+        """The panels for an edge."""
+        return relative_panels(self.count, max(1, int(np.ceil(MIDDLE * x / WIDEST))))
+
+    def matrix(self, x: float) -> FloatArray:
+        """M, and kappa as its last row, shape (n + 1, n)."""
+        panels = self.panels(x)
+        nodes, targets = panels.nodes, panels.targets
+        distance = self.kernel(x * np.abs(targets[:, None] - nodes))
+        difference = panels.matrix(distance, self.kernel(x * panels.near[0]))
+        total = self.kernel(x * (targets[:, None] + nodes)) * panels.weights
+        return np.asarray(x / np.pi * (difference + total))
+
+    def at(self, x: float) -> EdgeState:
+        """The state of one edge."""
+        if x not in self.known:
+            M, panels = self.matrix(x), self.panels(x)
+            system = np.eye(len(panels.nodes)) - M[:-1]
+            row = np.linalg.solve(system.T, M[-1])
+            phi = np.linalg.solve(system, np.ones(len(panels.nodes)))
+            self.known[x] = EdgeState(row, 1 + float(row.sum()), float(panels.weights @ phi))
+        return self.known[x]
+
+    def density(self, x: float, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """phi at the nodes, and the layer's share M phi at nodes and edge, of a load at the nodes."""
+        M = self.matrix(x)
+        phi = np.asarray(np.linalg.solve(np.eye(len(load)) - M[:-1], load), dtype=np.float64)
+        return phi, np.asarray(M @ phi)

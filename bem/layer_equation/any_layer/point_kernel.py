@@ -1,0 +1,67 @@
+"""The difference kernel N(s) of a graded layer: like ln s for small s, by polynomials on octaves of the distance."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+
+from bem.kernels.protocol import SurfaceKernel
+from bem.layer_equation.fredholm_kernel import FredholmKernel
+from bem.polynomials.chebyshev import piecewise_sum
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
+from contact.records.validation import FloatArray
+
+# Wavenumbers end at 2 to this power: below 2^-SHORTEST thicknesses N is taken as constant, which moves no integral by
+# more than that.
+COARSEST: Final = 44
+SHORTEST: Final = 40
+# Largest distance, a power of two as well.
+FARTHEST: Final = 6
+# Nodes on each octave: the logarithm's singularity at the octave's own length leaves 5.8^-18.
+OCTAVE_NODES: Final = 18
+
+
+@dataclass(frozen=True, eq=False)
+class PointKernel:
+    """N(s) for distances up to 2^FARTHEST thicknesses.
+
+    Attributes:
+        exponentials: N as a sum of exponentials.
+    """
+
+    exponentials: FredholmKernel
+
+    @classmethod
+    def of_surface(cls, kernel: SurfaceKernel) -> PointKernel:
+        """Of any layer."""
+        return cls(FredholmKernel.of_surface(kernel, COARSEST))
+
+    def __call__(self, distance: FloatArray) -> FloatArray:
+        """N at distances s > 0, any shape."""
+        s = np.maximum(distance, 2.0**-SHORTEST)
+        mantissa, exponent = np.frexp(s)
+        # The mantissa lies in [1/2, 1).
+        return piecewise_sum(self._coefficients, exponent.astype(np.intp) + SHORTEST - 1, 4 * mantissa - 3)
+
+    def integral(self, length: FloatArray) -> FloatArray:
+        """int_0^length N ds."""
+        z, w = self.exponentials.rates, self.exponentials.weights
+        return np.asarray((-np.expm1(-np.multiply.outer(length, z)) @ (w / z)).real)
+
+    def mean_integral(self, length: FloatArray) -> FloatArray:
+        """(1/length) int_0^length of `integral`."""
+        z, w = self.exponentials.rates, self.exponentials.weights
+        u = np.multiply.outer(length, z)
+        small = np.abs(u) < 1e-4
+        safe = np.where(small, 1.0, u)
+        bracket = np.where(small, u / 2 - u**2 / 6, 1 + np.expm1(-safe) / safe)
+        return np.asarray((bracket @ (w / z)).real)
+
+    @cached_property
+    def _coefficients(self) -> FloatArray:
+        starts = 2.0 ** np.arange(-SHORTEST, FARTHEST)
+        s = starts[:, None] * (1 + gauss_nodes(OCTAVE_NODES)[0])
+        return np.asarray(self.exponentials(s) @ chebyshev_from_nodes(OCTAVE_NODES).T)

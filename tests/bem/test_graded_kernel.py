@@ -1,0 +1,78 @@
+"""The kernel of a graded layer against uniform layers, many sublayers, and its own limits."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from bem.kernels.graded import GradedKernel
+from bem.kernels.layer import one_minus_kernel
+from bem.kernels.stack import Sheet, StackKernel
+from contact import ElasticBase, ExponentialDepth, GradedLayer, LinearDepth, PowerLawDepth, TabulatedDepth
+
+EXPONENTIAL = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3)
+BASE = ElasticBase(youngs_modulus=0.5, poissons_ratio=0.3)
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_a_constant_modulus_is_a_uniform_layer(support, nu):
+    q = np.geomspace(1e-3, 200.0, 40)
+    same = ExponentialDepth(surface=2.0, base=2.0)
+    kernel = GradedKernel(GradedLayer(thickness=1.0, youngs_modulus=same, poissons_ratio=nu, support=support))
+    np.testing.assert_allclose(kernel.one_minus_chi(q), one_minus_kernel(q, support, nu), rtol=0, atol=5e-13)
+
+
+def sublayers(n, layer, base, slips):
+    """Uniform sublayers with the moduli of their middles, and the factor from their E* to that of the surface."""
+    middles = (np.arange(n) + 0.5) / n
+    moduli = layer.youngs_modulus.at(middles, 1.0)
+    sheets = tuple(Sheet(1.0, E / moduli[0], 0.3, slips and i == n - 1) for i, E in enumerate(moduli))
+    below = None if base is None else Sheet(np.inf, base.youngs_modulus / moduli[0], 0.3, False)
+    return StackKernel(sheets, below), float(layer.youngs_modulus.at(0.0, 1.0) / moduli[0])
+
+
+@pytest.mark.parametrize(
+    ("support", "slips"),
+    [("bonded", False), ("unbonded", True), (BASE, False), (BASE.replace(interface="unbonded"), True)],
+)
+@pytest.mark.parametrize("modulus", [ExponentialDepth(surface=1.0, base=4.0), LinearDepth(surface=3.0, base=1.0)])
+def test_many_sublayers_extrapolated_have_the_same_kernel(support, slips, modulus):
+    layer = EXPONENTIAL.replace(support=support, youngs_modulus=modulus)
+    k = np.array([0.01, 0.5, 2.0, 5.0])
+    found = []
+    for n in (50, 100, 200):
+        stack, factor = sublayers(n, layer, None if isinstance(support, str) else support, slips)
+        found.append(stack.chi(k / n) * factor)
+    once = [(4 * fine - coarse) / 3 for coarse, fine in pairwise(found)]
+    twice = (16 * once[1] - once[0]) / 15
+    np.testing.assert_allclose(GradedKernel(layer).chi(k), twice, rtol=2e-10)
+
+
+@pytest.mark.parametrize(
+    "layer",
+    [
+        EXPONENTIAL,
+        EXPONENTIAL.replace(youngs_modulus=PowerLawDepth(surface=1.0, reference_depth=0.1, exponent=0.5)),
+        EXPONENTIAL.replace(poissons_ratio=TabulatedDepth(depths=[0.0, 0.5, 1.0], values=[0.2, 0.3, 0.5])),
+    ],
+)
+def test_short_waves_see_the_slope_at_the_surface(layer):
+    kernel, k = GradedKernel(layer), np.array([1e4, 1e8])
+    np.testing.assert_allclose(kernel.one_minus_chi(k) * k, -kernel.edge_slope, rtol=3e-3)
+    np.testing.assert_allclose(kernel.one_minus_chi(k[1:]) * k[1:], -kernel.edge_slope, rtol=1e-6)
+
+
+def test_complex_wavenumbers_continue_the_real_ones():
+    kernel, k, step = GradedKernel(EXPONENTIAL), 1.3, 1e-4
+    along = (kernel.chi(np.array([k + step])) - kernel.chi(np.array([k - step])))[0] / (2 * step)
+    across = kernel.chi(np.array([k + 1j * step])).imag[0] / step
+    assert across == pytest.approx(along, rel=1e-6, abs=0.0)
+
+
+def test_long_waves_press_uniaxially():
+    strain = (1 - 1 / 4) / np.log(4.0)
+    expected = strain * (1 - 2 * 0.3) / (2 * (1 - 0.3) ** 2)
+    assert GradedKernel(EXPONENTIAL).zero_mode == pytest.approx(expected, rel=1e-5, abs=0.0)

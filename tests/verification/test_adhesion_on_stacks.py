@@ -1,0 +1,102 @@
+"""JKR adhesion on layer stacks: Griffith's balance from the separate integral equation, limits, batches."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.method import IntegralEquationMethod
+from contact import (
+    Adhesion,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+)
+from mdr import Mdr
+from mdr.batches import pull_offs
+from tests.verification.test_stacks import film, stack
+
+WORK = 1e-3
+ADHERING = (Adhesion(work_of_adhesion=WORK),)
+PARABOLOID = Paraboloid(radius_of_curvature=1.0)
+STACKS = {
+    "soft on stiff": stack((0.5, 1.0, 0.3), (0.5, 10.0, 0.5)),
+    "stiff on soft": film(0.2),
+    "slipping": stack((0.3, 1.0, 0.5), (0.7, 10.0, 0.4), interfaces=("unbonded",), support="unbonded"),
+}
+
+
+def scene_of(layer, loading, indenter=PARABOLOID):
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=ADHERING)
+
+
+def springs(layer, radius):
+    """c_N = dk_N/da/2 from punches of neighbouring radii by the separate integral equation, fourth order."""
+    step = 0.02 * radius
+
+    def stiffness(a):
+        scene = Scene(layer=layer, indenter=FlatPunch(radius=a), loading=IndentationDepths([1e-3]))
+        return float(IntegralEquationMethod().solve(scene).contact_stiffness[0])
+
+    near, far = (stiffness(radius + n * step) - stiffness(radius - n * step) for n in (1, 2))
+    return (8 * near - far) / (12 * step) / 2
+
+
+@pytest.mark.parametrize("name", STACKS)
+def test_the_edge_holds_by_griffiths_balance(name):
+    layer, radius = STACKS[name], 0.6
+    path = Mdr().solve(scene_of(layer, ContactRadii([radius])))
+    bare = IntegralEquationMethod().solve(Scene(layer=layer, indenter=PARABOLOID, loading=ContactRadii([radius])))
+    elongation = np.sqrt(2 * np.pi * WORK * radius / springs(layer, radius))  # Eq. (40)
+    # Differences over 2 % of the radius are good to 1e-6 of the springs.
+    np.testing.assert_allclose(bare.indentation_depth - path.indentation_depth, elongation, rtol=2e-6)
+    force = bare.normal_force - bare.contact_stiffness * elongation
+    np.testing.assert_allclose(path.normal_force, force, rtol=0, atol=4e-6 * abs(force).max())
+
+
+@pytest.mark.parametrize("name", STACKS)
+def test_depths_and_forces_lead_back_to_their_radii(name):
+    radii = np.array([0.5, 0.8])
+    path = Mdr().solve(scene_of(STACKS[name], ContactRadii(radii)))
+    for loading in (IndentationDepths(path.indentation_depth), NormalForces(path.normal_force)):
+        again = Mdr().solve(scene_of(STACKS[name], loading))
+        np.testing.assert_allclose(again.contact_radius, radii, rtol=1e-10)
+    inside = np.array([0.0, 0.3, 0.7])
+    assert np.all(np.isfinite(path.pressure(inside, 1)))
+
+
+@pytest.mark.parametrize("indenter", [PARABOLOID, FlatPunch(radius=0.5)], ids=["paraboloid", "flat punch"])
+@pytest.mark.parametrize("control", ["displacement", "force"])
+def test_a_cut_layer_detaches_like_the_whole(indenter, control):
+    whole = Layer(thickness=1.0, youngs_modulus=2.0, poissons_ratio=0.4)
+    cut = stack((0.4, 2.0, 0.4), (0.6, 2.0, 0.4))
+    one, parts = (Mdr().solve(scene_of(layer, Detachment(control=control), indenter)) for layer in (whole, cut))
+    for quantity in ("pull_off_force", "pull_off_depth", "pull_off_contact_radius"):
+        np.testing.assert_allclose(getattr(parts, quantity), getattr(one, quantity), rtol=1e-8)
+
+
+def test_pull_off_of_a_half_space_cut_at_a_depth():
+    path = Mdr().solve(scene_of(film(1.0), Detachment(control="force")))
+    assert path.pull_off_force == pytest.approx(-1.5 * np.pi * WORK, rel=1e-10, abs=0.0)
+
+
+def test_a_stiffer_base_holds_longer_and_a_path_is_continuous():
+    soft, stiff = (Mdr().solve(scene_of(stack((0.1, 1.0, 0.5), (0.9, E, 0.5)), Detachment())) for E in (0.2, 5.0))
+    assert abs(stiff.pull_off_depth) < abs(soft.pull_off_depth)
+    for path in (soft, stiff):
+        assert np.all(np.diff(path.contact_radius) <= 0.0)
+        assert np.all(path.error_estimate["normal_force"] < 1e-8)
+
+
+def test_batches_of_pull_offs_are_the_single_ones():
+    layers = [stack((0.3 * h, E, 0.5), (0.7 * h, 8 * E, 0.3)) for h, E in [(1.0, 1.0), (2.0, 3.0)]]
+    scenes = [scene_of(layer, Detachment(control="force")) for layer in layers]
+    together = pull_offs(scenes, IntegralEquation())
+    alone = [Mdr().solve(scene).pull_off_force for scene in scenes]
+    np.testing.assert_allclose(together.force, alone, rtol=1e-9)

@@ -1,0 +1,253 @@
+"""Contacts on layer stacks: published digits, the separate integral equation, limits, tension, batches and time."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.method import IntegralEquationMethod
+from contact import (
+    Cone,
+    ContactRadii,
+    DepthHistory,
+    ElasticBase,
+    FlatPunch,
+    Impact,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    LayerStack,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    StandardSolid,
+    Sublayer,
+    Tabulated,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from mdr import Mdr
+from mdr.batches import equilibria
+from mdr.springs.pulling import PullingContact
+
+PARABOLOID = Paraboloid(radius_of_curvature=1.0)
+
+
+def stack(*layers, interfaces=None, support="bonded"):
+    """From (thickness, E, nu), top first."""
+    sublayers = tuple(Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=nu) for h, E, nu in layers)
+    return LayerStack(sublayers=sublayers, interfaces=interfaces or ("bonded",) * (len(layers) - 1), support=support)
+
+
+def film(ratio, nu=0.3, thickness=1.0):
+    """A layer on a half-space with this share of its modulus."""
+    return stack((thickness, 1.0, nu), support=ElasticBase(youngs_modulus=ratio, poissons_ratio=0.3))
+
+
+def solve(layer, indenter, loading, **parts):
+    return Mdr().solve(Scene(layer=layer, indenter=indenter, loading=loading, **parts))
+
+
+# Solved in Fourier space by Legendre-Galerkin, h_total = 1, R = 1, a = 1 (THEORY_STACKS, section 7).
+PUBLISHED = [
+    (stack((0.5, 1.0, 0.3), (0.5, 10.0, 0.3)), 4.029072582822, 0.582871322414, 2.373099580873),
+    (stack((0.5, 10.0, 0.3), (0.5, 1.0, 0.3)), 0.650379832415, 0.892382241985, 0.657189735505),
+    (film(0.1), 0.208798673980, 2.302830217806, 0.792316748517),
+]
+
+
+@pytest.mark.parametrize(("layer", "stiffness", "depth", "force"), PUBLISHED)
+def test_digits_of_another_discretisation(layer, stiffness, depth, force):
+    path = solve(layer, PARABOLOID, ContactRadii([1.0]))
+    modulus = layer.contact_modulus
+    # The digits are rounded to 1e-12.
+    np.testing.assert_allclose(path.contact_stiffness / (2 * modulus), stiffness, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(path.indentation_depth, depth, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(path.normal_force / modulus, force, rtol=0, atol=1e-12)
+
+
+STACKS = {
+    "soft on stiff": PUBLISHED[0][0],
+    "stiff on soft": PUBLISHED[1][0],
+    "film on a half-space": film(0.5),
+    "slipping": stack(
+        (0.3, 1.0, 0.5), (0.2, 10.0, 0.4), (0.5, 3.0, 0.5), interfaces=("unbonded", "bonded"), support="unbonded"
+    ),
+    "hardly any modulus at the top": stack(
+        (0.1, 1e-4, 0.5), (1.0, 1.0, 0.3), support=ElasticBase(youngs_modulus=1e2, poissons_ratio=0.0)
+    ),
+    "a sheet of great modulus": stack((0.1, 1e4, 0.3), (1.0, 1.0, 0.5)),
+}
+CONTACTS = {
+    "paraboloid": (PARABOLOID, ContactRadii([0.4, 1.0])),
+    "truncated cone": (TruncatedCone(flat_radius=0.3, slope=0.1), ContactRadii([0.4])),
+    "flat punch": (FlatPunch(radius=0.5), IndentationDepths([0.01])),
+    "cone, depth": (Cone(slope=0.2), IndentationDepths([0.05])),
+    "paraboloid, force": (PARABOLOID, NormalForces([0.02])),
+    "measured": (Tabulated(radii=[0.0, 0.2, 0.5, 1.0], heights=[0.0, 0.01, 0.07, 0.31]), ContactRadii([0.6])),
+}
+PULLING = {("a sheet of great modulus", name) for name in ("truncated cone", "flat punch", "measured", "cone, depth")}
+
+
+@pytest.mark.parametrize("name", STACKS)
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_the_separate_integral_equation_agrees(name, contact):
+    layer, (indenter, loading) = STACKS[name], CONTACTS[contact]
+    scene = Scene(layer=layer, indenter=indenter, loading=loading)
+    if (name, contact) in PULLING:
+        with pytest.raises(UnsupportedSceneError, match=r"would pull at r =|no single circle"):
+            Mdr().solve(scene)
+        return
+    ours, other = Mdr().solve(scene), IntegralEquationMethod().solve(scene)
+    for quantity in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
+        np.testing.assert_allclose(getattr(ours, quantity), getattr(other, quantity), rtol=1e-11)
+    a = float(ours.contact_radius[-1])
+    step = len(ours) - 1
+    inside, outside = a * np.array([0.1, 0.5, 0.9, 0.98]), a * np.array([1.01, 1.5, 4.0])
+    expected = other.pressure(inside, step)
+    np.testing.assert_allclose(ours.pressure(inside, step), expected, rtol=0, atol=1e-10 * abs(expected).max())
+    np.testing.assert_allclose(
+        ours.surface_displacement(outside, step),
+        other.surface_displacement(outside, step),
+        rtol=0,
+        atol=1e-11 * ours.indentation_depth[step],
+    )
+
+
+@pytest.mark.parametrize("name", STACKS)
+def test_finer_panels_stay_within_the_stated_errors(name):
+    scene = Scene(layer=STACKS[name], indenter=PARABOLOID, loading=ContactRadii([0.2, 0.7, 1.5]))
+    coarse, fine = Mdr(flat_punch=IntegralEquation(nodes=14)).solve(scene), Mdr().refined().solve(scene)
+    for quantity in ("indentation_depth", "normal_force", "contact_stiffness"):
+        change = np.abs(getattr(coarse, quantity) / getattr(fine, quantity) - 1)
+        assert np.all(change <= coarse.error_estimate[quantity] + fine.error_estimate[quantity]), quantity
+    assert np.all(coarse.error_estimate["normal_force"] < 1e-5)
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+def test_equal_sublayers_are_one_layer(support):
+    one = Layer(thickness=1.0, youngs_modulus=2.0, poissons_ratio=0.4, support=support)
+    cut = stack((0.2, 2.0, 0.4), (0.5, 2.0, 0.4), (0.3, 2.0, 0.4), support=support)
+    for indenter in (PARABOLOID, TruncatedCone(flat_radius=0.5, slope=0.1)):
+        whole, parts = (solve(layer, indenter, ContactRadii([0.6, 2.0])) for layer in (one, cut))
+        np.testing.assert_allclose(parts.normal_force, whole.normal_force, rtol=1e-12)
+        np.testing.assert_allclose(parts.indentation_depth, whole.indentation_depth, rtol=1e-12)
+
+
+def test_a_film_of_the_bases_own_material_is_a_half_space():
+    half_space = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3)
+    whole, part = (solve(layer, PARABOLOID, ContactRadii([0.3, 3.0])) for layer in (half_space, film(1.0)))
+    np.testing.assert_allclose(part.normal_force, whole.normal_force, rtol=1e-12)
+
+
+def test_a_film_much_thinner_than_the_contact_answers_like_its_base():
+    base = Layer.half_space(youngs_modulus=0.5, poissons_ratio=0.3)
+    expected = solve(base, PARABOLOID, ContactRadii([1.0])).normal_force
+    found = [solve(film(0.5, thickness=t), PARABOLOID, ContactRadii([1.0])).normal_force for t in (0.04, 0.01)]
+    coarse, fine = (abs(float(f[0] / expected[0]) - 1) for f in found)
+    assert fine < 0.4 * coarse < 0.05
+
+
+def test_a_stack_of_one_has_the_bits_of_the_layer():
+    layer = Layer(thickness=0.7, youngs_modulus=3.0, poissons_ratio=0.45)
+    whole = solve(layer, PARABOLOID, ContactRadii([0.3, 2.0]))
+    one = solve(stack((0.7, 3.0, 0.45)), PARABOLOID, ContactRadii([0.3, 2.0]))
+    for quantity in ("indentation_depth", "normal_force", "contact_stiffness"):
+        np.testing.assert_array_equal(getattr(one, quantity), getattr(whole, quantity))
+
+
+def test_unknowns_stay_few_for_stacks_and_thin_films():
+    three = solve(stack((0.3, 1.0, 0.3), (0.2, 10.0, 0.4), (0.5, 3.0, 0.5)), PARABOLOID, ContactRadii([5.0]))
+    assert three.cost.unknowns <= 400
+    thin = solve(film(1e-4, thickness=1e-3), PARABOLOID, ContactRadii([0.02]))
+    assert thin.cost.unknowns <= 600
+
+
+def test_a_contact_too_wide_for_its_first_sublayer_is_refused_with_both_lengths():
+    with pytest.raises(InvalidInput, match=r"more than 320 times the thickness 0\.001 m of the material"):
+        solve(film(0.5, thickness=1e-3), PARABOLOID, ContactRadii([1.0]))
+
+
+# Tension over mean pressure at a = 2t (THEORY_STACKS, section 6): from 0.1 of the modulus on, not at 0.2.
+@pytest.mark.parametrize(("ratio", "share"), [(0.5, None), (0.2, None), (0.1, 0.15), (0.01, 1.3)])
+def test_a_flat_punch_on_a_stiff_film_is_refused_where_it_pulls(ratio, share):
+    punch = FlatPunch(radius=2.0)
+    if share is None:
+        assert solve(film(ratio), punch, NormalForces([1.0])).contact_stiffness[0] > 0.0
+        return
+    with pytest.raises(PullingContact, match=r"would pull at r = .* Pa \(") as refused:
+        solve(film(ratio), punch, NormalForces([1.0]))
+    mean = 1.0 / (np.pi * 4.0)
+    assert refused.value.tension / mean == pytest.approx(share, rel=0.05, abs=0.0)
+    assert 0.0 < refused.value.radius < 2.0 == refused.value.contact_radius
+
+
+@pytest.mark.parametrize("loading", [ContactRadii([2.0]), IndentationDepths([0.2]), NormalForces([0.1])])
+def test_a_truncated_cone_pulls_on_a_stiff_film_under_every_loading(loading):
+    cone = TruncatedCone(flat_radius=1.0, slope=0.1)
+    with pytest.raises(PullingContact):
+        solve(film(0.1), cone, loading)
+    assert solve(film(0.5), cone, loading).normal_force[0] > 0.0
+
+
+@pytest.mark.parametrize("ratio", [0.2, 0.05, 1e-2, 1e-4])
+@pytest.mark.parametrize("radius", [0.3, 2.0, 10.0])
+def test_a_paraboloid_never_pulls(ratio, radius):
+    assert solve(film(ratio), PARABOLOID, ContactRadii([radius])).normal_force[0] > 0.0
+
+
+def test_a_soft_layer_far_below_lifts_a_punch_slightly():
+    with pytest.raises(PullingContact, match="Pa"):
+        solve(stack((0.9, 1.0, 0.5), (0.1, 0.01, 0.3)), FlatPunch(radius=1.0), NormalForces([1.0]))
+
+
+def test_motions_of_pulling_punches_are_refused_too():
+    punch, layer = FlatPunch(radius=2.0), film(0.01)
+    for loading in (Impact(mass=1.0, velocity=0.1), DepthHistory(time=[0.0, 1.0], depth=[0.0, 0.1])):
+        with pytest.raises(PullingContact):
+            solve(layer, punch, loading)
+
+
+def test_batches_over_thickness_and_modulus_share_one_solution():
+    scenes = [
+        Scene(
+            layer=stack((0.3 * h, E, 0.5), (0.7 * h, 8 * E, 0.3)),
+            indenter=Paraboloid(radius_of_curvature=R),
+            loading=ContactRadii([a]),
+        )
+        for h, E, R, a in [(1.0, 1.0, 1.0, 0.5), (2.0, 3.0, 4.0, 0.5), (1e-3, 1e6, 0.1, 2e-3)]
+    ]
+    together = equilibria(scenes, IntegralEquation())
+    for i, scene in enumerate(scenes):
+        alone = Mdr().solve(scene)
+        np.testing.assert_allclose(together.normal_force[i], alone.normal_force[0], rtol=1e-12)
+        np.testing.assert_allclose(together.contact_stiffness[i], alone.contact_stiffness[0], rtol=1e-12)
+
+
+SOLID = (StandardSolid(long_term_shear_modulus=0.25, maxwell_shear_modulus=0.75, viscosity=0.5),)
+
+
+def test_layers_that_relax_alike_are_modelled():
+    parts = stack((0.4, 3.0, 0.5), (0.6, 3.0, 0.5))
+    whole = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
+    history = DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 0.1, 0.02])
+    for loading in (history, Impact(mass=0.1, velocity=0.05)):
+        one, cut = (solve(layer, PARABOLOID, loading, effects=SOLID) for layer in (whole, parts))
+        peak = np.abs(one.normal_force).max()
+        if isinstance(loading, DepthHistory):
+            np.testing.assert_allclose(cut.normal_force, one.normal_force, rtol=0, atol=1e-7 * peak)
+        else:
+            assert cut.coefficient_of_restitution == pytest.approx(one.coefficient_of_restitution, rel=1e-8, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("layer", "reason"),
+    [
+        (stack((0.4, 3.0, 0.5), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.5)), "elastic base does not"),
+        (stack((0.4, 3.0, 0.5), (0.6, 3.0, 0.3)), "incompressible"),
+    ],
+)
+def test_layers_that_do_not_relax_alike_are_refused(layer, reason):
+    with pytest.raises(UnsupportedSceneError, match=reason):
+        solve(layer, PARABOLOID, Impact(mass=0.1, velocity=0.05), effects=SOLID)
