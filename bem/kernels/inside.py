@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bem.kernels.stack import Sheet, StackKernel, Symmetric, base_compliance, coupled, passed, step
+from bem.kernels.stack import Sheet, StackKernel, Step, Symmetric, base_compliance, coupled, passed, step
 from contact.records.validation import FloatArray
 
 
@@ -96,7 +96,9 @@ def half_space_transfer(q: FloatArray, poissons_ratio: float) -> Transfer:
     return Transfer(-(1 - 2 * nu - q) * decay, (2 * (1 - nu) + q) * decay, q * decay, (1 + q) * decay)
 
 
-def _through(passing, M, shear, normal):  # type: ignore[no-untyped-def]
+def _through(
+    passing: Step, M: Symmetric, shear: FloatArray, normal: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:
     """v = M A^T t and A^T t - K v at the lower face, in the units of the layer."""
     K = passing.free
     b_u, b_w = passing.uu * shear + passing.wu * normal, passing.uw * shear + passing.ww * normal

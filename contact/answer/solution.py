@@ -192,7 +192,8 @@ class ContactPath(Solution):
         Raises:
             InvalidInput: If the path has no such step, or the method no fields inside.
         """
-        if not hasattr(self.fields, "inside"):
+        inside = getattr(self.fields, "inside", None)
+        if inside is None:
             raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr")
         if not -len(self) <= step < len(self):
             raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
@@ -201,7 +202,7 @@ class ContactPath(Solution):
                 f"{self.method} states no error of this pressure, and so none of the fields it makes inside"
             )
         stated = np.broadcast_to(self.error_estimate["pressure"], len(self))
-        return Inside(self.fields.inside(step % len(self), float(stated[step])))
+        return Inside(inside(step % len(self), float(stated[step])))
 
     @one_thread
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
+from typing import TypeAlias
 
 import numpy as np
 from scipy.optimize import minimize
@@ -15,6 +18,10 @@ from contact import ElasticLayer, FlatPunch, InvalidInput, PowerLaw
 from contact.answer.inside import Extreme, InsideFields, Searched
 from contact.records.validation import FloatArray
 from mdr.springs.surface_fields import ContactFields
+
+_Points: TypeAlias = Sequence[FloatArray]
+_Range: TypeAlias = tuple[float, float]
+_Value: TypeAlias = Callable[[InsideFields], FloatArray]
 
 # Share of the distance to a pole of the profile's slope by which pieces shrink towards it.
 _GRADING = 4.0
@@ -95,21 +102,23 @@ class ContactInterior:
         kernel = stack_of(self.layer)
         return [float(z) * self.contact.unit for z in np.cumsum([sheet.thickness for sheet in kernel.sheets])]
 
-    def _refined(self, points, radii, depths, value) -> Extreme:  # type: ignore[no-untyped-def]
+    def _refined(self, points: _Points, radii: _Range, depths: _Range, value: _Value) -> Extreme:
+        """The largest value near the best of some points."""
         r, z = (np.ravel(p) for p in points)
         values = value(self.at(r, z))
         best = Extreme(0.0, depths[0], 0.0)
         scale = np.array([radii[1], max(depths[1], 1e-300)])
         for start in np.argsort(values)[::-1][:_STARTS]:
-            found = minimize(
+            near = np.array([r[start], z[start]]) / scale
+            found = minimize(  # type: ignore[call-overload]  # the stubs know no initial simplex
                 lambda x: -float(value(self.at(x[:1] * scale[0], x[1:] * scale[1]))[0]),
-                np.array([r[start], z[start]]) / scale,
+                near,
                 method="Nelder-Mead",
                 bounds=[(0.0, 1.0), (depths[0] / scale[1], 1.0)],
                 options={
                     "xatol": 1e-9,
                     "fatol": 1e-13 * values.max(),
-                    "initial_simplex": _simplex(r[start] / scale[0], z[start] / scale[1], depths[0] / scale[1]),
+                    "initial_simplex": _simplex(near, depths[0] / scale[1]),
                 },
             )
             if -found.fun > best.value:
@@ -132,7 +141,7 @@ class ContactInterior:
             start, stop = flat + stretch.start, flat + stretch.stop
             power = 2.0 if start > 0.0 else 4.0 if isinstance(contact.indenter, PowerLaw) else 1.0
             ends = _graded(start, stop, stretch.room)
-            pieces += [Piece(one, two - one, power if one == start else 1.0) for one, two in zip(ends, ends[1:])]
+            pieces += [Piece(one, two - one, power if one == start else 1.0) for one, two in pairwise(ends)]
         return Density(contact.contact_radius, contact.edge_density, tuple(pieces), self._slope, 1.0)
 
     def _slope(self, piece: Piece, offset: FloatArray) -> FloatArray:
@@ -166,8 +175,8 @@ class ContactInterior:
         edge = self.contact.edge_density != 0.0
         if edge or (self._rims and self.layer.surface.poissons_ratio < 0.5):
             raise InvalidInput(
-                f'largest("von_mises"): it is infinite at the rim r = {self._rims[-1]:g} m of the surface; ask for fields '
-                "at points of interest"
+                f'largest("von_mises"): it is infinite at the rim r = {self._rims[-1]:g} m of the surface; ask for '
+                "fields at points of interest"
             )
 
 
@@ -175,11 +184,12 @@ def _shear(found: InsideFields) -> FloatArray:
     return np.abs(found.shear_stress)
 
 
-def _simplex(r: float, z: float, least: float) -> FloatArray:
-    step = 1.0 / _SAMPLES
-    return np.array(
-        [[r, z], [r - step if r > 0.5 else r + step, z], [r, z - step if z - step > least else min(z + step, 1.0)]]
-    )
+def _simplex(near: FloatArray, least: float) -> FloatArray:
+    """A triangle of one sample's size that stays inside."""
+    step, (r, z) = 1.0 / _SAMPLES, near
+    across = r - step if r > 0.5 else r + step
+    down = z - step if z - step > least else min(z + step, 1.0)
+    return np.array([[r, z], [across, z], [r, down]])
 
 
 def _graded(start: float, stop: float, room: float) -> list[float]:

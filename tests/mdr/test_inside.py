@@ -229,7 +229,7 @@ def test_one_point_alone_equals_the_same_in_a_list():
 
 def test_refusals_by_name():
     path = pressed(unit_layer(0.3), TruncatedCone(flat_radius=0.3, slope=0.1), 1.0)
-    with pytest.raises(InvalidInput, match="depth = 1.5: points must lie in the layer, between 0 and 1 m"):
+    with pytest.raises(InvalidInput, match=r"depth = 1\.5: points must lie in the layer, between 0 and 1 m"):
         path.inside().at(0.0, 1.5)
     with pytest.raises(InvalidInput, match="radius = -1: radii must be finite and not negative"):
         path.inside().at([-1.0], [0.5])

@@ -34,7 +34,7 @@ class Body:
     density: Density
 
     def at(self, r: FloatArray, z: FloatArray) -> dict[str, FloatArray]:
-        """2 G u_r/r, 2 G u_z, stresses, hydrostatic pressure and gradient in E*, and G over the surface's; shape (n,)."""
+        """2 G u_r/r, 2 G u_z, stresses, pressure and gradient in E*, and G over the surface's, each of shape (n,)."""
         z = np.maximum(z, _SURFACE * self.density.radius)
         if self.kernel is None:
             parts = half_space_fields(integrals(self.density, r, z), r, z, self.poissons_ratio)

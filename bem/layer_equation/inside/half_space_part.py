@@ -5,8 +5,8 @@ Each K_mn is ``i d/dt`` of the one before it, so that by parts
 
     int_0^a phi Re K_mn dt = int_0^a phi' Im K_(m-1)n dt - phi(a) Im K_(m-1)n(a),
 
-the superposition of flat punches, which keeps its digits near the surface. The integrand is singular at t = r +- iz: the
-substitution t = r + z sinh(s) moves that half a turn away, at every depth.
+the superposition of flat punches, which keeps its digits near the surface. The integrand is singular at t = r +- iz:
+the substitution t = r + z sinh(s) moves that half a turn away, at every depth.
 """
 
 from __future__ import annotations
@@ -54,27 +54,33 @@ def _over_piece(density: Density, piece: Piece, r: FloatArray, z: FloatArray) ->
     # Points that need the same number of panels are taken together.
     for count in np.unique(panels):
         some = panels == count
-        total[:, some] = _by_panels(
-            density, piece, (r[some], z[some]), first[some], (last - first)[some] / count, count
-        )
+        spread = _Spread(r[some], z[some], first[some], (last - first)[some] / count)
+        total[:, some] = _by_panels(density, piece, spread, int(count))
     return total
 
 
-def _by_panels(
-    density: Density, piece: Piece, at: tuple[FloatArray, FloatArray], first: FloatArray, width: FloatArray, count: int
-) -> FloatArray:
-    r, z = at[0][:, None], at[1][:, None]
+class _Spread(NamedTuple):
+    """Points whose panels of s are equally many: the first s and the panels' width, each of shape (n,)."""
+
+    r: FloatArray
+    z: FloatArray
+    first: FloatArray
+    width: FloatArray
+
+
+def _by_panels(density: Density, piece: Piece, points: _Spread, count: int) -> FloatArray:
+    r, z, first, width = (column[:, None] for column in points)
     u, w = gauss_nodes(_NODES)
     share = np.arange(count)[:, None] + u
     weight = np.tile(w, (count, 1))
     # The first panel crowds its nodes towards the piece's beginning.
     share[0], weight[0] = u**piece.power, w * piece.power * u ** (piece.power - 1.0)
-    step = width[:, None] * share.ravel()
-    s = first[:, None] + step
-    offset = 2.0 * z * np.cosh(first[:, None] + step / 2.0) * np.sinh(step / 2.0)
+    step = width * share.ravel()
+    s = first + step
+    offset = 2.0 * z * np.cosh(first + step / 2.0) * np.sinh(step / 2.0)
     offset = np.minimum(offset, piece.length)
     beyond = z * np.sinh(s)
-    slope = density.slope(piece, offset) * width[:, None] * weight.ravel() * z * np.cosh(s)
+    slope = density.slope(piece, offset) * width * weight.ravel() * z * np.cosh(s)
     return np.asarray(np.einsum("cpn,pn->cp", _kernels(r, z, r + beyond, beyond), slope))
 
 

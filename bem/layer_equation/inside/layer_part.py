@@ -80,7 +80,7 @@ def layer_fields(
         radius: Of the loaded circle.
     """
     place = place_of(kernel, float(depth.max()))
-    above = float(depth.max()) - place.depth
+    above = float(depth.max() - place.depth)
     slowest = 2.0 * kernel.sheets[0].thickness - depth.max() if beyond_half_space else depth.min()
     k, w = wavenumbers(kernel, radius + float(r.max(initial=0.0)), _DECAYED / float(slowest))
     sums = _Sums(kernel, Place(place.sheet, 0.0), above, beyond_half_space, k, w * k * pressure_transform(k))
