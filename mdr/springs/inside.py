@@ -12,6 +12,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from bem.kernels.of_layer import stack_of
+from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.inside.density import Density, Piece
 from bem.layer_equation.inside.fields import Body
 from contact import ElasticLayer, FlatPunch, InvalidInput, PowerLaw
@@ -149,8 +150,8 @@ class ContactInterior:
         contact, flat = self.contact, self.contact.indenter.flat_radius / self.contact.unit
         t = np.minimum(piece.start + offset, contact.contact_radius)
         slope = np.zeros_like(t)
-        if contact.density is not None:
-            slope += contact.density.slope(t.ravel()).reshape(t.shape)
+        if isinstance(contact.density, ContactDensity):
+            slope += t * contact.density.slope_over_position(t.ravel()).reshape(t.shape)
         if piece.start >= flat and not isinstance(contact.indenter, FlatPunch):
             slope -= contact.slope_at((piece.start - flat) + offset)
         return slope

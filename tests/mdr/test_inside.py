@@ -12,9 +12,12 @@ from bem.kernels.inside import place_of
 from bem.kernels.stack import Sheet, StackKernel
 from bem.layer_equation.inside.layer_part import layer_fields
 from contact import (
+    Adhesion,
     Cone,
     ContactRadii,
+    ExponentialDepth,
     FlatPunch,
+    GradedLayer,
     InvalidInput,
     Layer,
     LayerStack,
@@ -26,6 +29,7 @@ from contact import (
     Sublayer,
     Tabulated,
     TruncatedCone,
+    UnsupportedSceneError,
 )
 from mdr import Mdr
 
@@ -241,3 +245,29 @@ def test_refusals_by_name():
         path.inside().largest("shear")
     with pytest.raises(InvalidInput, match="this path has steps 0 to 0"):
         path.inside(3)
+
+
+def test_graded_layers_are_refused_by_name():
+    layer = GradedLayer(
+        thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3, support="bonded"
+    )
+    path = pressed(layer, Paraboloid(radius_of_curvature=10.0), 0.5)
+    with pytest.raises(UnsupportedSceneError, match="uniform layers and stacks, not of a GradedLayer"):
+        path.inside().at(0.1, 0.2)
+
+
+def test_adhering_contacts_have_an_inside():
+    scene = Scene(
+        layer=unit_layer(0.3),
+        indenter=Paraboloid(radius_of_curvature=10.0),
+        loading=ContactRadii([1.0]),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+    path = Mdr().solve(scene)
+    r = np.array([0.1, 0.6, 0.9])
+    top = path.inside().at(r, 1e-9)
+    assert top.axial_stress == pytest.approx(-path.pressure(r), rel=1e-8, abs=0)
+    nodes, weights = np.polynomial.legendre.leggauss(300)
+    r = 6.0 * (nodes + 1.0)
+    total = 2.0 * math.pi * 6.0 * weights @ (path.inside().at(r, 0.7).axial_stress * r)
+    assert -total == pytest.approx(float(path.normal_force[0]), rel=1e-5, abs=0)
