@@ -16,6 +16,7 @@ from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
+from mdr.springs.inside import ContactInterior
 from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
@@ -102,6 +103,10 @@ class PathFields:
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]."""
         return self.contact(step).surface_displacement(radius)
+
+    def inside(self, step: int, pressure_error: float) -> ContactInterior:
+        """The body under one step, whose pressure has this relative error."""
+        return ContactInterior(self.scene.layer, self.contact(step), pressure_error)
 
     def contact(self, step: int) -> ContactFields:
         """One step's contact."""

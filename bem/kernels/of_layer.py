@@ -88,6 +88,22 @@ def _(layer: GradedLayer) -> GradedKernel:
     return GradedKernel(layer.in_own_units())
 
 
+def stack_of(layer: ElasticLayer) -> StackKernel:
+    """A layer of one material, or of several, as a stack.
+
+    Raises:
+        UnsupportedSceneError: If it is none.
+    """
+    kernel = surface_kernel(layer)
+    if isinstance(kernel, StackKernel):
+        return kernel
+    if isinstance(kernel, UniformKernel):
+        return StackKernel((Sheet(1.0, 1.0, kernel.poissons_ratio, kernel.support == "unbonded"),), None)
+    raise UnsupportedSceneError(
+        f"fields inside are those of uniform layers and stacks, not of a {type(layer).__name__}"
+    )
+
+
 def _shear(youngs_modulus: float, poissons_ratio: float) -> float:
     return youngs_modulus / (2 * (1 + poissons_ratio))
 

@@ -100,7 +100,7 @@ class StackKernel:
         """chi at wavenumbers with Re k > 0, any shape."""
         top = self.sheets[0]
         q = top.thickness * wavenumber
-        own = _step(q, top.poissons_ratio)
+        own = step(q, top.poissons_ratio)
         chi: Field = (own.glued.ww + self._through(own, wavenumber)) / (2 * (1 - top.poissons_ratio))
         return chi
 
@@ -108,29 +108,29 @@ class StackKernel:
         """1 - chi: that of the first layer alone, less what comes through it."""
         top = self.sheets[0]
         q = top.thickness * wavenumber
-        own = _step(q, top.poissons_ratio)
+        own = step(q, top.poissons_ratio)
         alone = one_minus_kernel(q, "bonded", top.poissons_ratio)
         rest: Field = alone - self._through(own, wavenumber) / (2 * (1 - top.poissons_ratio))
         return rest
 
-    def _through(self, own: _Step, wavenumber: Field) -> Field:
+    def _through(self, own: Step, wavenumber: Field) -> Field:
         """What the layers below add to C_WW of the first."""
-        M = _coupled(self._below(wavenumber), own, slips=self.sheets[0].slips_below)
+        M = coupled(self._below(wavenumber), own, slips=self.sheets[0].slips_below)
         through: Field = own.wu**2 * M.uu + 2 * own.wu * own.ww * M.uw + own.ww**2 * M.ww
         return through
 
     def _below(self, wavenumber: Field) -> Symmetric:
         """C of all that lies below the first layer, in its units."""
-        below = _rigid(wavenumber) if self.base is None else _half_space(wavenumber, self.base)
+        below = base_compliance(self, wavenumber)
         for lower in self.sheets[:0:-1]:
-            step = _step(lower.thickness * wavenumber, lower.poissons_ratio)
+            one = step(lower.thickness * wavenumber, lower.poissons_ratio)
             inside = below.times(lower.shear_modulus)
-            through = _passed(step, _coupled(inside, step, slips=lower.slips_below))
+            through = passed(one, coupled(inside, one, slips=lower.slips_below))
             below = through.times(1 / lower.shear_modulus)
         return below.times(self.sheets[0].shear_modulus)
 
 
-class _Step(NamedTuple):
+class Step(NamedTuple):
     """N, K and det K of one layer, and A by (row at the top, column at the bottom)."""
 
     glued: Symmetric
@@ -142,7 +142,7 @@ class _Step(NamedTuple):
     ww: Field
 
 
-def _step(q: Field, nu: float) -> _Step:
+def step(q: Field, nu: float) -> Step:
     """Equations of THEORY for one layer; numerators and denominator times exp(-2q), A times exp(-q) twice."""
     kap, eta, beta = 3 - 4 * nu, 1 - 2 * nu, 1 - nu
     root = np.exp(-q)
@@ -160,7 +160,7 @@ def _step(q: Field, nu: float) -> _Step:
     free = Symmetric(2 * beta * double / D, -(eta * ss + square) / D, 2 * beta * excess / D)
     c, s = (1 + e) / 2, -np.expm1(-2 * q) / 2
     along, across = root * 2 * beta / D, qe * 2 * beta / D
-    return _Step(
+    return Step(
         glued,
         free,
         _squares_apart(q, ss, square) / D,
@@ -185,7 +185,7 @@ def _squares_apart(q: Field, ss: Field, square: Field) -> Field:
 _EVEN: Final = tuple(1 / factorial(2 * k + 4) for k in range(SERIES_TERMS))
 
 
-def _coupled(below: Symmetric, step: _Step, *, slips: bool) -> Symmetric:
+def coupled(below: Symmetric, step: Step, *, slips: bool) -> Symmetric:
     """M = (C^-1 + K)^-1, or its limit for a frictionless interface, which passes pressure only."""
     K, det_K = step.free, step.free_determinant
     if slips:
@@ -197,7 +197,7 @@ def _coupled(below: Symmetric, step: _Step, *, slips: bool) -> Symmetric:
     return Symmetric((below.uu + det_C * K.ww) / d, (below.uw - det_C * K.uw) / d, (below.ww + det_C * K.uu) / d)
 
 
-def _passed(step: _Step, M: Symmetric) -> Symmetric:
+def passed(step: Step, M: Symmetric) -> Symmetric:
     """N + A M A^T."""
     uu, uw, wu, ww = step.uu, step.uw, step.wu, step.ww
     return Symmetric(
@@ -205,6 +205,11 @@ def _passed(step: _Step, M: Symmetric) -> Symmetric:
         step.glued.uw + uu * wu * M.uu + (uu * ww + uw * wu) * M.uw + uw * ww * M.ww,
         step.glued.ww + wu**2 * M.uu + 2 * wu * ww * M.uw + ww**2 * M.ww,
     )
+
+
+def base_compliance(kernel: StackKernel, wavenumber: Field) -> Symmetric:
+    """C of the base times 2k, over the first layer's modulus."""
+    return _rigid(wavenumber) if kernel.base is None else _half_space(wavenumber, kernel.base)
 
 
 def _rigid(wavenumber: Field) -> Symmetric:

@@ -9,6 +9,7 @@ from typing import ClassVar, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from contact.answer.inside import Inside
 from contact.answer.one_thread import one_thread
 from contact.answer.stages import Cost, StageRecord
 from contact.answer.summary import quantity_line, scene_line
@@ -184,6 +185,24 @@ class ContactPath(Solution):
     def surface_displacement(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Surface displacement w(r) [m] of one step at radii [m], inside and outside the contact."""
         return self._field("surface_displacement", radius, step)
+
+    def inside(self, step: int = 0) -> Inside:
+        """The body under one step: `.at(radius, depth)` and `.largest("von_mises")`.
+
+        Raises:
+            InvalidInput: If the path has no such step, or the method no fields inside.
+        """
+        inside = getattr(self.fields, "inside", None)
+        if inside is None:
+            raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr")
+        if not -len(self) <= step < len(self):
+            raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
+        if "pressure" not in self.error_estimate:
+            raise InvalidInput(
+                f"{self.method} states no error of this pressure, and so none of the fields it makes inside"
+            )
+        stated = np.broadcast_to(self.error_estimate["pressure"], len(self))
+        return Inside(inside(step % len(self), float(stated[step])))
 
     @one_thread
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:

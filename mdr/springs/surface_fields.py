@@ -100,12 +100,12 @@ class ContactFields:
     def _profile_integral(self, r: FloatArray, offset: FloatArray) -> FloatArray:
         """int_r^a g_hs'(t)/sqrt(t^2 - r^2) dt, between one breakpoint of the profile and the next."""
         total = np.zeros_like(r)
-        for stretch in self._stretches:
+        for stretch in self.stretches:
             total += abel_integral(self._slope, stretch, r, offset)
         return total
 
     @cached_property
-    def _stretches(self) -> list[Stretch]:
+    def stretches(self) -> list[Stretch]:
         """Between the breakpoints of the profile, whose slope has a pole where it ends upright."""
         indenter, unit = self.indenter, self.unit
         breaks = [(k - indenter.flat_radius) / unit for k in indenter.breakpoints]
@@ -123,10 +123,16 @@ class ContactFields:
         closed = profile_slope(self.indenter, self.unit * nodes.offset, self.unit * nodes.room)
         return self._sampled_slope(nodes.offset) if closed is None else closed
 
+    def slope_at(self, offset: FloatArray) -> FloatArray:
+        """g_hs' at offsets from the rim of the flat end, any shape; not with a table."""
+        room = (self.excess + self.room) - offset
+        closed = profile_slope(self.indenter, self.unit * offset, self.unit * room)
+        return self._sampled_slope(offset) if closed is None else closed
+
     @cached_property
     def _sampled_slope(self) -> StretchSlopes:
         """g_hs' of a profile without a closed form."""
-        ends = np.array([stretch.start for stretch in self._stretches] + [self.excess])
+        ends = np.array([stretch.start for stretch in self.stretches] + [self.excess])
         unit = self.unit
         return StretchSlopes.of(lambda d: half_space_profile(self.indenter, unit * d) / unit, self._flat, ends, SAMPLES)
 

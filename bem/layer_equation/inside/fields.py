@@ -1,0 +1,58 @@
+"""Fields at points: half-space part and layer part together, lengths over the first layer's thickness."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from bem.kernels.inside import Place, place_of, sheet_of
+from bem.kernels.stack import StackKernel
+from bem.layer_equation.inside.density import Density
+from bem.layer_equation.inside.half_space_part import fields as half_space_fields
+from bem.layer_equation.inside.half_space_part import integrals
+from bem.layer_equation.inside.layer_part import NAMES, layer_fields
+from contact.records.validation import FloatArray
+
+# The surface itself is looked at this share of the contact radius below it: fields differ there by as much.
+_SURFACE = 1e-11
+
+
+@dataclass(frozen=True)
+class Body:
+    """A uniform half-space or a stack under one contact.
+
+    Attributes:
+        kernel: Of the layers; None for a half-space.
+        poissons_ratio: nu of the surface material.
+        density: Of the contact's pressure.
+    """
+
+    kernel: StackKernel | None
+    poissons_ratio: float
+    density: Density
+
+    def at(self, r: FloatArray, z: FloatArray) -> dict[str, FloatArray]:
+        """2 G u_r/r, 2 G u_z, stresses, pressure and gradient in E*, and G over the surface's, each of shape (n,)."""
+        z = np.maximum(z, _SURFACE * self.density.radius)
+        if self.kernel is None:
+            parts = half_space_fields(integrals(self.density, r, z), r, z, self.poissons_ratio)
+            return {name: part / math.pi for name, part in parts.items()} | {"modulus": np.ones_like(r)}
+        found = {name: np.empty_like(r) for name in (*NAMES, "modulus")}
+        sheets = np.array([place_of(self.kernel, float(depth)).sheet for depth in z])
+        for sheet in np.unique(sheets):
+            some = sheets == sheet
+            for name, values in self._of_sheet(r[some], z[some], top=sheet == 0).items():
+                found[name][some] = values / math.pi
+            found["modulus"][some] = sheet_of(self.kernel, Place(int(sheet), 0.0)).shear_modulus
+        return found
+
+    def _of_sheet(self, r: FloatArray, z: FloatArray, *, top: bool) -> dict[str, FloatArray]:
+        assert self.kernel is not None
+        load, a = self.density.transform, self.density.radius
+        parts = layer_fields(self.kernel, load, r, z, beyond_half_space=top, radius=a)
+        if not top:
+            return parts
+        upper = half_space_fields(integrals(self.density, r, z), r, z, self.poissons_ratio)
+        return {name: part + upper[name] for name, part in parts.items()}

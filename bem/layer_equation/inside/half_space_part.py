@@ -1,0 +1,113 @@
+"""What a half-space of the surface material feels: closed forms in ``zeta = z + i t``, integrated over the density.
+
+With ``R = sqrt(r^2 + zeta^2)`` the transforms ``int p^ k^m exp(-kz) J_n(kr) dk`` are ``(E*/pi) int phi Re K_mn dt``.
+Each K_mn is ``i d/dt`` of the one before it, so that by parts
+
+    int_0^a phi Re K_mn dt = int_0^a phi' Im K_(m-1)n dt - phi(a) Im K_(m-1)n(a),
+
+the superposition of flat punches, which keeps its digits near the surface. The integrand is singular at t = r +- iz:
+the substitution t = r + z sinh(s) moves that half a turn away, at every depth.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bem.layer_equation.inside.density import Density, Piece
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact.records.validation import FloatArray
+
+# Gauss nodes of a panel of s, and the panel's length: singularities lie pi/2 beside it, which leaves 1e-15.
+_NODES = 20
+_LENGTH = 1.5
+
+
+class Integrals(NamedTuple):
+    """int phi Re K_mn dt at each point; those of n = 1 are divided by r."""
+
+    i00: FloatArray
+    i10: FloatArray
+    i20: FloatArray
+    i01: FloatArray
+    i11: FloatArray
+    i21: FloatArray
+
+
+def integrals(density: Density, r: FloatArray, z: FloatArray) -> Integrals:
+    """At points of shape (n,), z > 0."""
+    total = np.zeros((6, r.size))
+    if density.edge_value:
+        edge = np.full(r.shape, density.radius)
+        total -= density.edge_value * _kernels(r, z, edge, density.radius - r)
+    for piece in density.pieces:
+        total += _over_piece(density, piece, r, z)
+    return Integrals(*total)
+
+
+def _over_piece(density: Density, piece: Piece, r: FloatArray, z: FloatArray) -> FloatArray:
+    total = np.zeros((6, r.size))
+    first = np.arcsinh((piece.start - r) / z)
+    last = np.arcsinh((piece.start + piece.length - r) / z)
+    panels = np.ceil((last - first) / _LENGTH).astype(int)
+    # Points that need the same number of panels are taken together.
+    for count in np.unique(panels):
+        some = panels == count
+        spread = _Spread(r[some], z[some], first[some], (last - first)[some] / count)
+        total[:, some] = _by_panels(density, piece, spread, int(count))
+    return total
+
+
+class _Spread(NamedTuple):
+    """Points whose panels of s are equally many: the first s and the panels' width, each of shape (n,)."""
+
+    r: FloatArray
+    z: FloatArray
+    first: FloatArray
+    width: FloatArray
+
+
+def _by_panels(density: Density, piece: Piece, points: _Spread, count: int) -> FloatArray:
+    r, z, first, width = (column[:, None] for column in points)
+    u, w = gauss_nodes(_NODES)
+    share = np.arange(count)[:, None] + u
+    weight = np.tile(w, (count, 1))
+    # The first panel crowds its nodes towards the piece's beginning.
+    share[0], weight[0] = u**piece.power, w * piece.power * u ** (piece.power - 1.0)
+    step = width * share.ravel()
+    s = first + step
+    offset = 2.0 * z * np.cosh(first + step / 2.0) * np.sinh(step / 2.0)
+    offset = np.minimum(offset, piece.length)
+    beyond = z * np.sinh(s)
+    slope = density.slope(piece, offset) * width * weight.ravel() * z * np.cosh(s)
+    return np.asarray(np.einsum("cpn,pn->cp", _kernels(r, z, r + beyond, beyond), slope))
+
+
+def _kernels(r: FloatArray, z: FloatArray, t: FloatArray, beyond: FloatArray) -> FloatArray:
+    """Im of K_(m-1)n for (m, n) = (0,0), (1,0), (2,0), (0,1), (1,1), (2,1), the last three over r; beyond = t - r."""
+    zeta = z + 1j * t
+    R = np.sqrt(z * z - beyond * (t + r) + 2j * z * t)
+    near = 1.0 / (R * (R + zeta))
+    cube = 1.0 / R**3
+    forms = (-np.log(R + zeta), 1.0 / R, zeta * cube, 1.0 / (R + zeta), near, cube)
+    return np.stack([form.imag for form in forms])
+
+
+def fields(total: Integrals, r: FloatArray, z: FloatArray, poissons_ratio: float) -> dict[str, FloatArray]:
+    """2 G u, stresses and the hydrostatic pressure with its gradient, in units of E*/pi over length."""
+    nu = poissons_ratio
+    strain = -(1 - 2 * nu) * total.i01 + z * total.i11
+    s1, s2 = -total.i10 + z * total.i20, -2 * nu * total.i10
+    share = 2.0 / 3.0 * (1 + nu)
+    return {
+        "hoop_strain": strain,
+        "axial": 2 * (1 - nu) * total.i00 + z * total.i10,
+        "axial_stress": -total.i10 - z * total.i20,
+        "shear_stress": -z * r * total.i21,
+        "s1": s1,
+        "s2": s2,
+        "hydrostatic_pressure": share * total.i10,
+        "pressure_gradient_radial": -share * r * total.i21,
+        "pressure_gradient_axial": -share * total.i20,
+    }

@@ -1,0 +1,273 @@
+"""Fields inside: closed forms, another program's values, and laws that every elastic body obeys."""
+
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.special import j1
+
+from bem.kernels.inside import place_of
+from bem.kernels.stack import Sheet, StackKernel
+from bem.layer_equation.inside.layer_part import layer_fields
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    ExponentialDepth,
+    FlatPunch,
+    GradedLayer,
+    InvalidInput,
+    Layer,
+    LayerStack,
+    NormalForces,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    Sphere,
+    Sublayer,
+    Tabulated,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from mdr import Mdr
+
+DATA = Path(__file__).parent / "layered_uniform_load.json"
+
+
+def unit_layer(nu, support="bonded"):
+    """A layer with h = 1 and E* = 1."""
+    return Layer(thickness=1.0, youngs_modulus=1.0 - nu**2, poissons_ratio=nu, support=support)
+
+
+def pressed(layer, indenter, radius):
+    return Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([radius])))
+
+
+def test_values_of_another_program():
+    """Its shear stress is printed as -0.0775650752627; both routes of this one give ..5562627."""
+    path = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=1.0), 1.0)
+    found = path.inside().at([1.1, 1.0], [0.6, 0.4])
+    expected = {
+        "radial_displacement": (0.0622316340117, 0.0689183089),
+        "axial_displacement": (0.0500774786650, 0.1024302498),
+        "radial_stress": (-0.108751299275, -0.1203435976),
+        "hoop_stress": (-0.0248454727490, -0.0300669967),
+        "axial_stress": (-0.145675388527, -0.1889319291),
+        "hydrostatic_pressure": (0.0930907201836, 0.1131141745),
+        "pressure_gradient_radial": (-0.219503045954, -0.3260017050),
+        "pressure_gradient_axial": (0.0287151378128, 0.0289608438),
+    }
+    for name, (first, second) in expected.items():
+        values = getattr(found, name)
+        assert values[0] == pytest.approx(first, rel=0, abs=1e-12)
+        assert values[1] == pytest.approx(second, rel=0, abs=3e-10)
+    assert found.shear_stress[1] == pytest.approx(-0.1030422626, rel=0, abs=1e-10)
+
+
+def test_largest_stresses_of_another_program():
+    inside = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=1.0), 1.0).inside()
+    worst, shear = inside.largest("von_mises"), inside.largest("interface_shear")
+    assert [worst.radius, worst.depth, worst.value] == pytest.approx([0.0, 0.4135863, 0.596830664], rel=0, abs=1e-7)
+    assert [shear.radius, shear.depth, shear.value] == pytest.approx([0.80611164, 1.0, 0.1138541731], rel=0, abs=1e-7)
+
+
+def test_a_stack_of_another_program():
+    layers = tuple(Sublayer(thickness=0.5, youngs_modulus=E, poissons_ratio=0.3) for E in (1.0, 10.0))
+    stack = LayerStack(sublayers=layers, interfaces=("bonded",), support="bonded")
+    inside = pressed(stack, Paraboloid(radius_of_curvature=1.0), 1.0).inside()
+    assert inside.at(0.6, 0.45).von_mises == pytest.approx(0.6271984607, rel=0, abs=1e-10)
+    across = inside.at([0.6, 0.6], [0.5, 0.5 + 1e-12])
+    for name in ("axial_stress", "shear_stress", "radial_displacement", "axial_displacement"):
+        values = getattr(across, name)
+        assert values[0] == pytest.approx(values[1], rel=1e-10, abs=0)
+
+
+def test_hertz_on_the_axis():
+    """Huber 1904, and the largest principal shear 0.310021 p_0 at 0.480864 a for nu = 0.3."""
+    a, nu = 0.1, 0.3
+    half = Layer.half_space(youngs_modulus=1.0, poissons_ratio=nu)
+    path = pressed(half, Paraboloid(radius_of_curvature=1.0), a)
+    p0, Z = 1.5 * path.normal_force[0] / (math.pi * a**2), np.array([1e-4, 0.1, 0.5, 1.0, 4.0])
+    found = path.inside().at(0.0, a * Z)
+    radial = -p0 * ((1 + nu) * (1 - Z * np.arctan2(1.0, Z)) - 0.5 / (1 + Z**2))
+    assert found.radial_stress == pytest.approx(radial, rel=0, abs=1e-12 * p0)
+    assert found.hoop_stress == pytest.approx(radial, rel=0, abs=1e-12 * p0)
+    assert found.axial_stress == pytest.approx(-p0 / (1 + Z**2), rel=0, abs=1e-12 * p0)
+    worst = path.inside().largest("von_mises")
+    assert [worst.radius, worst.depth / a, worst.value / p0] == pytest.approx([0, 0.480864, 0.620042], rel=0, abs=2e-6)
+
+
+def test_punch_on_the_axis():
+    """Sneddon 1946: sigma_zz = -(F/(2 pi a^2)) (1 + 3 Z^2)/(1 + Z^2)^2."""
+    a, Z = 0.1, np.array([1e-4, 0.1, 0.5, 1.0, 4.0])
+    half = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.2)
+    path = Mdr().solve(Scene(layer=half, indenter=FlatPunch(radius=a), loading=NormalForces([1.0])))
+    exact = -(1 + 3 * Z**2) / (2 * math.pi * a**2 * (1 + Z**2) ** 2)
+    assert path.inside().at(0.0, a * Z).axial_stress == pytest.approx(exact, rel=1e-12, abs=0)
+
+
+def test_uniform_pressure_on_layers_of_a_foreign_program():
+    """Sixty points of ALVA's layered algebra under q = 1 on r < a; springs of 1e12 stand for bonded in case H."""
+    for point in json.loads(DATA.read_text(encoding="utf-8"))["points"]:
+        a, z, r = point["a"], point["z"], np.array([point["r"]])
+        E, nu, top = np.array(point["E"]), np.array(point["nu"]), point["h"][0]
+        shear = E / (2 * (1 + nu))
+        slips = [face == "slip" for face in point["interfaces"]]
+        rows = zip(point["h"], shear, nu, slips, strict=False)
+        sheets = tuple(Sheet(h / top, float(G / shear[0]), float(n), slip) for h, G, n, slip in rows)
+        base = Sheet(math.inf, float(shear[-1] / shear[0]), float(nu[-1]), slips_below=False)
+        kernel = StackKernel(sheets, base)
+        place = place_of(kernel, z / top)
+        load = lambda k, a=a, top=top: a / top * j1(k * a / top) / k  # noqa: E731
+        found = layer_fields(kernel, load, r / top, np.array([z / top]), beyond_half_space=False, radius=a / top)
+        G, n = shear[place.sheet], nu[place.sheet]
+        rr = found["s1"] - found["hoop_strain"]
+        values = {
+            "ur": found["hoop_strain"] * r / (2 * G),
+            "uz": found["axial"] * top / (2 * G),
+            "szz": found["axial_stress"],
+            "srr": rr,
+            "stt": found["s2"] + found["hoop_strain"],
+            "srz": found["shear_stress"],
+        }
+        stress = max(abs(point[name]) for name in ("szz", "srr", "stt", "srz"))
+        scale = {"ur": abs(point["uz"]), "uz": abs(point["uz"])}
+        for name, value in values.items():
+            assert value[0] == pytest.approx(point[name], rel=0, abs=1e-11 * scale.get(name, stress)), (
+                point["case"],
+                n,
+            )
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("radius", [0.5, 1.0, 5.0])
+def test_the_base_holds_and_the_surface_carries_the_pressure(nu, support, radius):
+    path = pressed(unit_layer(nu, support), Paraboloid(radius_of_curvature=10.0), radius)
+    inside, mean = path.inside(), float(path.normal_force[0]) / (math.pi * radius**2)
+    r = np.array([0.0, 0.3, 0.8, 0.97, 1.2]) * radius
+    base = inside.at(r, 1.0)
+    zero = pytest.approx(np.zeros(5), rel=0, abs=3e-13 * path.indentation_depth[0])
+    assert base.axial_displacement == zero
+    if support == "bonded":
+        assert base.radial_displacement == zero
+        m = nu / (1 - nu)
+        assert base.radial_stress == pytest.approx(m * base.axial_stress, rel=0, abs=1e-11 * mean)
+        assert base.hoop_stress == pytest.approx(m * base.axial_stress, rel=0, abs=1e-11 * mean)
+    else:
+        assert base.shear_stress == pytest.approx(np.zeros(5), rel=0, abs=1e-12 * mean)
+    top = inside.at(r, 1e-8 * radius)
+    assert top.axial_stress == pytest.approx(-path.pressure(r), rel=0, abs=1e-10 * mean)
+    assert top.shear_stress == pytest.approx(np.zeros(5), rel=0, abs=1e-6 * mean)
+    surface = inside.at(r, 0.0)
+    assert surface.shear_stress == pytest.approx(np.zeros(5), rel=0, abs=1e-9 * mean)
+    assert surface.axial_displacement == pytest.approx(
+        path.surface_displacement(r), rel=0, abs=1e-10 * path.indentation_depth[0]
+    )
+
+
+INDENTERS = [
+    TruncatedCone(flat_radius=0.3, slope=0.1),
+    Sphere(radius=1.02),
+    PowerLaw(exponent=1.7, reference_radius=1.0, reference_height=0.1),
+    Tabulated(radii=np.linspace(0.0, 2.0, 9), heights=np.linspace(0.0, 2.0, 9) ** 2 / 20.0),
+    Cone(slope=0.1),
+]
+
+
+@pytest.mark.parametrize("indenter", INDENTERS, ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize("nu", [0.2, 0.5])
+def test_equilibrium_dilatation_and_gradient(indenter, nu):
+    """Differences of eighth order: div sigma = 0, (1 - 2 nu)/E tr sigma = div u, and the gradient of the pressure."""
+    path = pressed(unit_layer(nu), indenter, 1.0)
+    inside, step = path.inside(), 0.02
+    shifts = step * np.arange(-4, 5)
+    weights = np.array([1 / 280, -4 / 105, 1 / 5, -4 / 5, 0, 4 / 5, -1 / 5, 4 / 105, -1 / 280]) / step
+    for r, z in ((0.5, 0.3), (0.9, 0.45), (1.3, 0.8)):
+        along, down = inside.at(r + shifts, np.full(9, z)), inside.at(np.full(9, r), z + shifts)
+        here = inside.at(r, z)
+        scale = float(here.hydrostatic_pressure) + float(here.von_mises)
+        exact = pytest.approx(0.0, rel=0, abs=3e-8 * scale)
+        radial = (
+            weights @ along.radial_stress + weights @ down.shear_stress + (here.radial_stress - here.hoop_stress) / r
+        )
+        axial = weights @ along.shear_stress + weights @ down.axial_stress + here.shear_stress / r
+        assert radial == exact
+        assert axial == exact
+        strain = weights @ along.radial_displacement + here.radial_displacement / r + weights @ down.axial_displacement
+        trace = here.radial_stress + here.hoop_stress + here.axial_stress
+        assert strain - (1 - 2 * nu) / (1 - nu**2) * trace == exact
+        assert here.hydrostatic_pressure == pytest.approx(-trace / 3.0, rel=0, abs=1e-11 * scale)
+        assert weights @ along.hydrostatic_pressure - here.pressure_gradient_radial == exact
+        assert weights @ down.hydrostatic_pressure - here.pressure_gradient_axial == exact
+
+
+def test_principal_stresses():
+    found = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=1.0), 1.0).inside().at(0.7, 0.5)
+    tensor = np.array(
+        [
+            [found.radial_stress, 0.0, found.shear_stress],
+            [0.0, found.hoop_stress, 0.0],
+            [found.shear_stress, 0.0, found.axial_stress],
+        ]
+    )
+    values = np.sort(np.linalg.eigvalsh(tensor))[::-1]
+    assert found.principal_stresses == pytest.approx(values, rel=1e-13, abs=0)
+    assert found.largest_shear == pytest.approx((values[0] - values[2]) / 2.0, rel=1e-13, abs=0)
+    deviator = tensor - np.trace(tensor) / 3.0 * np.eye(3)
+    assert found.von_mises == pytest.approx(math.sqrt(1.5 * np.sum(deviator**2)), rel=1e-13, abs=0)
+
+
+def test_one_point_alone_equals_the_same_in_a_list():
+    inside = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=1.0), 1.0).inside()
+    r, z = np.array([0.0, 0.4, 0.4, 2.0]), np.array([0.3, 0.3, 0.9, 0.3])
+    together = inside.at(r, z)
+    for i in range(4):
+        alone = inside.at(r[i], z[i])
+        assert alone.von_mises == pytest.approx(together.von_mises[i], rel=1e-12, abs=0)
+    square = inside.at(r.reshape(2, 2), z.reshape(2, 2))
+    assert np.array_equal(square.axial_stress.ravel(), together.axial_stress)
+
+
+def test_refusals_by_name():
+    path = pressed(unit_layer(0.3), TruncatedCone(flat_radius=0.3, slope=0.1), 1.0)
+    with pytest.raises(InvalidInput, match=r"depth = 1\.5: points must lie in the layer, between 0 and 1 m"):
+        path.inside().at(0.0, 1.5)
+    with pytest.raises(InvalidInput, match="radius = -1: radii must be finite and not negative"):
+        path.inside().at([-1.0], [0.5])
+    with pytest.raises(InvalidInput, match=r"radius = 0.3 m, depth = 0: stresses are infinite at this sharp rim"):
+        path.inside().at(0.3, 0.0)
+    with pytest.raises(InvalidInput, match=r"it is infinite at the rim r = 0.3 m"):
+        path.inside().largest("von_mises")
+    with pytest.raises(InvalidInput, match="ask for 'von_mises' or 'interface_shear'"):
+        path.inside().largest("shear")
+    with pytest.raises(InvalidInput, match="this path has steps 0 to 0"):
+        path.inside(3)
+
+
+def test_graded_layers_are_refused_by_name():
+    layer = GradedLayer(
+        thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3, support="bonded"
+    )
+    path = pressed(layer, Paraboloid(radius_of_curvature=10.0), 0.5)
+    with pytest.raises(UnsupportedSceneError, match="uniform layers and stacks, not of a GradedLayer"):
+        path.inside().at(0.1, 0.2)
+
+
+def test_adhering_contacts_have_an_inside():
+    scene = Scene(
+        layer=unit_layer(0.3),
+        indenter=Paraboloid(radius_of_curvature=10.0),
+        loading=ContactRadii([1.0]),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+    path = Mdr().solve(scene)
+    r = np.array([0.1, 0.6, 0.9])
+    top = path.inside().at(r, 1e-9)
+    assert top.axial_stress == pytest.approx(-path.pressure(r), rel=1e-8, abs=0)
+    nodes, weights = np.polynomial.legendre.leggauss(300)
+    r = 6.0 * (nodes + 1.0)
+    total = 2.0 * math.pi * 6.0 * weights @ (path.inside().at(r, 0.7).axial_stress * r)
+    assert -total == pytest.approx(float(path.normal_force[0]), rel=1e-5, abs=0)
