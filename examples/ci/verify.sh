@@ -7,7 +7,8 @@
 # Where accepted numbers are kept (folder BASELINES, default baselines), the finished run is compared with them.
 # With AGAINST=REVISION every method is then timed alternately with that revision, on the case AGAINST_CASE; that needs
 # the project's own folder as the current one.
-# Exit code: that of contact-verify (0 passed, 1 a check failed, 2 interrupted, 3 internal error, 4 usage, 5 nothing ran).
+# Exit code: that of contact-verify (0 passed, 1 a check failed, 2 interrupted, 3 internal error, 4 usage, 5 nothing ran,
+# 6 open verdicts with --strict).
 # Keep these files of the folder as artefacts: report.html (open it in a browser), summary.md, junit.xml, results.json.
 set -u
 out=${1:?"usage: verify.sh FOLDER [options of contact-verify run]"}

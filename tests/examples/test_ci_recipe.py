@@ -28,7 +28,9 @@ from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
 run.load_cases = gate.load_cases = lambda: {{case.name: case}}
 from reports.command_line import main
-main()
+# Processes that draw import this file once more, as they do the installed command.
+if __name__ == "__main__":
+    main()
 """
 
 
