@@ -7,6 +7,7 @@ from pathlib import Path
 from rich.text import Text
 
 from cases.declare.case import Case
+from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import only_methods
 from cases.measurements.suites import with_studies
@@ -38,8 +39,8 @@ def run(
     strict: bool,
 ) -> int:
     """Run cases and return the exit code."""
-    chosen = select(load_cases(), names=names, suite=options.suite)
-    cases = [only_methods(case, methods) for case in chosen]
+    library = {name: with_registered(case, methods) for name, case in load_cases().items()}
+    cases = [only_methods(case, methods) for case in select(library, names=names, suite=options.suite)]
     studied = bool(options.suite) and not names and not methods
     with locked(options.out):
         result = _carried_out(cases, dataclasses.replace(options, executor=by_name(executor)), studied, quiet=quiet)
