@@ -37,6 +37,7 @@ class RunOptions:
     Attributes:
         out: folder of results; finished tasks lie in ``out/tasks``.
         suite: name of the suite, for the record.
+        methods: that were chosen, for the record; empty for those of the cases.
         jobs: tasks at a time.
         executor: where they run.
         resume: use finished tasks of an earlier run in the same folder whose keys are equal.
@@ -48,6 +49,7 @@ class RunOptions:
 
     out: Path
     suite: str = ""
+    methods: tuple[str, ...] = ()
     jobs: int = 2
     executor: ExecutorFactory = process_pool
     resume: bool = False
@@ -126,6 +128,7 @@ def _run(cases: Sequence[Case], options: RunOptions) -> RunResult:
     results = tuple(_judged(run, case, answers, complete=complete) for case in cases)
     result = RunResult(
         suite=options.suite,
+        methods=options.methods,
         complete=complete,
         stamp=stamp(started, time.perf_counter() - clock),
         cases=results,
