@@ -151,7 +151,13 @@ def run_suite(
     executor: Annotated[
         str, typer.Option(help="processes, serial, or the address of a Dask scheduler (tcp://host:port).")
     ] = "processes",
-    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds a single solution may take; 0: no limit.")] = 0.0,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            help="Seconds a single solution may take; 0: no limit. By default 300 for methods of installed packages.",
+        ),
+    ] = None,
     timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
     strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
