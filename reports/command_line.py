@@ -134,7 +134,16 @@ def run_suite(
     suite: Annotated[Suite | None, typer.Option(help="Only cases of this suite.")] = None,
     method: Annotated[
         list[str] | None,
-        typer.Option(help="Only these methods; claims, timings and figures that need others are left out. Repeatable."),
+        typer.Option(
+            help="Only these methods; claims, timings and figures that need others are left out. Repeatable. "
+            "A method of an installed package, named alone, is compared with mdr."
+        ),
+    ] = None,
+    against: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="Compare each --method with this one on all scenes of the cases, and nothing else. Repeatable."
+        ),
     ] = None,
     jobs: Annotated[int, typer.Option(help="Solutions at a time; timings always run alone.")] = 2,
     out: Out = Path("build/verification"),
@@ -142,7 +151,13 @@ def run_suite(
     executor: Annotated[
         str, typer.Option(help="processes, serial, or the address of a Dask scheduler (tcp://host:port).")
     ] = "processes",
-    time_limit: Annotated[float, typer.Option(min=0.0, help="Seconds a single solution may take; 0: no limit.")] = 0.0,
+    time_limit: Annotated[
+        float | None,
+        typer.Option(
+            min=0.0,
+            help="Seconds a single solution may take; 0: no limit. By default 300 for methods of installed packages.",
+        ),
+    ] = None,
     timing: Annotated[bool, typer.Option(help="Measure what accuracy costs in time.")] = True,
     strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,
@@ -155,7 +170,15 @@ def run_suite(
     from reports.commands.run import run  # noqa: PLC0415
 
     options = RunOptions(out=out, suite=suite or "", jobs=jobs, resume=resume, time_limit=time_limit, timing=timing)
-    return run(cases or [], methods=method or [], options=options, executor=executor, quiet=quiet, strict=strict)
+    return run(
+        cases or [],
+        methods=method or [],
+        others=against or [],
+        options=options,
+        executor=executor,
+        quiet=quiet,
+        strict=strict,
+    )
 
 
 @app.command()
@@ -163,6 +186,9 @@ def cost(
     cases: Cases = None,
     *,
     suite: Annotated[Suite, typer.Option(help="ci: two settings a method; nightly: all of them.")] = Suite.NIGHTLY,
+    method: Annotated[
+        list[str] | None, typer.Option(help="Only these methods, those of installed packages as they are. Repeatable.")
+    ] = None,
     out: Annotated[Path, typer.Option(help="Folder of the run: results.json, report.html, figures.")] = Path(
         "build/cost"
     ),
@@ -178,7 +204,7 @@ def cost(
     from reports.commands.cost import cost as run_command  # noqa: PLC0415
 
     options = RunOptions(out=out, suite=suite, jobs=1, resume=resume, time_limit=time_limit)
-    return run_command(cases or [], options, quiet=quiet)
+    return run_command(cases or [], options, methods=method or [], quiet=quiet)
 
 
 @app.command()
@@ -187,7 +213,8 @@ def gate(
     *,
     baseline: Baselines = Path("baselines"),
     method: Annotated[
-        list[str] | None, typer.Option(help="Only these methods, for a run of them alone. Repeatable.")
+        list[str] | None,
+        typer.Option(help="Only these methods; by default those that the run was made with. Repeatable."),
     ] = None,
     strict: Annotated[bool, typer.Option("--strict", help="Verdicts that stay open end with exit code 6.")] = False,
     quiet: Quiet = False,

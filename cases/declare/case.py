@@ -1,6 +1,6 @@
 """A case: a short paper that is also a test.  Pure description; nothing here solves anything."""
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Set
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field
 from typing import Any, Protocol, Self
 
@@ -41,6 +41,9 @@ class ClaimOfCase(Protocol):
     def nightly(self) -> bool:
         """Whether it takes too long for the suite "ci"."""
 
+    def scenes_of(self, case: "Case") -> tuple["CaseScene", ...]:
+        """Return the scenes this claim speaks about."""
+
     def check(self, case: "Case") -> None:
         """Refuse scenes or methods that the case does not have."""
 
@@ -55,7 +58,7 @@ class ClaimOfCase(Protocol):
 
 
 class StudyOfCase(Protocol):
-    """What a case asks of its studies: what accuracy costs, and what each effect costs and moves."""
+    """What a case asks of its studies: what each effect costs and moves."""
 
     def in_suite(self, suite: str) -> Self:
         """Return the study as a suite carries it out."""
@@ -68,6 +71,17 @@ class StudyOfCase(Protocol):
 
     def records(self, case: "Case", answers: Answers) -> Iterator[Any]:
         """Return what the finished answers say."""
+
+
+class WorkOfCase(StudyOfCase, Protocol):
+    """What a case asks of its studies of what accuracy costs."""
+
+    @property
+    def ladder(self) -> tuple[MethodUse, ...]:
+        """Settings that are timed."""
+
+    def of_methods(self, methods: Collection[str], foreign: Iterable[str] = ()) -> Self:
+        """Return the study of these methods, and of ``foreign`` ones with the settings they come with."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,7 +133,7 @@ class Case:
     scenes: tuple[CaseScene, ...]
     methods: tuple[MethodUse, ...]
     claims: tuple[ClaimOfCase, ...]
-    work: tuple[StudyOfCase, ...] = ()
+    work: tuple[WorkOfCase, ...] = ()
     ablations: tuple[StudyOfCase, ...] = ()
     figures: tuple[Callable[["Case", Answers], Iterator[Figure]], ...] = field(default=())
 

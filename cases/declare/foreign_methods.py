@@ -1,20 +1,19 @@
-"""Methods of installed packages join every case: each claim that can be put to them is put to them.
+"""Methods of installed packages join every case when they are chosen: each claim that can be put to them is.
 
 Such a method follows ``contact.Method`` and may say how accurate it means to be (``claimed_accuracy``, relative, a
 class attribute, at most 10 %); no claim then asks more of it, and every verdict that this relaxes says so.  Where it
 says nothing, a claim asks what it asks of its least exact method.
 """
 
-from collections.abc import Iterator
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from numbers import Real
 from typing import Any, Final
 
 from cases.declare.case import Case, ClaimOfCase
+from cases.declare.foreign_agreements import foreign_agreements, relaxed
 from cases.declare.methods import MethodUse, load, registered
-from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.declared import DeclaredClaim, PerMethod
-from cases.judgement.claims.field_agreement import FieldAgreement
+from cases.judgement.claims.declared import PerMethod
 from cases.judgement.claims.residual import Residual
 from contact import InvalidInput
 from contact.records.record import shown
@@ -23,15 +22,18 @@ from contact.records.record import shown
 LARGEST_CLAIM: Final = 0.1
 
 
-def with_registered(case: Case) -> Case:
-    """Return ``case`` with every registered method of an installed package.
+def with_registered(case: Case, chosen: Collection[str] | None = None) -> Case:
+    """Return ``case`` with the registered methods of installed packages.
+
+    Args:
+        case: with its own methods.
+        chosen: names of methods; None for every registered one.
 
     Raises:
         InvalidInput: if such a method cannot be imported, or claims an accuracy that is none.
     """
-    for name in registered():
-        case = with_foreign_method(case, name, claimed_accuracy=claimed_accuracy(name))
-    return case
+    names = [name for name in registered() if chosen is None or name in chosen]
+    return with_foreign_methods(case, {name: claimed_accuracy(name) for name in names})
 
 
 def claimed_accuracy(name: str) -> float:
@@ -58,49 +60,37 @@ def check_claim(name: str, claimed: Any) -> float:
     return float(claimed)
 
 
-def with_foreign_method(case: Case, name: str, *, claimed_accuracy: float = 0.0) -> Case:
-    """Return ``case`` solved by one more method and with the claims that can be put to it.
+def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
+    """Return ``case`` solved by more methods and with the claims that can be put to them.
 
-    Claims about single methods extend to it; agreements compare it with both methods of the case.  Orders of
-    convergence belong to a mesh family, and residuals to the method that publishes them: they stay as they are.
+    Claims about single methods extend to them; agreements compare each with the methods of the case, never with one
+    another.  Orders of convergence belong to a mesh family, and residuals to the method that publishes them: they stay
+    as they are.
+
+    Args:
+        case: with its own methods.
+        accuracies: that the methods claim for themselves, relative, by name; zero where one claims none.
     """
-    claims = (new for claim in case.claims for new in _extended(case, claim, name, claimed_accuracy))
-    use = MethodUse(label=name)
-    scenes = (replace(scene, methods=(*scene.methods, use)) if scene.methods else scene for scene in case.scenes)
-    return replace(case, methods=(*case.methods, use), scenes=tuple(scenes), claims=tuple(claims))
+    if not accuracies:
+        return case
+    uses = tuple(MethodUse(label=name) for name in accuracies)
+    scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in case.scenes)
+    own = (_extended(case, claim, accuracies) for claim in case.claims)
+    agreements = (new for name, accuracy in accuracies.items() for new in foreign_agreements(case, name, accuracy))
+    return replace(case, methods=(*case.methods, *uses), scenes=tuple(scenes), claims=(*own, *agreements))
 
 
-def _extended(case: Case, claim: ClaimOfCase, name: str, accuracy: float) -> Iterator[ClaimOfCase]:
-    match claim:
-        case Residual():
-            yield replace(claim, methods=claim.methods or tuple(use.label for use in case.methods))
-        case PerMethod():
-            asked = max([claim.tolerance, *claim.tolerances.values()])
-            yield replace(
-                claim,
-                methods=(*claim.methods, name) if claim.methods else (),
-                tolerances={**claim.tolerances, name: max(asked, accuracy)},
-                relaxed={**claim.relaxed, **_relaxed(name, asked, accuracy)},
-            )
-        case Agreement() | FieldAgreement():
-            yield claim
-            yield from _against_both(claim, name, accuracy)
-        case _:
-            yield claim
-
-
-def _against_both(claim: Agreement | FieldAgreement, name: str, accuracy: float) -> Iterator[DeclaredClaim]:
-    for other in (claim.fast, claim.reference):
-        yield replace(
-            claim,
-            name=f"{claim.name}: {name} and {other}",
-            fast=name,
-            reference=other,
-            tolerance=max(claim.tolerance, accuracy),
-            relaxed=_relaxed(name, claim.tolerance, accuracy),
-        )
-
-
-def _relaxed(name: str, asked: float, claimed: float) -> dict[str, str]:
-    """What is said beside the verdict where a method's own claim widens the tolerance."""
-    return {name: f"{name} claims {claimed:.2g}, others meet {asked:.2g}"} if claimed > asked else {}
+def _extended(case: Case, claim: ClaimOfCase, accuracies: Mapping[str, float]) -> ClaimOfCase:
+    """The claim about single methods with more of them; any other claim as it is."""
+    if isinstance(claim, Residual):
+        return replace(claim, methods=claim.methods or tuple(use.label for use in case.methods))
+    if not isinstance(claim, PerMethod):
+        return claim
+    asked = max([claim.tolerance, *claim.tolerances.values()])
+    said = {name: words for label, own in accuracies.items() for name, words in relaxed(label, asked, own).items()}
+    return replace(
+        claim,
+        methods=(*claim.methods, *accuracies) if claim.methods else (),
+        tolerances={**claim.tolerances, **{name: max(asked, own) for name, own in accuracies.items()}},
+        relaxed={**claim.relaxed, **said},
+    )

@@ -6,7 +6,7 @@ class (a frozen record of settings that follows ``contact.Method``).  Nothing is
 
 import importlib
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Final
@@ -77,6 +77,21 @@ def check_name(name: str, place: str) -> None:
             f"a package calls its method {shown(name)}: a name has at most 60 letters, digits, dots, dashes "
             f"and underscores, a letter first; rename the entry point of {shown(place)}"
         )
+
+
+def check_known(name: str, labels: Iterable[str] = ()) -> None:
+    """Refuse a name that no method has.
+
+    Args:
+        name: of a method.
+        labels: under which cases know methods, besides the names of the table.
+
+    Raises:
+        InvalidInput: with the names that there are.
+    """
+    known = dict.fromkeys((*method_names(), *labels))
+    if name not in known:
+        raise InvalidInput(f"no method {name!r}; there are {', '.join(known)}")
 
 
 def method_names() -> tuple[str, ...]:

@@ -6,20 +6,19 @@ from collections.abc import Iterable
 
 from cases import library
 from cases.declare.case import SUITES, Case
-from cases.declare.foreign_methods import with_registered
 from cases.declare.selection import in_suite
 from contact import InvalidInput
 
 
 def load_cases() -> dict[str, Case]:
-    """Return every case of the library by name, in alphabetic order, open to the methods of installed packages.
+    """Return every case of the library by name, in alphabetic order, with the methods of this project.
 
     Raises:
-        InvalidInput: if a module has no ``CASE``, two cases have one name, or a registered method cannot be imported.
+        InvalidInput: if a module has no ``CASE``, or two cases have one name.
     """
     found = (info.name for info in pkgutil.walk_packages(library.__path__, f"{library.__name__}.") if not info.ispkg)
     modules = sorted((name for name in found if "._" not in name), key=_last)
-    return by_name(with_registered(_case_of(name)) for name in modules)
+    return by_name(_case_of(name) for name in modules)
 
 
 def by_name(cases: Iterable[Case]) -> dict[str, Case]:

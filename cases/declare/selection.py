@@ -26,7 +26,7 @@ def in_suite(case: Case, suite: str) -> Case:
 def _in_ci(case: Case) -> Case:
     """Return the case without its nightly claims and methods."""
     quick = replace(case, claims=tuple(claim for claim in case.claims if not claim.nightly))
-    return _left(quick, lambda scene, use: use.label not in scene.nightly)
+    return only(quick, lambda scene, use: use.label not in scene.nightly)
 
 
 def only_methods(case: Case, wanted: Collection[str]) -> Case:
@@ -41,7 +41,7 @@ def only_methods(case: Case, wanted: Collection[str]) -> Case:
     if not methods:
         known = ", ".join(use.label for use in case.methods)
         raise InvalidInput(f"case {case.name} has no method {' or '.join(wanted)}; it has {known}")
-    return replace(_left(case, lambda _, use: use.label in wanted), methods=methods, work=(), figures=())
+    return replace(only(case, lambda _, use: use.label in wanted), methods=methods, work=(), figures=())
 
 
 def nightly_only(case: Case) -> frozenset[tuple[str, str]]:
@@ -49,7 +49,7 @@ def nightly_only(case: Case) -> frozenset[tuple[str, str]]:
     return frozenset((scene.name, label) for scene in case.scenes for label in scene.nightly)
 
 
-def _left(case: Case, keep: Keep) -> Case:
+def only(case: Case, keep: Keep) -> Case:
     """Return the case with the methods that ``keep`` keeps on each scene, and what these can answer."""
     uses = {scene.name: tuple(use for use in case.methods_of(scene) if keep(scene, use)) for scene in case.scenes}
     solvers = {name: {use.label for use in kept} for name, kept in uses.items()}
@@ -61,4 +61,4 @@ def _left(case: Case, keep: Keep) -> Case:
 
 def only_scenes(case: Case, scenes: Collection[str], methods: Collection[str]) -> Case:
     """Return the case with some of its scenes and methods, and the claims that these can answer."""
-    return _left(case, lambda scene, use: scene.name in scenes and use.label in methods)
+    return only(case, lambda scene, use: scene.name in scenes and use.label in methods)

@@ -14,6 +14,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cases.declare.case import Case
+from cases.declare.methods import registered
 from cases.declare.task import Answers, Task
 from cases.judgement.judge import case_result
 from cases.results.files import write_run
@@ -29,6 +30,10 @@ from cases.run.stamp import stamp
 from cases.run.store import TaskStore
 from contact import InvalidInput
 
+# Seconds that one solution by a method of an installed package may take unless told otherwise: nobody here knows
+# whether it ends.  The value is that of the command `cost`, which allows as much for all repetitions of a setting.
+FOREIGN_TIME_LIMIT = 300.0
+
 
 @dataclass(frozen=True, kw_only=True)
 class RunOptions:
@@ -37,10 +42,11 @@ class RunOptions:
     Attributes:
         out: folder of results; finished tasks lie in ``out/tasks``.
         suite: name of the suite, for the record.
+        methods: that were chosen, for the record; empty for those of the cases.
         jobs: tasks at a time.
         executor: where they run.
         resume: use finished tasks of an earlier run in the same folder whose keys are equal.
-        time_limit: seconds a task may take; zero for no limit.
+        time_limit: seconds a task may take, zero for no limit; by default only methods of installed packages have one.
         timing: whether timing tasks run; without them there are no work-precision records.
         only_costs: whether only the tasks of work studies run; no claim is then judged.
         progress: told of every event.
@@ -48,10 +54,11 @@ class RunOptions:
 
     out: Path
     suite: str = ""
+    methods: tuple[str, ...] = ()
     jobs: int = 2
     executor: ExecutorFactory = process_pool
     resume: bool = False
-    time_limit: float = 0.0
+    time_limit: float | None = None
     timing: bool = True
     only_costs: bool = False
     progress: Progress = silent
@@ -126,6 +133,7 @@ def _run(cases: Sequence[Case], options: RunOptions) -> RunResult:
     results = tuple(_judged(run, case, answers, complete=complete) for case in cases)
     result = RunResult(
         suite=options.suite,
+        methods=options.methods,
         complete=complete,
         stamp=stamp(started, time.perf_counter() - clock),
         cases=results,
@@ -222,7 +230,14 @@ def _closing(executor: Executor) -> Iterator[Executor]:
 
 
 def _submit(executor: Executor, run: _Run, planned: _Planned) -> Future[SceneRun]:
-    return executor.submit(solve, planned.task, planned.key, run.options.time_limit)
+    return executor.submit(solve, planned.task, planned.key, _limit(run.options, planned.task.method))
+
+
+def _limit(options: RunOptions, method: str) -> float:
+    """Seconds that the method may take; zero for no limit."""
+    if options.time_limit is not None:
+        return options.time_limit
+    return FOREIGN_TIME_LIMIT if method in registered() else 0.0
 
 
 def _solve_apart(run: _Run, factory: ExecutorFactory, planned: _Planned) -> None:

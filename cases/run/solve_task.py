@@ -35,14 +35,14 @@ def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
                 return without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
             return _solved(task, key)
     except TimeLimitReached:
-        return without_numbers(task, key, Status.TIMEOUT, f"not finished after {time_limit:g} s")
+        return without_numbers(task, key, Status.TIMEOUT, f"{task.method}: not finished after {time_limit:g} s")
     except UnsupportedSceneError as error:
         return without_numbers(task, key, Status.SKIP, str(error))
     except NotConvergedError as error:
         return without_numbers(task, key, Status.INVALID, f"NotConvergedError: {error}")
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         # A solver that breaks in its own way becomes a row, too.
-        return without_numbers(task, key, Status.INVALID, f"{type(error).__name__}: {error}")
+        return without_numbers(task, key, Status.INVALID, f"{task.method} crashed: {type(error).__name__}: {error}")
 
 
 def _solved(task: Task, key: str) -> SceneRun:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cases.declare.case import Case
+from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import nightly_only
 from cases.gate.accept import accept, refusals, refusals_beforehand
@@ -47,7 +48,9 @@ def accept_cases(names: list[str], request: AcceptRequest) -> None:
     Raises:
         InvalidInput: naming every case that may not be accepted and why; the others are written all the same.
     """
-    result, library = read_run(request.run), load_cases()
+    result = read_run(request.run)
+    solved_by = {row.method for case in result.cases for row in case.runs}
+    library = {name: with_registered(case, solved_by) for name, case in load_cases().items()}
     ran = [case.name for case in result.cases]
     refused: list[str] = []
     studies = [case for case in result.cases if case.ladders and case.name not in library]

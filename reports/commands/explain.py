@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases
 from cases.declare.task import Task
 from cases.results.files import read_run
@@ -38,7 +39,7 @@ def _task_of(key: str, out: Path) -> Task:
         )
     case, scene, method = places[key]
     cases = load_cases()
-    tasks = cases[case].tasks() if case in cases else ()
+    tasks = with_registered(cases[case], [method]).tasks() if case in cases else ()
     for task in tasks:
         if task.identity == (case, scene, "", method):
             return task

@@ -20,11 +20,20 @@ from reports.commands.run import show_verdict
 
 
 def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], strict: bool, quiet: bool) -> int:
-    """Gate the run in `directory` (only these `methods`, if any), write its pages again and return the exit code.
+    """Gate the run in `directory`, write its pages again and return the exit code.
+
+    Args:
+        directory: of the run.
+        baselines: folder of the accepted numbers.
+        methods: that are gated; if none is named, those that the run was made with.
+        strict: whether verdicts that stay open fail.
+        quiet: whether only the verdict is shown.
 
     Raises:
         InvalidInput: if there is no run or no baseline.
     """
+    require_run(directory)
+    methods = methods or read_run(directory).methods
     accepted = [_of_methods(b, methods) for b in read_baselines(baselines) if not methods or b.method in methods]
     ladders = read_ladders(baselines)
     if not accepted and not ladders:
@@ -34,7 +43,6 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
     def watched(case: str, row: SceneRun) -> bool:
         return (case, row.scene, row.method) not in unwatched and (not methods or row.method in methods)
 
-    require_run(directory)
     with locked(directory):
         result = gate(read_run(directory), accepted, read_history(baselines), ladders, watched)
         write_run(result, directory)

@@ -4,6 +4,7 @@ from rich.padding import Padding
 from rich.text import Text
 
 from cases.declare.case import Case, CaseScene, ClaimOfCase
+from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases, select
 from reports.tables.table import Table
 from reports.terminal.terminal import console, show_table
@@ -81,12 +82,12 @@ def _claim_row(claim: ClaimOfCase) -> tuple[str, ...]:
 
 
 def validate_cases() -> None:
-    """Load every case and build its tasks; the first error ends it with exit code 4.
+    """Load every case, with every installed method, and build its tasks; the first error ends it with exit code 4.
 
     Raises:
         InvalidInput: naming the case and what is wrong with it.
     """
-    cases = load_cases()
+    cases = {name: with_registered(case) for name, case in load_cases().items()}
     tasks = sum(1 for case in cases.values() for _ in case.tasks())
     claims = sum(len(case.claims) for case in cases.values())
     console().print(f"{len(cases)} cases, {claims} claims, {tasks} solutions: all valid")

@@ -2,11 +2,15 @@
 
 import dataclasses
 import os
+from collections.abc import Sequence
 from pathlib import Path
 
 from rich.text import Text
 
+from cases.declare.against import against, beside
 from cases.declare.case import Case
+from cases.declare.foreign_methods import with_registered
+from cases.declare.methods import registered
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import only_methods
 from cases.measurements.suites import with_studies
@@ -24,6 +28,8 @@ from reports.terminal.terminal import STYLES, console, show_table
 from reports.words.moves import moves
 from reports.words.outcomes import headline, outcomes
 
+# What methods of installed packages are compared with when no other method is named.
+REFEREE = "mdr"
 # The terminal shows so many failed checks; the page shows all.
 WORST_SHOWN = 12
 
@@ -32,17 +38,36 @@ def run(
     names: list[str],
     *,
     methods: list[str],
+    others: list[str],
     options: RunOptions,
     executor: str,
     quiet: bool,
     strict: bool,
 ) -> int:
-    """Run cases and return the exit code."""
-    chosen = select(load_cases(), names=names, suite=options.suite)
-    cases = [only_methods(case, methods) for case in chosen]
-    studied = bool(options.suite) and not names and not methods
+    """Run cases and return the exit code.
+
+    Args:
+        names: of cases; all of the suite if none.
+        methods: that solve them; all of the project if none.
+        others: methods that these are compared with, and with nothing else.
+        options: of the run.
+        executor: where solutions are computed.
+        quiet: whether only the verdict is shown.
+        strict: whether verdicts that stay open fail.
+    """
+    foreign = bool(methods) and set(methods) <= set(registered())
+    if others:
+        cases, solvers = _against(names, methods, others, options.suite), (*methods, *others)
+    elif foreign:
+        solvers = (*methods, REFEREE)
+        cases = [beside(case, methods, REFEREE) for case in _chosen(methods, names, options.suite)]
+    else:
+        solvers = tuple(methods)
+        cases = [only_methods(case, methods) for case in _chosen(methods, names, options.suite)]
+    options = dataclasses.replace(options, methods=tuple(dict.fromkeys(solvers)), executor=by_name(executor))
+    studied = bool(options.suite) and not names and not solvers
     with locked(options.out):
-        result = _carried_out(cases, dataclasses.replace(options, executor=by_name(executor)), studied, quiet=quiet)
+        result = _carried_out(cases, options, studied, quiet=quiet)
         write_pages(result, options.out)
     show_verdict(result, options.out, quiet=quiet)
     if not result.complete:
@@ -50,7 +75,20 @@ def run(
     return exit_code(result.statuses, strict=strict)
 
 
-def _carried_out(cases: list[Case], options: RunOptions, studied: bool, *, quiet: bool) -> RunResult:
+def _chosen(methods: list[str], names: list[str], suite: str) -> tuple[Case, ...]:
+    """The cases of a suite, open to those of the methods that are of installed packages."""
+    library = {name: with_registered(case, methods) for name, case in load_cases().items()}
+    return select(library, names=names, suite=suite)
+
+
+def _against(names: list[str], methods: list[str], others: list[str], suite: str) -> Sequence[Case]:
+    """The cases of a suite, with all their scenes, as comparisons of methods with others."""
+    library = load_cases()
+    chosen = [library[case.name] for case in select(library, names=names, suite=suite)]
+    return against(chosen, methods, others)
+
+
+def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> RunResult:
     """Run cases and, if this is a whole suite, its studies."""
     with RunDisplay(console(), quiet=quiet) as display:
         result = run_cases(cases, dataclasses.replace(options, progress=display))

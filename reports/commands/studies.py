@@ -101,14 +101,14 @@ def scaling(out: Report = Path("build/scaling")) -> int:
     return published(lambda: scaling_case(progress=_say), out)
 
 
-def maps(names: Words = None, out: Report = Path("build/maps")) -> int:
-    """Map the signed error of each closed form and method over a/h and Poisson's ratio: where it is good to 1 %."""
-    from cases.measurements.advice.error_maps import FORMULAS, METHODS, map_case  # noqa: PLC0415
-    from contact import InvalidInput  # noqa: PLC0415
+def maps(names: Words = None, method: Methods = None, out: Report = Path("build/maps")) -> int:
+    """Map the signed error of each closed form and method over a/h and Poisson's ratio: where it is good to 1 %.
 
-    plans = [plan for plan in (*FORMULAS, *METHODS) if not names or plan.name in names]
-    if not plans and names:
-        raise InvalidInput(f"no map of {names[0]!r}; there are {', '.join(p.name for p in (*FORMULAS, *METHODS))}")
+    A method of an installed package is mapped with the settings it comes with.
+    """
+    from cases.measurements.advice.error_maps import map_case, plans_of  # noqa: PLC0415
+
+    plans = plans_of(names or [], method or [])
     return published(lambda: map_case(plans, progress=_say), out)
 
 

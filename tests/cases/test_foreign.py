@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from cases.declare import methods
-from cases.declare.foreign_methods import LARGEST_CLAIM, claimed_accuracy, with_foreign_method, with_registered
+from cases.declare.foreign_methods import LARGEST_CLAIM, claimed_accuracy, with_foreign_methods, with_registered
 from cases.declare.guarded_method import BrokenMethodError, GuardedMethod, build_guarded
 from cases.judgement.judge import case_result
 from cases.results.status import Status
@@ -111,7 +111,7 @@ def judged(claimed):
 
     case = fake_case()
     fast = next(use for use in case.methods if use.label == "fast")
-    case = with_foreign_method(case, "newcomer", claimed_accuracy=claimed)
+    case = with_foreign_methods(case, {"newcomer": claimed})
     uses = tuple(
         replace(fast, label="newcomer", method=fast.method or fast.label) if u.label == "newcomer" else u
         for u in case.methods

@@ -5,7 +5,7 @@ from importlib.metadata import EntryPoint
 import pytest
 
 from cases.declare import methods
-from cases.declare.foreign_methods import with_foreign_method, with_registered
+from cases.declare.foreign_methods import with_foreign_methods, with_registered
 from cases.declare.registry import load_cases
 from cases.judgement.claims.agreement import Agreement
 from cases.judgement.claims.exact import Exact
@@ -30,20 +30,20 @@ def register(monkeypatch):
 
 
 def test_claims_about_single_methods_extend_to_the_newcomer():
-    case = with_foreign_method(fake_case(), "newcomer")
+    case = with_foreign_methods(fake_case(), {"newcomer": 0.0})
     (exact,), (twin,) = claims_of(case, Exact), claims_of(case, ScalingLaw)
     assert exact.methods == ("fast", "newcomer")
     assert twin.labels(case, case.scenes[0]) == ("fast", "slow", "newcomer")
 
 
 def test_it_is_compared_with_both_methods_of_the_case():
-    case = with_foreign_method(fake_case(), "newcomer")
+    case = with_foreign_methods(fake_case(), {"newcomer": 0.0})
     compared = {(claim.fast, claim.reference) for claim in claims_of(case, Agreement)}
     assert compared == {("fast", "slow"), ("newcomer", "fast"), ("newcomer", "slow")}
 
 
 def test_no_claim_asks_more_than_it_claims_and_nobody_else_gains():
-    case = with_foreign_method(fake_case(), "newcomer", claimed_accuracy=1e-3)
+    case = with_foreign_methods(fake_case(), {"newcomer": 1e-3})
     (exact,) = claims_of(case, Exact)
     assert (exact.tolerance_of("newcomer"), exact.tolerance_of("fast")) == (1e-3, 1e-10)
     assert {claim.tolerance for claim in claims_of(case, Agreement) if claim.fast == "newcomer"} == {1e-3}
@@ -56,7 +56,7 @@ def test_without_a_claimed_accuracy_it_meets_the_widest_tolerance_of_the_others(
     from dataclasses import replace
 
     wide = replace(exact, tolerances={"fast": 1e-5})
-    case = with_foreign_method(replace(case, claims=(wide,)), "newcomer")
+    case = with_foreign_methods(replace(case, claims=(wide,)), {"newcomer": 0.0})
     assert claims_of(case, Exact)[0].tolerance_of("newcomer") == 1e-5
 
 
@@ -66,15 +66,15 @@ def test_orders_and_residuals_stay_with_the_methods_they_belong_to():
     case = fake_case()
     (twin,) = claims_of(case, ScalingLaw)
     residual = Residual(name="energy", quantity="energy_residual", tolerance=1e-8, reason=twin.reason)
-    case = with_foreign_method(replace(case, claims=(*case.claims, residual)), "newcomer")
+    case = with_foreign_methods(replace(case, claims=(*case.claims, residual)), {"newcomer": 0.0})
     assert claims_of(case, Residual)[0].methods == ("fast", "slow")
     assert [order.method for order in claims_of(case, Order)] == ["slow"]
 
 
-def test_a_registered_method_is_in_every_case_of_the_library(register):
+def test_a_chosen_method_is_in_every_case_of_the_library(register):
     register(("stranger", "tests.cases.fake_method:FakeHertz"))
     for case in load_cases().values():
-        assert "stranger" in {use.label for use in case.methods}
+        assert "stranger" in {use.label for use in with_registered(case, ["stranger"]).methods}
 
 
 def test_without_registered_methods_a_case_is_unchanged(register):

@@ -158,3 +158,15 @@ def test_without_a_name_all_cases_of_the_run_are_accepted(tmp_path):
     run_cases()
     assert accept_case("--write", name="") == 0
     assert sorted(path.name for path in (tmp_path / "baselines" / "fake_hertz").iterdir()) == ["fast.json", "slow.json"]
+
+
+@pytest.mark.usefixtures("here")
+def test_the_gate_reads_from_the_run_which_methods_were_chosen(capsys):
+    """Accepted numbers of the other method are not missed; without the record they were."""
+    run_cases()
+    assert accept_case("--write") == 0
+    run(["run", "--executor", "serial", "--quiet", "--suite", "ci", "--out", "out", "--method", "fast"])
+    assert gate_run() == 0
+    assert gate_run("--method", "fast") == 0
+    assert gate_run("--method", "slow") == 1
+    assert "slow" in capsys.readouterr().out

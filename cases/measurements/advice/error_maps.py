@@ -3,18 +3,19 @@
 The quantity is the force of a paraboloid at a prescribed contact radius, relative to the fast method's.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final
 
 import numpy as np
 
 from bem.polynomials.gauss import legendre_rule
-from cases.declare.methods import build
+from cases.declare.guarded_method import BrokenMethodError, build_guarded
+from cases.declare.methods import check_known
 from cases.measurements.study import Say, silent, study_case, told
 from cases.results.records.reliability import UNBONDED, ErrorMap
 from cases.results.records.run import CaseResult
-from contact import ContactError, ContactPath, ContactRadii, Layer, Method, Paraboloid, Scene
+from contact import ContactError, ContactPath, ContactRadii, InvalidInput, Layer, Method, Paraboloid, Scene
 from contact.records.validation import FloatArray
 
 NAME: Final = "error_maps"
@@ -80,13 +81,15 @@ class Solved:
 
     def __call__(self, layer: Layer, radii: FloatArray) -> FloatArray:
         """Solve radius by radius, so that one refusal costs one number."""
-        method = build(self.method, self.settings)
+        method = build_guarded(self.method, dict(self.settings))
         return np.array([_force(method, layer, a) for a in radii])
 
 
 def _force(method: Method, layer: Layer, radius: float) -> float:
     try:
         path = method.solve(_scene(layer, [radius]))
+    except BrokenMethodError:
+        raise
     except ContactError:
         return float("nan")
     return float(path.normal_force[-1]) if isinstance(path, ContactPath) else float("nan")
@@ -112,6 +115,26 @@ METHODS: Final = tuple(
         ("fem", "FEM, accuracy 1e-3", {"accuracy": 1e-3}),
     )
 )
+
+
+def plans_of(names: Collection[str], methods: Collection[str]) -> tuple[MapPlan, ...]:
+    """Return the maps of these names and methods, all of the project if neither is given.
+
+    Raises:
+        InvalidInput: if there is no such map or method.
+    """
+    for method in methods:
+        check_known(method)
+    known = {plan.name: plan for plan in (*FORMULAS, *METHODS)}
+    for name in names:
+        if name not in known:
+            raise InvalidInput(f"no map of {name!r}; there are {', '.join(known)}")
+    wanted = dict.fromkeys((*names, *methods)) or known
+    return tuple(known.get(name) or _as_it_comes(name) for name in wanted)
+
+
+def _as_it_comes(method: str) -> MapPlan:
+    return MapPlan(name=method, title=method, answer=Solved(method), ratios=FEW_RATIOS, rows=FEW_ROWS)
 
 
 def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *METHODS), progress: Say = silent) -> CaseResult:
@@ -140,7 +163,7 @@ def _map(plan: MapPlan) -> ErrorMap:
 
 def _row(plan: MapPlan, row: str) -> tuple[float | None, ...]:
     layer, radii = _layer(row), np.array(plan.ratios)
-    expected = np.asarray(build("mdr", {}).solve(_scene(layer, radii)).normal_force)  # type: ignore[attr-defined]
+    expected = np.asarray(build_guarded("mdr", {}).solve(_scene(layer, radii)).normal_force)  # type: ignore[attr-defined]
     errors = plan.answer(layer, radii) / expected - 1.0
     return tuple(float(error) if np.isfinite(error) else None for error in errors)
 

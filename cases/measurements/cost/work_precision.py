@@ -1,6 +1,6 @@
 """What accuracy costs on one scene: settings of several methods, timed alone on the machine."""
 
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Collection, Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -46,6 +46,12 @@ class WorkStudy:
     def in_suite(self, suite: str) -> "WorkStudy":
         """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
         return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
+
+    def of_methods(self, methods: Collection[str], foreign: Iterable[str] = ()) -> "WorkStudy":
+        """Return the study of these methods' settings, and of ``foreign`` ones with the settings they come with."""
+        own = tuple(use for use in self.ladder if use.method in methods)
+        others = tuple(MethodUse(label="as it comes", method=name) for name in foreign)
+        return replace(self, ladder=(*own, *others), cheap=())
 
     def left(self, solvers: Mapping[str, Set[str]]) -> "WorkStudy":
         """Return the study as it is: it solves its own settings, whatever methods a run keeps."""

@@ -106,10 +106,14 @@ class Stamp:
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
 class RunResult:
-    """A whole run; ``complete`` is False when it was interrupted, and its records are valid all the same."""
+    """A whole run; ``complete`` is False when it was interrupted, and its records are valid all the same.
+
+    Its ``methods`` are those that were chosen; none if the cases were solved by their own.
+    """
 
     schema_version: Literal[1] = 1
     suite: str
+    methods: tuple[str, ...] = ()
     complete: bool
     stamp: Stamp
     cases: tuple[CaseResult, ...]

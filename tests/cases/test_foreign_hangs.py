@@ -1,0 +1,63 @@
+"""A method of an installed package that hangs, crashes or leaves: a row that names it, and the run goes on."""
+
+from importlib.metadata import EntryPoint
+
+import pytest
+
+from cases.declare import methods
+from cases.declare.against import against
+from cases.results.status import Status
+from cases.run import runner
+from cases.run.executors import serial
+from cases.run.runner import FOREIGN_TIME_LIMIT, RunOptions, run_cases
+from tests.cases.fake_case import fake_case
+from tests.cases.fake_method import FakeHertz
+
+
+class Hanging(FakeHertz):
+    """Computes without end."""
+
+    def solve(self, scene):
+        while True:
+            pass
+
+
+class Leaving(FakeHertz):
+    """Takes the whole program with it."""
+
+    def solve(self, scene):
+        raise SystemExit("licence not found")
+
+
+@pytest.fixture
+def rows(monkeypatch, tmp_path):
+    """Rows of a registered class beside the case's fast method."""
+    monkeypatch.setattr(runner, "FOREIGN_TIME_LIMIT", 0.2)
+
+    def rows(kind, **options):
+        entry = EntryPoint(name="mine", value=f"{__name__}:{kind.__name__}", group=methods.ENTRY_POINT_GROUP)
+        monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
+        cases = against([fake_case()], ["mine"], ["fast"])
+        result = run_cases(cases, RunOptions(out=tmp_path, executor=serial, **options))
+        return {method: [r for r in result.cases[0].runs if r.method == method] for method in ("mine", "fast")}
+
+    return rows
+
+
+def test_a_hang_ends_by_default_and_is_named(rows):
+    found = rows(Hanging)
+    assert {(row.status, row.reason) for row in found["mine"]} == {(Status.TIMEOUT, "mine: not finished after 0.2 s")}
+    assert {row.status for row in found["fast"]} == {Status.PASS}
+
+
+def test_the_limit_is_five_minutes_and_another_one_may_be_told(rows):
+    assert FOREIGN_TIME_LIMIT == 300.0
+    assert {row.reason for row in rows(Hanging, time_limit=0.1)["mine"]} == {"mine: not finished after 0.1 s"}
+
+
+def test_leaving_the_program_is_a_crash_that_is_named(rows):
+    found = rows(Leaving)
+    assert {(row.status, row.reason) for row in found["mine"]} == {
+        (Status.INVALID, "mine crashed: SystemExit: licence not found")
+    }
+    assert {row.status for row in found["fast"]} == {Status.PASS}
