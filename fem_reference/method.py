@@ -167,11 +167,13 @@ class Fem:
         return contact_path(scene, equilibria, asdict(self), log)
 
     def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
-        from fem_reference.friction.adhered_punch import AdheredFields, AdheredProblem  # noqa: PLC0415 - only friction
+        from fem_reference.friction import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
 
-        solve = partial(self.solve_contact, scene, log=log, problem=AdheredProblem)
-        equilibria = flat_punch_equilibria(scene, FlatPunch(radius=scene.indenter.flat_radius), solve)
-        return contact_path(scene, equilibria, asdict(self), log, fields=partial(AdheredFields, layer=scene.layer))
+        equilibria = stick.adhered_equilibria(
+            scene, partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)
+        )
+        fields = partial(stick.AdheredFields, layer=scene.layer)
+        return contact_path(scene, equilibria, asdict(self), log, fields=fields)
 
     def _solve_in_time(
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
