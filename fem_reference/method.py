@@ -253,7 +253,7 @@ class Fem:
         problem: type[LayerProblem] = LayerProblem,
     ) -> ContactWithErrors:
         indenter = ScaledIndenter(scene.indenter, radius)
-        return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log, problem)
+        return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log, problem=problem)
 
     def _to_accuracy(self, attempt: Callable[[Discretisation], S], errors: Callable[[S], Mapping[str, float]]) -> S:
         """As the settings say, or refined until the errors of all quantities that are asked for hold."""

@@ -224,6 +224,7 @@ def solve_contact_with_errors(
     settings: Discretisation,
     backend: str,
     log: StageLog,
+    *,
     problem: type[LayerProblem] = LayerProblem,
 ) -> ContactWithErrors:
     """Mesh the section and solve it with the degrees that answer and error estimate need.

@@ -98,6 +98,7 @@ def contact_path(
     settings: Mapping[str, bool | int | float | str | None],
     log: StageLog,
     notes: tuple[str, ...] = (),
+    *,
     fields: Callable[[tuple[SurfaceState, ...]], FemFields] = FemFields,
 ) -> ContactPath:
     """The path in SI units; ``fields`` makes the surface fields of its states."""
