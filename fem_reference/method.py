@@ -167,7 +167,7 @@ class Fem:
         return contact_path(scene, equilibria, asdict(self), log)
 
     def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
-        from fem_reference.friction import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
+        from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
 
         equilibria = stick.adhered_equilibria(
             scene, partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)

@@ -54,7 +54,7 @@ def solved(method, scene, settings="{}"):
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
 ADHESION = ("bem.adhesion", "mdr.adhesion", "fem_reference.adhesion")
-FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.friction")
+FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.elastic.stick")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 
 
