@@ -112,8 +112,7 @@ def test_an_accuracy_is_kept():
     assert path.normal_force == pytest.approx(Mdr().solve(scene).normal_force, rel=1e-5, abs=0.0)
 
 
-@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.5])
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize(("nu", "support"), [(0.0, "unbonded"), (0.3, "bonded"), (0.5, "bonded"), (0.5, "unbonded")])
 def test_stick_is_never_softer_than_free_slip(nu, support):
     stuck, free = (Fem(order=3).solve(punch(layer(nu, support), 1.5, effects=e)) for e in (STICK, ()))
     assert stuck.contact_stiffness[0] > free.contact_stiffness[0]
