@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
@@ -17,6 +18,7 @@ from contact import (
     EquilibriumLoading,
     FlatPunch,
     ForceHistory,
+    Friction,
     HistoryLoading,
     HistoryPath,
     Impact,
@@ -38,6 +40,7 @@ from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solv
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
+from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
@@ -115,6 +118,8 @@ class Fem:
         """Whether this method models the scene."""
         if (other := other_layer("fem", scene.layer)) is not None:
             return other
+        if scene.effect(Friction) is not None:
+            return _supports_friction(scene)
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
         modelled = Viscoelasticity if in_time else Adhesion
         if all(isinstance(effect, modelled) for effect in scene.effects):
@@ -153,11 +158,22 @@ class Fem:
             return detachment_path(scene, self._solver(scene, log), self.accuracy, asdict(self), log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
+        if scene.effect(Friction) is not None:
+            return self._solve_adhered(scene, log)
         equilibria = self._equilibria(scene, log)
         if not scene.effects and not isinstance(scene.indenter, FlatPunch):
             refuse_pulled_contacts(scene, (state.contact for state in equilibria))
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
         return contact_path(scene, equilibria, asdict(self), log)
+
+    def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
+        from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
+
+        equilibria = stick.adhered_equilibria(
+            scene, partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)
+        )
+        fields = partial(stick.AdheredFields, layer=scene.layer)
+        return contact_path(scene, equilibria, asdict(self), log, fields=fields)
 
     def _solve_in_time(
         self, scene: Scene, loading: Impact | DepthHistory | ForceHistory, log: StageLog
@@ -218,17 +234,26 @@ class Fem:
     def _solver(self, scene: Scene, log: StageLog) -> ContactSolver:
         return partial(self.solve_contact, scene, log=log)
 
-    def solve_contact(self, scene: Scene, contact_radius: float, log: StageLog) -> ContactWithErrors:
+    def solve_contact(
+        self, scene: Scene, contact_radius: float, log: StageLog, problem: type[LayerProblem] = LayerProblem
+    ) -> ContactWithErrors:
         """One contact radius [m] with error bars."""
 
         def attempt(settings: Discretisation) -> ContactWithErrors:
-            return self._contact(scene, contact_radius, settings, log)
+            return self._contact(scene, contact_radius, settings, log, problem)
 
         return self._to_accuracy(attempt, lambda contact: smooth_equilibrium(contact).error)
 
-    def _contact(self, scene: Scene, radius: float, settings: Discretisation, log: StageLog) -> ContactWithErrors:
+    def _contact(
+        self,
+        scene: Scene,
+        radius: float,
+        settings: Discretisation,
+        log: StageLog,
+        problem: type[LayerProblem] = LayerProblem,
+    ) -> ContactWithErrors:
         indenter = ScaledIndenter(scene.indenter, radius)
-        return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log)
+        return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log, problem=problem)
 
     def _to_accuracy(self, attempt: Callable[[Discretisation], S], errors: Callable[[S], Mapping[str, float]]) -> S:
         """As the settings say, or refined until the errors of all quantities that are asked for hold."""
@@ -238,3 +263,18 @@ class Fem:
         if self.pressure_accuracy is not None:
             wanted["pressure"] = self.pressure_accuracy
         return solve_to_accuracy(attempt, errors, wanted)
+
+
+def _supports_friction(scene: Scene) -> Supported | Unsupported:
+    """Full stick of a flat punch at depths or forces, and no other friction."""
+    punch, loading = isinstance(scene.indenter, FlatPunch), scene.loading
+    static = isinstance(loading, IndentationDepths | NormalForces)
+    if scene.effects == (Friction(coefficient=math.inf),) and punch and static:
+        return Supported()
+    listed = ", ".join(f"{type(effect).__name__}" for effect in scene.effects)
+    coefficient = next(effect.coefficient for effect in scene.effects if isinstance(effect, Friction))
+    return Unsupported(
+        f"fem does not model a {type(scene.indenter).__name__} under {type(loading).__name__} with {listed} at "
+        f"Friction.coefficient = {coefficient:g}; it models full stick (inf) of a FlatPunch under IndentationDepths or "
+        "NormalForces"
+    )

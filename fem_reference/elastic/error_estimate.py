@@ -219,14 +219,29 @@ def relative_size(error: float, value: float) -> float:
 
 
 def solve_contact_with_errors(
-    layer: Layer, indenter: ScaledIndenter, settings: Discretisation, backend: str, log: StageLog
+    layer: Layer,
+    indenter: ScaledIndenter,
+    settings: Discretisation,
+    backend: str,
+    log: StageLog,
+    *,
+    problem: type[LayerProblem] = LayerProblem,
 ) -> ContactWithErrors:
-    """Mesh the section and solve it with the degrees that answer and error estimate need."""
+    """Mesh the section and solve it with the degrees that answer and error estimate need.
+
+    Args:
+        layer: the layer.
+        indenter: the indenter, by its contact radius.
+        settings: numerical settings.
+        backend: linear solver.
+        log: of the stages.
+        problem: the discrete layer, or one whose contact is held in more ways.
+    """
     with log.stage("mesh"):
         mesh = contact_mesh(layer, indenter, settings)
     levels = {
         k: solve_prescribed_contact(
-            LayerProblem(mesh, taylor_hood(k), layer.poissons_ratio, layer.support, backend), indenter, log
+            problem(mesh, taylor_hood(k), layer.poissons_ratio, layer.support, backend), indenter, log
         )
         for k in ESTIMATING_DEGREES[settings.order]
     }

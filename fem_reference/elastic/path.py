@@ -98,8 +98,10 @@ def contact_path(
     settings: Mapping[str, bool | int | float | str | None],
     log: StageLog,
     notes: tuple[str, ...] = (),
+    *,
+    fields: Callable[[tuple[SurfaceState, ...]], FemFields] = FemFields,
 ) -> ContactPath:
-    """The path in SI units."""
+    """The path in SI units; ``fields`` makes the surface fields of its states."""
     modulus = contact_modulus(scene.layer)
     radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
     stiffness = np.array([state.stiffness for state in equilibria])
@@ -111,7 +113,7 @@ def contact_path(
     depth = radius * np.array([state.depth for state in equilibria])
     errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
     own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
-    # With adhesion, depth and force may cross zero: their errors refer to the largest value along the path.
+    # With effects depth and force may cross zero: their errors refer to the largest value along the path.
     if scene.effects:
         errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
         errors["normal_force"] *= np.abs(force) / np.abs(force).max()
@@ -128,5 +130,5 @@ def contact_path(
         indentation_depth=depth,
         normal_force=force,
         contact_stiffness=modulus * radius * stiffness,
-        fields=FemFields(states),
+        fields=fields(states),
     )

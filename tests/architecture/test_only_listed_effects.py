@@ -23,6 +23,8 @@ SCENES = {
     "depths": Scene(layer=layer, indenter=cone, loading=IndentationDepths([0.05])),
     "adhesive": Scene(layer=layer, indenter=cone, loading=Detachment(initial_contact_radius=1.0),
                       effects=(Adhesion(work_of_adhesion=1e-4),)),
+    "adhered": Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.05]),
+                     effects=(Friction(coefficient=float("inf")),)),
     "sticky": Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=5.0), loading=ContactRadii([1.0]),
                     effects=(Adhesion(work_of_adhesion=1e-4),)),
     "impact": Scene(layer=layer, indenter=cone, loading=Impact(mass=0.1, velocity=0.05)),
@@ -52,7 +54,8 @@ def solved(method, scene, settings="{}"):
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
 ADHESION = ("bem.adhesion", "mdr.adhesion", "fem_reference.adhesion")
-EFFECT_ROOMS = (*IN_TIME, *ADHESION)
+FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.elastic.stick")
+EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 
 
 def effects_among(found):
@@ -110,6 +113,13 @@ def test_finite_elements_load_only_the_listed_effect():
     adhering = effects_among(solved("fem", "sticky", COARSE_FEM))
     assert adhering
     assert [m for m in adhering if m.startswith(IN_TIME)] == []
+
+
+@pytest.mark.parametrize(("method", "settings"), [("fem", COARSE_FEM), ("mdr", "{}")])
+def test_full_stick_loads_no_other_effect(method, settings):
+    found = effects_among(solved(method, "adhered", settings))
+    assert found
+    assert [m for m in found if not m.startswith(FRICTION)] == []
 
 
 @pytest.mark.parametrize(("scene", "loads"), [("elastic", False), ("sticky", True)])

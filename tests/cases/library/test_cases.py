@@ -19,6 +19,7 @@ FAMILIES = {
     "half_space_limits",
     "coated_pair",
     "near_incompressible",
+    "friction_flat_punch",
 }
 
 

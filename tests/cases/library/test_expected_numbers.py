@@ -7,6 +7,7 @@ import pytest
 
 from cases.library.adhesion import flat_punch_adhesion, paraboloid_adhesion
 from cases.library.elastic import flat_punch_stiffness, paraboloid, truncated_cone
+from cases.library.friction import friction_flat_punch
 from cases.library.in_time import flat_punch_impact
 from cases.library.limits import half_space_limits, thin_layer_limits
 
@@ -111,6 +112,24 @@ def test_kendall_force_is_stiffness_times_depth():
     stiffness = 2 * scene.layer.contact_modulus * scene.indenter.flat_radius
     depth, force = flat_punch_adhesion.kendall_depth(scene)[0], flat_punch_adhesion.kendall_force(scene)[0]
     assert force == pytest.approx(stiffness * depth, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize(("nu", "ratio"), [(0.0, 1.09861), (0.3, 1.02863), (0.45, 1.00277), (0.5, 1.0)])
+def test_adhered_punch_on_the_half_space(nu, ratio):
+    """Printed to six digits: k over that of the frictionless punch."""
+    scene = next(s.scene for s in friction_flat_punch.HALF_SPACES if s.scene.layer.poissons_ratio == nu)
+    free = 2 * scene.layer.contact_modulus * scene.indenter.flat_radius
+    assert friction_flat_punch.stuck_half_space(scene)[0] / free == pytest.approx(ratio, rel=0.0, abs=5.1e-6)
+
+
+def test_a_thin_layer_that_sticks_is_four_times_as_stiff():
+    """Eq. (18) of the frictionless layer with the same a/h and E is a quarter of it."""
+    label = "bonded nu=0.5"
+    stuck = friction_flat_punch.on_layer(label, 75.0).scene
+    free = thin_layer_limits.paraboloid(label, 75.0).scene
+    assert friction_flat_punch.thin_stiffness(stuck) == pytest.approx(
+        4 * thin_layer_limits.stiffness(free), rel=1e-12, abs=0.0
+    )
 
 
 def test_sneddon_depths_by_quadrature():

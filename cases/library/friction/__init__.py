@@ -1,0 +1,1 @@
+"""Contact with friction: what sticks instead of slipping."""

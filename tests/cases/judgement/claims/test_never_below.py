@@ -1,0 +1,24 @@
+"""An inequality of two answers: what is above passes, what is below by more than the tolerance fails."""
+
+import pytest
+
+from cases.judgement.claims.never_below import NeverBelow
+from cases.library.friction.friction_flat_punch import STIFFER
+from cases.results.records.scene_run import Quantity, SceneRun
+from cases.results.status import Status
+
+
+def run(*values):
+    stiffness = Quantity(name="contact_stiffness", unit="N/m", scale=2.0, values=values)
+    return SceneRun(key="k", scene="s", method="m", settings={}, status=Status.PASS, reason="", cost=None,
+                    quantities=(stiffness,))  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("values", "status"),
+    [((1.0, 5.0), Status.PASS), ((1.0, 2.0), Status.PASS), ((1.0, 2.0 - 4e-9), Status.FAIL), ((0.9, 5.0), Status.FAIL)],
+)
+def test_the_worst_step_decides(values, status):
+    claim = STIFFER[0]
+    assert isinstance(claim, NeverBelow)
+    assert claim._judged(run(*values), run(1.0, 2.0), 1e-9).status is status
