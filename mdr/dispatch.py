@@ -95,7 +95,7 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
     if friction is not None and not friction.is_stick:
         return Unsupported(
             f"mdr models full stick and frictionless contact, and Friction.coefficient = {friction.coefficient:g}; "
-            "ask fem, or give inf; the frictionless answer's notes bound what friction moves"
+            "give inf, or bound what friction moves with mdr.friction.statement.friction_effect"
         )
     found = [solver for solver in SOLVERS if solver.takes(scene)]
     if found:

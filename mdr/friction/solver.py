@@ -125,7 +125,7 @@ def _growing(scene: Scene) -> dict[str, Any]:
         raise UnsupportedSceneError(
             f"a flat end of radius {scene.indenter.flat_radius:g} m that grows under full stick on a layer with "
             f"poissons_ratio = {scene.layer.poissons_ratio:g}: its edge field oscillates, and growth from it has no "
-            "stable answer; give Poisson's ratio 0.5, or ask fem, whose mesh ends the oscillation"
+            "stable answer; give Poisson's ratio 0.5, or a rounded edge"
         )
     system, radius = _covering(scene)
     depth, force = system.growths[0].depth_and_force(radius)
