@@ -73,6 +73,13 @@ def radius_under_load(ratio: float) -> Measured:
 
 def statements() -> Iterator[Statement]:
     """The statements of this section."""
+    yield from maxima_of_the_elongation()
+    yield from abrupt_and_stable()
+    yield from force_of_adhesion()
+
+
+def maxima_of_the_elongation() -> Iterator[Statement]:
+    """Where the critical elongation has a maximum."""
     for nu, printed in ((0.5, 0.46), (0.4, 0.92)):
         yield Statement(
             "Section 4.2, Fig. 8",
@@ -108,6 +115,10 @@ def statements() -> Iterator[Statement]:
             partial(number_of_reversals, layer(nu)),
             lambda value: value == 0,
         )
+
+
+def abrupt_and_stable() -> Iterator[Statement]:
+    """How contacts are lost."""
     yield Statement(
         "Section 4.2",
         "Webber et al. (2003) found this threshold in experiments, nu = 0.5",
@@ -142,6 +153,10 @@ def statements() -> Iterator[Statement]:
             partial(radius_under_load, ratio),
             lambda value: abs(value - 1) < 1e-6,
         )
+
+
+def force_of_adhesion() -> Iterator[Statement]:
+    """The force of adhesion against confinement."""
     for low, high in ((0.3, 1.0), (1.0, 2.0), (2.0, 4.0)):
         yield Statement(
             "Section 4.2, Fig. 9",

@@ -79,6 +79,14 @@ def growth(one: Layer) -> Measured:
 
 def statements() -> Iterator[Statement]:
     """The statements of these sections."""
+    yield from kernel_limits()
+    yield from limits_of_stiffness()
+    yield from growth_of_stiffness()
+    yield from shape_of_the_pressure()
+
+
+def kernel_limits() -> Iterator[Statement]:
+    """The kernel between thin layer and half-space."""
     for support, nu, limit, name in (
         ("unbonded", 0.3, 5e-4, "q/2"),
         ("bonded", 0.3, 4e-4 / (2 * 0.49), "q (1 - 2 nu)/(2 (1 - nu)^2)"),
@@ -103,6 +111,10 @@ def statements() -> Iterator[Statement]:
             within(1e-12),
             FORMULA,
         )
+
+
+def limits_of_stiffness() -> Iterator[Statement]:
+    """Where half-space and thin layer are good approximations."""
     for one in LAYERS:
         yield Statement(
             "Section 3.2",
@@ -138,6 +150,10 @@ def statements() -> Iterator[Statement]:
             partial(unbonded_over_bonded, ratio),
             within(SAME),
         )
+
+
+def growth_of_stiffness() -> Iterator[Statement]:
+    """Stiffness against confinement, other authors and its exponent."""
     for one in (UNBONDED, layer(0.3), layer(0.5)):
         yield Statement(
             "Section 3.2",
@@ -170,6 +186,10 @@ def statements() -> Iterator[Statement]:
             partial(exponent_at, one, ratio),
             reads(m, GOOD * max(m, 1)),
         )
+
+
+def shape_of_the_pressure() -> Iterator[Statement]:
+    """Middle and edge of the pressure."""
     for low, high in ((0.5, 1.0), (1.0, 2.0), (2.0, 5.0)):
         yield Statement(
             "Fig. 4",

@@ -82,6 +82,13 @@ def by_finite_elements() -> Measured:
 
 def statements() -> Iterator[Statement]:
     """The statements of this section."""
+    yield from restitution_on_layers()
+    yield from on_layers()
+    yield from similarity_and_agreement()
+
+
+def restitution_on_layers() -> Iterator[Statement]:
+    """Restitution against damping and confinement."""
     for less, damping in ((0.05, 0.1), (0.1, 0.5), (0.5, 1.0), (1.0, 2.0)):
         yield Statement(
             "Eq. (49)",
@@ -119,6 +126,10 @@ def statements() -> Iterator[Statement]:
             partial(bounce, thickness),
             reads(printed, half),
         )
+
+
+def on_layers() -> Iterator[Statement]:
+    """Impacts on layers of several thicknesses."""
     for thin, thick in ((3e-3, 0.0), (2e-3, 3e-3), (1e-3, 2e-3)):
         yield Statement(
             "Section 4.3, Fig. 12C",
@@ -154,6 +165,10 @@ def statements() -> Iterator[Statement]:
                 partial(duration, thin, elastic=elastic),
                 below(partial(duration, thick, elastic=elastic)),
             )
+
+
+def similarity_and_agreement() -> Iterator[Statement]:
+    """One R v0, and two methods."""
     yield Statement(
         "Section 4.3",
         "R and v0 are free parameters at one R v0",

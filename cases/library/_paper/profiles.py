@@ -62,6 +62,12 @@ def _scene(one: Layer, indenter: Profile, ratio: float) -> Scene:
 
 def statements() -> Iterator[Statement]:
     """The statements of these sections."""
+    yield from thin_and_coated()
+    yield from beside_the_half_space()
+
+
+def thin_and_coated() -> Iterator[Statement]:
+    """Thin layers and coated bodies."""
     for one, share in ((UNBONDED, 2.0), (layer(0.3), 2.0), (layer(0.45), 2.0), (layer(0.5), 4.0)):
         yield Statement(
             "Table 1",
@@ -80,6 +86,10 @@ def statements() -> Iterator[Statement]:
             partial(pair_over_body, ratio),
             within(1e-9),
         )
+
+
+def beside_the_half_space() -> Iterator[Statement]:
+    """Profiles on layers beside those on half-spaces."""
     for one in (layer(0.45), layer(0.5)):
         for ratio in (2.0, 5.0, 20.0):
             yield Statement(

@@ -12,8 +12,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact import Adhesion, DepthHistory, ForceHistory, Impact, ImpactHistory, Scene, Solution, Viscoelasticity
+from contact import (
+    Adhesion,
+    ContactPath,
+    DepthHistory,
+    ForceHistory,
+    Impact,
+    ImpactHistory,
+    IndentationDepths,
+    Layer,
+    Scene,
+    Solution,
+    Viscoelasticity,
+)
 from contact.records.validation import FloatArray
+from mdr import Mdr
+from mdr.friction.statement import friction_effect
 
 TYPICAL_DENSITY = 1000.0  # kg/m^3 of soft layers; a scene knows none
 ATOMIC_RANGE = 0.3e-9  # m
@@ -22,6 +36,8 @@ _ADHESION_MOVES = 2.0  # times dl/delta
 _DASHPOT_MOVES = 6.5  # times tau/T
 _JKR_HOLDS = 20.0  # dl/z0 at a Tabor parameter of 5, with the contact radius at no load
 _SMALL_INERTIA = 0.1
+# Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
+_TYPICAL_FRICTION = 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,7 +57,7 @@ class Number:
 
 def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
     """The numbers that apply to a solved scene."""
-    found = [_thickness(scene, answer, accuracy), _strain(scene, answer)]
+    found = [_thickness(scene, answer, accuracy), _strain(scene, answer), _friction(scene, answer)]
     if scene.effect(Adhesion) is not None:
         found += _adhesion(scene, answer, accuracy)
     if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
@@ -66,6 +82,22 @@ def _strain(scene: Scene, answer: Solution) -> Number:
     strain = depth / min(radius, scene.layer.thickness)
     meaning = "typical strain; linear elasticity is an approximation beyond about 0.1, whatever the digits"
     return Number(name="delta/min(a, h)", value=strain, meaning=meaning)
+
+
+def _friction(scene: Scene, answer: Solution) -> Number | None:
+    """What dry friction would move of the force at the largest depth, from the frictionless answer alone."""
+    if scene.effects or not isinstance(answer, ContactPath) or not isinstance(scene.layer, Layer):
+        return None
+    fast = Mdr()
+    path = fast.solve(scene.replace(loading=IndentationDepths([_largest(answer, "indentation_depth")])))
+    effect = friction_effect(path, _TYPICAL_FRICTION, fast.solve)
+    low, high = float(effect.lower[0]), float(effect.upper[0])
+    order = f", by {100 * effect.first_order[0]:.2g} % to first order" if effect.one_direction[0] else ""
+    meaning = (
+        f"dry friction of {_TYPICAL_FRICTION:g} moves the force at this depth by {100 * low:.2g} to {100 * high:.2g} %"
+        f"{order}; Friction(coefficient=inf) tells what full stick moves"
+    )
+    return Number(name="friction", value=max(-low, high), meaning=meaning)
 
 
 def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:

@@ -169,3 +169,12 @@ def test_what_all_parts_share_is_no_effect_s_share_of_the_time():
 def test_an_accuracy_that_is_none_is_refused():
     with pytest.raises(InvalidInput, match="must lie between 0 and 1"):
         advise(Mdr(), impact(1.0), 2.0)
+
+
+def test_friction_is_told_with_a_bound_and_its_first_order():
+    """At nu = 1/2, R = 10 h, delta = 0.21 h: 0.1 times 0.82297 to first order, the value of another program."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
+    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=10.0), loading=IndentationDepths([0.21]))
+    (line,) = [line for line in advise(Mdr(), scene, 1e-2).lines if line.startswith("friction = ")]
+    assert "dry friction of 0.1 moves the force at this depth by" in line
+    assert "by 8.2 % to first order" in line
