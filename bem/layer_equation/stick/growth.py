@@ -24,8 +24,8 @@ from contact.scene.layer import Support
 
 # Up to this x/a the polynomial g is continued; beyond, its terms magnify rounding and the equation itself is used.
 _CONTINUED = 1.005
-# Punches of a table, and positions beside each, for X = 0 and per unit of X: G's coefficients then fall below 1e-12
-# (measured for nu = 0 to 1/2 and X up to 20, largest of the last three coefficients).
+# Punches of a table, and positions beside each, for X = 0 and per unit of X: the last three of G's
+# coefficients are then 5e-15, 1e-12 and 1e-11 of the largest at X = 3, 11 and 18 (nu = 0, 0.3, 1/2, 2026-11-22).
 _PUNCHES = (26.0, 4.5)
 _POSITIONS = (28.0, 5.5)
 
