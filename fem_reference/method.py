@@ -172,7 +172,7 @@ class Fem:
         equilibria = stick.adhered_equilibria(
             scene, partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)
         )
-        fields = partial(stick.AdheredFields, layer=scene.layer)
+        fields = partial(stick.AdheredFemFields, layer=scene.layer)
         return contact_path(scene, equilibria, asdict(self), log, fields=fields)
 
     def _solve_in_time(

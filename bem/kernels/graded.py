@@ -29,8 +29,7 @@ TOLERANCE: Final = 1e-12
 # The same, absolute, against quantities of order one.
 ABSOLUTE: Final = 1e-13
 
-Field = NDArray[Any]
-Rates = Callable[[Field, Field], Field]
+Rates = Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]]
 
 
 @dataclass(frozen=True)
@@ -72,11 +71,11 @@ class GradedKernel:
         nu, g = float(self.layer.ratio_at(0.0)), float(_logarithmic_slope(self.layer, np.zeros(1))[0])
         return -((2 - nu) * g + float(self.layer.ratio_slope(0.0))) / (2 * (1 - nu))
 
-    def chi(self, wavenumber: Field) -> Field:
+    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """chi at wavenumbers k > 0 or 0 <= arg k < pi/2, any shape."""
         return np.asarray(1 - self.one_minus_chi(wavenumber))
 
-    def one_minus_chi(self, wavenumber: Field) -> Field:
+    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """1 - chi, with its relative accuracy for large k too."""
         k = np.ravel(wavenumber)
         values = np.empty_like(k)
@@ -87,13 +86,15 @@ class GradedKernel:
             values[~deep] = self._above_base(k[~deep])
         return values.reshape(np.shape(wavenumber))
 
-    def _above_base(self, k: Field) -> Field:
+    def _above_base(self, k: NDArray[Any]) -> NDArray[Any]:
         support = self.layer.support
         slips = support.interface == "unbonded" if isinstance(support, ElasticBase) else support == "unbonded"
         base = support if isinstance(support, ElasticBase) else None
         return self._mixed(k, base) if slips else self._difference(k, np.ones(k.shape), base, on_base=True)
 
-    def _difference(self, k: Field, start: Field, base: ElasticBase | None, *, on_base: bool = False) -> Field:
+    def _difference(
+        self, k: NDArray[Any], start: NDArray[Any], base: ElasticBase | None, *, on_base: bool = False
+    ) -> NDArray[Any]:
         """-D_WW/(2 (1 - nu) k) at the surface, from the local half-space, or from the base, at depths `start`."""
         nu, beta0 = self.layer.ratio_at(start), 1 - float(self.layer.ratio_at(0.0))
         D = np.zeros((3, k.size), dtype=k.dtype)
@@ -101,7 +102,8 @@ class GradedKernel:
             below = np.zeros((3, k.size)) if base is None else _half_space(base.poissons_ratio, k) * self._softer(base)
             D = k * (below - _half_space(nu, k))
 
-        def rates(z: Field, D: Field) -> Field:
+        def rates(z: NDArray[Any], D: NDArray[Any]) -> NDArray[Any]:
+            """Slope dD/dz of the scaled excess over the half-space, by Riccati's equation."""
             nu, slope, g = self.layer.ratio_at(z), self.layer.ratio_slope(z), _logarithmic_slope(self.layer, z)
             beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
             uu, uw, ww = D
@@ -120,14 +122,15 @@ class GradedKernel:
         top = _integrated(rates, D, start)
         return np.asarray(-top[2] / (2 * beta0 * k))
 
-    def _mixed(self, k: Field, base: ElasticBase | None) -> Field:
+    def _mixed(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
         """1 - C_WW/(2 (1 - nu)) by the mixed form, from a frictionless base upwards."""
         beta0 = 1 - float(self.layer.ratio_at(0.0))
         M = np.zeros((4, k.size), dtype=k.dtype)
         if base is not None:
             M[3] = _half_space(base.poissons_ratio, k)[2] * self._softer(base)
 
-        def rates(z: Field, M: Field) -> Field:
+        def rates(z: NDArray[Any], M: NDArray[Any]) -> NDArray[Any]:
+            """Slope dM/dz of the mixed form, displacements beside tractions."""
             nu, g = self.layer.ratio_at(z), _logarithmic_slope(self.layer, z)
             beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
             qu, qp, wu, wp = M
@@ -154,20 +157,20 @@ class GradedKernel:
         return bottom / (base.youngs_modulus / (2 * (1 + base.poissons_ratio)))
 
 
-def _half_space(nu: Field | float, k: Field) -> Field:
+def _half_space(nu: NDArray[Any] | float, k: NDArray[Any]) -> NDArray[Any]:
     """UU, UW, WW of a half-space times 2Gk."""
     one = np.ones(k.size)
     return np.stack([2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one])
 
 
-def _logarithmic_slope(layer: GradedLayer, depth: Field) -> Field:
+def _logarithmic_slope(layer: GradedLayer, depth: NDArray[Any]) -> NDArray[Any]:
     """G'/G at depths, G = E/(2 (1 + nu))."""
     modulus = layer.youngs_modulus
     slope = modulus.slope(depth, 1.0) / modulus.at(depth, 1.0)
     return np.asarray(slope - layer.ratio_slope(depth) / (1 + layer.ratio_at(depth)))
 
 
-def _integrated(rates: Rates, start_values: Field, start: Field) -> Field:
+def _integrated(rates: Rates, start_values: NDArray[Any], start: NDArray[Any]) -> NDArray[Any]:
     """Values at the surface of all wavenumbers together; each goes its own depth in the same shares.
 
     Raises:
@@ -178,7 +181,7 @@ def _integrated(rates: Rates, start_values: Field, start: Field) -> Field:
 
     shape = start_values.shape
 
-    def shared(share: float, values: Field) -> Field:
+    def shared(share: float, values: NDArray[Any]) -> NDArray[Any]:
         slopes = rates(start * (1 - share), values.reshape(shape))
         return np.asarray((-start * slopes).ravel())
 

@@ -21,20 +21,18 @@ from numpy.typing import NDArray
 
 from bem.kernels.layer import SERIES_LIMIT, SERIES_TERMS, one_minus_kernel, shear_bracket_over_q
 
-Field = NDArray[Any]
-
 
 class Symmetric(NamedTuple):
     """A symmetric matrix of two rows at every wavenumber."""
 
-    uu: Field
-    uw: Field
-    ww: Field
+    uu: NDArray[Any]
+    uw: NDArray[Any]
+    ww: NDArray[Any]
 
     @property
-    def determinant(self) -> Field:
+    def determinant(self) -> NDArray[Any]:
         """Of each matrix."""
-        difference: Field = self.uu * self.ww - self.uw**2
+        difference: NDArray[Any] = self.uu * self.ww - self.uw**2
         return difference
 
     def times(self, factor: float) -> Symmetric:
@@ -96,30 +94,30 @@ class StackKernel:
         strain = sum(one.thickness * _uniaxial_compliance(one) for one in self.sheets)
         return self.sheets[0].plane_modulus / 2 * (strain + sum(_sideways(group) for group in _free_groups(self)))
 
-    def chi(self, wavenumber: Field) -> Field:
+    def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """chi at wavenumbers with Re k > 0, any shape."""
         top = self.sheets[0]
         q = top.thickness * wavenumber
         own = step(q, top.poissons_ratio)
-        chi: Field = (own.glued.ww + self._through(own, wavenumber)) / (2 * (1 - top.poissons_ratio))
+        chi: NDArray[Any] = (own.glued.ww + self._through(own, wavenumber)) / (2 * (1 - top.poissons_ratio))
         return chi
 
-    def one_minus_chi(self, wavenumber: Field) -> Field:
+    def one_minus_chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """1 - chi: that of the first layer alone, less what comes through it."""
         top = self.sheets[0]
         q = top.thickness * wavenumber
         own = step(q, top.poissons_ratio)
         alone = one_minus_kernel(q, "bonded", top.poissons_ratio)
-        rest: Field = alone - self._through(own, wavenumber) / (2 * (1 - top.poissons_ratio))
+        rest: NDArray[Any] = alone - self._through(own, wavenumber) / (2 * (1 - top.poissons_ratio))
         return rest
 
-    def _through(self, own: Step, wavenumber: Field) -> Field:
+    def _through(self, own: Step, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """What the layers below add to C_WW of the first."""
         M = coupled(self._below(wavenumber), own, slips=self.sheets[0].slips_below)
-        through: Field = own.wu**2 * M.uu + 2 * own.wu * own.ww * M.uw + own.ww**2 * M.ww
+        through: NDArray[Any] = own.wu**2 * M.uu + 2 * own.wu * own.ww * M.uw + own.ww**2 * M.ww
         return through
 
-    def _below(self, wavenumber: Field) -> Symmetric:
+    def _below(self, wavenumber: NDArray[Any]) -> Symmetric:
         """C of all that lies below the first layer, in its units."""
         below = base_compliance(self, wavenumber)
         for lower in self.sheets[:0:-1]:
@@ -135,14 +133,14 @@ class Step(NamedTuple):
 
     glued: Symmetric
     free: Symmetric
-    free_determinant: Field
-    uu: Field
-    uw: Field
-    wu: Field
-    ww: Field
+    free_determinant: NDArray[Any]
+    uu: NDArray[Any]
+    uw: NDArray[Any]
+    wu: NDArray[Any]
+    ww: NDArray[Any]
 
 
-def step(q: Field, nu: float) -> Step:
+def step(q: NDArray[Any], nu: float) -> Step:
     """Equations of THEORY for one layer; numerators and denominator times exp(-2q), A times exp(-q) twice."""
     kap, eta, beta = 3 - 4 * nu, 1 - 2 * nu, 1 - nu
     root = np.exp(-q)
@@ -171,14 +169,14 @@ def step(q: Field, nu: float) -> Step:
     )
 
 
-def _squares_apart(q: Field, ss: Field, square: Field) -> Field:
+def _squares_apart(q: NDArray[Any], ss: NDArray[Any], square: NDArray[Any]) -> NDArray[Any]:
     """(sinh^2 q - q^2) exp(-2q): a series of positive terms where the difference cancels."""
     small = np.abs(q) < SERIES_LIMIT
     t2 = np.where(small, 2 * q, 0) ** 2
     series = np.zeros_like(t2)
     for k in reversed(range(SERIES_TERMS)):
         series = series * t2 + _EVEN[k]
-    result: Field = np.where(small, t2**2 * series * np.exp(-2 * np.where(small, q, 0)) / 2, ss - square)
+    result: NDArray[Any] = np.where(small, t2**2 * series * np.exp(-2 * np.where(small, q, 0)) / 2, ss - square)
     return result
 
 
@@ -207,17 +205,17 @@ def passed(step: Step, M: Symmetric) -> Symmetric:
     )
 
 
-def base_compliance(kernel: StackKernel, wavenumber: Field) -> Symmetric:
+def base_compliance(kernel: StackKernel, wavenumber: NDArray[Any]) -> Symmetric:
     """C of the base times 2k, over the first layer's modulus."""
     return _rigid(wavenumber) if kernel.base is None else _half_space(wavenumber, kernel.base)
 
 
-def _rigid(wavenumber: Field) -> Symmetric:
+def _rigid(wavenumber: NDArray[Any]) -> Symmetric:
     zero = np.zeros_like(wavenumber)
     return Symmetric(zero, zero, zero)
 
 
-def _half_space(wavenumber: Field, base: Sheet) -> Symmetric:
+def _half_space(wavenumber: NDArray[Any], base: Sheet) -> Symmetric:
     """C of a half-space, times 2k: [[2 (1 - nu), -(1 - 2 nu)], [-(1 - 2 nu), 2 (1 - nu)]]/G."""
     one, nu = np.ones_like(wavenumber) / base.shear_modulus, base.poissons_ratio
     return Symmetric(2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one)

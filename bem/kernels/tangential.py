@@ -19,7 +19,7 @@ from contact.scene.layer import Support
 
 
 @dataclass(frozen=True)
-class SurfaceCompliance:
+class TangentialKernel:
     """D of the layer at some wavenumbers, each in the shape of q.
 
     Attributes:
@@ -33,7 +33,7 @@ class SurfaceCompliance:
     normal: FloatArray
 
 
-def beyond_half_space(q: FloatArray, support: Support, poissons_ratio: float) -> SurfaceCompliance:
+def beyond_half_space(q: FloatArray, support: Support, poissons_ratio: float) -> TangentialKernel:
     """D = C - C_hs at q = wavenumber times thickness, any shape, q > 0; exactly 0 for an infinite q."""
     beta, eta = 1.0 - poissons_ratio, 1.0 - 2.0 * poissons_ratio
     e = np.exp(-2.0 * q)
@@ -43,6 +43,6 @@ def beyond_half_space(q: FloatArray, support: Support, poissons_ratio: float) ->
         kappa = 3.0 - 4.0 * poissons_ratio
         scale = 2.0 * beta * e / (kappa * (1.0 + e) ** 2 / 4.0 + (eta**2 + q**2) * e)
         even = kappa * (1.0 + e) / 2.0 + q**2 + eta**2
-        return SurfaceCompliance(-scale * (even - q), scale * (q**2 + 2.0 * beta * eta), -scale * (even + q))
+        return TangentialKernel(-scale * (even - q), scale * (q**2 + 2.0 * beta * eta), -scale * (even + q))
     scale = 2.0 * beta * e / (-np.expm1(-4.0 * q) / 4.0 + q * e)
-    return SurfaceCompliance(scale * ((1.0 + e) / 2.0 - q), scale * q, -scale * (-np.expm1(-2.0 * q) / 2.0 + q))
+    return TangentialKernel(scale * ((1.0 + e) / 2.0 - q), scale * q, -scale * (-np.expm1(-2.0 * q) / 2.0 + q))

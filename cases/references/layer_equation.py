@@ -57,7 +57,7 @@ def _legendre(count: int, x: mpf) -> tuple[mpf, mpf]:
 
 
 @dataclass(frozen=True)
-class Density:
+class DensityInDigits:
     """phi of one right-hand side: W plus a smooth part, known at Gauss nodes and continued by the equation itself.
 
     Attributes:
@@ -88,7 +88,7 @@ class Contact:
                 self._matrix[j, i] = -entry * self._w[i]
             self._matrix[i, i] += 1
 
-    def density(self, source: Function, breaks: Sequence[mpf] = ()) -> Density:
+    def density(self, source: Function, breaks: Sequence[mpf] = ()) -> DensityInDigits:
         """Solve for a right-hand side W that is smooth but for roots of x - b at ``breaks`` b."""
         places, weights = self._rule(breaks)
         given = [w * source(t) for t, w in zip(places, weights, strict=True)]
@@ -97,7 +97,7 @@ class Contact:
         smooth = self._solved([self._applied(moments, row) for row in self._cos])
         loads = [w * s for w, s in zip(self._w, smooth, strict=True)]
         total = [m + mp.fdot(loads, [row[n] for row in self._cos]) for n, m in enumerate(moments)]
-        return Density(
+        return DensityInDigits(
             value=lambda x: source(x) + self._applied(total, [mp.cos(k * x) for k in self._k]),
             slope=lambda x: self._applied(total, [-k * mp.sin(k * x) for k in self._k]),
             total=mp.fsum(given) + mp.fsum(loads),
@@ -133,7 +133,7 @@ class Contact:
         return places, weights
 
 
-def punch(ratio: float | str, poissons_ratio: str | None, nodes: int) -> tuple[Contact, Density]:
+def punch(ratio: float | str, poissons_ratio: str | None, nodes: int) -> tuple[Contact, DensityInDigits]:
     """The flat punch at unit depth."""
     nu = None if poissons_ratio is None else mpf(poissons_ratio)
     contact = Contact(mpf(ratio), nu, nodes)
@@ -152,7 +152,7 @@ def spring(ratio: mpf | str, nu: str | None, nodes: int) -> mpf:
     return flat.value(contact.a) ** 2
 
 
-def pressed(contact: Contact, flat: Density, profile: Density) -> tuple[mpf, mpf]:
+def pressed(contact: Contact, flat: DensityInDigits, profile: DensityInDigits) -> tuple[mpf, mpf]:
     """Depth at which phi vanishes at the contact's edge, and the force over E*; lengths in thicknesses."""
     depth = profile.value(contact.a) / flat.value(contact.a)
     return depth, 2 * (depth * flat.total - profile.total)

@@ -32,7 +32,7 @@ State = list[mpf]
 
 
 @dataclass(frozen=True)
-class Springs:
+class SphereSprings:
     """cbar and the MDR profile over the contact radius [m]; the half-space has 1 and a^2/R."""
 
     stiffness: Function = lambda a: mpf(1)
@@ -70,7 +70,7 @@ def _chebyshev(coefficients: list[mpf], x: mpf) -> tuple[mpf, mpf]:
     return mp.fdot(coefficients, t), mp.fdot(coefficients, d)
 
 
-def springs_of(thickness: mpf, table: tuple[list[mpf], list[mpf]]) -> Springs:
+def springs_of(thickness: mpf, table: tuple[list[mpf], list[mpf]]) -> SphereSprings:
     """Springs of a bonded incompressible layer [m]."""
 
     def place(a: mpf) -> mpf:
@@ -81,22 +81,22 @@ def springs_of(thickness: mpf, table: tuple[list[mpf], list[mpf]]) -> Springs:
         return (2 * a * value + a**2 * change * 2 / (thickness * LARGEST_RATIO)) / CURVATURE_RADIUS
 
     start = _chebyshev(table[1], mpf(-1))[0] / CURVATURE_RADIUS
-    return Springs(lambda a: _chebyshev(table[0], place(a))[0], slope, start)
+    return SphereSprings(lambda a: _chebyshev(table[0], place(a))[0], slope, start)
 
 
 @dataclass(frozen=True)
-class Impact:
+class SphereImpact:
     """Rebound speed over approach speed, and the largest force [N]."""
 
     restitution: mpf
     peak_force: mpf
 
 
-def impact(springs: Springs, steps: int) -> Impact:
+def impact(springs: SphereSprings, steps: int) -> SphereImpact:
     """The impact with so many steps to the largest depth, about."""
     inward, end = _inward(springs, steps)
     forces = [(_force(state, state[:], u * u), u) for u, state, _ in inward]
-    return Impact(restitution=_outward(inward, end, steps), peak_force=_vertex(forces))
+    return SphereImpact(restitution=_outward(inward, end, steps), peak_force=_vertex(forces))
 
 
 # Depth, velocity, S, contact radius, and integrals over it of c, c g and c exp(t_c/tau) S(t_c).
@@ -109,10 +109,11 @@ def _force(state: State, edge: State, time: mpf) -> mpf:
     return 8 * (now * edge[SPRINGS] - G_INF * edge[PROFILE] - mp.exp(-time / TAU) * edge[TOUCHED])
 
 
-def _inward(springs: Springs, steps: int) -> tuple[list[tuple[mpf, State, State]], mpf]:
+def _inward(springs: SphereSprings, steps: int) -> tuple[list[tuple[mpf, State, State]], mpf]:
     """u, state and its derivative in u at every step, and the u at which the body stands still."""
 
     def rates(u: mpf, state: State) -> State:
+        """Slope of the state in u, the root of time."""
         depth, v, memory, a = state[:4]
         growth = 2 * u * v / springs.profile_slope(a) if u else mp.sqrt(VELOCITY / springs.sharpness)
         c, time = springs.stiffness(a), u * u
@@ -160,6 +161,7 @@ def _outward(inward: list[tuple[mpf, State, State]], end: mpf, steps: int) -> mp
     edge = end
 
     def rates(time: mpf, state: State) -> State:
+        """Slope of the state in time."""
         nonlocal edge
         edge = _edge(inward, state, time, edge)
         full = [*state, *[mpf(0)] * 4]

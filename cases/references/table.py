@@ -99,7 +99,7 @@ def _impact(thickness: str, more: int) -> list[mpf]:
     """Restitution and largest force [N]."""
     steps = STEPS + 10 * more
     with mp.workdps(20):
-        springs = sphere_impact.Springs()
+        springs = sphere_impact.SphereSprings()
         if thickness != "0":
             springs = sphere_impact.springs_of(mpf(thickness) / 1000, _springs())
         found = sphere_impact.impact(springs, steps)

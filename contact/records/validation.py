@@ -14,7 +14,8 @@ from pydantic import PlainValidator, WithJsonSchema
 FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
-Numbers: TypeAlias = Sequence[float] | Sequence[np.floating[Any]] | NDArray[np.floating[Any]] | NDArray[np.integer[Any]]
+Number: TypeAlias = np.floating[Any] | np.integer[Any]
+Numbers: TypeAlias = Sequence[float] | Sequence[np.floating[Any]] | np.ndarray[Any, np.dtype[Number]]
 """What a vector may be given as: a list, tuple or range of numbers, or an array of shape (n,)."""
 
 if TYPE_CHECKING:
@@ -89,6 +90,7 @@ def not_negative_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchem
     """A number of at least zero; infinity is allowed, in files that have none as the text "inf"."""
 
     def validate(value: object) -> float:
+        """The number, or one error that names it."""
         number = math.inf if value == "inf" else _number(value, remedy)
         if not number >= 0.0:
             raise ValueError(f"must be at least 0; {remedy}")

@@ -5,15 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 
 from contact import InvalidInput, Scene, StageLog
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
+from contact.records.validation import FloatArray
 from fem_reference.elastic.at_load import quick_solution
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-Array = NDArray[np.float64]
 
 # Relative error of the depth in a quick solution: three times the largest difference to MDR, 6e-5, on 16 random tables
 # (seed 2, 2026-11-22).
@@ -84,7 +82,7 @@ def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
 def _circle(contact: PrescribedContact, radius: float, depth: float, error: float) -> Circle:
     """In SI units. Pressed deeper than smooth contact, as a last correction leaves it, the edge overlaps by as much."""
 
-    def displacement(r: Array) -> Array:
+    def displacement(r: FloatArray) -> FloatArray:
         return radius * contact.surface_displacement(r / radius, depth)
 
     tolerance = error * max(abs(depth), contact.smooth_depth) + max(depth - contact.smooth_depth, 0.0)

@@ -25,7 +25,7 @@ MAX_STEPS = 200_000
 
 
 @dataclass(frozen=True, kw_only=True)
-class Body:
+class FallingBody:
     """The impacting body in the units of its condensed layer.
 
     Attributes:
@@ -56,7 +56,7 @@ class HistorySamples:
 
 
 def simulate_impact(
-    condensed: CondensedLayer, body: Body, relaxation: ShearRelaxation, duration: float
+    condensed: CondensedLayer, body: FallingBody, relaxation: ShearRelaxation, duration: float
 ) -> HistorySamples:
     """Steps of ``duration`` [s] from first touch to the loss of contact.
 
@@ -100,7 +100,7 @@ def simulate_impact(
     raise NotConvergedError("the body does not come off", {"last_force": force, "last_velocity": velocity})
 
 
-def touch(condensed: CondensedLayer, body: Body, step: RelaxationStep) -> float:
+def touch(condensed: CondensedLayer, body: FallingBody, step: RelaxationStep) -> float:
     """Force at first touch: that of the dashpots under the part of the profile that is flat."""
     if step.dashpot == 0:
         return 0.0

@@ -18,7 +18,7 @@ from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import with_errors
-from fem_reference.in_time.impact import Body, HistorySamples, simulate_impact
+from fem_reference.in_time.impact import FallingBody, HistorySamples, simulate_impact
 from fem_reference.in_time.prescribed import simulate_depths, simulate_forces
 from fem_reference.in_time.setup import HistorySetup
 
@@ -32,7 +32,9 @@ def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> Imp
 
     def simulate(condensed: CondensedLayer, duration: float) -> HistorySamples:
         """The motion on this mesh of the strip with time steps of this duration [s]."""
-        body = Body(mass=loading.mass / (modulus * condensed.radius), velocity=loading.velocity / condensed.radius)
+        body = FallingBody(
+            mass=loading.mass / (modulus * condensed.radius), velocity=loading.velocity / condensed.radius
+        )
         with log.stage("time_steps"):
             record = simulate_impact(condensed, body, setup.relaxation, duration)
         log.count("steps", len(record.time))

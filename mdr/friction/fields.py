@@ -7,10 +7,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.special import j0
 
 from bem.kernels.tangential import beyond_half_space
-from bem.layer_equation.stick.adhered_fields import AdheredFields, ComplexArray, tanh_sinh
+from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import LARGEST_Q, AdheredPunch
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import Scene
@@ -125,7 +126,7 @@ class StickFields:
 
     def _densities(
         self, s: FloatArray, square: FloatArray, a: FloatArray
-    ) -> tuple[FloatArray, ComplexArray, ComplexArray, FloatArray, FloatArray]:
+    ) -> tuple[FloatArray, NDArray[np.complex128], NDArray[np.complex128], FloatArray, FloatArray]:
         """t, Phi, (1 - t^2) Phi' of unit punches on [s, 1], 1 - s^2 = square; weights and sqrt(1 - s^2)."""
         table, (v, rest, weights) = self.growth.table, tanh_sinh()
         t = np.sqrt(s[:, None] ** 2 + square[:, None] * v**2)

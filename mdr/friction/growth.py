@@ -25,7 +25,7 @@ from mdr.springs.half_space_profile import half_space_profile
 
 
 @dataclass(frozen=True)
-class Stretch:
+class GrowthStretch:
     """delta on one stretch of the profile: ``a = start + length u^power``, ``d delta/du = u^(lead - 1) poly(u)``.
 
     Attributes:
@@ -94,7 +94,7 @@ class Growth:
     """
 
     table: GrowthTable
-    stretches: tuple[Stretch, ...]
+    stretches: tuple[GrowthStretch, ...]
     unknowns: FloatArray
 
     def increments(self, low: float, high: float) -> Increments:
@@ -144,17 +144,17 @@ def growth(indenter: Profile, thickness: float, reach: float, table: GrowthTable
     return Growth(table, stretches, unknowns)
 
 
-def _stretches(indenter: Profile, thickness: float, reach: float) -> tuple[Stretch, ...]:
+def _stretches(indenter: Profile, thickness: float, reach: float) -> tuple[GrowthStretch, ...]:
     flat = indenter.flat_radius / thickness
     inner = [k / thickness for k in indenter.breakpoints if flat < k / thickness < reach]
     ends = [flat, *inner, reach]
     lead = float(indenter.exponent) if isinstance(indenter, PowerLaw) else 1.0
-    first = Stretch(ends[0], ends[1] - ends[0], 2 if flat else 1, 1.0 if flat else lead)
-    rest = (Stretch(start, end - start, 2, 1.0) for start, end in pairwise(ends[1:]))
+    first = GrowthStretch(ends[0], ends[1] - ends[0], 2 if flat else 1, 1.0 if flat else lead)
+    rest = (GrowthStretch(start, end - start, 2, 1.0) for start, end in pairwise(ends[1:]))
     return (first, *rest)
 
 
-def _followed(stretch: Stretch, x: FloatArray, end: FloatArray, table: GrowthTable, count: int) -> FloatArray:
+def _followed(stretch: GrowthStretch, x: FloatArray, end: FloatArray, table: GrowthTable, count: int) -> FloatArray:
     """int M(x; a) d delta/du du of each unknown over u < end, shape (x, count)."""
     v, rest, weights = tanh_sinh()
     rows = np.empty((x.size, count))

@@ -199,6 +199,7 @@ def _first_reach(scene: Scene) -> float:
     room = min(indenter.max_radius, 1e12) - indenter.flat_radius
 
     def missing(log_excess: float) -> float:
+        """What the frictionless half-space lacks of the largest depth or force."""
         excess = math.exp(log_excess)
         depth = float(half_space_profile(indenter, np.array([excess]))[0])
         if isinstance(scene.loading, IndentationDepths):

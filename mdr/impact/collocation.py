@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bem.polynomials.chebyshev import powers
 from contact import NotConvergedError
-from contact.records.validation import FloatArray
+from contact.records.validation import FloatArray, IntArray
 from mdr.impact.collocation_step import (
     STAGES,
     SWEEP_TOLERANCE,
@@ -23,8 +23,7 @@ from mdr.impact.collocation_step import (
     Course,
     Derivative,
     Landing,
-    Lanes,
-    Task,
+    StepTask,
     newton_step,
     swept_step,
 )
@@ -45,7 +44,7 @@ class Problem(Protocol):
     def chain(self) -> Chain | None:
         """A component whose slope is another one."""
 
-    def derivative(self, lanes: Lanes) -> Derivative:
+    def derivative(self, lanes: IntArray) -> Derivative:
         """The right-hand side of a subset of lanes, from states (m, stages, len(lanes)) to their derivatives."""
 
 
@@ -82,8 +81,8 @@ class Trajectory:
     """
 
     final: FloatArray
-    ended_by: Lanes
-    counts: Lanes
+    ended_by: IntArray
+    counts: IntArray
     starts: FloatArray
     steps: FloatArray
     error: FloatArray
@@ -165,7 +164,7 @@ class _Walk:
         self.state, self.size = state.copy(), first_step.copy()
         self.due, self.ended_by = np.full(lanes, -1, dtype=np.intp), np.full(lanes, -1, dtype=np.intp)
         self.error, self.stiff = np.zeros(lanes), np.zeros(lanes, dtype=np.bool_)
-        self.pieces: list[tuple[Lanes, FloatArray, FloatArray]] = []
+        self.pieces: list[tuple[IntArray, FloatArray, FloatArray]] = []
         self.sweeps = 0
         self.active = _never_alone(np.arange(lanes))
         self.derivative = problem.derivative(self.active)
@@ -181,10 +180,10 @@ class _Walk:
             due = np.where(due < 0, self._first_event(start, start + _ALMOST * course.ahead(size)), due)
             landing = self._landing(due, start)
             precision = self.tolerance[self.active] * np.maximum(1.0, np.abs(start))
-            task = Task(start, course.aimed(size, landing), precision, landing, self.problem.chain)
+            task = StepTask(start, course.aimed(size, landing), precision, landing, self.problem.chain)
             self._settle(self._tried(task, course), due)
 
-    def _settle(self, trial: CollocationStep, due: Lanes) -> None:
+    def _settle(self, trial: CollocationStep, due: IntArray) -> None:
         """Keep what is good and ends where it should; set the size of each lane's next trial.
 
         After a failure the next trial is shorter than this one was anywhere, so that failures come to an end.
@@ -214,7 +213,7 @@ class _Walk:
             )
         return course
 
-    def _landing(self, due: Lanes, start: FloatArray) -> Landing | None:
+    def _landing(self, due: IntArray, start: FloatArray) -> Landing | None:
         """Which component must end where; a lane on no event aims at nothing."""
         if not np.count_nonzero(due >= 0):
             return None
@@ -223,7 +222,7 @@ class _Walk:
         target = self.targets[event, self.active]
         return Landing(due >= 0, component, target - start[component, np.arange(component.size)])
 
-    def _tried(self, task: Task, course: Course) -> CollocationStep:
+    def _tried(self, task: StepTask, course: Course) -> CollocationStep:
         """A step by sweeps, and by Newton's method for lanes that turn out to be stiff."""
         lanes = self.active
         trial = swept_step(self.derivative, task, course)
@@ -237,7 +236,7 @@ class _Walk:
             self.sweeps += harder.sweeps
         return trial
 
-    def _first_event(self, start: FloatArray, end: FloatArray, but: Lanes | None = None) -> Lanes:
+    def _first_event(self, start: FloatArray, end: FloatArray, but: IntArray | None = None) -> IntArray:
         """Index of the event that each active lane meets first, judged by linear interpolation; -1 for none."""
         gap = self.directions * (self.targets[:, self.active] - start[self.components])
         travel = self.directions * (end[self.components] - start[self.components])
@@ -273,7 +272,7 @@ class _Walk:
         )
 
 
-def _never_alone(lanes: Lanes) -> Lanes:
+def _never_alone(lanes: IntArray) -> IntArray:
     """The same lanes, a single one twice: sums over one column are rounded in another order than over several."""
     return lanes if lanes.size != 1 else np.repeat(lanes, 2)
 

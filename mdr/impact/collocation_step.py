@@ -17,9 +17,8 @@ from numpy.typing import NDArray
 
 from bem.polynomials.chebyshev import powers
 from bem.polynomials.gauss import legendre_rule
-from contact.records.validation import FloatArray
+from contact.records.validation import FloatArray, IntArray
 
-Lanes: TypeAlias = NDArray[np.intp]
 Derivative: TypeAlias = Callable[[FloatArray], FloatArray]
 # Rows of a quantity, of its speed, and of the clock of that speed.
 Chain: TypeAlias = tuple[int, int, int | None]
@@ -72,14 +71,14 @@ class Landing:
     """
 
     due: NDArray[np.bool_]
-    component: Lanes
+    component: IntArray
     span: FloatArray
 
     def of(self, values: FloatArray) -> FloatArray:
         """Each lane's component, from (m, ..., lanes) to (..., lanes)."""
         return values[self.component, ..., np.arange(self.component.size)].T
 
-    def take(self, lanes: Lanes) -> Landing:
+    def take(self, lanes: IntArray) -> Landing:
         """Of some lanes only."""
         return Landing(self.due[lanes], self.component[lanes], self.span[lanes])
 
@@ -115,15 +114,15 @@ class Course:
         """Apart from the original."""
         return Course(self.slopes.copy(), self.size.copy(), self.origin.copy())
 
-    def take(self, lanes: Lanes) -> Course:
+    def take(self, lanes: IntArray) -> Course:
         """Some of the lanes."""
         return Course(self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes])
 
-    def put(self, lanes: Lanes, other: Course) -> None:
+    def put(self, lanes: IntArray, other: Course) -> None:
         """Replace some lanes."""
         self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes] = other.slopes, other.size, other.origin
 
-    def follow(self, step: CollocationStep, lanes: Lanes, *, ended: NDArray[np.bool_]) -> None:
+    def follow(self, step: CollocationStep, lanes: IntArray, *, ended: NDArray[np.bool_]) -> None:
         """Remember a step of some lanes, ended or to be repeated; one that came to nothing says nothing."""
         slopes = _ONWARD @ step.slopes
         if np.count_nonzero(ended) < ended.size:
@@ -164,7 +163,7 @@ class Course:
 
 
 @dataclass(frozen=True)
-class Task:
+class StepTask:
     """A step to be found for some lanes.
 
     Attributes:
@@ -182,10 +181,10 @@ class Task:
     landing: Landing | None
     chain: Chain | None = None
 
-    def take(self, lanes: Lanes) -> Task:
+    def take(self, lanes: IntArray) -> StepTask:
         """Some of the lanes."""
         landing = None if self.landing is None else self.landing.take(lanes)
-        return Task(self.start[:, lanes], self.size[lanes], self.precision[:, lanes], landing, self.chain)
+        return StepTask(self.start[:, lanes], self.size[lanes], self.precision[:, lanes], landing, self.chain)
 
     def states(self, size: FloatArray, slopes: FloatArray) -> FloatArray:
         """At the stages, shape (m, stages, lanes)."""
@@ -214,7 +213,7 @@ class CollocationStep:
         sweeps: How many sweeps it took.
     """
 
-    task: Task
+    task: StepTask
     size: FloatArray
     slopes: FloatArray
     error: FloatArray
@@ -233,13 +232,13 @@ class CollocationStep:
         """Powers of z in [-1, 1] of the change of state, shape (m, 11, lanes)."""
         return np.asarray(CHANGE @ (self.size * self.slopes))
 
-    def put(self, lanes: Lanes, other: CollocationStep) -> None:
+    def put(self, lanes: IntArray, other: CollocationStep) -> None:
         """Replace some lanes."""
         self.size = self.size.copy()
         self.size[lanes], self.slopes[:, :, lanes], self.error[lanes] = other.size, other.slopes, other.error
 
 
-def swept_step(derivative: Derivative, task: Task, course: Course) -> CollocationStep:
+def swept_step(derivative: Derivative, task: StepTask, course: Course) -> CollocationStep:
     """Sweep until no stage moves; a lane that has converged is left alone, so that no lane feels its neighbours.
 
     Args:
@@ -267,7 +266,7 @@ def swept_step(derivative: Derivative, task: Task, course: Course) -> Collocatio
     return task.found(size, slopes, failed, sweep)
 
 
-def newton_step(derivative: Derivative, task: Task) -> CollocationStep:
+def newton_step(derivative: Derivative, task: StepTask) -> CollocationStep:
     """The same step by simplified Newton iteration, for slopes that answer fast: Gauss collocation is A-stable."""
     components, lanes = task.start.shape
     base, size, count = task.start[:, None], task.size, components * STAGES
@@ -292,7 +291,7 @@ def newton_step(derivative: Derivative, task: Task) -> CollocationStep:
 
 
 def _corrected(
-    task: Task, landing: Landing, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
+    task: StepTask, landing: Landing, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
     """Lengths nearer to the event, by Newton's method, and what the correction moves in units of the precision."""
     change, at_end = np.moveaxis(_ENDS @ slopes, 1, 0)

@@ -19,8 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.records.validation import FloatArray
-from mdr.impact.collocation_step import Chain, Derivative, Lanes
+from contact.records.validation import FloatArray, IntArray
+from mdr.impact.collocation_step import Chain, Derivative
 from mdr.impact.memory import Memory
 from mdr.springs.table import MOMENT, PROFILE, SLOPE, STIFFNESS, SpringTable
 
@@ -57,7 +57,7 @@ class ImpactBatch:
         """Number of Prony branches."""
         return int(self.weights.shape[0])
 
-    def take(self, lanes: Lanes) -> ImpactBatch:
+    def take(self, lanes: IntArray) -> ImpactBatch:
         """Some of the lanes."""
         if lanes.size == self.count and np.array_equal(lanes, np.arange(self.count)):
             return self
@@ -98,7 +98,7 @@ class Pressing:
         """dy = v d(sigma)."""
         return 0, 2, None
 
-    def derivative(self, lanes: Lanes) -> Derivative:
+    def derivative(self, lanes: IntArray) -> Derivative:
         """d(state)/d(sigma)."""
         own = self.lanes.take(lanes)
         springs_at, (shared, memory) = own.springs_within(self.section, 5), outline(own.branches)
@@ -136,7 +136,7 @@ class Receding:
         """d(delta) = v dt."""
         return 2, 3, 1
 
-    def derivative(self, lanes: Lanes) -> Derivative:
+    def derivative(self, lanes: IntArray) -> Derivative:
         """d(state)/d(sigma)."""
         own = self.lanes.take(lanes)
         springs_at, branches = own.springs_within(self.section, 5), slice(4, 4 + own.branches)

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact.records.validation import FloatArray
-from mdr.impact.collocation_step import Chain, Derivative, Lanes
+from contact.records.validation import FloatArray, IntArray
+from mdr.impact.collocation_step import Chain, Derivative
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class FlatPunchBatch:
         """d(delta) = v dt."""
         return 2, 3, None
 
-    def take(self, lanes: Lanes) -> FlatPunchBatch:
+    def take(self, lanes: IntArray) -> FlatPunchBatch:
         """Some of the lanes."""
         return FlatPunchBatch(
             self.long_term[lanes],
@@ -51,7 +51,7 @@ class FlatPunchBatch:
         state[0], state[3] = self.viscosity, 1.0
         return state
 
-    def derivative(self, lanes: Lanes) -> Derivative:
+    def derivative(self, lanes: IntArray) -> Derivative:
         """d(state)/dt."""
         long_term, viscosity, inertia = self.long_term[lanes], self.viscosity[lanes], self.inertia[lanes]
         weights, rates = self.weights[..., lanes], self.rates[..., lanes]

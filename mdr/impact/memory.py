@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bem.polynomials import chebyshev
-from contact.records.validation import FloatArray
+from contact.records.validation import FloatArray, IntArray
 from mdr.impact.collocation import Trajectory
-from mdr.impact.collocation_step import STAGES, Derivative, Lanes
+from mdr.impact.collocation_step import STAGES, Derivative
 
 _NODES = 16
 _NEWTON_STEPS = 5
@@ -39,7 +39,7 @@ class Memory:
     places: FloatArray
     powers: FloatArray
 
-    def take(self, lanes: Lanes) -> Memory:
+    def take(self, lanes: IntArray) -> Memory:
         """Some of the lanes."""
         low, way, rest, places = (values[..., lanes] for values in (self.low, self.way, self.rest, self.places))
         return Memory(low, way, rest, places, self.powers[..., lanes])
@@ -60,7 +60,7 @@ class Memory:
         # A matrix product would round larger batches in another order than small ones.
         return replace(self, powers=np.einsum("ij,jrsl->irsl", _POWERS_FROM_VALUES, values))
 
-    def recall(self, step: int, lanes: Lanes) -> Derivative:
+    def recall(self, step: int, lanes: IntArray) -> Derivative:
         """From y within one step, shape (stages, len(lanes)), to the remembered rows, (rows, stages, len(lanes))."""
         low, way, rest = self.low[step, lanes], self.way[step, lanes], self.rest[step, lanes]
         first, last, powers = np.sqrt(1.0 + rest), np.sqrt(rest), self.powers[:, :, step, lanes]
@@ -68,6 +68,7 @@ class Memory:
         by_lane = np.ascontiguousarray(powers.transpose(2, 1, 0))
 
         def rows(y: FloatArray) -> FloatArray:
+            """Values of every row at way y."""
             # A front beyond its turn is a rounding error.
             left = np.sqrt(np.maximum(end - y / way, 0.0))
             # Lane by lane, so that each product is the same whatever lanes stand beside it.

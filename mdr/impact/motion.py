@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact import NotConvergedError
-from contact.records.validation import FloatArray
+from contact.records.validation import FloatArray, IntArray
 from mdr.impact.collocation import EndCondition, Problem, Trajectory, integrate
-from mdr.impact.collocation_step import STAGES, Course, Lanes
+from mdr.impact.collocation_step import STAGES, Course
 from mdr.impact.equations import ImpactBatch, Pressing, Receding, drift, outline
 from mdr.impact.memory import Memory, memory_of
 
@@ -34,7 +34,7 @@ class TableTooShort(NotConvergedError):
 class Leg:
     """One section of the way in, or the way back through one step of it, of the lanes that went there."""
 
-    lanes: Lanes
+    lanes: IntArray
     section: int
     trajectory: Trajectory
     memory: Memory | None
@@ -94,14 +94,14 @@ def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
 
 
 class _Run:
-    """Lanes under way; `size` is each lane's next trial step."""
+    """IntArray under way; `size` is each lane's next trial step."""
 
     def __init__(self, lanes: ImpactBatch, tolerance: FloatArray) -> None:
         self.lanes, self.tolerance = lanes, tolerance
         self.size = _FIRST_STEP * tolerance ** (1.0 / STAGES)
         self.course = Course.unknown(0, self.size)
 
-    def press(self) -> tuple[tuple[Leg, ...], FloatArray, Lanes]:
+    def press(self) -> tuple[tuple[Leg, ...], FloatArray, IntArray]:
         """The way in, section by section; the state at the turn and the section where each lane turned."""
         lanes, ends = self.lanes, self.lanes.table.section_ends
         state = np.zeros((3 + 2 * lanes.branches, lanes.count))
@@ -119,7 +119,9 @@ class _Run:
                 return tuple(legs), state, turned_in
         raise TableTooShort("an impact presses beyond the radius up to which springs were tabulated")
 
-    def recede(self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: Lanes) -> tuple[tuple[Leg, ...], FloatArray]:
+    def recede(
+        self, way_in: tuple[Leg, ...], turn: FloatArray, turned_in: IntArray
+    ) -> tuple[tuple[Leg, ...], FloatArray]:
         """The way out, back through the same sections, and the state at its end."""
         lanes, legs = self.lanes, []
         state = np.zeros((4 + lanes.branches, lanes.count))
@@ -145,7 +147,7 @@ class _Run:
         return Leg(going, leg.section, trajectory, memory, step)
 
     def _integrate(
-        self, problem: Problem, state: FloatArray, going: Lanes, events: tuple[EndCondition, ...]
+        self, problem: Problem, state: FloatArray, going: IntArray, events: tuple[EndCondition, ...]
     ) -> Trajectory:
         """Advance some lanes to their events, in place."""
         trajectory = integrate(

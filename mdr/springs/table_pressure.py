@@ -46,6 +46,7 @@ def _error(system: EquivalentSystem, scene: Scene, radius: float, depth: float, 
     least = max(radius - system.flat_radius, LEAST_EXCESS * radius)
 
     def pressure(table: FlatPunchSolution, way: float) -> FloatArray:
+        """Pressure on the rings by one table, with the contact widened by a way."""
         end = min(LARGEST_MOVE * least, scene.indenter.max_radius - system.flat_radius, system.max_radius)
         excess = float(np.clip(least + way, least / LARGEST_MOVE, end))
         field = contact_fields(scene.layer, scene.indenter, table, excess=excess, depth=depth, edge=False)

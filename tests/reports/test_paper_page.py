@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from cases.library._paper import statements
-from cases.library._paper.statement import Measured, Statement, Verdict
+from cases.library._paper.statement import Measured, Statement, StatementVerdict
 from reports.pages.paper import paper_page
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -25,13 +25,13 @@ def test_there_are_sixty_statements_and_no_two_alike():
 @pytest.mark.parametrize(
     ("words", "value", "verdict"),
     [
-        ("p from w_1D Eq", 0.0, Verdict.SLIP),
-        ("p from w_1D', as in", 0.0, Verdict.HOLDS),
-        ("the integral of the pressure runs to x", 0.0, Verdict.SLIP),
-        ("bonded nu=0.5: for a/h < 0.1", 0.126, Verdict.LOOSER),
-        ("bonded nu=0.5: for a/h > 50", -0.109, Verdict.LOOSER),
-        ("second maximum in the centre", 0.7885, Verdict.LOOSER),
-        ("nu = 0.5: the elongation has its maximum", 0.4619, Verdict.HOLDS),
+        ("p from w_1D Eq", 0.0, StatementVerdict.SLIP),
+        ("p from w_1D', as in", 0.0, StatementVerdict.HOLDS),
+        ("the integral of the pressure runs to x", 0.0, StatementVerdict.SLIP),
+        ("bonded nu=0.5: for a/h < 0.1", 0.126, StatementVerdict.LOOSER),
+        ("bonded nu=0.5: for a/h > 50", -0.109, StatementVerdict.LOOSER),
+        ("second maximum in the centre", 0.7885, StatementVerdict.LOOSER),
+        ("nu = 0.5: the elongation has its maximum", 0.4619, StatementVerdict.HOLDS),
     ],
 )
 def test_known_verdicts(words, value, verdict):
@@ -59,5 +59,5 @@ def test_the_committed_page_is_what_is_computed_now():
 
 def test_a_wrong_number_changes_the_verdict_and_errors_are_shown():
     one = Statement("Eq. (1)", "is one", "1", "it", lambda: Measured(1.25, 0.03), lambda value: abs(value - 1) < 0.1)
-    assert one.judged()[1] is Verdict.LOOSER
+    assert one.judged()[1] is StatementVerdict.LOOSER
     assert "| 1.25(3) |" in paper_page([one]) or "| 1.250(30) |" in paper_page([one])

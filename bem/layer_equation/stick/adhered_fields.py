@@ -16,11 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import j0, j1
 
-from bem.kernels.tangential import SurfaceCompliance
+from bem.kernels.tangential import TangentialKernel
 from bem.layer_equation.stick.adhered_punch import AdheredPunch, BasisTransforms, basis_transforms
 from contact.records.validation import FloatArray
-
-ComplexArray = NDArray[np.complex128]
 
 # Step and half range of the tanh-sinh rule: its error is exp(-pi^2/(2 step)), and at the ends weights are below 1e-17.
 _STEP = 0.05
@@ -31,8 +29,8 @@ _RANGE = 3.4
 class Densities:
     """Phi = phi + i psi at some t of [0, 1), and T = (1 - t^2) Phi'."""
 
-    value: ComplexArray
-    slope: ComplexArray
+    value: NDArray[np.complex128]
+    slope: NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -91,7 +89,7 @@ class AdheredFields:
         weight = np.exp(1j * of.charge * np.log((1.0 + t) / rest))
         return Densities(weight * value, weight * (2j * of.charge * value + rest * (1.0 + t) * slope))
 
-    def continued(self, s: FloatArray) -> ComplexArray:
+    def continued(self, s: FloatArray) -> NDArray[np.complex128]:
         """G = sqrt(kappa_nu) g at x/a, continued as the polynomial it is on the contact; for s up to 1.005 or so."""
         value = np.zeros(s.shape, dtype=complex)
         of, c = self.punch.material, self.punch.coefficients
@@ -99,7 +97,7 @@ class AdheredFields:
             value += factor * polynomial
         return np.asarray(math.sqrt(of.kappa) * value)
 
-    def transform_beside(self, s: FloatArray) -> ComplexArray:
+    def transform_beside(self, s: FloatArray) -> NDArray[np.complex128]:
         """G beside the punch, s = x/a > 1, from the equation: ``((s+1)/(s-1))^(i eps) G = 1 - (S + K) Phi``."""
         of = self.punch.material
         if not s.size:
@@ -113,10 +111,10 @@ class AdheredFields:
         angle, w = np.multiply.outer(s, transforms.wavenumber), 2.0 / math.pi * transforms.weights
         normal_waves = np.cos(angle) @ (w * (extra.normal * P + extra.coupling * Q))
         waves = normal_waves + 1j * np.sin(angle) @ (w * (extra.radial * Q + extra.coupling * P))
-        turned: ComplexArray = np.exp(-1j * of.charge * np.log((s + 1.0) / (s - 1.0)))
+        turned: NDArray[np.complex128] = np.exp(-1j * of.charge * np.log((s + 1.0) / (s - 1.0)))
         return np.asarray((1.0 - 1j * of.eta * hilbert - waves) * turned)
 
-    def _layer(self, radius: FloatArray) -> tuple[BasisTransforms, SurfaceCompliance]:
+    def _layer(self, radius: FloatArray) -> tuple[BasisTransforms, TangentialKernel]:
         """Waves that resolve the surface out to these radii, and the layer's share of the compliance there."""
         reach = max(1.0, float(np.max(radius, initial=0.0)))
         transforms = basis_transforms(
@@ -175,7 +173,7 @@ def _rest_outside(radius: FloatArray, end: FloatArray) -> FloatArray:
     return product
 
 
-def _scaled(coefficients: FloatArray, charge: float) -> ComplexArray:
+def _scaled(coefficients: FloatArray, charge: float) -> NDArray[np.complex128]:
     """c_n i^n/sqrt(h_n)."""
     n = np.arange(coefficients.size)
     gamma = math.pi * charge / math.sinh(math.pi * charge) if charge else 1.0
@@ -183,10 +181,12 @@ def _scaled(coefficients: FloatArray, charge: float) -> ComplexArray:
     return np.asarray(coefficients * (1j) ** (n % 4) / np.sqrt(2.0 / (2 * n + 1) * squares), dtype=complex)
 
 
-def _jacobi(t: FloatArray, charge: float, count: int) -> Iterator[tuple[ComplexArray, ComplexArray]]:
+def _jacobi(
+    t: FloatArray, charge: float, count: int
+) -> Iterator[tuple[NDArray[np.complex128], NDArray[np.complex128]]]:
     """P_n^(-i eps, i eps)(t) and its derivative for n = 0 .. count - 1; only the first step is complex."""
-    before: ComplexArray = np.ones(t.shape, dtype=complex)
-    here: ComplexArray = np.asarray(t - 1j * charge, dtype=complex)
+    before: NDArray[np.complex128] = np.ones(t.shape, dtype=complex)
+    here: NDArray[np.complex128] = np.asarray(t - 1j * charge, dtype=complex)
     slope_before, slope = np.zeros(t.shape, dtype=complex), np.ones(t.shape, dtype=complex)
     yield before, slope_before
     for n in range(1, count):

@@ -20,7 +20,7 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from bem.kernels.tangential import SurfaceCompliance, beyond_half_space
+from bem.kernels.tangential import TangentialKernel, beyond_half_space
 from bem.layer_equation.stick.coulomb import coulomb_functions, phases
 from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
@@ -128,7 +128,7 @@ class AdheredPunch:
         """int_0^1 phi dt, F over 2 pi a."""
         return float(_first_moment(self.material) * self.coefficients[0] / 2.0)
 
-    def compliance(self, transforms: BasisTransforms) -> SurfaceCompliance:
+    def compliance(self, transforms: BasisTransforms) -> TangentialKernel:
         """D at the nodes of the wavenumber."""
         return _compliance(transforms, self.ratio, self.support, self.material)
 
@@ -195,7 +195,7 @@ def _transforms(charge: float, panel: float, panels: int, count: int) -> BasisTr
     )
 
 
-def _compliance(transforms: BasisTransforms, ratio: float, support: Support, material: Material) -> SurfaceCompliance:
+def _compliance(transforms: BasisTransforms, ratio: float, support: Support, material: Material) -> TangentialKernel:
     # A half-space has no wavenumbers at which a layer would show.
     q = transforms.wavenumber / (ratio or 1.0)
     return beyond_half_space(q, support, material.poissons_ratio)

@@ -16,8 +16,9 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
-from bem.layer_equation.stick.adhered_fields import AdheredFields, ComplexArray
+from bem.layer_equation.stick.adhered_fields import AdheredFields
 from bem.layer_equation.stick.adhered_punch import Material, adhered_punch
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -45,7 +46,7 @@ class GrowthTable:
     material: Material
     support: Support | None
     max_ratio: float
-    coefficients: ComplexArray
+    coefficients: NDArray[np.complex128]
     stiffness: FloatArray
 
     @property
@@ -53,18 +54,22 @@ class GrowthTable:
         """Whether no layer shows."""
         return self.support is None
 
-    def beside(self, x: float, a: FloatArray) -> ComplexArray:
+    def beside(self, x: float, a: FloatArray) -> NDArray[np.complex128]:
         """G(x; a) for one x and many a, shape of a."""
         row = chebyshev.chebval(self._unit(x), self.coefficients)
         return np.asarray(chebyshev.chebval(self._unit(a), row))
 
-    def below(self, t: FloatArray, a: FloatArray) -> tuple[ComplexArray, ComplexArray]:
+    def below(self, t: FloatArray, a: FloatArray) -> tuple[NDArray[np.complex128], NDArray[np.complex128]]:
         """G(t; a) and dG/dt under the punch, a of shape (n,) and t of shape (n, m)."""
         columns = chebyshev.chebval(self._unit(a), self.coefficients.T)
         slopes = chebyshev.chebder(columns) * (2.0 / self.max_ratio) if len(columns) > 1 else np.zeros_like(columns)
         at = self._unit(t)
-        value: ComplexArray = np.asarray(chebyshev.chebval(at, columns[..., None], tensor=False), dtype=complex)
-        slope: ComplexArray = np.asarray(chebyshev.chebval(at, slopes[..., None], tensor=False), dtype=complex)
+        value: NDArray[np.complex128] = np.asarray(
+            chebyshev.chebval(at, columns[..., None], tensor=False), dtype=complex
+        )
+        slope: NDArray[np.complex128] = np.asarray(
+            chebyshev.chebval(at, slopes[..., None], tensor=False), dtype=complex
+        )
         return value, slope
 
     def contact_stiffness(self, a: FloatArray) -> FloatArray:

@@ -248,44 +248,50 @@ def stability_figure(
     constants: dict[str, tuple[float, ...]], errors: dict[str, tuple[tuple[float, float], ...]]
 ) -> Figure:
     """Inf-sup constants over the mesh and over nu; errors on one mesh over nu."""
-    cells = [float(n) for n in INF_SUP_CELLS]
-    ratios = [distance or INCOMPRESSIBLE_AT for distance in COMPRESSIBILITIES]
-    over_nu = {
-        name: [with_compressibility(constants[name][-1], 0.5 - distance) for distance in COMPRESSIBILITIES]
-        for name in MIXED
-    }
     return Figure(
         name="stability",
         title="Stability of element pairs and locking",
         caption="Left: inf-sup constant on uniform meshes; that of the pair P1P0 falls, that of P1P1 vanishes. Middle: "
         "constant of the mixed form on a mesh graded towards the contact edge. Right: error of the stiffness at "
         "a/h = 1 on one mesh, by mixed pairs and by displacements alone (P2, P3). nu = 1/2 exactly stands at 1e-7.",
-        panels=(
-            Panel(
-                title="refined meshes",
-                x_label="cells across the thickness",
-                y_label="inf-sup constant",
-                x_scale="log",
-                series=tuple(_series(name, cells, constants[name][:-1]) for name in constants),
-            ),
-            Panel(
-                title="graded mesh",
-                x_label=r"$1/2 - \nu$",
-                y_label="inf-sup constant",
-                x_scale="log",
-                y_range=(0.0, 1.0),
-                series=tuple(_series(name, ratios, over_nu[name]) for name in MIXED),
-            ),
-            Panel(
-                title="one mesh",
-                x_label=r"$1/2 - \nu$",
-                y_label="relative error of $k_N$",
-                x_scale="log",
-                y_scale="log",
-                series=tuple(
-                    _series(name, [x or INCOMPRESSIBLE_AT for x, _ in row], [error for _, error in row])
-                    for name, row in errors.items()
-                ),
+        panels=_stability_panels(constants, errors),
+    )
+
+
+def _stability_panels(
+    constants: dict[str, tuple[float, ...]], errors: dict[str, tuple[tuple[float, float], ...]]
+) -> tuple[Panel, ...]:
+    cells = [float(n) for n in INF_SUP_CELLS]
+    ratios = [distance or INCOMPRESSIBLE_AT for distance in COMPRESSIBILITIES]
+    over_nu = {
+        name: [with_compressibility(constants[name][-1], 0.5 - distance) for distance in COMPRESSIBILITIES]
+        for name in MIXED
+    }
+    return (
+        Panel(
+            title="refined meshes",
+            x_label="cells across the thickness",
+            y_label="inf-sup constant",
+            x_scale="log",
+            series=tuple(_series(name, cells, constants[name][:-1]) for name in constants),
+        ),
+        Panel(
+            title="graded mesh",
+            x_label=r"$1/2 - \nu$",
+            y_label="inf-sup constant",
+            x_scale="log",
+            y_range=(0.0, 1.0),
+            series=tuple(_series(name, ratios, over_nu[name]) for name in MIXED),
+        ),
+        Panel(
+            title="one mesh",
+            x_label=r"$1/2 - \nu$",
+            y_label="relative error of $k_N$",
+            x_scale="log",
+            y_scale="log",
+            series=tuple(
+                _series(name, [x or INCOMPRESSIBLE_AT for x, _ in row], [error for _, error in row])
+                for name, row in errors.items()
             ),
         ),
     )

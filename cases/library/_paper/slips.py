@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.library._paper.statement import FORMULA, Measured, Statement, Verdict, within
+from cases.library._paper.statement import FORMULA, Measured, Statement, StatementVerdict, within
 
 # Gauss points on the contact; the integrands are smooth after the substitution.
 POINTS = 60
@@ -50,7 +50,7 @@ def statements() -> Iterator[Statement]:
             partial(off_hertz, prime=prime),
             within(1e-9),
             FORMULA,
-            Verdict.SLIP,
+            StatementVerdict.SLIP,
         )
     yield Statement(
         "Eq. (15)",
@@ -60,5 +60,5 @@ def statements() -> Iterator[Statement]:
         lambda: Measured(limit_of_the_inner_integral() - 1, 1e-12, in_percent=True),
         within(1e-9),
         FORMULA,
-        Verdict.SLIP,
+        StatementVerdict.SLIP,
     )

@@ -12,7 +12,7 @@ MDR = "MDR, integral equation"
 FORMULA = "written formula"
 
 
-class Verdict(StrEnum):
+class StatementVerdict(StrEnum):
     """How a statement ends."""
 
     HOLDS = "holds"
@@ -51,12 +51,12 @@ class Statement:
     measure: Callable[[], Measured]
     holds: Callable[[float], bool]
     method: str = MDR
-    otherwise: Verdict = Verdict.LOOSER
+    otherwise: StatementVerdict = StatementVerdict.LOOSER
 
-    def judged(self) -> tuple[Measured, Verdict]:
+    def judged(self) -> tuple[Measured, StatementVerdict]:
         """Compute the number and say whether the statement holds."""
         found = self.measure()
-        return found, Verdict.HOLDS if self.holds(found.value) else self.otherwise
+        return found, StatementVerdict.HOLDS if self.holds(found.value) else self.otherwise
 
 
 def deviation(value: float, reference: float, relative_error: float = 0.0) -> Measured:

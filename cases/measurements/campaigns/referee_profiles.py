@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from functools import singledispatch
 from itertools import pairwise
-from typing import Any, TypeAlias
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,8 +27,6 @@ from contact import (
     TruncatedParaboloid,
 )
 from contact.records.validation import FloatArray
-
-Extended: TypeAlias = NDArray[np.longdouble]
 
 
 @singledispatch
@@ -87,7 +85,9 @@ def _(indenter: Tabulated, excess: FloatArray, room: FloatArray) -> FloatArray:
     return np.asarray(slope, dtype=np.float64)
 
 
-def _piece(x: Extended, start: np.longdouble, end: np.longdouble, cubic: FloatArray) -> Extended:
+def _piece(
+    x: NDArray[np.longdouble], start: np.longdouble, end: np.longdouble, cubic: FloatArray
+) -> NDArray[np.longdouble]:
     """int f'(r)/sqrt(x^2 - r^2) dr over [start, end] below x, f = c0 s^3 + c1 s^2 + c2 s + c3 with s = r - start."""
     first, last = np.minimum(start, x), np.minimum(end, x)
     roots = _leg(x, first), _leg(x, last)
@@ -95,7 +95,7 @@ def _piece(x: Extended, start: np.longdouble, end: np.longdouble, cubic: FloatAr
     linear = roots[0] - roots[1]  # int r/sqrt
     square = 0.5 * (x**2 * angle - last * roots[1] + first * roots[0])  # int r^2/sqrt
     c0, c1, c2, _ = cubic
-    integral: Extended = (
+    integral: NDArray[np.longdouble] = (
         3 * c0 * (square - 2 * start * linear + start**2 * angle) + 2 * c1 * (linear - start * angle) + c2 * angle
     )
     return integral

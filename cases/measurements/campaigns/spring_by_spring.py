@@ -42,7 +42,7 @@ _ROUNDING: Final = 64.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
-class Springs:
+class SpringRow:
     """Stiffness [N/m] and gap [m] of springs over which the contact radius runs, each of shape (n,)."""
 
     stiffness: FloatArray
@@ -81,7 +81,7 @@ def spring_by_spring(scene: Scene, radius: float) -> ForceOpinion:
     return ForceOpinion(fine, _CAUTION * change + _of_the_edge(beds[0], relaxation, loading) + rounding * peak)
 
 
-def _of_the_edge(springs: Springs, relaxation: Relaxation, loading: DepthHistory) -> float:
+def _of_the_edge(springs: SpringRow, relaxation: Relaxation, loading: DepthHistory) -> float:
     """Force [N] of one spring more or less at the contact edge: of its dashpot, and of the depth it can have there."""
     lag = relaxation.viscosity / relaxation.instantaneous_modulus
     fastest = float(np.max(np.abs(np.diff(loading.depth) / np.diff(loading.time))))
@@ -90,12 +90,12 @@ def _of_the_edge(springs: Springs, relaxation: Relaxation, loading: DepthHistory
     return float((springs.stiffness[1:][reached] * (lag * fastest + 0.25 * rises)).max(initial=0.0))
 
 
-def springs_of(scene: Scene, radius: float, count: int) -> Springs:
+def springs_of(scene: Scene, radius: float, count: int) -> SpringRow:
     """Springs out to where the deepest indenter does not reach, the flat end in one."""
     indenter, deepest = scene.indenter, float(np.max(scene.loading.depth))  # type: ignore[attr-defined]
     flat, rim = indenter.flat_radius, indenter.max_radius
     if isinstance(indenter, FlatPunch):
-        return Springs(_stiffness(scene, np.array([indenter.radius])), np.zeros(1))
+        return SpringRow(_stiffness(scene, np.array([indenter.radius])), np.zeros(1))
     way = _MARGIN * max(radius - flat, 1e-12 * radius)
     while flat + way < rim and _gap(scene, np.array([flat + way]))[0] <= deepest:
         way *= _MARGIN
@@ -103,7 +103,7 @@ def springs_of(scene: Scene, radius: float, count: int) -> Springs:
     edges = np.unique(np.concatenate([flat + shares * (end - flat), _corners(indenter, end)]))
     stiffness = np.diff(_stiffness(scene, edges), prepend=0.0)
     gap = np.concatenate([[0.0], _gap(scene, 0.5 * (edges[1:] + edges[:-1]))])
-    return Springs(stiffness, gap)
+    return SpringRow(stiffness, gap)
 
 
 def _corners(indenter: Profile, end: float) -> FloatArray:
@@ -125,7 +125,7 @@ def _stiffness(scene: Scene, a: FloatArray) -> FloatArray:
     return np.where(a > 0.0, found, 0.0)
 
 
-def stepped(springs: Springs, relaxation: Relaxation, loading: DepthHistory, steps: int) -> FloatArray:
+def stepped(springs: SpringRow, relaxation: Relaxation, loading: DepthHistory, steps: int) -> FloatArray:
     """Normal force [N] at the instants of the history, shape (instants,)."""
     whole = relaxation.instantaneous_modulus
     weights, times = relaxation.moduli[:, None] / whole, relaxation.times[:, None]

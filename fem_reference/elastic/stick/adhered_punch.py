@@ -44,7 +44,7 @@ def adhered_equilibria(scene: Scene, solve: ContactSolver) -> list[FemEquilibriu
 
 
 @dataclass(frozen=True)
-class AdheredFields(FemFields):
+class AdheredFemFields(FemFields):
     """Surface fields of an adhered punch: one solution, scaled by the depth.
 
     Attributes:

@@ -6,7 +6,7 @@ import pytest
 from mpmath import mp, mpf
 
 from cases.references.layer_equation import DIGITS, chi, first_order, gauss, stiffness, truncated_cone
-from cases.references.sphere_impact import Springs, impact
+from cases.references.sphere_impact import SphereSprings, impact
 from cases.references.table import PLACE, computed, entries
 
 TEXT = PLACE.read_text(encoding="utf-8")
@@ -68,7 +68,7 @@ def test_a_cone_on_a_thick_layer_is_sneddon_s():
 @pytest.mark.slow
 def test_the_time_steps_of_an_impact_converge():
     with mp.workdps(20):
-        coarse, fine, finest = (impact(Springs(), steps).restitution for steps in (50, 100, 200))
+        coarse, fine, finest = (impact(SphereSprings(), steps).restitution for steps in (50, 100, 200))
     assert abs(finest - fine) < abs(fine - coarse) / 4
 
 
