@@ -1,7 +1,7 @@
 """What people and CI see: pages, figures, tables, the command line. Nothing is computed here.
 
 - ``command_line``, ``commands``: `contact-verify`, the console command
-- ``pages``: report.html, comparison.html, summary.md, junit.xml, annotations
+- ``pages``: report.html and a page a case, comparison.html, summary.md, junit.xml, annotations
 - ``charts``: what is drawn of a case
 - ``figures``: one renderer and one style for every figure: SVG, PNG and CSV
 - ``tables``: tables before anyone prints them

@@ -372,6 +372,7 @@ def schema(
 def report(
     run: Annotated[Path, typer.Argument(help="Folder of a finished or interrupted run.")],
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
+    single_file: Annotated[bool, typer.Option("--single-file", help="All cases on one page.")] = False,
 ) -> int:
     """Build the pages of a run again without computing; with two runs, compare the second with the first.
 
@@ -379,7 +380,7 @@ def report(
     """
     from reports.commands.report import compare_runs, rebuild  # noqa: PLC0415
 
-    return rebuild(run) if other is None else compare_runs(run, other)
+    return rebuild(run, single_file=single_file) if other is None else compare_runs(run, other)
 
 
 def main() -> None:

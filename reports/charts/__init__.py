@@ -8,6 +8,7 @@
 `charts.ladder`           digits left as a parameter gets hard
 `charts.scaling`          seconds against size with the slope of theory
 `charts.solution`         one answer: force over depth, or its history
+`charts.three_answers`    the front page: differences, costs and ladders of all cases
 `charts.work_precision`   error against seconds, Pareto front, crossover
 ========================  ==========================================================
 """

@@ -15,12 +15,12 @@ from reports.terminal.terminal import STYLES, console, show_table
 from reports.words import outcomes
 
 
-def rebuild(directory: Path) -> int:
+def rebuild(directory: Path, *, single_file: bool = False) -> int:
     """Write the pages of the run in `directory` again; return 5 if nothing ran in it, else 0."""
     require_run(directory)
     with locked(directory):
         run = read_run(directory)
-        write_pages(run, directory)
+        write_pages(run, directory, single_file=single_file)
     words, tone = outcomes.headline(run, outcomes.outcomes(run))
     console().print(words, style=STYLES[tone])
     console().print(f"report: {directory / 'report.html'}")
@@ -35,9 +35,9 @@ def _code(*runs: RunResult) -> ExitCode:
 DRAWERS = 2
 
 
-def write_pages(run: RunResult, directory: Path) -> None:
-    """report.html with its figures, summary.md and junit.xml."""
-    write_report(run, directory, jobs=DRAWERS)
+def write_pages(run: RunResult, directory: Path, *, single_file: bool = False) -> None:
+    """report.html with a page for each case and figures, summary.md and junit.xml."""
+    write_report(run, directory, jobs=DRAWERS, single_file=single_file)
     write_whole(directory / "summary.md", summary_text(run))
     write_whole(directory / "junit.xml", junit_text(run))
 

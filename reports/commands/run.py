@@ -121,7 +121,7 @@ def matrix_table(result: RunResult) -> Table:
     matrix = run_matrix(result)
     rows = tuple(
         (name, *(f"{cell.word} {cell.fraction}".strip() if cell else "" for cell in cells))
-        for name, _, cells in matrix.rows
+        for name, cells in matrix.rows
     )
     note = "The worst check of each kind with the fraction of its tolerance."
     return Table(title="", note=note, heads=("case", *matrix.columns), rows=rows, words=1 + len(matrix.columns))

@@ -31,7 +31,7 @@ def accuracy_page(figures: Iterable[AccuracyFigure], evidence: Evidence) -> str:
     """The whole page in Markdown."""
     parts = [HEAD]
     for case, rows in groupby(figures, key=attrgetter("case")):
-        parts += [f"## {case}", _table(_FIGURE_HEAD, [_figure_row(row) for row in rows])]
+        parts += [f"## {case}", figure_table(rows)]
     said = EVIDENCE.format(seed=evidence.seed, machine=evidence.machine, revision=evidence.revision)
     ordered = sorted(evidence.measurements, key=lambda m: (m.kind, m.method, m.band, -m.typical))
     return "\n".join([*parts, said, _table(_EVIDENCE_HEAD, [_measured_row(m) for m in ordered])])
@@ -48,6 +48,11 @@ _EVIDENCE_HEAD = (
     "error: median, largest",
     "seconds",
 )
+
+
+def figure_table(figures: Iterable[AccuracyFigure]) -> str:
+    """Stated errors and differences, one row a method and quantity."""
+    return _table(_FIGURE_HEAD, [_figure_row(row) for row in figures])
 
 
 def _figure_row(row: AccuracyFigure) -> list[str]:

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from cases.results.records.claim import Kind
 from cases.results.records.run import CaseResult, RunResult
 from cases.results.status import Status
-from reports.words.file_names import file_name
 from reports.words.outcomes import CheckOutcome, case_outcomes, severity
 
 
@@ -24,16 +23,16 @@ class Cell:
 
 @dataclass(frozen=True, kw_only=True)
 class Matrix:
-    """Heads and rows; a row is its name, its link and one cell (or nothing) a column."""
+    """Heads and rows; a row is the case's name and one cell (or nothing) a column."""
 
     columns: tuple[str, ...]
-    rows: tuple[tuple[str, str, tuple[Cell | None, ...]], ...]
+    rows: tuple[tuple[str, tuple[Cell | None, ...]], ...]
 
 
 def run_matrix(run: RunResult) -> Matrix:
     """One row a case, one column a kind of claim and one for the solutions; each cell is the worst check in it."""
     kinds = [kind for kind in Kind if any(claim.kind is kind for case in run.cases for claim in case.claims)]
-    rows = ((case.name, f"#{file_name(case.name)}", _kind_cells(case, kinds)) for case in run.cases)
+    rows = ((case.name, _kind_cells(case, kinds)) for case in run.cases)
     return Matrix(columns=(*(str(kind) for kind in kinds), "solutions"), rows=tuple(rows))
 
 

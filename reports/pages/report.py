@@ -1,4 +1,4 @@
-"""report.html: one file that holds everything, needs no script and no network, and says the verdict first."""
+"""report.html, the verdict and three answers first, and a page for each case; no script, no network."""
 
 import shlex
 from collections.abc import Sequence
@@ -13,9 +13,10 @@ from cases.results.files import write_whole
 from cases.results.records.claim import Kind
 from cases.results.records.run import Acceptance, CaseResult, RunResult
 from cases.results.status import Status
-from reports.figures.figure_files import FigureFolder
+from reports.figures.figure_files import ROOM, FigureFolder
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
+from reports.pages.front import Answer, pairs_table, three_answers_of
 from reports.pages.matrix import run_matrix
 from reports.tables import convergence_table, cost_tables
 from reports.tables.sharing_tables import shared_things
@@ -25,22 +26,55 @@ from reports.words.moves import moves
 from reports.words.numbers import duration, small
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 
+# The folder of the pages of single cases.
+CASES = "cases"
 # The page begins with so many of the worst checks.
 ROWS_ON_FIRST_SCREEN = 5
 
 
-def write_report(run: RunResult, directory: Path, jobs: int = 1) -> Path:
-    """Write report.html and the figures (SVG, PNG, CSV) of `run` into `directory`; return the page's path.
+def write_report(run: RunResult, directory: Path, jobs: int = 1, *, single_file: bool = False) -> Path:
+    """Write report.html, a page for each case in cases/, and the figures (SVG, PNG, CSV) into `directory`.
 
-    With more than one job many figures are drawn in so many processes.
+    Args:
+        run: what was found.
+        directory: of the run.
+        jobs: with more than one, many figures are drawn in so many processes.
+        single_file: whether the cases stand on report.html instead, which then needs no other file; a single case
+            always does.
+
+    Returns:
+        The path of report.html.
     """
-    folder = FigureFolder(directory)
+    single_file = single_file or len(run.cases) == 1
+    folder = FigureFolder(directory, room=ROOM if single_file else ROOM * (1 + len(run.cases)))
     out = shlex.quote(str(directory))
+    answers = three_answers_of(run, folder, f"contact-verify report {out}")
     cases = [case_view(case, folder, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
     folder.draw(jobs)
+    (directory / CASES).mkdir(exist_ok=True)
+    for stale in (directory / CASES).glob("*.html"):
+        stale.unlink()
+    for case in () if single_file else cases:
+        write_whole(directory / CASES / _page_name(case["result"].name), case_page(case, run))
     page = directory / "report.html"
-    write_whole(page, render(run, directory, cases))
+    write_whole(page, render(run, directory, cases, answers, single_file=single_file))
     return page
+
+
+def _page_name(case: str) -> str:
+    return f"{file_name(case)}.html"
+
+
+def case_page(case: CaseView, run: RunResult) -> str:
+    """The page of one case as text; it links to its neighbours and to the front page."""
+    own = case["result"].name
+    page = template("case.html").render(
+        case=case,
+        names={result.name for result in run.cases},
+        address=lambda name: f"#{file_name(name)}" if name == own else _page_name(name),
+        css=stylesheet(),
+    )
+    return without_optional_end_tags(page)
 
 
 STUDY_COMMANDS = {
@@ -60,14 +94,25 @@ def _subcommand(case: CaseResult) -> str:
     return f"cost {case.name}" if case.work_precision and not case.runs else f"run {case.name}"
 
 
-def render(run: RunResult, directory: Path, cases: Sequence[CaseView]) -> str:
-    """The page as text."""
+def render(
+    run: RunResult, directory: Path, cases: Sequence[CaseView], answers: Sequence[Answer], *, single_file: bool
+) -> str:
+    """The front page as text."""
+
+    def address(case: str) -> str:
+        return f"#{file_name(case)}" if single_file else f"{CASES}/{_page_name(case)}"
+
     rows = outcomes(run)
     words, tone = headline(run, rows)
     notable = [row for row in rows if row.tone != "good"]
     worst = [row for row in notable if row.tone != "skip"][:ROWS_ON_FIRST_SCREEN]
     page = template("report.html").render(
         run=run,
+        names={case.name for case in run.cases},
+        address=address,
+        single_file=single_file,
+        answers=answers,
+        pairs=pairs_table(run, address),
         headline=words,
         tone=tone,
         baseline=baseline_sentence(run),

@@ -1,4 +1,4 @@
-"""summary.md for the summary page of a CI job: verdict, counts, then every check, failing rows first."""
+"""summary.md for the summary page of a CI job: verdict, counts, what did not pass, and the matrix."""
 
 import html
 import re
@@ -6,15 +6,16 @@ from collections.abc import Iterable, Sequence
 
 from cases.results.records.run import RunResult
 from contact.records.plain_text import printable
+from reports.pages.matrix import Cell, run_matrix
 from reports.pages.report import baseline_sentence
 from reports.words.numbers import duration
 from reports.words.outcomes import CheckOutcome, counts, headline, outcomes
 
-# Bytes; GitHub refuses a job summary above 1 MiB.
-LARGEST = 900 * 1024
+# Bytes: what a reader scrolls through. GitHub refuses a job summary above 1 MiB.
+LARGEST = 64 * 1000
 
 # What Markdown would take for a cell's end, code, a link, an address, a person, or emphasis at a word's edge.
-MARKDOWN = re.compile(r"[`*~\\@]|\](?=[(\[:])|:(?=//)|(?<!\w)_|_(?!\w)")
+MARKDOWN = re.compile(r"[`*~\\@]|\](?=[(\[:])|:(?=//)|(?<![^\W_])_|_(?![^\W_])")
 
 HEAD = (
     "| verdict | case | check | method | error / tolerance | measured | tolerance | what was seen |\n"
@@ -30,15 +31,38 @@ def summary_text(run: RunResult, *, largest: int = LARGEST) -> str:
     suite = f"Suite {run.suite}" if run.suite else "Chosen cases"
     taken = f"{suite}, revision {run.stamp.revision[:12]}, {duration(run.stamp.wall_seconds)}."
     top = f"# {_escaped(words)}\n\n{tally}. {_escaped(taken)} {_escaped(baseline_sentence(run))}\n\n"
-    return top + _table(rows, largest - len(top.encode()))
+    notable = [row for row in rows if row.tone != "good"]
+    matrix = _matrix(run) if rows else ""
+    if 2 * len(matrix.encode()) > largest:
+        matrix = ""
+    return top + matrix + _table(notable, largest - len((top + matrix).encode()))
+
+
+def _matrix(run: RunResult) -> str:
+    """The worst check of each case and kind of claim, with the fraction of its tolerance and how many there are."""
+    matrix = run_matrix(run)
+    head = f"| case | {' | '.join(matrix.columns)} |\n|{'---|' * (1 + len(matrix.columns))}\n"
+    return (
+        head
+        + "".join(
+            f"| {_escaped(name)} | {' | '.join(_cell(cell) for cell in cells)} |\n" for name, cells in matrix.rows
+        )
+        + "\n"
+    )
+
+
+def _cell(cell: Cell | None) -> str:
+    return "" if cell is None else _escaped(" ".join(filter(None, (cell.word, cell.fraction, f"({cell.checks})"))))
 
 
 def _table(rows: Sequence[CheckOutcome], room: int) -> str:
     """As many rows as fit, and how many did not."""
+    if not rows:
+        return "Every check ran and passed.\n"
     lines = [_line(row) for row in rows]
     fitting = _fitting(lines, room - len(HEAD.encode()) - 200)
     missing = len(lines) - fitting
-    more = f"\n{missing} further rows, the best ones, are in results.json.\n" if missing else ""
+    more = f"\n{missing} further rows are on the page of the report.\n" if missing else ""
     return HEAD + "".join(lines[:fitting]) + more
 
 

@@ -32,13 +32,14 @@ def shortest_times(run: RunResult) -> Table | None:
         note="Shortest measured time T* with bound U (error plus uncertainty of the reference) within the accuracy; "
         "nothing is interpolated. In brackets, the first solution with the same setting, which prepares flat-punch "
         "data or meshes that later ones reuse. Where an accuracy was not reached, the best U.",
-        heads=("case", "quantity", "method", *(_percent(tau) for tau in SHOWN)),
+        heads=("case", "quantity", "method", *(percent(tau) for tau in SHOWN)),
         rows=rows,
         words=3,
     )
 
 
-def _percent(tolerance: float) -> str:
+def percent(tolerance: float) -> str:
+    """An accuracy as 1 % or 1e-4."""
     return f"{100 * tolerance:g} %" if tolerance >= 1e-2 else f"{tolerance:.0e}".replace("e-0", "e-")
 
 
@@ -70,7 +71,7 @@ def speed_ups(run: RunResult) -> Table | None:
     return Table(
         title=f"How much faster {fast} is",
         note="Ratio of shortest times; in brackets, of first solutions. Empty where one of the two did not get there.",
-        heads=("case", "quantity", "over", *(_percent(tau) for tau in SHOWN), "faster down to"),
+        heads=("case", "quantity", "over", *(percent(tau) for tau in SHOWN), "faster down to"),
         rows=rows,
         words=3,
     )

@@ -10,6 +10,7 @@ from pathlib import Path
 NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable")
 FLAGS = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--hide-scrollbars")
 WIDTH, HEIGHT = 1280, 800
+PHONE = 500  # pixels: the narrowest window that headless Chromium opens
 PRINTED_WIDTH = 688  # pixels between the margins of A4: (210 - 2 x 14) mm at 96 to the inch
 
 MEASURE = """
@@ -27,6 +28,7 @@ for (const svg of document.querySelectorAll("figure svg")) {
 const first = document.querySelector("#worst tbody tr");
 document.body.innerHTML = "<pre id=measured>" + JSON.stringify({
   headline: box(document.querySelector("h1")),
+  questions: [...document.querySelectorAll(".answers h2")].map(box),
   worst: first ? box(first) : [],
   worst_text: first ? first.textContent : "",
   page_width: document.documentElement.scrollWidth,

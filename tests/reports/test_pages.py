@@ -12,7 +12,7 @@ from reports.figures import figure_files as folder_module
 from reports.figures.figure import write_figure
 from reports.figures.figure_files import FOLDER, ROOM, FigureFolder
 from reports.figures.renderer import report_figure
-from reports.pages.report import write_report
+from reports.pages.report import CASES, write_report
 from tests.cases.example_run import example_run, failing_case, passing_case
 
 LARGEST_PAGE = 5_000_000  # bytes
@@ -21,7 +21,7 @@ LARGEST_PAGE = 5_000_000  # bytes
 @pytest.fixture(scope="module")
 def directory(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    write_report(example_run(), folder)
+    write_report(example_run(), folder, single_file=True)
     return folder
 
 
@@ -112,6 +112,49 @@ def test_every_link_on_the_page_has_its_target_and_no_id_occurs_twice(page):
     assert len(ids) == len(set(ids))
     targets = re.findall(r'href="#([^"]*)"', page) + re.findall(r"url\(#([^)]*)\)", page)
     assert set(targets) <= set(ids)
+
+
+@pytest.fixture(scope="module")
+def levels(tmp_path_factory):
+    """The front page of a run of two cases, and the pages of the cases."""
+    folder = tmp_path_factory.mktemp("levels")
+    return write_report(example_run(), folder), sorted((folder / CASES).glob("*.html"))
+
+
+def test_the_front_page_answers_three_questions_before_the_matrix(levels):
+    front = words_of(levels[0].read_text(encoding="utf-8"))
+    questions = ("Do the methods agree?", "What does accuracy cost?", "Where does it break?", "Cases and claims")
+    places = [front.index(question) for question in questions]
+    assert places == sorted(places)
+    assert "2 comparisons" in front
+    assert "1 remain open" in front
+
+
+def test_every_case_has_a_page_of_its_own_that_needs_no_other_file(levels):
+    front, pages = levels
+    assert [page.stem for page in pages] == sorted(case.name for case in example_run().cases)
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        assert "<svg" in text
+        assert not re.search(r"<script|<link|<iframe|\bsrc=", text)
+        assert 'id="example_cone"' not in front.read_text(encoding="utf-8")
+
+
+def test_every_link_between_the_pages_has_its_target(levels):
+    front, pages = levels
+    for page in (front, *pages):
+        text = page.read_text(encoding="utf-8")
+        ids = set(re.findall(r'\bid="([^"]*)"', text))
+        for link in re.findall(r'href="([^"]*)"', re.sub(r"<svg.*?</svg>", "", text, flags=re.DOTALL)):
+            file, _, anchor = link.partition("#")
+            assert (page.parent / file).is_file() if file else anchor in ids, link
+
+
+def test_pages_of_cases_that_are_gone_are_removed(tmp_path):
+    write_report(example_run(), tmp_path)
+    assert list((tmp_path / CASES).glob("*.html"))
+    write_report(example_run(), tmp_path, single_file=True)
+    assert not list((tmp_path / CASES).glob("*.html"))
 
 
 def test_page_is_far_below_its_size_limit(page):

@@ -1,0 +1,46 @@
+"""Sphinx settings of the documentation. `make docs` builds it with warnings as errors; nothing is downloaded."""
+
+from pathlib import Path
+
+from sphinx_gallery.sorting import ExplicitOrder, FileNameSortKey  # noqa: F401  # names of settings below
+
+from cases.declare.registry import load_cases
+from cases.gate.baseline import read_baselines
+from reports.pages.book import write_book
+
+HERE = Path(__file__).parent
+write_book(load_cases().values(), read_baselines(HERE.parent / "baselines"), HERE / "book")
+
+project = "contact-verification"
+author = "contact-verification contributors"
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.napoleon",
+    "sphinx.ext.viewcode",
+    "sphinx_gallery.gen_gallery",
+    "sphinxcontrib.bibtex",
+]
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_heading_anchors = 3
+bibtex_bibfiles = ["references.bib"]
+html_theme = "pydata_sphinx_theme"
+html_static_path = ["_static"]
+html_css_files = ["docs.css"]
+html_title = "contact-verification"
+html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "secondary_sidebar_items": ["page-toc"]}
+html_show_sourcelink = False
+autodoc_member_order = "bysource"
+autodoc_typehints = "description"
+exclude_patterns = ["tutorials/README.rst", "_build"]
+sphinx_gallery_conf = {
+    "examples_dirs": "tutorials",
+    "gallery_dirs": "start",
+    "filename_pattern": r"\.py$",
+    "abort_on_example_error": True,
+    "download_all_examples": False,
+    "show_memory": False,
+    "within_subsection_order": "FileNameSortKey",
+    "min_reported_time": 60,
+}
+suppress_warnings = ["config.cache"]

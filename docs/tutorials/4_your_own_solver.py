@@ -1,0 +1,70 @@
+"""
+Your own solver, verified
+=========================
+
+A solver of your own is a frozen record with a name and three functions. It is compared with the methods of this project
+on every scene that it supports.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from contact import ContactPath, ContactRadii, Layer, Paraboloid, Scene, Supported, Unsupported
+from mdr import Mdr
+
+# %%
+# Hertz on the half-space, with a mistake on purpose: the force is computed with E where E / (1 - nu^2) belongs.
+
+
+@dataclass(frozen=True)
+class MyHertz:
+    """Hertz' formulas for a paraboloid on the half-space."""
+
+    name: ClassVar[str] = "my_hertz"
+
+    def supports(self, scene):
+        """Whether this code knows the scene, and if not, why not."""
+        if scene.effects or not scene.layer.is_half_space:
+            return Unsupported("this code knows the elastic half-space only")
+        if not isinstance(scene.indenter, Paraboloid) or not isinstance(scene.loading, ContactRadii):
+            return Unsupported("this code knows a paraboloid at a contact radius only")
+        return Supported()
+
+    def solve(self, scene):
+        """Depth, force and stiffness at the prescribed contact radii."""
+        a, curvature = scene.loading.values, 1.0 / scene.indenter.radius_of_curvature
+        modulus = scene.layer.youngs_modulus
+        quantities = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+        return ContactPath(
+            scene=scene,
+            method=self.name,
+            settings={},
+            contact_radius=a,
+            indentation_depth=curvature * a**2,
+            normal_force=4 / 3 * modulus * curvature * a**3,
+            contact_stiffness=2 * modulus * a,
+            error_estimate=dict.fromkeys(quantities, np.full(a.size, 1e-14)),
+        )
+
+    def refined(self):
+        """The same with half the discretisation length: a closed form has none."""
+        return self
+
+
+# %%
+# Compared by hand, the mistake shows as one and the same relative error of the force, nu^2, while the depth is right.
+half_space = Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.3)
+scene = Scene(layer=half_space, indenter=Paraboloid(radius_of_curvature=0.01), loading=ContactRadii([1e-4, 1e-3]))
+mine, reference = MyHertz().solve(scene), Mdr().solve(scene)
+for quantity in ("indentation_depth", "normal_force"):
+    print(quantity, getattr(mine, quantity) / getattr(reference, quantity) - 1)
+
+# %%
+# Registered under the entry point ``contact_verification.methods``, it takes part in every case, and one line in
+# continuous integration judges it, with a report that names the mistake::
+#
+#     contact-verify run --suite ci --method my_hertz
+#
+# The folder ``examples/hertz_half_space`` of the source is a complete package of this kind.
