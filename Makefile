@@ -11,7 +11,7 @@ export OPENBLAS_NUM_THREADS ?= 1
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
-.PHONY: help verify test test-slow lint types imports setup format constraints clean
+.PHONY: help verify docs test test-slow lint types imports setup format constraints clean
 
 help:  ## Show the targets
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed 's/:.*## /\t/' | expand -t 16
@@ -47,6 +47,10 @@ $(READY): pyproject.toml constraints.txt tools/system_libraries.sh
 	$(BIN)/python -m pip install --quiet --editable '.[dev,test]'
 	sh tools/system_libraries.sh $(BIN)/python
 	@touch $@
+
+docs: $(READY)  ## The documentation in build/docs/index.html; warnings are errors
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/docs
 
 format: $(READY)  ## Reformat the sources
 	$(BIN)/ruff format .

@@ -2,14 +2,16 @@
 
 from pathlib import Path
 
-from sphinx_gallery.sorting import ExplicitOrder, FileNameSortKey  # noqa: F401  # names of settings below
+from docutils import nodes
+from latex2mathml.converter import convert
 
 from cases.declare.registry import load_cases
 from cases.gate.baseline import read_baselines
-from reports.pages.book import write_book
+from reports.pages.book import write_book, write_equations
 
 HERE = Path(__file__).parent
 write_book(load_cases().values(), read_baselines(HERE.parent / "baselines"), HERE / "book")
+write_equations(HERE.parent, HERE / "generated" / "equations.md")
 
 project = "contact-verification"
 author = "contact-verification contributors"
@@ -32,7 +34,7 @@ html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "s
 html_show_sourcelink = False
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
-exclude_patterns = ["tutorials/README.rst", "_build"]
+exclude_patterns = ["tutorials", "generated", "start/sg_execution_times.rst", "sg_execution_times.rst"]
 sphinx_gallery_conf = {
     "examples_dirs": "tutorials",
     "gallery_dirs": "start",
@@ -43,4 +45,20 @@ sphinx_gallery_conf = {
     "within_subsection_order": "FileNameSortKey",
     "min_reported_time": 60,
 }
-suppress_warnings = ["config.cache"]
+html_math_renderer = "mathml"
+suppress_warnings = ["config.cache", "myst.xref_missing"]
+
+
+def setup(app):
+    """Formulas as MathML, which browsers draw themselves: pages need no script from elsewhere."""
+    app.add_html_math_renderer("mathml", (_inline_math, None), (_display_math, None))
+
+
+def _inline_math(translator, node):
+    translator.body.append(convert(node.astext()))
+    raise nodes.SkipNode
+
+
+def _display_math(translator, node):
+    translator.body.append(f'<div class="formula">{convert(node.astext(), display="block")}</div>')
+    raise nodes.SkipNode

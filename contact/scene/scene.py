@@ -62,6 +62,12 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
         def replace(self, **changes: Any) -> Any:
             """A copy with some fields changed, validated like a new one."""
 
+    @field_validator("effects", mode="before")
+    @classmethod
+    def _listed(cls, effects: Any) -> Any:
+        """A list, or a single effect, as well as a tuple."""
+        return (effects,) if isinstance(effects, Effect) else tuple(effects) if isinstance(effects, list) else effects
+
     @field_validator("effects")
     @classmethod
     def _without_zero_friction(cls, effects: tuple[Effect, ...]) -> tuple[Effect, ...]:

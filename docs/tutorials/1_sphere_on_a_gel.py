@@ -23,8 +23,8 @@ print(path)
 print(f"F = {path.normal_force[-1]:.12e} +- {path.uncertainty('normal_force')[-1]:.0e}")
 
 # %%
-# Hertz' formula for the half-space, with the same modulus, is far too soft: fitted to this curve it would find a modulus
-# that is too large by the ratio below.
+# Hertz' formula for the half-space, with the same modulus, is far too soft: fitted to this curve it would find a
+# modulus that is too large by the ratio below.
 hertz = 4 / 3 * gel.youngs_modulus / (1 - 0.5**2) * np.sqrt(10e-6) * depths**1.5
 figure, axes = plt.subplots(figsize=(6, 3.6), layout="constrained")
 axes.plot(1e6 * depths, 1e9 * path.normal_force, label="layer of 5 µm")

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from contact import ContactPath, ContactRadii, Layer, Paraboloid, Scene, Supported, Unsupported
+from contact import ContactPath, ContactRadii, Layer, Paraboloid, Scene, StageLog, Supported, Unsupported
 from mdr import Mdr
 
 # %%
@@ -36,6 +36,7 @@ class MyHertz:
         """Depth, force and stiffness at the prescribed contact radii."""
         a, curvature = scene.loading.values, 1.0 / scene.indenter.radius_of_curvature
         modulus = scene.layer.youngs_modulus
+        log = StageLog()
         quantities = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
         return ContactPath(
             scene=scene,
@@ -46,6 +47,8 @@ class MyHertz:
             normal_force=4 / 3 * modulus * curvature * a**3,
             contact_stiffness=2 * modulus * a,
             error_estimate=dict.fromkeys(quantities, np.full(a.size, 1e-14)),
+            cost=log.cost(unknowns=1),
+            stages=log.records,
         )
 
     def refined(self):

@@ -1,7 +1,8 @@
-"""The verification book: one Markdown page a case, written from its declaration and the accepted numbers."""
+"""Pages of the documentation that are written from the project: a page a case, and where each equation stands."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
@@ -9,10 +10,13 @@ from cases.declare.case import Case
 from cases.gate.accuracy_figures import AccuracyFigure, accuracy_figures
 from cases.gate.baseline import Baseline
 from cases.results.files import write_whole
-from reports.commands.registry import claim_table, method_table, scene_table
 from reports.pages.accuracy import figure_table
+from reports.tables.declaration_tables import claim_table, method_table, scene_table
 from reports.tables.table import Table
 from reports.words.file_names import file_name
+
+SOLVERS = ("contact", "bem", "mdr", "fem_reference")
+CITED = re.compile(r"Eqs?\. \((\d+)\)(?: to \((\d+)\))?(?:, \((\d+)\))?")
 
 HEAD = """\
 # Verification book
@@ -56,3 +60,23 @@ def _section(table: Table) -> str:
     lines = [table.heads, ["---"] * len(table.heads), *table.rows]
     body = "".join(f"| {' | '.join(cell.replace('|', '&#124;') for cell in line)} |\n" for line in lines)
     return f"## {table.title}\n\n{body}\n{table.note}".rstrip()
+
+
+def write_equations(root: Path, page: Path) -> None:
+    """Write the table of equations of the paper and the modules under `root` that cite them."""
+    page.parent.mkdir(parents=True, exist_ok=True)
+    found: dict[int, dict[str, None]] = {}
+    for package in SOLVERS:
+        for path in sorted((root / package).rglob("*.py")):
+            for number in _cited(path.read_text(encoding="utf-8")):
+                found.setdefault(number, {})[path.relative_to(root).as_posix()] = None
+    rows = "".join(f"| ({number}) | {', '.join(f'`{file}`' for file in found[number])} |\n" for number in sorted(found))
+    write_whole(page, f"| equation | modules |\n|---|---|\n{rows}")
+
+
+def _cited(text: str) -> set[int]:
+    """The numbers of the equations that a text cites; "(36) to (38)" names three."""
+    numbers: set[int] = set()
+    for first, last, other in CITED.findall(text):
+        numbers |= set(range(int(first), int(last or first) + 1)) | ({int(other)} if other else set())
+    return numbers

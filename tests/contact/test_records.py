@@ -8,7 +8,7 @@ import pickle
 import numpy as np
 import pytest
 
-from contact import ContactRadii, InvalidInput, Layer, Paraboloid, Scene
+from contact import Adhesion, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 SCENE = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=1e-2), loading=ContactRadii([1e-3, 2e-3]))
@@ -19,6 +19,13 @@ def test_equal_content_is_equal_and_hashes_alike():
     assert again == SCENE
     assert hash(again) == hash(SCENE)
     assert pickle.loads(pickle.dumps(SCENE)) == SCENE
+
+
+def test_effects_are_given_as_a_tuple_a_list_or_one():
+    sticky = Adhesion(work_of_adhesion=0.1)
+    first, *others = (SCENE.replace(effects=given) for given in ((sticky,), [sticky], sticky))
+    assert first.effects == (sticky,)
+    assert others == [first, first]
 
 
 def test_other_content_or_another_kind_is_not_equal():

@@ -1,0 +1,69 @@
+"""The documentation: its tutorials run, its pages link to what exists, and the site builds without a warning."""
+
+import importlib.util
+import re
+import runpy
+import subprocess
+import sys
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pytest
+
+from cases.declare.registry import load_cases
+from cases.gate.baseline import read_baselines
+from reports.pages.book import write_book, write_equations
+
+ROOT = Path(__file__).parents[2]
+TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.py"))
+PAGES = sorted((ROOT / "docs").glob("*.md"))
+# Pages that the build writes.
+WRITTEN = ("book/", "generated/", "start/")
+
+
+@pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
+def test_a_tutorial_runs(path, capsys, monkeypatch):
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    runpy.run_path(str(path), run_name="__main__")
+    plt.close("all")
+    assert capsys.readouterr().out.strip()
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)
+def test_links_and_modules_of_a_page_exist(page):
+    text = page.read_text(encoding="utf-8")
+    for link in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+        if link.startswith("start/") and link != "start/index":
+            assert (ROOT / "docs" / "tutorials" / f"{Path(link).name}.py").is_file(), link
+        elif not link.startswith(WRITTEN):
+            assert (page.parent / link).exists(), link
+    for module in re.findall(r"\{mod\}`([\w.]+)`", text):
+        assert importlib.util.find_spec(module), module
+
+
+def test_the_book_has_a_page_for_every_case_with_its_claims_and_accepted_numbers(tmp_path):
+    cases = load_cases()
+    write_book(cases.values(), read_baselines(ROOT / "baselines"), tmp_path)
+    assert {page.stem for page in tmp_path.glob("*.md")} == {*cases, "index"}
+    page = (tmp_path / "paraboloid.md").read_text(encoding="utf-8")
+    assert cases["paraboloid"].question in page
+    assert all(claim.name.replace("|", "&#124;") in page for claim in cases["paraboloid"].claims)
+    assert "| fem | normal_force |" in page
+
+
+def test_every_equation_that_the_code_cites_stands_in_the_table(tmp_path):
+    (tmp_path / "mdr").mkdir()
+    (tmp_path / "mdr" / "one.py").write_text("# Eqs. (36) to (38), Eq. (4)\n", encoding="utf-8")
+    write_equations(tmp_path, tmp_path / "table.md")
+    rows = (tmp_path / "table.md").read_text(encoding="utf-8").splitlines()[2:]
+    assert rows == [f"| ({number}) | `mdr/one.py` |" for number in (4, 36, 37, 38)]
+
+
+@pytest.mark.slow
+def test_the_site_builds_without_a_warning(tmp_path):
+    pytest.importorskip("sphinx", reason="the documentation's packages are not installed; make docs installs them")
+    command = [sys.executable, "-m", "sphinx", "-W", "-q", "-b", "html", str(ROOT / "docs"), str(tmp_path)]
+    built = subprocess.run(command, capture_output=True, text=True, timeout=600, check=False)
+    assert built.returncode == 0, built.stderr
+    front = (tmp_path / "index.html").read_text(encoding="utf-8")
+    assert not re.search(r"<script[^>]*src=\"https?:", front)
