@@ -114,13 +114,13 @@ def radius_of_load(
     x = max(float(np.log(max(start - flat, 1e-6 * start))), least)
     y = float(np.log(ratio_at(flat + np.exp(x))))
     exponent, step = 2.0, float(np.clip(-y / 2, -1, 1)) or 1e-3
-    for _ in range(15):
+    for number in range(15):
         if x == least and y > 0:
             return narrowest, 0.5
         step = max(step, least - x)
         following = float(np.log(ratio_at(flat + np.exp(x + step))))
         # Every radius has a mesh of its own: secants end where its errors hide what a step gains.
-        if abs(y) < SCATTER and abs(following) > 0.5 * abs(y):
+        if number and abs(y) < SCATTER and abs(following) >= abs(y):
             return flat + float(np.exp(x)), exponent
         exponent = float(np.clip((following - y) / step, 0.2, 20))
         x, y = x + step, following
