@@ -24,7 +24,7 @@ from contact import (
 from fem_reference import Fem
 from fem_reference.adaptive import solve_history_to_accuracy
 from fem_reference.in_time.condensed_layer import CondensedLayer
-from fem_reference.in_time.impact import MAX_STEPS, Body, simulate_impact
+from fem_reference.in_time.impact import MAX_STEPS, FallingBody, simulate_impact
 from fem_reference.in_time.relaxation import ShearRelaxation
 from fem_reference.in_time.relaxation_step import relaxation_step
 from fem_reference.in_time.setup import HistorySetup
@@ -106,7 +106,7 @@ def single_spring(relaxation, steps):
     """Restitution of one degree of freedom (unit compliance, mass and speed) with so many steps in a half period."""
     surface = ProportionalSurface(np.eye(1), np.ones(1), len(relaxation.moduli))
     condensed = CondensedLayer(surface, np.ones(1), np.zeros(1), 1.0, 1)
-    record = simulate_impact(condensed, Body(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
+    record = simulate_impact(condensed, FallingBody(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
     return -record.velocity[-1], record
 
 
@@ -286,7 +286,9 @@ def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
 
     def peak_depth(cells):
         condensed = setup.condensed(radius, cells)
-        body = Body(mass=IMPACT.mass / ((G1 + G_INF) * condensed.radius), velocity=IMPACT.velocity / condensed.radius)
+        body = FallingBody(
+            mass=IMPACT.mass / ((G1 + G_INF) * condensed.radius), velocity=IMPACT.velocity / condensed.radius
+        )
         return peak(np.array(simulate_impact(condensed, body, setup.relaxation, duration).depth))
 
     fine = peak_depth(60)
