@@ -103,7 +103,7 @@ def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedCont
 
 
 def radius_of_load(
-    ratio_at: Callable[[float], float], start: float, flat: float, narrowest: float
+    ratio_at: Callable[[float], float], start: float, flat: float, narrowest: float = 0.0
 ) -> tuple[float, float]:
     """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat): secants in logarithms.
 
