@@ -46,6 +46,9 @@ class FixedRadiusCoefficients:
     # On an unbonded layer the outer edge costs this times exp(-2 s distance), s the rate of the bending-like mode.
     # Measured at distances of 1.5 and 2 thicknesses (nu = 0.3 and 1/2, a/h = 0.2 to 10, 2026-11-22): 0.25 to 2.0.
     unbonded_outer_edge: float = 5.0
+    # Depth and force beside a flat end grow like the root of a - b but for this times (a - b) / min(b, h), relative.
+    # Measured with MDR: 0.47 to 1.51 (cones and paraboloids, nu = 0, 0.3 and 1/2, h/b = 0.05 to infinity, 2026-11-22).
+    narrowing: float = 2.0
     # A thick layer is stiffer than the half-space by at most 1.13 a/h, relative (bonded, nu = 1/2: k_bar = 1.0596 at
     # a/h = 0.05 by the integral equation), stated with a margin of six per cent.
     half_space: float = 1.2

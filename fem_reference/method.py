@@ -41,7 +41,7 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.discrete_layer.settings import Discretisation, narrowest_radius
 from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (
@@ -252,8 +252,12 @@ class Fem:
         log: StageLog,
         problem: type[LayerProblem] = LayerProblem,
     ) -> ContactWithErrors:
-        indenter = ScaledIndenter(scene.indenter, radius)
-        return solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log, problem=problem)
+        """A ring around a flat end that is too narrow for a mesh is taken from one that is not."""
+        flat, narrowest = scene.indenter.flat_radius, narrowest_radius(scene.layer, scene.indenter)
+        is_narrow = flat < radius < narrowest
+        indenter = ScaledIndenter(scene.indenter, narrowest if is_narrow else radius)
+        contact = solve_contact_with_errors(scene.layer, indenter, settings, self.solver, log, problem=problem)
+        return contact.narrowed(math.sqrt((radius - flat) / (narrowest - flat))) if is_narrow else contact
 
     def _to_accuracy(self, attempt: Callable[[Discretisation], S], errors: Callable[[S], Mapping[str, float]]) -> S:
         """As the settings say, or refined until the errors of all quantities that are asked for hold."""

@@ -93,7 +93,7 @@ class BranchPiece:
 
         Those of a profile that is not analytic fall like a power of their number: more is left than the last two.
         """
-        left = ON_BRANCH.rough_profile if self._is_rough else 1.0
+        left = ON_BRANCH.rough_profile if self.is_rough else 1.0
         return {name: left * float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
 
     @cached_property
@@ -106,11 +106,11 @@ class BranchPiece:
         low, high = (replace(self, degree=degree)._interpolants for degree in degrees)
         share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
         meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in POWERS}
-        more = ON_BRANCH.rough_profile_stated if self._is_rough else 1.0
+        more = ON_BRANCH.rough_profile_stated if self.is_rough else 1.0
         return {name: max(0.0, more * size - meshes[name]) for name, size in self.last_coefficients.items()}
 
     @property
-    def _is_rough(self) -> bool:
+    def is_rough(self) -> bool:
         """Whether the profile has breakpoints between the ends."""
         indenter = self.contacts[-1].indenter
         return any(r * indenter.contact_radius > self.low * (1 + 1e-9) for r in indenter.breakpoints)

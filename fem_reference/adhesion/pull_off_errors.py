@@ -80,8 +80,16 @@ class Extremum:
         return float(np.linalg.norm(tilts)) / abs(self.curvature)
 
     def shift_between(self, error: float) -> float:
-        """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii."""
-        return 0.0 if self.is_at_end else self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
+        """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii.
+
+        Between the points of a table it oscillates faster than any polynomial there.  An error e of any shape moves an
+        extremum at most to where the load differs by 2 e from it.
+        """
+        if self.is_at_end:
+            return 0.0
+        if self.branch.piece_around(self.radius).is_rough:
+            return float(2 * np.sqrt(error / abs(self.curvature)))
+        return self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
 
 
 def pull_off_errors(
@@ -110,7 +118,8 @@ def pull_off_errors(
     by_degree = degree_error(branch, numbers)
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
-    depth, force, place = np.maximum(by_degree, moved) + edge_error(branch, numbers)
+    # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
+    depth, force, place = np.hypot(by_degree, moved) + edge_error(branch, numbers)
     depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
     force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
     is_at_rim = pull_off.contact_radius == branch.pieces[-1].high

@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
+from contact import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
 
 
@@ -97,5 +98,13 @@ class TraceSpace:
         return coo_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
 
     def recover(self, nodal_forces: FloatArray) -> FloatArray:
-        """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery."""
+        """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery.
+
+        Raises:
+            NotConvergedError: two nodes coincide.
+        """
+        if not np.all(np.diff(self.radii) > 0):
+            raise NotConvergedError(
+                "two nodes of the contact coincide: its cells are smaller than roundings of the radius"
+            )
         return np.asarray(splu(self.mass_matrix().tocsc()).solve(nodal_forces))

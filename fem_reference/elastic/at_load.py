@@ -15,7 +15,7 @@ import numpy as np
 from contact import IndentationDepths, NotConvergedError, Scene, StageLog
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.problem import LayerProblem
-from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
+from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
@@ -23,6 +23,9 @@ from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_pre
 # Settings of the secant iteration on the radius.  Their depth and force are within 4e-5 and 1.6e-4 of fine ones
 # (paraboloids at a/h = 0.2 to 20, nu = 0.3 to 1/2, 2026-11-22), so that one or two full solutions suffice.
 COARSE = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
+# Largest relative load by which coarse meshes of neighbouring radii may differ.  Beside a flat end they scatter by 1e-4
+# (a/b - 1 = 3e-5, growth 0.7, 2026-11-22), more than the secants asked for; full solutions settle the rest.
+SCATTER = 1e-2
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
 
@@ -52,12 +55,17 @@ class Load:
             NotConvergedError: the radius does not settle.
         """
         radius, flat = self.radius, self.scene.indenter.flat_radius
+        narrowest = narrowest_radius(self.scene.layer, self.scene.indenter)
         name = "smooth_depth" if self.by_depth else "smooth_force"
         for is_last in (False, False, True):
+            radius = max(radius, narrowest)
             contact = solve(radius)
             scaled = self.target / radius if self.by_depth else self.target / radius**2
             defect = getattr(contact.answer, name) / scaled
-            corrected = flat + (radius - flat) * defect ** (-1 / self.exponent)
+            if radius == narrowest and defect > 1:
+                contact = contact.narrowed(1 / defect)
+                defect = getattr(contact.answer, name) / scaled
+            corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / self.exponent)
             # Each radius has a mesh of its own: the last may miss the load by what its mesh misses it by.
             if abs(defect - 1) <= max(LEFT_OVER, is_last * contact.error[name]):
                 factor = corrected / radius
@@ -80,7 +88,8 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
         contact = quick_solution(scene, radius, log)
         return (contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2) / target
 
-    radius, exponent = radius_of_load(ratio, start, scene.indenter.flat_radius)
+    narrowest = narrowest_radius(scene.layer, scene.indenter)
+    radius, exponent = radius_of_load(ratio, start, scene.indenter.flat_radius, narrowest)
     return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, exponent=exponent)
 
 
@@ -93,16 +102,26 @@ def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedCont
     return solve_prescribed_contact(problem, indenter, log)
 
 
-def radius_of_load(ratio_at: Callable[[float], float], start: float, flat: float) -> tuple[float, float]:
+def radius_of_load(
+    ratio_at: Callable[[float], float], start: float, flat: float, narrowest: float = 0.0
+) -> tuple[float, float]:
     """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat): secants in logarithms.
 
-    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.
+    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  The narrowest radius is
+    returned where even that carries more.
     """
-    x = float(np.log(max(start - flat, 1e-6 * start)))
+    least = float(np.log(narrowest - flat)) if flat else -np.inf
+    x = max(float(np.log(max(start - flat, 1e-6 * start))), least)
     y = float(np.log(ratio_at(flat + np.exp(x))))
     exponent, step = 2.0, float(np.clip(-y / 2, -1, 1)) or 1e-3
-    for _ in range(15):
+    for number in range(15):
+        if x == least and y > 0:
+            return narrowest, 0.5
+        step = max(step, least - x)
         following = float(np.log(ratio_at(flat + np.exp(x + step))))
+        # Every radius has a mesh of its own: secants end where its errors hide what a step gains.
+        if number and abs(y) < SCATTER and abs(following) >= abs(y):
+            return flat + float(np.exp(x)), exponent
         exponent = float(np.clip((following - y) / step, 0.2, 20))
         x, y = x + step, following
         step = float(np.clip(-y / exponent, -1, 1))

@@ -15,7 +15,7 @@ The coefficients stand in `error_model.FIXED_RADIUS`.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -60,10 +60,20 @@ class ContactWithErrors:
         """The solution that is reported."""
         return self.levels[self.settings.order]
 
+    def narrowed(self, share: float) -> ContactWithErrors:
+        """The contact whose ring around the flat end is so narrow that its smooth depth is this share of that here."""
+        levels = {k: level.narrowed(share, self.ring) for k, level in self.levels.items()}
+        return replace(self, levels=levels)
+
+    @property
+    def ring(self) -> float:
+        """Width of the meshed ring between the last kink and the edge, by the radius of the mesh."""
+        return 1.0 - max(self.indenter.kinks, default=0.0)
+
     @cached_property
     def error(self) -> Mapping[str, float]:
         """Relative error of each of `QUANTITIES`."""
-        parts = (self._interpolation_error, self._edge_error, self.far_error)
+        parts = (self._interpolation_error, self._edge_error, self.far_error, self._narrowing_error)
         return {name: sum(part[name] for part in parts) for name in QUANTITIES}
 
     @cached_property
@@ -80,9 +90,26 @@ class ContactWithErrors:
         """
         changes = [self._pressure_change(*pair) for pair in self._last_changes]
         if self.settings.order == min(self.levels):
-            return 1.5 * changes[-1]
+            return 1.5 * changes[-1] + self._pressure_in_ring
         fall = changes[-1] / changes[-2] if len(changes) > 1 else 0.0
-        return float(np.clip(FIXED_RADIUS.pressure_per_fall * fall, *FIXED_RADIUS.pressure_bounds)) * changes[-1]
+        rate = float(np.clip(FIXED_RADIUS.pressure_per_fall * fall, *FIXED_RADIUS.pressure_bounds))
+        return rate * changes[-1] + self._pressure_in_ring
+
+    @property
+    def _pressure_in_ring(self) -> float:
+        """What the wider ring that is meshed misses of the norm of the pressure.
+
+        Outside, the pressure squared is k_N' delta^2 / (4 pi^2 (a - r)), up to the ring; the constant beside the
+        logarithm of both widths is that of either ring's own neighbourhood.
+        """
+        answer = self.answer
+        if answer.radius == 1.0:
+            return 0.0
+        radius, weight = (values.ravel() for values in answer.contact_trace.gauss(answer.pair.degree + 2))
+        norm = weight @ answer.pressure(radius, answer.smooth_depth) ** 2
+        widths = np.log(self.ring / max(self.ring - (1 - answer.radius), 1e-16))
+        missed = answer.stiffness_slope * answer.smooth_depth**2 / (2 * np.pi) * (widths + 2)
+        return float(np.sqrt(missed / norm))
 
     @property
     def _last_changes(self) -> list[tuple[int, int]]:
@@ -166,6 +193,13 @@ class ContactWithErrors:
         }
 
     @property
+    def _narrowing_error(self) -> Mapping[str, float]:
+        """What the law of `narrowed` leaves out of depth and force of a given radius."""
+        lost = (1 - self.answer.radius) / min(1.0, self.layer_mesh.thickness)
+        error = FIXED_RADIUS.narrowing * lost
+        return {"stiffness": 0.0, "stiffness_slope": lost, "smooth_depth": error, "smooth_force": error}
+
+    @property
     def _truncation_error(self) -> Mapping[str, float]:
         if self.layer.support == "unbonded" and not self.layer.is_half_space:
             return dict.fromkeys(QUANTITIES, self._unbonded_truncation_error)
@@ -237,6 +271,7 @@ def solve_contact_with_errors(
         log: of the stages.
         problem: the discrete layer, or one whose contact is held in more ways.
     """
+    settings = settings.beside_kinks(layer, indenter)
     with log.stage("mesh"):
         mesh = contact_mesh(layer, indenter, settings)
     levels = {

@@ -40,14 +40,14 @@ class LoadedContact:
         contact, answer = self.contact, self.contact.answer
         depth = self._depth(answer)
         force = answer.force(depth) if self.by_depth else self.load
-        values = np.array([depth, force, 1.0, answer.stiffness])
+        values = np.array([depth, force, answer.radius, answer.stiffness])
         # Depth, force and stiffness are known as well as energies; the radius errs like the numbers at a fixed radius.
         rates = np.array([contact.rate_at_load, contact.rate_at_load, contact.rate, contact.rate_at_load])
         absolute = rates * contact.changes_of(self._numbers) + self._outer_edge_error(depth) + self._remainder
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
-        uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - 1)
+        uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - answer.radius)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
         # The last term is the rounding of the radius, whatever its slope.
         radius_error += contact.edge_shift + correction + 1e-15
@@ -72,8 +72,9 @@ class LoadedContact:
     def _numbers(self, level: PrescribedContact) -> FloatArray:
         """Depth, force, radius and stiffness at the load, to first order, from the solution of one degree."""
         depth = self._depth(level)
-        radius = 1 + (depth - level.smooth_depth) / self.contact.answer.smooth_depth_slope
-        return np.array([depth, level.force(depth), radius, level.stiffness + level.stiffness_slope * (radius - 1)])
+        moved = (depth - level.smooth_depth) / self.contact.answer.smooth_depth_slope
+        stiffness = level.stiffness + level.stiffness_slope * moved
+        return np.array([depth, level.force(depth), level.radius + moved, stiffness])
 
     def _outer_edge_error(self, depth: float) -> FloatArray:
         """Absolute errors of `_numbers` by the end of the mesh, which takes some of the force at each depth."""
@@ -85,6 +86,7 @@ class LoadedContact:
     @property
     def _remainder(self) -> FloatArray:
         """What first order leaves out in `_numbers`, half the second differential of the energy: k_N' delta_0' da^2."""
-        answer, square = self.contact.answer, (self.radius_factor - 1) ** 2
+        answer = self.contact.answer
+        square = (self.radius_factor - answer.radius) ** 2
         force = answer.stiffness_slope * answer.smooth_depth_slope * square / 2
         return np.array([force / answer.stiffness, force, square, answer.stiffness * square])

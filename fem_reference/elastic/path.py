@@ -41,7 +41,7 @@ class FemEquilibrium:
     def stiffness(self) -> float:
         """k_N / (E* a) at the corrected radius."""
         answer = self.contact.answer
-        return answer.stiffness + answer.stiffness_slope * (self.radius_factor - 1)
+        return answer.stiffness + answer.stiffness_slope * (self.radius_factor - answer.radius)
 
 
 def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
@@ -54,7 +54,13 @@ def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
         "contact_stiffness": error["stiffness"],
         "pressure": contact.pressure_error,
     }
-    return FemEquilibrium(contact=contact, depth=answer.smooth_depth, force=answer.smooth_force, error=reported)
+    return FemEquilibrium(
+        contact=contact,
+        depth=answer.smooth_depth,
+        force=answer.smooth_force,
+        error=reported,
+        radius_factor=answer.radius,
+    )
 
 
 def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquilibrium:

@@ -11,7 +11,7 @@ where delta_0 = g(a) is the depth at which the stress at the contact edge vanish
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -55,6 +55,7 @@ class PrescribedContact:
         pair: element pair.
         moduli: shear modulus and compressibility at E* = 1.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
+        radius: contact radius over that of the mesh: below one where the ring around a flat end is too narrow for it.
     """
 
     stiffness: float
@@ -73,6 +74,7 @@ class PrescribedContact:
     pair: ElementPair
     moduli: Moduli
     solutions: FloatArray
+    radius: float = 1.0
 
     @property
     def unknowns(self) -> int:
@@ -105,6 +107,30 @@ class PrescribedContact:
     def surface_displacement(self, radius: FloatArray, depth: float) -> FloatArray:
         """u_z(r) on the top; zero beyond the mesh."""
         return self.top_trace.evaluate(self.displacements @ [depth, 1.0], radius)
+
+    def narrowed(self, share: float, ring: float) -> PrescribedContact:
+        """The contact of a ring ``share^2`` times as narrow around a flat end, on the same mesh.
+
+        So close to the rim the stress at the contact's edge is that of the flat punch and its stiffness is linear in
+        the radius.  Smooth depth and fields outside the ring grow like the root of its width w, so that
+        ``F = int k_N d(delta_0)`` leaves ``F_2 ~ w^1.5``.
+
+        Args:
+            share: of the smooth depth.
+            ring: width of this contact's ring, by the radius of the mesh.
+        """
+        shares, lost = np.array([1.0, share]), ring * (1 - share**2)
+        return replace(
+            self,
+            stiffness=self.stiffness - self.stiffness_slope * lost,
+            smooth_depth=share * self.smooth_depth,
+            profile_force=share**3 * self.profile_force,
+            tail_energies=self.tail_energies * np.outer(shares, shares),
+            pressures=self.pressures * shares,
+            displacements=self.displacements * shares,
+            solutions=self.solutions * shares,
+            radius=1 - lost,
+        )
 
     def release_rate(self, depth: float) -> float:
         """Energy released per new free area, ``G = k_N' (delta - delta_0)^2 / (4 pi a)``."""

@@ -65,17 +65,24 @@ NEAREST_KINK = 0.5
 
 
 def strip_mesh(
-    layer: Layer, radius: float, cells: int, kinks: tuple[float, ...], settings: Discretisation
+    layer: Layer,
+    radius: float,
+    cells: int,
+    kinks: tuple[float, ...],
+    settings: Discretisation,
+    *,
+    outside: float = 1.0,
 ) -> LayerMesh:
     """A section with ``cells`` equal pressure cells on the strip of ``radius`` [m], lengths by that radius.
 
-    Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike.
+    Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike.  The growth of
+    120 cells is ``outside``.
     """
     thickness = settings.thickness(layer, radius)
     cell = STRIP_ORDER / STRIDE / cells
     outer = 1 + thickness * settings.distance(layer)
     points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
-    growth = (STRIP_CELLS / cells) ** (1 / 3)
+    growth = outside * (STRIP_CELLS / cells) ** (1 / 3)
     grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))
     return layer_mesh(thickness, outer, grading)
 

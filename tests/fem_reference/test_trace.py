@@ -3,6 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contact import NotConvergedError
 from fem_reference.discrete_layer.trace import TraceSpace
 
 RADII = np.concatenate([np.linspace(0, 0.4, 5), np.linspace(0.4, 1, 5)[1:]])  # two cells of degree four
@@ -24,3 +25,10 @@ def test_moments_of_hats_integrate_polynomials_exactly(stride):
 
 def test_no_radii_have_no_values():
     assert TraceSpace(RADII, 4).evaluate(RADII, np.empty(0)).shape == (0,)
+
+
+def test_coinciding_nodes_are_refused_by_name():
+    """SuperLU's "Factor is exactly singular" had left the solver as a crash."""
+    space = TraceSpace(np.array([0.0, 0.5, 1.0, 1.0, 1.0]), 2)
+    with pytest.raises(NotConvergedError, match="two nodes of the contact coincide"):
+        space.recover(np.ones(5))

@@ -18,14 +18,16 @@ from contact import (
     PronySeries,
     Scene,
     Sphere,
+    StageLog,
     StandardSolid,
 )
 from fem_reference import Fem
 from fem_reference.adaptive import solve_history_to_accuracy
 from fem_reference.in_time.condensed_layer import CondensedLayer
-from fem_reference.in_time.impact import MAX_STEPS, Body, simulate_impact
+from fem_reference.in_time.impact import MAX_STEPS, FallingBody, simulate_impact
 from fem_reference.in_time.relaxation import ShearRelaxation
 from fem_reference.in_time.relaxation_step import relaxation_step
+from fem_reference.in_time.setup import HistorySetup
 from fem_reference.in_time.solver import peak
 from fem_reference.in_time.surface_memory import ProportionalSurface
 
@@ -104,7 +106,7 @@ def single_spring(relaxation, steps):
     """Restitution of one degree of freedom (unit compliance, mass and speed) with so many steps in a half period."""
     surface = ProportionalSurface(np.eye(1), np.ones(1), len(relaxation.moduli))
     condensed = CondensedLayer(surface, np.ones(1), np.zeros(1), 1.0, 1)
-    record = simulate_impact(condensed, Body(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
+    record = simulate_impact(condensed, FallingBody(mass=1.0, velocity=1.0), relaxation, np.pi / steps)
     return -record.velocity[-1], record
 
 
@@ -274,3 +276,20 @@ def test_relaxation_step_is_exact_for_linear_strain():
 def test_peak_lies_between_samples():
     t = np.linspace(0, 2, 8)
     assert peak(1 - (t - 1.1) ** 2) == pytest.approx(1.0, rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("effects", [(), (SOLID,)])
+def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
+    """The mesh outside the strip must not hide the third order: it moved the peak by 5e-5 from mesh to mesh."""
+    setup = HistorySetup(impact_scene(3e-3, effects=effects), QUICK.discretisation, "superlu", StageLog())
+    radius, duration = 1.2e-3, 1.6e-5
+
+    def peak_depth(cells):
+        condensed = setup.condensed(radius, cells)
+        body = FallingBody(
+            mass=IMPACT.mass / ((G1 + G_INF) * condensed.radius), velocity=IMPACT.velocity / condensed.radius
+        )
+        return peak(np.array(simulate_impact(condensed, body, setup.relaxation, duration).depth))
+
+    fine = peak_depth(60)
+    assert [peak_depth(cells) for cells in (30, 40)] == pytest.approx([fine, fine], rel=1e-5, abs=0.0)
