@@ -99,6 +99,12 @@ def not_negative_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchem
     return PlainValidator(validate), WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0}, {"const": "inf"}]})
 
 
+def not_negative_or_none(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """A finite number of at least zero, or None."""
+    validate, schema = in_range(0.0, math.inf, remedy)
+    return PlainValidator(lambda value: None if value is None else validate.func(value)), schema
+
+
 def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     """A finite number in the closed interval [low, high]."""
 

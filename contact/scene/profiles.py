@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import model_validator
 
-from contact.records.record import Record, record
+from contact.records.errors import InvalidInput
+from contact.records.record import Record, record, shown
 from contact.records.validation import (
     FloatArray,
     PositiveLength,
@@ -23,11 +24,15 @@ from contact.records.validation import (
     finite_vector,
     in_range,
     increasing_vector,
+    not_negative_or_none,
     positive,
 )
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
+
+# A cubic spline needs four points; with fewer than twice as many there is nothing to average.
+_FEWEST_TO_SMOOTH = 8
 
 
 class Profile(Record, ABC):
@@ -243,10 +248,12 @@ class Tabulated(Pointed):
     Attributes:
         radii: r [m], increasing from zero, shape (n,), n >= 3.
         heights: f [m] at these radii, starting at zero, shape (n,).
+        smoothing: Largest change [m] of a height by `smoothed`; none for a table as it was measured.
     """
 
     radii: Annotated[Vector, *increasing_vector("give radii in metres that start at 0 and increase", least=0.0)]
     heights: Annotated[Vector, *finite_vector("give heights in metres, one for each radius")]
+    smoothing: Annotated[float | None, *not_negative_or_none("leave it to Tabulated.smoothed")] = None
 
     @model_validator(mode="after")
     def _check(self) -> Tabulated:
@@ -257,6 +264,32 @@ class Tabulated(Pointed):
             start = f"({self.radii[0]:g}, {self.heights[0]:g})"
             raise ValueError(f"a table starts at the tip (0, 0), got {start}; shift it so that it does")
         return self
+
+    def smoothed(self, *, noise: float) -> Tabulated:
+        """The profile by the smoothest cubic spline whose heights differ from the table's by the noise, in the mean.
+
+        An indenter that is nowhere more than e lower or higher presses at each depth no less and no more than this one
+        does at depths that differ by e. So smoothing moves the force by at most about k_N times `smoothing`.
+
+        Args:
+            noise: Standard deviation [m] of the measured heights.
+
+        Raises:
+            InvalidInput: If the noise is not positive, or the table is too short.
+        """
+        from scipy.interpolate import UnivariateSpline  # noqa: PLC0415  # see `_curve`
+
+        if not (isinstance(noise, int | float) and 0.0 < noise < math.inf):
+            raise InvalidInput(f"noise = {shown(noise)}: must be a positive length; give the noise of the heights in m")
+        if self.radii.size < _FEWEST_TO_SMOOTH:
+            raise InvalidInput(f"{self.radii.size} heights are too few to smooth; give at least {_FEWEST_TO_SMOOTH}")
+        radius, height = self.max_radius, max(float(np.abs(self.heights).max()), noise)
+        spline = UnivariateSpline(
+            self.radii / radius, self.heights / height, s=self.radii.size * (noise / height) ** 2, k=3
+        )
+        heights = height * np.asarray(spline(self.radii / radius))
+        heights -= heights[0]
+        return self.replace(heights=heights, smoothing=float(np.abs(heights - self.heights).max()))
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
