@@ -76,13 +76,16 @@ class _PressedFields:
 
 def _nothing(method: str, scene: Scene) -> ContactPath:
     """A path without any contact."""
-    zeros = np.zeros(len(scene.loading.values))  # type: ignore[attr-defined]
+    arrays: dict[str, Any] = dict.fromkeys(
+        ContactPath.ARRAYS,
+        np.zeros(len(scene.loading.values)),  # type: ignore[attr-defined]
+    )
     return ContactPath(
         scene=scene,
         method=method,
         settings={},
-        **dict.fromkeys(ContactPath.ARRAYS, zeros),
-        error_estimate=dict.fromkeys(ContactPath.ARRAYS, zeros),
+        **arrays,
+        error_estimate=arrays,
         cost=StageLog().cost(unknowns=0),
     )
 
@@ -97,11 +100,12 @@ def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactP
         found[presses] = values
         return found
 
+    arrays: dict[str, Any] = {name: filled(getattr(path, name)) for name in ContactPath.ARRAYS}
     number = np.where(presses, np.cumsum(presses) - 1, -1)
     return dataclasses.replace(
         path,
         scene=scene,
         error_estimate={name: filled(np.atleast_1d(error)) for name, error in path.error_estimate.items()},
         fields=None if path.fields is None else _PressedFields(path.fields, tuple(number.tolist())),
-        **{name: filled(getattr(path, name)) for name in ContactPath.ARRAYS},
+        **arrays,
     )

@@ -48,7 +48,7 @@ def vector(value: object, unit: str | None, place: str) -> Any:
         InvalidInput: If a range, a column or a unit is not right.
     """
     if isinstance(value, Column):
-        return _column_in_si(value, unit, place)
+        return in_si_units(value, unit, place)
     if isinstance(value, Mapping) and value and value.keys() <= _RANGE:
         return _range(value, unit, place)
     if unit is None or isinstance(value, str | bytes) or not isinstance(value, Sequence):
@@ -155,7 +155,12 @@ def _number(cell: str) -> float | None:
     return number if math.isfinite(number) else None
 
 
-def _column_in_si(one: Column, unit: str | None, place: str) -> FloatArray:
+def in_si_units(one: Column, unit: str | None, place: str) -> FloatArray:
+    """The numbers of a column in the SI unit given; a column without a unit of its own is taken to have it.
+
+    Raises:
+        InvalidInput: If its unit is unknown or of another kind.
+    """
     if not one.unit or unit is None:
         return one.values
     factor = factor_of(one.unit, unit, f"{place}, column {shown(one.name)}")
