@@ -8,6 +8,7 @@ from mdr.curves.fit import CurveFit, FormulaFit, fit_curve
 from mdr.curves.force_curve import CurveShape, ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
 from mdr.curves.map_fit import MapFit, fit_map
+from mdr.curves.reading import read_curve, read_map
 
 __all__ = [
     "CurveFit",
@@ -19,4 +20,6 @@ __all__ = [
     "fit_curve",
     "fit_map",
     "formulas_for",
+    "read_curve",
+    "read_map",
 ]

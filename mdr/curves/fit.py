@@ -15,7 +15,6 @@ import numpy as np
 
 from contact import Adhesion, IndentationDepths, InvalidInput, NotConvergedError, Scene
 from contact.records.validation import FloatArray
-from mdr.curves.adhesive_curve import adhesive_curve
 from mdr.curves.force_curve import CurveShape, ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
 from mdr.curves.start import linear_start
@@ -177,9 +176,21 @@ class _Model:
         if self.work is None:
             force = modulus * curve.per_modulus(shifted)
         else:
+            from mdr.adhesion.force_curve import adhesive_curve  # noqa: PLC0415  # only where something adheres
+
             work = values.get("work_of_adhesion", self.work)
             force = adhesive_curve(curve.scene).force(shifted, modulus, work)
         return force + values.get("baseline", 0.0)
+
+    def numerical_error(self, values: Mapping[str, float]) -> float:
+        """Relative error of the force by the computation."""
+        if self.work is None:
+            return self.curve.error
+        from mdr.adhesion.force_curve import adhesive_curve  # noqa: PLC0415  # as above
+
+        shifted = self.depth - values.get("contact_point", 0.0)
+        work = values.get("work_of_adhesion", self.work)
+        return self.curve.error + adhesive_curve(self.curve.scene).error(shifted, values["youngs_modulus"], work)
 
     def jacobian(self, values: Mapping[str, float]) -> FloatArray:
         """dF by each parameter in its unit, shape (n, p)."""
@@ -206,10 +217,16 @@ class _Model:
         def values_of(x: FloatArray) -> dict[str, float]:
             return {name: float(v) * self.unit[name] for name, v in zip(self.parameters, x, strict=True)}
 
+        def misfit(x: FloatArray) -> FloatArray:
+            return (self.force(values_of(x)) - force) / scale
+
+        def slopes(x: FloatArray) -> FloatArray:
+            return self.jacobian(values_of(x)) / scale
+
         found = least_squares(
-            lambda x: (self.force(values_of(x)) - force) / scale,
+            misfit,
             [start[name] / self.unit[name] for name in self.parameters],
-            jac=lambda x: self.jacobian(values_of(x)) / scale,
+            jac=slopes,
             bounds=(lower, upper),
             xtol=1e-12,
             ftol=1e-12,
@@ -270,13 +287,17 @@ def _modulus_by(shape: CurveShape, depth: FloatArray, force: FloatArray, paramet
     if not has_point:
         return start(contact_point=False)[1]
     around, width = start(contact_point=True)[0], float(np.ptp(depth))
+
+    def misfit(point: float) -> float:
+        return float(start(contact_point=False, at=point, misfit=True)[0])
+
     best = minimize_scalar(
-        lambda point: start(contact_point=False, at=point, misfit=True)[0],
+        misfit,
         bounds=(around - 0.05 * width, around + 0.05 * width),
         method="bounded",
         options={"xatol": 1e-9 * width},
     )
-    return start(contact_point=False, at=float(best.x))[1]
+    return float(start(contact_point=False, at=float(best.x))[1])
 
 
 def _stated(
@@ -288,7 +309,9 @@ def _stated(
     fitted, jacobian = model.force(found), model.jacobian(found)
     freedom = force.size - len(found)
     variance = float(np.sum((fitted - force) ** 2)) / freedom
-    covariance = variance * np.linalg.pinv(jacobian.T @ jacobian, hermitian=True)
+    covariance: FloatArray = np.asarray(
+        variance * np.linalg.pinv(jacobian.T @ jacobian, hermitian=True), dtype=np.float64
+    )
     units = np.array([model.unit[name] for name in found])
     errors = dict(zip(found, (np.sqrt(np.diag(covariance)) * units).tolist(), strict=True))
     quantile = float(student.ppf(0.5 + confidence / 2, freedom))
@@ -299,11 +322,11 @@ def _stated(
         fitted=fitted,
         values=found,
         standard_error=errors,
-        covariance=covariance * np.outer(units, units),
+        covariance=np.asarray(covariance * np.outer(units, units)),
         quantile=quantile,
         confidence=confidence,
         band=quantile * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian), 0.0)),
-        numerical_error=model.curve.error,
+        numerical_error=model.numerical_error(found),
         warnings=_warnings(model, found, errors, covariance, quantile),
         formulas=fits,
     )

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact import ContactPath, ElasticLayer, IndentationDepths, InvalidInput, Scene
+from contact import ContactPath, IndentationDepths, InvalidInput, Scene
 from contact.records.validation import FloatArray
 from mdr.method import Mdr
 
@@ -148,6 +148,6 @@ def _cubic(
 
 
 @lru_cache(maxsize=64)
-def _kept(scene: Scene[IndentationDepths, ElasticLayer], method: Mdr) -> ForceCurve:
+def _kept(scene: Scene, method: Mdr) -> ForceCurve:
     """Curves of changed scenes, the last 64."""
     return ForceCurve(scene, method)

@@ -6,7 +6,7 @@ All are F = E phi(d), with phi a power of the depth times a polynomial in a numb
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -93,7 +93,13 @@ def _round(layer: Layer, radius: float) -> list[Formula]:
 
 
 def _dimitriadis(nu: float, *, bonded: bool) -> tuple[float, ...]:
-    """Their coefficients by alpha_0 and beta_0 of Poisson's ratio, for a layer that is bonded or not."""
+    """Their coefficients by alpha_0 and beta_0 of Poisson's ratio, for a layer that is bonded or not.
+
+    For a bonded layer at nu = 1/2 their general formula gives -0.0975 for the last, where they print +0.0975; the
+    printed one is in use.
+    """
+    if bonded and nu == 0.5:
+        return 1.133, 1.283, 0.769, 0.0975
     alpha = -0.347 * (3 - 2 * nu) / (1 - nu)
     beta = 0.056 * (5 - 2 * nu) / (1 - nu)
     if bonded:
@@ -124,6 +130,6 @@ def _punch(layer: Layer, radius: float) -> list[Formula]:
     found = [Formula("Sneddon", SNEDDON, factor, 1.0)]
     if layer.support == "bonded" and layer.poissons_ratio == 0.5 and not layer.is_half_space:
         x = radius / layer.thickness
-        series: Callable[..., float] = np.polynomial.polynomial.polyval
-        found.append(Formula("Garcia", GARCIA, factor * float(series(x, (1, 1.133, 1.283, 0.598, -0.291))), 1.0))
+        series = float(np.polynomial.polynomial.polyval(x, (1.0, 1.133, 1.283, 0.598, -0.291)))
+        found.append(Formula("Garcia", GARCIA, factor * series, 1.0))
     return found

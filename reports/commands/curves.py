@@ -8,12 +8,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
-
-if TYPE_CHECKING:
-    pass
 
 SceneFile = Annotated[Path, typer.Argument(help="Scene in TOML.")]
 Written = Annotated[list[Path] | None, typer.Option("--write", "-w", help="FILE.csv or FILE.svg. May be repeated.")]
@@ -34,7 +31,7 @@ def fit(
 
     Says what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
-    from reports.bench.fits import fit_file, fit_map_file  # noqa: PLC0415 - see the first lines of this module
+    from reports.commands.bench import fit_file, fit_map_file  # noqa: PLC0415 - see the first lines of this module
 
     names = [name.strip() for name in also.split(",") if name.strip()]
     with _bar("curves") as progress:
@@ -54,7 +51,7 @@ def sweep(
     write: Written = None,
 ) -> None:
     """Solve a scene for a range of one of its numbers: a table, CSV and picture."""
-    from reports.bench.sweeps import sweep_file  # noqa: PLC0415 - see the first lines of this module
+    from reports.commands.bench import sweep_file  # noqa: PLC0415 - see the first lines of this module
 
     with _bar("scenes") as progress:
         sweep_file(scene, over, method=method, outputs=write or [], progress=progress)
