@@ -106,8 +106,8 @@ def _record(cls: type[Record]) -> dict[str, Any]:
         field.pop("title", None)
         lines = [line for line in text.splitlines() if line.strip().startswith(f"{name}: ")]
         field["description"] = lines[0].partition(": ")[2] if lines else ""
-        unit = unit_of(cls, name)
-        schema["properties"][name] = field if unit is None else _with_units(field, unit)
+        if unit_of(cls, name) is not None:
+            schema["properties"][name] = _with_units(field)
     return {name: entry for name, entry in schema.items() if name != "title"}
 
 
@@ -130,14 +130,16 @@ def _shorthands() -> list[dict[str, Any]]:
     ]
 
 
-def _with_units(field: dict[str, Any], unit: str) -> dict[str, Any]:
+def _with_units(field: dict[str, Any]) -> dict[str, Any]:
     """A number or a list, or the same with a unit, as a range, or as a column of a file."""
-    quantity = {"type": "string", "pattern": r"^\s*[-+.\d]", "description": f"a number with its unit, in SI {unit}"}
+    # Bounds are for numbers only, and the pattern for texts only.
+    quantity = {"type": ["number", "string"], "pattern": r"^\s*[-+.\d]"}
     text = field.pop("description")
     if field.get("type") != "array":
-        return {"description": text, "anyOf": [field, quantity]}
-    field["items"] = {"anyOf": [field["items"], quantity]}
-    end = {"anyOf": [{"type": "number"}, quantity]}
+        numbers = next((one for one in field.get("anyOf", []) if one.get("type") == "number"), field)
+        return {"description": text} | numbers | quantity
+    field["items"] = field["items"] | quantity
+    end = quantity
     spacing = {"enum": ["linear", "log"]}
     count = {"type": "integer", "minimum": 2}
     span = _table({"start": end, "stop": end, "count": count, "spacing": spacing}, ["start", "stop", "count"])
