@@ -122,6 +122,10 @@ def _shorthands() -> list[dict[str, Any]]:
             {"kind": {"const": "truncated_cone"}, "half_angle": angle, "flat_radius": length},
             ["kind", "half_angle", "flat_radius"],
         ),
+        _table(
+            {"kind": {"const": "spheroconical"}, "half_angle": angle, "radius": length},
+            ["kind", "half_angle", "radius"],
+        ),
         _table({"kind": {"const": "pyramid"}, "half_angle": angle}, ["kind", "half_angle"]),
         _table(
             {"kind": {"const": "tabulated"}, "file": file, "unit": unit, "noise": length},

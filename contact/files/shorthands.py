@@ -32,7 +32,7 @@ def written_out(indenter: Mapping[str, Any]) -> dict[str, Any]:
         return _from_file(table)
     if table.get("kind") == "pyramid":
         return _sloped(table, _EQUAL_AREA) | {"kind": "cone"}
-    if table.get("kind") in ("cone", "truncated_cone") and "half_angle" in table:
+    if table.get("kind") in ("cone", "truncated_cone", "spheroconical") and "half_angle" in table:
         return _sloped(table, 1.0)
     return table
 

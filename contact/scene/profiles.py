@@ -171,6 +171,40 @@ class Cone(Pointed):
 
 
 @record
+class Spheroconical(Pointed):
+    """A cone whose apex is a sphere that it touches at b = R sin(theta): f is the sphere's up to b, then straight.
+
+    Attributes:
+        radius: R [m] of the sphere.
+        slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
+    """
+
+    radius: PositiveLength
+    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
+        return self._cap.height(np.minimum(r, b)) + self.slope * np.maximum(r - b, 0.0)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
+        return np.where(r < b, self._cap.slope_at(np.minimum(r, b)), self.slope)
+
+    @property
+    def tangent_radius(self) -> float:
+        """b [m], where sphere and cone touch with one slope."""
+        return self.radius * self.slope / math.hypot(1.0, self.slope)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        return (self.tangent_radius,)
+
+    @cached_property
+    def _cap(self) -> Sphere:
+        return Sphere(radius=self.radius)
+
+
+@record
 class TruncatedCone(Profile):
     """Eq. (35): flat up to b, then f(r) = slope (r - b).
 
@@ -326,6 +360,7 @@ PROFILES: tuple[type[Profile], ...] = (
     Paraboloid,
     Sphere,
     Cone,
+    Spheroconical,
     TruncatedCone,
     TruncatedParaboloid,
     PowerLaw,
@@ -333,4 +368,4 @@ PROFILES: tuple[type[Profile], ...] = (
 )
 
 # Profiles whose slope never falls.
-CONVEX = (FlatPunch, Paraboloid, Sphere, Cone, TruncatedCone, TruncatedParaboloid, PowerLaw)
+CONVEX = (FlatPunch, Paraboloid, Sphere, Cone, Spheroconical, TruncatedCone, TruncatedParaboloid, PowerLaw)

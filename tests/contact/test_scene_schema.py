@@ -45,7 +45,7 @@ def test_every_kind_is_offered_to_an_editor():
     for name, kinds in (("indenter", PROFILES), ("loading", LOADINGS)):
         offered = [part["properties"]["kind"]["const"] for part in SCHEMA["properties"][name]["oneOf"]]
         assert offered[: len(kinds)] == [kind_of(cls) for cls in kinds]
-        assert set(offered[len(kinds) :]) <= {"cone", "truncated_cone", "tabulated", "pyramid"}
+        assert set(offered[len(kinds) :]) <= {"cone", "truncated_cone", "spheroconical", "tabulated", "pyramid"}
     assert len(SCHEMA["properties"]["effects"]["items"]["oneOf"]) == len(EFFECTS)
 
 
