@@ -259,7 +259,7 @@ class _Model:
     def _bound(self, name: str, start: float, sign: float) -> float:
         """Of a parameter in its unit."""
         if name == "thickness":
-            return _THICKNESS_FACTOR**sign
+            return float(_THICKNESS_FACTOR**sign)
         if name == "contact_point":
             edge = self.depth.max() if sign > 0 else self.depth.min() - 0.5 * np.ptp(self.depth)
             return float(edge) / self.unit[name]

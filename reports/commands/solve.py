@@ -65,7 +65,7 @@ def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
     """How the file was read, what smoothing a tip may move, and how far the theory reaches."""
     from cases.measurements.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
 
-    lines = scene_notes(scene_file) + validity_lines(solution.scene, solution)
+    lines = scene_notes(scene_file)
     indenter = solution.scene.indenter
     if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
         moved = float(solution.contact_stiffness.max()) * indenter.smoothing
@@ -73,7 +73,8 @@ def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
             f"smoothing moved the tip by at most {with_prefix(indenter.smoothing, 'm')}, and so the force by at most "
             f"about {with_prefix(moved, 'N')}"
         )
-    return [("note", line) for line in lines]
+    told = [("note", line) for line in lines]
+    return told + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
 def _write_all(solution: Solution, outputs: list[Path]) -> None:
