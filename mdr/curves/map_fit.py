@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
@@ -22,6 +23,8 @@ _CHUNK = 256
 _STEPS = 40
 # Relative change of all parameters at which a curve is done: far below any scatter.
 _DONE = 1e-8
+
+_Fitted: TypeAlias = tuple[FloatArray, FloatArray, FloatArray, BoolArray]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -79,26 +82,31 @@ def fit_map(
     Raises:
         InvalidInput: For arrays that are no curves, or a scene with effects.
     """
-    from scipy.stats import t as student  # noqa: PLC0415  # loaded only when curves are fitted
-
     d, f = _checked(depth, force, 2 + baseline)
     deepest = float(np.ptp(d, axis=-1).max()) + max(float(d.max()), 0.0)
     curve = ForceCurve(scene.replace(loading=IndentationDepths([deepest])))
-    parts = []
+    parts: list[_Fitted] = []
     for start in range(0, len(f), _CHUNK):
         chunk = slice(start, start + _CHUNK)
         parts.append(_fitted(curve, d[chunk], f[chunk], baseline))
         if progress is not None:
             progress(min(start + _CHUNK, len(f)), len(f))
+    return _stated(curve, parts, confidence, d.shape[1])
+
+
+def _stated(curve: ForceCurve, parts: list[_Fitted], confidence: float, points: int) -> MapFit:
+    """The fits of all chunks together, each curve of so many points."""
+    from scipy.stats import t as student  # noqa: PLC0415  # loaded only when curves are fitted
+
     values, errors, scatter, converged = (np.concatenate(part) for part in zip(*parts, strict=True))
     return MapFit(
         youngs_modulus=np.where(converged, values[:, 0], np.nan),
         standard_error=np.where(converged, errors, np.nan),
         contact_point=values[:, 1],
-        baseline=values[:, 2] if baseline else np.zeros(len(f)),
+        baseline=values[:, 2] if values.shape[1] == 3 else np.zeros(len(values)),
         scatter=scatter,
         converged=converged,
-        quantile=float(student.ppf(0.5 + confidence / 2, d.shape[1] - 2 - baseline)),
+        quantile=float(student.ppf(0.5 + confidence / 2, points - values.shape[1])),
         confidence=confidence,
         numerical_error=curve.error,
     )
@@ -117,9 +125,7 @@ def _checked(depth: FloatArray, force: FloatArray, parameters: int) -> tuple[Flo
     return d, f
 
 
-def _fitted(
-    curve: ForceCurve, depth: FloatArray, force: FloatArray, baseline: bool
-) -> tuple[FloatArray, FloatArray, FloatArray, BoolArray]:
+def _fitted(curve: ForceCurve, depth: FloatArray, force: FloatArray, baseline: bool) -> _Fitted:
     """Parameters (n, p), error of E (n,), scatter (n,) and whether it converged (n,)."""
     values = _start(curve, depth, force, baseline)
     squares, converged = _squares(curve, depth, force, values), np.zeros(len(force), dtype=bool)

@@ -10,14 +10,19 @@ from fem_reference import Fem
 from mdr import Mdr
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.45)
-METHODS = (Mdr(), Bem(points=96), IntegralEquationMethod(nodes=12), Fem(edge_cell=0.01))
+METHODS = (
+    Mdr(),
+    Bem(points=96),
+    IntegralEquationMethod(nodes=12),
+    pytest.param(Fem(edge_cell=0.01), marks=pytest.mark.slow),
+)
 
 
 def press(loading):
     return Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=2.0), loading=loading)
 
 
-@pytest.mark.parametrize("method", METHODS, ids=lambda m: m.name)
+@pytest.mark.parametrize("method", METHODS, ids=("mdr", "bem", "integral_equation", "fem"))
 def test_zero_is_no_contact(method):
     path = method.solve(press(IndentationDepths([0.0, 0.05, 0.0])))
     alone = method.solve(press(IndentationDepths([0.05])))
