@@ -34,6 +34,7 @@ from contact import (
     UnsupportedSceneError,
     other_layer,
 )
+from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
@@ -126,6 +127,7 @@ class Bem(Record):
     @overload
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath: ...
     @one_thread
+    @without_contact
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria of the scene.
 

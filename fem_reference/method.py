@@ -35,6 +35,7 @@ from contact import (
     other_layer,
 )
 from contact.answer.accuracy import told_where_less
+from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.discrete_layer.indenter import ScaledIndenter
@@ -138,6 +139,7 @@ class Fem:
     @overload
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath: ...
     @one_thread
+    @without_contact
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
         """The answer with its error estimates.
 

@@ -24,6 +24,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
@@ -65,6 +66,7 @@ class Mdr(Record):
     @overload
     def solve(self, scene: Scene) -> Solution: ...
     @one_thread
+    @without_contact
     def solve(self, scene: Scene) -> Solution:
         """The answer to the scene: a contact path, a detachment path, an impact or a history.
 

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from reports.commands import studies
+from reports.commands import curves, studies
 
 EPILOG = (
     "Exit codes: 0 all checks passed; 1 a check failed; 2 interrupted; 3 internal error, or one inside a registered "
@@ -315,7 +315,7 @@ def solve(
     )
 
 
-for _command in studies.COMMANDS:
+for _command in (*curves.COMMANDS, *studies.COMMANDS):
     app.command()(_command)
 
 

@@ -32,6 +32,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
@@ -81,6 +82,7 @@ class IntegralEquationMethod(Record):
         return self.replace(panel_width=self.panel_width / 2)
 
     @one_thread
+    @without_contact
     def solve(self, scene: Scene) -> ContactPath:
         """Equilibria under prescribed radii, depths or forces, each radius solved by itself.
 

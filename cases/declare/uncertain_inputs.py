@@ -142,7 +142,7 @@ def _correlation(names: list[str], pairs: Mapping[tuple[str, str], float]) -> Fl
 
 
 def _changed(scene: Scene, one: UncertainInput, change: Callable[[Any], Any]) -> Scene:
-    part, field = _place(scene, one.name)
+    part, field = place_of(scene, one.name)
     if part.startswith("effects"):
         number = int(part.removeprefix("effects"))
         changed = _with(scene.effects[number], field, one, change)
@@ -157,8 +157,8 @@ def _with(record: Any, field: str, one: UncertainInput, change: Callable[[Any], 
     return record.replace(**{field: change(value)})
 
 
-def _place(scene: Scene, name: str) -> tuple[str, str]:
-    """Part of the scene and field of a number.
+def place_of(scene: Scene, name: str, purpose: str = "uncertain") -> tuple[str, str]:
+    """Part of the scene and field of a number; the purpose stands before the name in messages.
 
     Raises:
         InvalidInput: if there is none of that name, or several.
@@ -177,5 +177,5 @@ def _place(scene: Scene, name: str) -> tuple[str, str]:
     if len(found) != 1:
         known = ", ".join(f"{part.rstrip('0123456789')}.{field}" for part, field in numbers)
         problem = "stands in several parts of the scene" if found else "is no number of the scene"
-        raise InvalidInput(f"uncertain {shown(name)} {problem}; there are {known}")
+        raise InvalidInput(f"{purpose} {shown(name)} {problem}; there are {known}")
     return found[0]

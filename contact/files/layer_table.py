@@ -10,6 +10,8 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from contact.files.units import in_si, unit_of
+from contact.files.values import vector
 from contact.records.errors import InvalidInput
 from contact.records.plain_text import printable
 from contact.records.record import Record, shown
@@ -73,10 +75,29 @@ def build(cls: type[R], place: str, fields: Mapping[str, Any]) -> R:
     for key in fields:
         if not isinstance(key, str):
             raise InvalidInput(f"{place}: the key {shown(key)} is no name")
+    wrong: dict[str, str] = {}
+    converted = dict(fields)
+    for key, value in fields.items():
+        try:
+            converted[key] = _in_si(cls, key, value, f"{place}.{key}")
+        except InvalidInput as error:
+            wrong[key] = str(error)
     try:
-        return cls(**fields)
+        made = cls(**converted)
     except InvalidInput as error:
-        raise InvalidInput(re.sub(rf"^{cls.__name__}\b", place, str(error), flags=re.MULTILINE)) from None
+        lines = re.sub(rf"^{cls.__name__}\b", place, str(error), flags=re.MULTILINE).splitlines()
+        told = tuple(f"{place}.{key}" for key in wrong)
+        raise InvalidInput(
+            "\n".join([*wrong.values(), *(line for line in lines if not line.startswith(told))])
+        ) from None
+    return made
+
+
+def _in_si(cls: type[Record], field: str, value: object, place: str) -> Any:
+    """A field's value with units, ranges and columns turned into numbers in SI."""
+    unit = unit_of(cls, field) if "poissons_ratio" not in place else None
+    known = value if unit is None else in_si(value, unit, place)
+    return vector(known, unit, place)
 
 
 def named(item: Record) -> dict[str, Any]:

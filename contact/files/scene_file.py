@@ -5,16 +5,24 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
-from contact.files.layer_table import as_mapping, build, key_shown, layer_mapping, layer_of, named, tagged
+from contact.files.layer_table import as_mapping, build, key_shown, kind_of, layer_mapping, layer_of, named, tagged
 from contact.files.scene_text import scene_text
+from contact.files.shorthands import notes_on, written_out
+from contact.files.units import in_si
+from contact.files.values import with_columns
 from contact.records.errors import InvalidInput
 from contact.records.record import shown
-from contact.scene.effects import EFFECTS
-from contact.scene.loading import LOADINGS
-from contact.scene.profiles import PROFILES
+from contact.scene.effects import EFFECTS, Effect, Viscoelasticity
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.loading import LOADINGS, Loading
+from contact.scene.profiles import PROFILES, Profile, Tabulated
 from contact.scene.scene import AnyScene, Scene
+
+PARTS: Final = ("layer", "indenter", "loading", "effects")
+# So many unknown tables and wrong parts are told at once; each part tells at most eight lines.
+_MOST_PROBLEMS: Final = 8
 
 
 def load_scene(path: str | Path) -> Scene:
@@ -33,37 +41,41 @@ def load_scene(path: str | Path) -> Scene:
     except RecursionError:
         raise InvalidInput(f"{file}: nested too deeply for a scene") from None
     try:
-        return scene_from_mapping(mapping)
+        return scene_from_mapping(mapping, file.parent)
     except InvalidInput as error:
         raise InvalidInput(f"{file}: {error}") from None
 
 
-def scene_from_mapping(mapping: Mapping[str, Any]) -> Scene:
+def scene_from_mapping(mapping: Mapping[str, Any], folder: Path | None = None) -> Scene:
     """Build a scene from nested mappings; the inverse of `scene_to_mapping`.
 
+    Args:
+        mapping: Tables layer, indenter, loading and effects; numbers may have units, as in "5 um".
+        folder: That CSV files are named relative to; None where no file may be named.
+
     Raises:
-        InvalidInput: With the path of the offending entry, its value and the remedy.
+        InvalidInput: All that is wrong, a line each: path of the offending entry, its value and the remedy.
     """
     if not isinstance(mapping, Mapping):
         raise InvalidInput(f"{shown(mapping)}: a scene is a table of layer, indenter, loading and effects")
-    unknown = [name for name in mapping if name not in ("layer", "indenter", "loading", "effects")]
-    if unknown:
-        raise InvalidInput(f"{key_shown(unknown[0])}: no such table; a scene has layer, indenter, loading and effects")
-    effects = mapping.get("effects", [])
-    if isinstance(effects, str | bytes | Mapping) or not isinstance(effects, Sequence):
-        raise InvalidInput(f"effects = {shown(effects)}: must be a list of tables; write [[effects]]")
-    if len(effects) > len(EFFECTS):
-        raise InvalidInput(f"effects: {len(effects)} are listed, but each of the {len(EFFECTS)} kinds stands only once")
-    return build(
-        Scene,
-        "scene",
-        {
-            "layer": layer_of(_table(mapping, "layer")),
-            "indenter": tagged(PROFILES, _table(mapping, "indenter"), "indenter"),
-            "loading": tagged(LOADINGS, _table(mapping, "loading"), "loading"),
-            "effects": tuple(tagged(EFFECTS, effect, f"effects[{i}]") for i, effect in enumerate(effects)),
-        },
-    )
+    wrong = [
+        f"{key_shown(name)}: no such table; a scene has {', '.join(PARTS)}" for name in mapping if name not in PARTS
+    ]
+    made: dict[str, Any] = {}
+    makers = {"effects": _effects, "layer": _layer, "indenter": _indenter, "loading": _loading}
+    for name, make in makers.items():
+        try:
+            made[name] = make(mapping, folder)
+        except InvalidInput as error:
+            wrong.append(str(error))
+    if wrong:
+        raise InvalidInput("\n".join(wrong[:_MOST_PROBLEMS]))
+    return build(Scene, "scene", made)
+
+
+def scene_notes(path: str | Path) -> list[str]:
+    """What a reader should know about how a scene file was read."""
+    return notes_on(tomllib.loads(scene_text(Path(path))))
 
 
 def scene_to_mapping(scene: AnyScene) -> dict[str, Any]:
@@ -74,6 +86,42 @@ def scene_to_mapping(scene: AnyScene) -> dict[str, Any]:
         "loading": named(scene.loading),
         "effects": [named(effect) for effect in scene.effects],
     }
+
+
+def _effects(mapping: Mapping[str, Any], folder: Path | None) -> tuple[Effect, ...]:
+    effects = mapping.get("effects", [])
+    if isinstance(effects, str | bytes | Mapping) or not isinstance(effects, Sequence):
+        raise InvalidInput(f"effects = {shown(effects)}: must be a list of tables; write [[effects]]")
+    if len(effects) > len(EFFECTS):
+        raise InvalidInput(f"effects: {len(effects)} are listed, but each of the {len(EFFECTS)} kinds stands only once")
+    tables = (as_mapping(effect, f"effects[{i}]") for i, effect in enumerate(effects))
+    return tuple(tagged(EFFECTS, with_columns(table, folder), f"effects[{i}]") for i, table in enumerate(tables))
+
+
+def _layer(mapping: Mapping[str, Any], folder: Path | None) -> ElasticLayer:
+    """The layer; its modulus may be left out where a viscoelastic effect gives it."""
+    table = with_columns(_table(mapping, "layer"), folder)
+    if "kind" in table or "youngs_modulus" in table:
+        return layer_of(table)
+    models = [effect for effect in _effects(mapping, folder) if isinstance(effect, Viscoelasticity)]
+    ratio = table.get("poissons_ratio")
+    if models and isinstance(ratio, int | float):
+        table["youngs_modulus"] = 2 * (1 + ratio) * models[0].relaxation.instantaneous_modulus
+    return layer_of(table)
+
+
+def _indenter(mapping: Mapping[str, Any], folder: Path | None) -> Profile:
+    """The indenter; a table of a tip may name the noise that is smoothed away."""
+    table = with_columns(written_out(_table(mapping, "indenter")), folder)
+    noise = table.pop("noise", None) if table.get("kind") == kind_of(Tabulated) else None
+    profile = tagged(PROFILES, table, "indenter")
+    if noise is None or not isinstance(profile, Tabulated):
+        return profile
+    return profile.smoothed(noise=in_si(noise, "m", "indenter.noise"))
+
+
+def _loading(mapping: Mapping[str, Any], folder: Path | None) -> Loading:
+    return tagged(LOADINGS, with_columns(_table(mapping, "loading"), folder), "loading")
 
 
 def _table(mapping: Mapping[str, Any], name: str) -> Mapping[str, Any]:

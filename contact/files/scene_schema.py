@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from contact.files.layer_table import kind_of
+from contact.files.units import unit_of
 from contact.records.record import Record
 from contact.scene.depth_functions import DEPTH_FUNCTIONS, TabulatedDepth
 from contact.scene.effects import EFFECTS
@@ -25,7 +26,7 @@ def scene_schema() -> dict[str, Any]:
     """Return the schema of what `load_scene` reads; what depends on several entries only `load_scene` checks."""
     parts = {
         "layer": {"type": "object", "oneOf": [_layer(), _stack(), _graded()]},
-        "indenter": _one_of(PROFILES),
+        "indenter": {"type": "object", "oneOf": [*(_tagged(cls) for cls in PROFILES), *_shorthands()]},
         "loading": _one_of(LOADINGS),
         "effects": {"type": "array", "items": _one_of(EFFECTS), "maxItems": len(EFFECTS)},
     }
@@ -44,6 +45,8 @@ def _layer() -> dict[str, Any]:
     schema = _record(Layer)
     schema["properties"]["half_space"] = {"type": "boolean", "description": "instead of a thickness"}
     schema["required"].remove("thickness")
+    # A viscoelastic effect may give the modulus in its place.
+    schema["required"].remove("youngs_modulus")
     thick: dict[str, Any] = {"required": ["thickness"]}
     infinite: dict[str, Any] = {"properties": {"half_space": {"const": True}}, "required": ["half_space"]}
     return schema | {"oneOf": [thick | {"not": infinite}, infinite | {"not": thick}]}
@@ -103,4 +106,51 @@ def _record(cls: type[Record]) -> dict[str, Any]:
         field.pop("title", None)
         lines = [line for line in text.splitlines() if line.strip().startswith(f"{name}: ")]
         field["description"] = lines[0].partition(": ")[2] if lines else ""
+        if unit_of(cls, name) is not None:
+            schema["properties"][name] = _with_units(field)
     return {name: entry for name, entry in schema.items() if name != "title"}
+
+
+def _shorthands() -> list[dict[str, Any]]:
+    """Tables that `contact.files.shorthands` writes out: half angles in place of slopes, pyramids, tips from files."""
+    angle = {"type": "string", "description": 'from the axis to the flank, as in "35 deg"'}
+    length = {"anyOf": [{"type": "number"}, {"type": "string"}]}
+    file, unit = {"type": "string", "description": "CSV: radii, heights"}, {"type": "string"}
+    return [
+        _table({"kind": {"const": "cone"}, "half_angle": angle}, ["kind", "half_angle"]),
+        _table(
+            {"kind": {"const": "truncated_cone"}, "half_angle": angle, "flat_radius": length},
+            ["kind", "half_angle", "flat_radius"],
+        ),
+        _table(
+            {"kind": {"const": "spheroconical"}, "half_angle": angle, "radius": length},
+            ["kind", "half_angle", "radius"],
+        ),
+        _table({"kind": {"const": "pyramid"}, "half_angle": angle}, ["kind", "half_angle"]),
+        _table(
+            {"kind": {"const": "tabulated"}, "file": file, "unit": unit, "noise": length},
+            ["kind", "file"],
+        ),
+    ]
+
+
+def _with_units(field: dict[str, Any]) -> dict[str, Any]:
+    """A number or a list, or the same with a unit, as a range, or as a column of a file."""
+    # Bounds are for numbers only, and the pattern for texts only.
+    quantity = {"type": ["number", "string"], "pattern": r"^\s*[-+.\d]"}
+    text = field.pop("description")
+    if field.get("type") != "array":
+        numbers = next((one for one in field.get("anyOf", []) if one.get("type") == "number"), field)
+        return {"description": text} | numbers | quantity
+    field["items"] = field["items"] | quantity
+    end = quantity
+    spacing = {"enum": ["linear", "log"]}
+    count = {"type": "integer", "minimum": 2}
+    span = _table({"start": end, "stop": end, "count": count, "spacing": spacing}, ["start", "stop", "count"])
+    column = {"type": ["string", "integer"]}
+    file = _table({"file": {"type": "string"}, "column": column, "unit": {"type": "string"}}, ["file"])
+    return {"description": text, "anyOf": [field, span, file]}
+
+
+def _table(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": required, "additionalProperties": False}

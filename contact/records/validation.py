@@ -99,6 +99,21 @@ def not_negative_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchem
     return PlainValidator(validate), WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0}, {"const": "inf"}]})
 
 
+def not_negative_or_none(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+    """A finite number of at least zero, or None."""
+
+    def validate(value: object) -> float | None:
+        """None, or the number if it is finite and not negative."""
+        if value is None:
+            return None
+        number = _number(value, remedy)
+        if not 0.0 <= number < math.inf:
+            raise ValueError(f"must be finite and at least 0; {remedy}")
+        return _in_bounds(number, remedy)
+
+    return PlainValidator(validate), WithJsonSchema({"type": "number", "minimum": 0})
+
+
 def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
     """A finite number in the closed interval [low, high]."""
 

@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from pydantic import model_validator
 
-from contact.records.record import Record, record
+from contact.records.errors import InvalidInput
+from contact.records.record import Record, record, shown
 from contact.records.validation import (
     FloatArray,
     PositiveLength,
@@ -23,11 +24,15 @@ from contact.records.validation import (
     finite_vector,
     in_range,
     increasing_vector,
+    not_negative_or_none,
     positive,
 )
 
 if TYPE_CHECKING:
     from scipy.interpolate import PchipInterpolator
+
+# A cubic spline needs four points; with fewer than twice as many there is nothing to average.
+_FEWEST_TO_SMOOTH = 8
 
 
 class Profile(Record, ABC):
@@ -166,6 +171,40 @@ class Cone(Pointed):
 
 
 @record
+class Spheroconical(Pointed):
+    """A cone whose apex is a sphere that it touches at b = R sin(theta): f is the sphere's up to b, then straight.
+
+    Attributes:
+        radius: R [m] of the sphere.
+        slope: tan(theta) [-], theta the angle between the cone's flank and the surface.
+    """
+
+    radius: PositiveLength
+    slope: Annotated[float, *positive("the slope is the tangent of the angle between flank and surface")]
+
+    def height(self, radius: ArrayLike) -> FloatArray:
+        r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
+        return self._cap.height(np.minimum(r, b)) + self.slope * np.maximum(r - b, 0.0)
+
+    def slope_at(self, radius: ArrayLike) -> FloatArray:
+        r, b = np.asarray(radius, dtype=np.float64), self.tangent_radius
+        return np.where(r < b, self._cap.slope_at(np.minimum(r, b)), self.slope)
+
+    @property
+    def tangent_radius(self) -> float:
+        """b [m], where sphere and cone touch with one slope."""
+        return self.radius * self.slope / math.hypot(1.0, self.slope)
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]:
+        return (self.tangent_radius,)
+
+    @cached_property
+    def _cap(self) -> Sphere:
+        return Sphere(radius=self.radius)
+
+
+@record
 class TruncatedCone(Profile):
     """Eq. (35): flat up to b, then f(r) = slope (r - b).
 
@@ -243,10 +282,12 @@ class Tabulated(Pointed):
     Attributes:
         radii: r [m], increasing from zero, shape (n,), n >= 3.
         heights: f [m] at these radii, starting at zero, shape (n,).
+        smoothing: Largest change [m] of a height by `smoothed`; none for a table as it was measured.
     """
 
     radii: Annotated[Vector, *increasing_vector("give radii in metres that start at 0 and increase", least=0.0)]
     heights: Annotated[Vector, *finite_vector("give heights in metres, one for each radius")]
+    smoothing: Annotated[float | None, *not_negative_or_none("leave it to Tabulated.smoothed")] = None
 
     @model_validator(mode="after")
     def _check(self) -> Tabulated:
@@ -257,6 +298,32 @@ class Tabulated(Pointed):
             start = f"({self.radii[0]:g}, {self.heights[0]:g})"
             raise ValueError(f"a table starts at the tip (0, 0), got {start}; shift it so that it does")
         return self
+
+    def smoothed(self, *, noise: float) -> Tabulated:
+        """The profile by the smoothest cubic spline whose heights differ from the table's by the noise, in the mean.
+
+        An indenter that is nowhere more than e lower or higher presses at each depth no less and no more than this one
+        does at depths that differ by e. So smoothing moves the force by at most about k_N times `smoothing`.
+
+        Args:
+            noise: Standard deviation [m] of the measured heights.
+
+        Raises:
+            InvalidInput: If the noise is not positive, or the table is too short.
+        """
+        from scipy.interpolate import UnivariateSpline  # noqa: PLC0415  # see `_curve`
+
+        if not (isinstance(noise, int | float) and 0.0 < noise < math.inf):
+            raise InvalidInput(f"noise = {shown(noise)}: must be a positive length; give the noise of the heights in m")
+        if self.radii.size < _FEWEST_TO_SMOOTH:
+            raise InvalidInput(f"{self.radii.size} heights are too few to smooth; give at least {_FEWEST_TO_SMOOTH}")
+        radius, height = self.max_radius, max(float(np.abs(self.heights).max()), noise)
+        spline = UnivariateSpline(
+            self.radii / radius, self.heights / height, s=self.radii.size * (noise / height) ** 2, k=3
+        )
+        heights = height * np.asarray(spline(self.radii / radius))
+        heights -= heights[0]
+        return self.replace(heights=heights, smoothing=float(np.abs(heights - self.heights).max()))
 
     @cached_property
     def _curve(self) -> PchipInterpolator:
@@ -293,6 +360,7 @@ PROFILES: tuple[type[Profile], ...] = (
     Paraboloid,
     Sphere,
     Cone,
+    Spheroconical,
     TruncatedCone,
     TruncatedParaboloid,
     PowerLaw,
@@ -300,4 +368,4 @@ PROFILES: tuple[type[Profile], ...] = (
 )
 
 # Profiles whose slope never falls.
-CONVEX = (FlatPunch, Paraboloid, Sphere, Cone, TruncatedCone, TruncatedParaboloid, PowerLaw)
+CONVEX = (FlatPunch, Paraboloid, Sphere, Cone, Spheroconical, TruncatedCone, TruncatedParaboloid, PowerLaw)

@@ -121,7 +121,7 @@ def _check_radius(scene: AnyScene, radius: float, place: str) -> None:
 def _check_signs(scene: AnyScene) -> None:
     if scene.effect(Adhesion) is not None or not isinstance(scene.loading, IndentationDepths | NormalForces):
         return
-    if np.any(scene.loading.values <= 0.0):
+    if np.any(scene.loading.values < 0.0):
         worst = float(scene.loading.values.min())
         raise ValueError(
             f"loading.values = {worst:g}: without adhesion only positive values press; list Adhesion or press"

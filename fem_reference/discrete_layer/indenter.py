@@ -18,6 +18,7 @@ from contact import (
     PowerLaw,
     Profile,
     Sphere,
+    Spheroconical,
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
@@ -62,6 +63,17 @@ def _(profile: Sphere, radius: FloatArray) -> Shape:
     cap = np.sqrt(np.maximum((profile.radius - radius) * (profile.radius + radius), 0.0))
     height = np.where(radius <= profile.radius, radius**2 / (profile.radius + cap), np.inf)
     return Shape(height, np.divide(radius, cap, out=np.full(np.shape(radius), np.inf), where=cap > 0.0))
+
+
+@shape.register
+def _(profile: Spheroconical, radius: FloatArray) -> Shape:
+    # sin(theta) and cos(theta) of the flank, by the circle's point of tangency.
+    steep, level = profile.slope / np.hypot(1.0, profile.slope), 1.0 / np.hypot(1.0, profile.slope)
+    join = profile.radius * steep
+    cap = shape(Sphere(radius=profile.radius), np.minimum(radius, join))
+    straight = profile.radius * (1.0 - level) + profile.slope * (radius - join)
+    is_cap = radius < join
+    return Shape(np.where(is_cap, cap.height, straight), np.where(is_cap, cap.slope, profile.slope))
 
 
 @shape.register

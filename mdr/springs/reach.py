@@ -15,6 +15,7 @@ from contact import (
     NormalForces,
     Profile,
     Scene,
+    Sphere,
     UnsupportedSceneError,
 )
 from contact.records.validation import FloatArray
@@ -52,6 +53,8 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
         if ring is not None:
             raise ring
         if radius >= indenter.max_radius:
+            if isinstance(indenter, Sphere):
+                raise InvalidInput(f"loading.values = {wanted:g}: the sphere has sunk to its equator; press less")
             raise InvalidInput(
                 f"loading.values = {wanted:g}: the indenter ends at a radius of {radius:g} m, where {reached:g} is "
                 "reached; ask for less or describe the indenter further out"

@@ -6,11 +6,12 @@ from pathlib import Path
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.results.files import write_whole
-from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
+from contact import ContactPath, InvalidInput, Method, NotConvergedError, Scene, Solution, Tabulated, load_scene
 from contact.answer.accuracy import shortfalls, told_where_less
+from contact.files.scene_file import scene_notes
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
-from reports.words.numbers import duration
+from reports.words.numbers import duration, with_prefix
 
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG"}
 
@@ -56,8 +57,24 @@ def solve(
         solution = told_where_less(solution, accuracy, pressure_accuracy)
     terminal = console()
     show_table(solution_table(solution), on=terminal)
-    show_facts(solution_facts(solution) + facts, on=terminal)
+    show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=terminal)
     _write_all(solution, outputs)
+
+
+def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
+    """How the file was read, what smoothing a tip may move, and how far the theory reaches."""
+    from cases.measurements.advice import validity_lines  # noqa: PLC0415 - MDR only where it is asked for
+
+    lines = scene_notes(scene_file)
+    indenter = solution.scene.indenter
+    if isinstance(indenter, Tabulated) and indenter.smoothing and isinstance(solution, ContactPath):
+        moved = float(solution.contact_stiffness.max()) * indenter.smoothing
+        lines.append(
+            f"smoothing moved the tip by at most {with_prefix(indenter.smoothing, 'm')}, and so the force by at most "
+            f"about {with_prefix(moved, 'N')}"
+        )
+    told = [("note", line) for line in lines]
+    return told + [("validity", line) for line in validity_lines(solution.scene, solution)]
 
 
 def _write_all(solution: Solution, outputs: list[Path]) -> None:

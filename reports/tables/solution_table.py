@@ -14,8 +14,11 @@ from reports.words.numbers import duration, measured, memory, prefix_for, scaled
 from reports.words.quantity_names import SYMBOLS
 
 BRACKETS = (
-    "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none."
+    "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "
+    "A number without brackets is right to the digits printed; --write FILE.csv writes all of them."
 )
+# Digits of a printed number whose uncertainty is beyond them: as many as anybody compares by eye.
+DIGITS = 6
 # Rows of a printed table; longer answers show every n-th state and the last one.
 LONGEST = 40
 
@@ -35,7 +38,7 @@ def solution_table(solution: Solution, longest: int = LONGEST) -> Table:
     heads = tuple(f"{SYMBOLS[name]} [{factors[name][1]}{UNITS[name]}]" for name in names)
     columns = [_column(solution, name, factors[name][0], shown) for name in names]
     omitted = len(solution) - len(shown)
-    skipped = f" {omitted} of {len(solution)} states are not printed; --write FILE.csv writes all." if omitted else ""
+    skipped = f" {omitted} of {len(solution)} states are not printed." if omitted else ""
     return Table(
         title=_title(solution),
         note=f"{BRACKETS}{skipped}",
@@ -60,7 +63,14 @@ def _shown(states: int, longest: int) -> np.ndarray[tuple[int], np.dtype[np.intp
 def _column(solution: Solution, name: str, factor: float, shown: Iterable[int]) -> list[str]:
     values = np.asarray(getattr(solution, name), dtype=np.float64) / factor
     uncertain = _uncertainty(solution, name) / factor
-    return [measured(float(values[i]), float(uncertain[i])) for i in shown]
+    return [_readable(float(values[i]), float(uncertain[i])) for i in shown]
+
+
+def _readable(value: float, uncertainty: float) -> str:
+    """At most `DIGITS` digits; fewer where the uncertainty allows no more."""
+    if uncertainty < 0.5 * abs(value) * 10.0**-DIGITS:
+        return f"{value:.{DIGITS}g}"
+    return measured(value, uncertainty)
 
 
 def _uncertainty(solution: Solution, name: str) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
@@ -108,7 +118,7 @@ def _critical_value(solution: Solution, name: str) -> str:
     relative = solution.error_estimate.get(name)
     factor, unit = scaled_unit(value, UNITS[name])
     uncertainty = float("inf") if relative is None else float(np.max(relative)) * abs(value)
-    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
+    return f"{_readable(value / factor, uncertainty / factor)} {unit}".strip()
 
 
 def solution_csv(solution: Solution) -> str:

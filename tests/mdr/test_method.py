@@ -197,7 +197,7 @@ def test_out_of_reach_is_refused_with_the_value():
         solve(LAYERS["bonded"], short, IndentationDepths([1e-3]))
     with pytest.raises(InvalidInput, match="a/h = 10000"):
         solve(LAYERS["bonded"], Cone(slope=0.1), ContactRadii([10.0]))
-    with pytest.raises(InvalidInput, match="upright"):
+    with pytest.raises(InvalidInput, match="the sphere has sunk to its equator"):
         solve(LAYERS["bonded"], Sphere(radius=1e-3), ContactRadii([1e-3]))
 
 

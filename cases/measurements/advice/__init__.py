@@ -7,6 +7,6 @@
 
 from cases.measurements.advice.ablation import ablations
 from cases.measurements.advice.advise import Advice, advise
-from cases.measurements.advice.dimensionless_numbers import Number, numbers
+from cases.measurements.advice.dimensionless_numbers import Number, numbers, validity_lines
 
-__all__ = ["Advice", "Number", "ablations", "advise", "numbers"]
+__all__ = ["Advice", "Number", "ablations", "advise", "numbers", "validity_lines"]

@@ -21,8 +21,12 @@ from contact import (
     ImpactHistory,
     IndentationDepths,
     Layer,
+    NotConvergedError,
+    Paraboloid,
     Scene,
     Solution,
+    Sphere,
+    UnsupportedSceneError,
     Viscoelasticity,
 )
 from contact.records.validation import FloatArray
@@ -38,6 +42,8 @@ _JKR_HOLDS = 20.0  # dl/z0 at a Tabor parameter of 5, with the contact radius at
 _SMALL_INERTIA = 0.1
 # Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
 _TYPICAL_FRICTION = 0.1
+# Relative accuracy that notes beside an answer are told for: that of careful indentation tests.
+_USUAL_ACCURACY = 0.01
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +59,18 @@ class Number:
     name: str
     value: float
     meaning: str
+
+
+def validity_lines(scene: Scene, answer: Solution) -> list[str]:
+    """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
+    if not isinstance(scene.layer, Layer) or not _largest(answer, "contact_radius"):
+        return []
+    found = [_depth_share(scene, answer), _tip_share(scene, answer)]
+    try:
+        found += numbers(scene, answer, _USUAL_ACCURACY)
+    except (UnsupportedSceneError, NotConvergedError) as error:
+        return [f"how far the theory reaches is not known: {error}"]
+    return [f"{number.name} = {number.value:.3g}: {number.meaning}" for number in found if number is not None]
 
 
 def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
@@ -82,6 +100,24 @@ def _strain(scene: Scene, answer: Solution) -> Number:
     strain = depth / min(radius, scene.layer.thickness)
     meaning = "typical strain; linear elasticity is an approximation beyond about 0.1, whatever the digits"
     return Number(name="delta/min(a, h)", value=strain, meaning=meaning)
+
+
+def _depth_share(scene: Scene, answer: Solution) -> Number | None:
+    share = _largest(answer, "indentation_depth") / scene.layer.thickness
+    meaning = "depth over thickness; small strains are assumed, and about 0.1 is the usual limit of an indentation test"
+    return Number(name="delta/h", value=share, meaning=meaning) if share else None
+
+
+def _tip_share(scene: Scene, answer: Solution) -> Number | None:
+    """For round tips: where a paraboloid no longer is a sphere, or a sphere comes near its equator."""
+    match scene.indenter:
+        case Paraboloid(radius_of_curvature=radius):
+            remedy = "contact over tip radius; at 0.4 a sphere is 4 % higher than the paraboloid, and has its own kind"
+        case Sphere(radius=radius):
+            remedy = "contact over tip radius; small slopes are assumed, and at 1 the sphere has sunk to its equator"
+        case _:
+            return None
+    return Number(name="a/R", value=_largest(answer, "contact_radius") / radius, meaning=remedy)
 
 
 def _friction(scene: Scene, answer: Solution) -> Number | None:

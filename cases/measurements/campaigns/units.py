@@ -26,6 +26,7 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "reference_height": _LENGTH,
     "radii": _LENGTH,
     "heights": _LENGTH,
+    "smoothing": _LENGTH,
     "initial_contact_radius": _LENGTH,
     "depth": _LENGTH,
     "ContactRadii.values": _LENGTH,

@@ -13,7 +13,7 @@ from contact import UNITS, Friction, scene_from_mapping, scene_to_mapping
 from contact.scene.effects import EFFECTS
 from contact.scene.layer import Layer
 from contact.scene.loading import LOADINGS
-from contact.scene.profiles import PROFILES
+from contact.scene.profiles import PROFILES, Spheroconical
 
 
 @pytest.mark.parametrize("family", FAMILIES)
@@ -26,7 +26,8 @@ def test_random_scenes_are_valid_and_the_same_for_a_seed(family):
 
 def test_every_profile_and_every_way_of_loading_occurs():
     scenes = [scene for family in FAMILIES for scene in random_scenes(1, 100, family)]
-    assert {type(scene.indenter) for scene in scenes} == set(PROFILES)
+    # Spheroconical tips have their own tests: drawing them would change the scenes that coefficients were measured on.
+    assert {type(scene.indenter) for scene in scenes} == set(PROFILES) - {Spheroconical}
     # Friction has its own tests (tests/mdr/test_full_stick.py) until a second method models it.
     assert {type(effect) for scene in scenes for effect in scene.effects} == set(EFFECTS) - {Friction}
     assert {type(scene.loading) for scene in scenes} == set(LOADINGS)

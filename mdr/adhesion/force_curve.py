@@ -1,0 +1,88 @@
+"""Force curves with adhesion: the branch of equilibria in contact, for any modulus and work of adhesion at once.
+
+At a contact radius a the springs at its edge are stretched by dl = sqrt(2 pi a w / c_N), Eq. (40), and then
+d = g(a) - dl and F = F_el(a) - k_N(a) dl. Everything but dl is that of the elastic contact, and linear in E.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from contact import IndentationDepths, InvalidInput, Scene
+from contact.records.validation import FloatArray
+from mdr.springs.reach import covering_system
+
+# Radii of the table, evenly in the logarithm over three decades: the error of straight lines between them falls with
+# the square of their number, and is stated, not assumed.
+_RADII = 4001
+_DECADES = 3.0
+# The table reaches this much deeper than the curve, for adhesion draws the contact out.
+_DEEPER = 1.5
+_FIELDS = ("radius", "depth", "elastic_force", "stiffness", "spring")
+
+
+@dataclass(frozen=True, eq=False)
+class AdhesiveCurve:
+    """The elastic contact at many radii, each array of shape (n,).
+
+    Attributes:
+        radius: a [m].
+        depth: g(a) [m].
+        elastic_force: F_el/E [m^2].
+        stiffness: k_N/E [m].
+        spring: c_N/E.
+    """
+
+    radius: FloatArray
+    depth: FloatArray
+    elastic_force: FloatArray
+    stiffness: FloatArray
+    spring: FloatArray
+
+    def error(self, depth: FloatArray, youngs_modulus: float, work_of_adhesion: float) -> float:
+        """Of the force over the largest one: with every other radius it is four times as large."""
+        coarse = AdhesiveCurve(*(getattr(self, name)[::2] for name in _FIELDS))
+        force, other = (one.force(depth, youngs_modulus, work_of_adhesion) for one in (self, coarse))
+        in_contact = (force != 0.0) & (other != 0.0)
+        return float(np.abs(force - other)[in_contact].max(initial=0.0) / (3 * np.abs(force).max()))
+
+    def force(self, depth: FloatArray, youngs_modulus: float, work_of_adhesion: float) -> FloatArray:
+        """F [N] at depths [m] on withdrawal under control of the depth; zero beyond pull-off.
+
+        Raises:
+            InvalidInput: If a depth is beyond the table.
+        """
+        stretch = np.sqrt(2 * np.pi * self.radius * work_of_adhesion / (youngs_modulus * self.spring))
+        depths = self.depth - stretch
+        forces = youngs_modulus * (self.elastic_force - self.stiffness * stretch)
+        stable = slice(int(np.argmin(depths)), None)
+        if float(depth.max(initial=0.0)) > depths[-1]:
+            raise InvalidInput(f"depth = {float(depth.max()):g} m: adhesion draws the contact beyond the table")
+        return np.interp(depth, depths[stable], forces[stable], left=0.0)
+
+
+@lru_cache(maxsize=64)
+def adhesive_curve(scene: Scene) -> AdhesiveCurve:
+    """The table of an elastic scene whose largest depth says how far it reaches; the last 64 are kept.
+
+    Raises:
+        InvalidInput: If the scene prescribes no depths.
+    """
+    if not isinstance(scene.loading, IndentationDepths):
+        raise InvalidInput("scene: a force curve prescribes indentation depths")
+    deeper = scene.replace(loading=IndentationDepths([_DEEPER * float(scene.loading.values.max())]))
+    system = covering_system(deeper, IntegralEquation())
+    flat = system.flat_radius
+    radius = flat + (system.max_radius - flat) * np.logspace(-_DECADES, 0.0, _RADII)
+    modulus = scene.layer.surface.youngs_modulus
+    return AdhesiveCurve(
+        radius=radius,
+        depth=system.mdr_profile(radius),
+        elastic_force=system.elastic_force(radius) / modulus,
+        stiffness=system.contact_stiffness(radius) / modulus,
+        spring=system.spring_stiffness(radius) / modulus,
+    )

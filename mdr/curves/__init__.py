@@ -1,0 +1,25 @@
+"""Force curves of indentation tests: one master curve a scene, fits of one curve, and of whole maps.
+
+Enters: a scene, and measured depths and forces. Leaves: moduli with intervals, and what formulas in use would say.
+Read `force_curve` first, then `fit`.
+"""
+
+from mdr.curves.fit import CurveFit, FormulaFit, fit_curve
+from mdr.curves.force_curve import CurveShape, ForceCurve
+from mdr.curves.formulas import Formula, formulas_for
+from mdr.curves.map_fit import MapFit, fit_map
+from mdr.curves.reading import read_curve, read_map
+
+__all__ = [
+    "CurveFit",
+    "CurveShape",
+    "ForceCurve",
+    "Formula",
+    "FormulaFit",
+    "MapFit",
+    "fit_curve",
+    "fit_map",
+    "formulas_for",
+    "read_curve",
+    "read_map",
+]

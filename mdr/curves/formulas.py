@@ -1,0 +1,135 @@
+"""Formulas in use for the modulus from force curves, each with its source: what a fit by them would have said.
+
+All are F = E phi(d), with phi a power of the depth times a polynomial in a number x that compares depth and thickness.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from contact import Cone, FlatPunch, Layer, Paraboloid, Scene, Sphere
+from contact.records.validation import FloatArray
+
+
+@dataclass(frozen=True)
+class Formula:
+    """phi(d) = factor d^power (1 + c_1 x + c_2 x^2 + ...) with x = (d / length)^share.
+
+    Attributes:
+        name: As people call it.
+        source: Where it is from.
+        factor: Of phi [m^(2 - power)].
+        power: Of the depth.
+        length: That the depth is compared with [m].
+        share: Power of that comparison.
+        coefficients: 1, c_1, c_2, ...
+    """
+
+    name: str
+    source: str
+    factor: float
+    power: float
+    length: float = math.inf
+    share: float = 1.0
+    coefficients: tuple[float, ...] = (1.0,)
+
+    def per_modulus(self, depth: ArrayLike) -> FloatArray:
+        """phi [m^2], zero for depths of at most zero."""
+        d = np.maximum(np.asarray(depth, dtype=np.float64), 0.0)
+        x = (d / self.length) ** self.share
+        return np.asarray(self.factor * d**self.power * np.polynomial.polynomial.polyval(x, self.coefficients))
+
+    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
+        """d(phi)/d(depth) [m]."""
+        d = np.maximum(np.asarray(depth, dtype=np.float64), 0.0)
+        x = (d / self.length) ** self.share
+        powers = self.power + self.share * np.arange(len(self.coefficients))
+        terms = np.polynomial.polynomial.polyval(x, powers * np.array(self.coefficients))
+        return np.where(np.asarray(depth) > 0.0, self.factor * d ** (self.power - 1.0) * terms, 0.0)
+
+
+HERTZ = "Hertz 1882"
+SNEDDON = "Sneddon 1965"
+DIMITRIADIS = "Dimitriadis et al. 2002, Biophys. J. 82, 2798"
+GARCIA = "Garcia, Garcia 2018, Biophys. J. 114, 2923"
+
+
+def formulas_for(scene: Scene) -> tuple[Formula, ...]:
+    """The formulas that people use for this tip and support; none for other tips or layers of several materials."""
+    if not isinstance(scene.layer, Layer):
+        return ()
+    match scene.indenter:
+        case Paraboloid(radius_of_curvature=radius) | Sphere(radius=radius):
+            found = _round(scene.layer, radius)
+        case Cone(slope=slope):
+            found = _cone(scene.layer, slope)
+        case FlatPunch(radius=radius):
+            found = _punch(scene.layer, radius)
+        case _:
+            return ()
+    return tuple(found)
+
+
+def _round(layer: Layer, radius: float) -> list[Formula]:
+    """x = sqrt(R d)/h."""
+    nu, h = layer.poissons_ratio, layer.thickness
+    factor = 4 / (3 * (1 - nu**2)) * math.sqrt(radius)
+    found = [Formula("Hertz", HERTZ, factor, 1.5)]
+    if layer.is_half_space:
+        return found
+
+    def in_thickness(name: str, source: str, coefficients: Sequence[float]) -> Formula:
+        return Formula(name, source, factor, 1.5, h**2 / radius, 0.5, (1.0, *coefficients))
+
+    found.append(in_thickness("Dimitriadis", DIMITRIADIS, _dimitriadis(nu, bonded=layer.support == "bonded")))
+    if layer.support == "bonded" and nu == 0.5:
+        found.append(in_thickness("Garcia", GARCIA, (1.133, 1.497, 1.469, 0.755)))
+    return found
+
+
+def _dimitriadis(nu: float, *, bonded: bool) -> tuple[float, ...]:
+    """Their coefficients by alpha_0 and beta_0 of Poisson's ratio, for a layer that is bonded or not.
+
+    For a bonded layer at nu = 1/2 their general formula gives -0.0975 for the last, where they print +0.0975; the
+    printed one is in use.
+    """
+    if bonded and nu == 0.5:
+        return 1.133, 1.283, 0.769, 0.0975
+    alpha = -0.347 * (3 - 2 * nu) / (1 - nu)
+    beta = 0.056 * (5 - 2 * nu) / (1 - nu)
+    if bonded:
+        alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
+        beta = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1 - nu)
+    pi = math.pi
+    return (
+        -2 * alpha / pi,
+        4 * alpha**2 / pi**2,
+        -8 / pi**3 * (alpha**3 + 4 * pi**2 / 15 * beta),
+        16 * alpha / pi**4 * (alpha**3 + 3 * pi**2 / 5 * beta),
+    )
+
+
+def _cone(layer: Layer, slope: float) -> list[Formula]:
+    """x = d/(h slope): depth times the tangent of the half angle over the thickness."""
+    factor = 2 / (math.pi * slope * (1 - layer.poissons_ratio**2))
+    found = [Formula("Sneddon", SNEDDON, factor, 2.0)]
+    if layer.support == "bonded" and layer.poissons_ratio == 0.5 and not layer.is_half_space:
+        coefficients = (1.0, 0.721, 0.650, 0.491, 0.225)
+        found.append(Formula("Garcia", GARCIA, factor, 2.0, layer.thickness * slope, 1.0, coefficients))
+    return found
+
+
+def _punch(layer: Layer, radius: float) -> list[Formula]:
+    """x = a/h is a constant of the scene."""
+    factor = 2 * radius / (1 - layer.poissons_ratio**2)
+    found = [Formula("Sneddon", SNEDDON, factor, 1.0)]
+    if layer.support == "bonded" and layer.poissons_ratio == 0.5 and not layer.is_half_space:
+        x = radius / layer.thickness
+        series = float(np.polynomial.polynomial.polyval(x, (1.0, 1.133, 1.283, 0.598, -0.291)))
+        found.append(Formula("Garcia", GARCIA, factor * series, 1.0))
+    return found

@@ -1,0 +1,108 @@
+"""Fits of force curves and sweeps as tables and CSV files."""
+
+import csv
+import io
+from collections.abc import Sequence
+
+import numpy as np
+
+from cases.measurements.sweep import Sweep
+from contact.records.validation import FloatArray
+from mdr.curves import CurveFit, MapFit
+from mdr.curves.fit import UNIT_OF_PARAMETER
+from reports.tables.table import Table
+from reports.words.numbers import measured, scaled_unit, small, with_prefix
+
+
+def fit_table(found: CurveFit) -> Table:
+    """Each fitted parameter with its interval."""
+    rows = []
+    for name, value in found.values.items():
+        factor, unit = scaled_unit(value, UNIT_OF_PARAMETER[name])
+        low, high = (f"{end / factor:.5g}" for end in found.interval(name))
+        text = measured(value / factor, found.standard_error[name] / factor)
+        rows.append((name.replace("_", " "), text, f"{low} to {high}", unit))
+    return Table(
+        title=f"Fit of {found.depth.size} points",
+        note="Digits in brackets: standard error from the scatter of the curve.",
+        heads=("parameter", "value", f"{100 * found.confidence:g} % interval", "unit"),
+        rows=tuple(rows),
+    )
+
+
+def formula_table(found: CurveFit) -> Table:
+    """What formulas in use would have said."""
+    rows = tuple(
+        (fit.formula.name, with_prefix(fit.youngs_modulus, "Pa"), f"{100 * fit.bias:+.3g} %", fit.formula.source)
+        for fit in found.formulas
+    )
+    return Table(
+        title="The same curve by formulas in use" if rows else "",
+        note="",
+        heads=("formula", "E", "bias", "source") if rows else (),
+        rows=rows,
+    )
+
+
+def fit_csv(found: CurveFit) -> str:
+    """Depth, force, fit, half width of its band and residual of each point, SI."""
+    residual = found.force - found.fitted
+    return _csv(
+        ("depth [m]", "force [N]", "fitted [N]", "band [N]", "residual [N]"),
+        (found.depth, found.force, found.fitted, found.band, residual),
+    )
+
+
+def map_csv(found: MapFit) -> str:
+    """One row a curve, SI; a curve without a fit has empty cells."""
+    low, high = found.interval
+    heads = ("youngs_modulus [Pa]", "low [Pa]", "high [Pa]", "contact_point [m]", "baseline [N]", "scatter [N]")
+    columns = (found.youngs_modulus, low, high, found.contact_point, found.baseline, found.scatter)
+    return _csv(heads, columns)
+
+
+def _csv(heads: Sequence[str], columns: Sequence[FloatArray]) -> str:
+    buffer = io.StringIO()
+    writer = csv.writer(buffer, lineterminator="\n")
+    writer.writerow(heads)
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    writer.writerows([value if np.isfinite(value) else "" for value in row] for row in rows)
+    return buffer.getvalue()
+
+
+def map_facts(found: MapFit) -> list[tuple[str, str]]:
+    """What sums a map up."""
+    known = found.youngs_modulus[found.converged]
+    if not known.size:
+        return [("warning", "no curve could be fitted; check units, contact and scene")]
+    low, middle, high = np.quantile(known, (0.05, 0.5, 0.95))
+    error = float(np.median(found.standard_error[found.converged] / known))
+    return [
+        ("curves", f"{known.size} of {found.converged.size} fitted"),
+        (
+            "median E",
+            f"{with_prefix(middle, 'Pa')}; nine in ten from {with_prefix(low, 'Pa')} to {with_prefix(high, 'Pa')}",
+        ),
+        ("standard error of E", f"{100 * error:.2g} % in the median, from the scatter of each curve"),
+        ("numerical error", f"{small(found.numerical_error)} of E, in the intervals"),
+    ]
+
+
+def sweep_table(found: Sweep) -> Table:
+    """One row a state; quantities with their uncertainty in brackets."""
+    columns = found.columns
+    shown = {head: values for head, values in columns.items() if "_uncertainty" not in head}
+    texts = []
+    for head, values in shown.items():
+        name, bracket, unit = head.partition(" [")
+        spread = columns.get(f"{name}_uncertainty{bracket}{unit}", np.zeros_like(values))
+        texts.append([_cell(float(v), float(u)) for v, u in zip(values, spread, strict=True)])
+    note = "Digits in brackets: uncertainty of the last digits. A number without brackets is right to the digits shown."
+    heads, rows = tuple(shown), tuple(zip(*texts, strict=True))
+    return Table(title=f"Over {found.swept.name}", note=note, heads=heads, rows=rows, words=0)
+
+
+def _cell(value: float, uncertainty: float) -> str:
+    if not np.isfinite(uncertainty) or uncertainty < 0.5e-6 * abs(value) or value == 0.0:
+        return f"{value:.6g}"
+    return measured(value, uncertainty)
