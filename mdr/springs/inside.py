@@ -3,27 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
-from typing import TypeAlias
 
 import numpy as np
-from scipy.optimize import minimize
 
 from bem.kernels.of_layer import stack_of
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.inside.density import Density, Piece
 from bem.layer_equation.inside.fields import Body
 from contact import ElasticLayer, FlatPunch, InvalidInput, PowerLaw
-from contact.answer.inside import Extreme, InsideFields, Searched
+from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
 from mdr.springs.surface_fields import ContactFields
-
-_Points: TypeAlias = Sequence[FloatArray]
-_Range: TypeAlias = tuple[float, float]
-_Value: TypeAlias = Callable[[InsideFields], FloatArray]
 
 # Share of the distance to a pole of the profile's slope by which pieces shrink towards it.
 _GRADING = 4.0
@@ -37,9 +30,6 @@ _QUADRATURE = 1e-13
 # The error of the pressure counts so many times in the stresses, since s_1 - 2 G u_r/r combines three integrals of it;
 # chosen.
 _PRESSURE_SHARE = 3.0
-# Points of the first look in r and z, from which the best few are refined.
-_SAMPLES = 40
-_STARTS = 3
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,16 +46,10 @@ class ContactInterior:
     contact: ContactFields
     pressure_error: float
 
-    @property
-    def thickness(self) -> float:
-        """Depth [m] to which fields exist."""
-        return self.layer.thickness
-
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
-        self._refuse_singular(radius, depth)
         unit = self.contact.unit
-        found = self._body.at(radius / unit, np.minimum(depth, self.thickness) / unit)
+        found = self._body.at(radius / unit, np.minimum(depth, self.layer.thickness) / unit)
         modulus = self.contact.contact_modulus
         shear = found["modulus"] * self.layer.shear_modulus
         rr, tt = found["s1"] - found["hoop_strain"], found["s2"] + found["hoop_strain"]
@@ -83,55 +67,6 @@ class ContactInterior:
             pressure_gradient_axial=modulus * found["pressure_gradient_axial"] / unit,
             error_estimate=dict.fromkeys(names, error),
         )
-
-    def largest(self, what: Searched) -> Extreme:
-        """Of the whole body: the best of a grid over it, refined."""
-        if what == "interface_shear":
-            return self._largest_interface_shear()
-        self._refuse_infinite_maximum()
-        a = self.contact.contact_radius * self.contact.unit
-        deepest = min(self.thickness, 4.0 * a)
-        r, z = np.linspace(0.0, 1.5 * a, _SAMPLES), np.linspace(0.0, deepest, _SAMPLES)
-        return self._refined(np.meshgrid(r, z), (0.0, 1.5 * a), (0.0, deepest), lambda f: f.von_mises)
-
-    def _largest_interface_shear(self) -> Extreme:
-        if self.layer.is_half_space:
-            raise InvalidInput('largest("interface_shear"): a half-space has no interface')
-        a = self.contact.contact_radius * self.contact.unit
-        best = Extreme(0.0, self.thickness, 0.0)
-        for depth in self._faces:
-            r = np.linspace(0.0, 2.0 * a + 2.0 * self.thickness, 4 * _SAMPLES)
-            found = self._refined((r, np.full_like(r, depth)), (0.0, float(r[-1])), (depth, depth), _shear)
-            best = max(best, found, key=lambda extreme: extreme.value)
-        return best
-
-    @property
-    def _faces(self) -> list[float]:
-        kernel = stack_of(self.layer)
-        return [float(z) * self.contact.unit for z in np.cumsum([sheet.thickness for sheet in kernel.sheets])]
-
-    def _refined(self, points: _Points, radii: _Range, depths: _Range, value: _Value) -> Extreme:
-        """The largest value near the best of some points."""
-        r, z = (np.ravel(p) for p in points)
-        values = value(self.at(r, z))
-        best = Extreme(0.0, depths[0], 0.0)
-        scale = np.array([radii[1], max(depths[1], 1e-300)])
-        for start in np.argsort(values)[::-1][:_STARTS]:
-            near = np.array([r[start], z[start]]) / scale
-            found = minimize(  # type: ignore[call-overload]  # the stubs know no initial simplex
-                lambda x: -float(value(self.at(x[:1] * scale[0], x[1:] * scale[1]))[0]),
-                near,
-                method="Nelder-Mead",
-                bounds=[(0.0, 1.0), (depths[0] / scale[1], 1.0)],
-                options={
-                    "xatol": 1e-9,
-                    "fatol": 1e-13 * values.max(),
-                    "initial_simplex": _simplex(near, depths[0] / scale[1]),
-                },
-            )
-            if -found.fun > best.value:
-                best = Extreme(float(found.x[0] * scale[0]), float(found.x[1] * scale[1]), float(-found.fun))
-        return best
 
     @cached_property
     def _body(self) -> Body:
@@ -162,42 +97,6 @@ class ContactInterior:
         if piece.start >= flat and not isinstance(contact.indenter, FlatPunch):
             slope -= contact.slope_at((piece.start - flat) + offset)
         return slope
-
-    def _refuse_singular(self, radius: FloatArray, depth: FloatArray) -> None:
-        rims = self._rims
-        bad = (depth == 0.0) & np.isin(radius, rims)
-        if np.any(bad):
-            raise InvalidInput(
-                f"radius = {radius[bad][0]:g} m, depth = 0: stresses are infinite at this sharp rim; ask beside it"
-            )
-
-    @property
-    def _rims(self) -> list[float]:
-        contact, indenter = self.contact, self.contact.indenter
-        a = contact.contact_radius * contact.unit
-        rims = [0.0] if float(indenter.slope_at(0.0)) > 0.0 else []
-        rims += [k for k in indenter.kinks if k < a]
-        return [*rims, a] if contact.edge_density else rims
-
-    def _refuse_infinite_maximum(self) -> None:
-        edge = self.contact.edge_density != 0.0
-        if edge or (self._rims and self.layer.surface.poissons_ratio < 0.5):
-            raise InvalidInput(
-                f'largest("von_mises"): it is infinite at the rim r = {self._rims[-1]:g} m of the surface; ask for '
-                "fields at points of interest"
-            )
-
-
-def _shear(found: InsideFields) -> FloatArray:
-    return np.abs(found.shear_stress)
-
-
-def _simplex(near: FloatArray, least: float) -> FloatArray:
-    """A triangle of one sample's size that stays inside."""
-    step, (r, z) = 1.0 / _SAMPLES, near
-    across = r - step if r > 0.5 else r + step
-    down = z - step if z - step > least else min(z + step, 1.0)
-    return np.array([[r, z], [across, z], [r, down]])
 
 
 def _no_longer(pieces: list[Piece]) -> list[Piece]:

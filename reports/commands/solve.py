@@ -6,13 +6,14 @@ from pathlib import Path
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.results.files import write_whole
-from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
+from contact import ContactPath, InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
 from contact.answer.accuracy import shortfalls, told_where_less
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
 from reports.words.numbers import duration
 
-ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG"}
+ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG", ".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
+MESHES = (".vtu", ".xdmf")
 
 
 def solve(
@@ -141,8 +142,18 @@ def _write(solution: Solution, path: Path) -> None:
         from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
 
         save_solution(path, solution)
+    elif path.suffix in MESHES:
+        _write_mesh(solution, path)
     else:
         from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
         write_whole(path, figure_svg(solution_figure(solution)))
+
+
+def _write_mesh(solution: Solution, path: Path) -> None:
+    """The fields inside on the mesh that solved the last state of a path."""
+    write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
+    if write is None:
+        raise InvalidInput(f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv")
+    write(path)
