@@ -12,9 +12,9 @@ from contact.records.validation import FloatArray
 
 # The best few of the first points are looked at more closely.
 _STARTS = 3
-# Places of a closer look along each side, over half its width. The largest lies within a third of the width of the
-# best, so that half of the width remains.
-_CLOSER = np.linspace(-1.0, 1.0, 7)
+# Places of a closer look along each side, over half its width. The largest lies within half of that of the best one,
+# and the width is halved.
+_CLOSER = np.linspace(-1.0, 1.0, 5)
 # The last look is so wide, over the rectangle: beyond, values near a maximum are equal to a rounding.
 _LAST = 1e-9
 

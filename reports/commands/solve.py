@@ -155,5 +155,7 @@ def _write_mesh(solution: Solution, path: Path) -> None:
     """The fields inside on the mesh that solved the last state of a path."""
     write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
     if write is None:
-        raise InvalidInput(f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv")
+        raise InvalidInput(
+            f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
+        )
     write(path)
