@@ -6,7 +6,16 @@ from pathlib import Path
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.results.files import write_whole
-from contact import ContactPath, InvalidInput, Method, NotConvergedError, Scene, Solution, load_scene
+from contact import (
+    ContactPath,
+    InvalidInput,
+    Method,
+    NotConvergedError,
+    Scene,
+    Solution,
+    UnsupportedSceneError,
+    load_scene,
+)
 from contact.answer.accuracy import shortfalls, told_where_less
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
@@ -14,6 +23,9 @@ from reports.words.numbers import duration
 
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG", ".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
 MESHES = (".vtu", ".xdmf")
+# A picture of that name shows the layer inside, by these two methods where both model the scene.
+INSIDE = "inside"
+SHOWN_BESIDE = {"fem": "mdr"}
 
 
 def solve(
@@ -144,6 +156,10 @@ def _write(solution: Solution, path: Path) -> None:
         save_solution(path, solution)
     elif path.suffix in MESHES:
         _write_mesh(solution, path)
+    elif path.stem.startswith(INSIDE):
+        from reports.charts.inside import inside_svg  # noqa: PLC0415 - as below
+
+        write_whole(path, inside_svg(solution, _compared(solution)))
     else:
         from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
@@ -159,3 +175,11 @@ def _write_mesh(solution: Solution, path: Path) -> None:
             f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
         )
     write(path)
+
+
+def _compared(solution: Solution) -> Solution | None:
+    """The scene by a second method, where that models it."""
+    try:
+        return build_guarded(SHOWN_BESIDE.get(solution.method, "fem"), {}).solve(solution.scene)
+    except (UnsupportedSceneError, NotConvergedError):
+        return None
