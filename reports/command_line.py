@@ -295,9 +295,8 @@ def solve(
         typer.Option(
             "--write",
             "-w",
-            help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. inside.svg draws the stressed layer; FILE.vtu and "
-            "FILE.xdmf hold it for ParaView (--method fem). May be repeated.",
-        ,
+            help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. inside.svg draws the stressed layer; FILE.vtu "
+            "and FILE.xdmf hold it for ParaView (--method fem). May be repeated.",
         ),
     ] = None,
     example: Annotated[bool, EXAMPLE] = False,
