@@ -102,6 +102,7 @@ class FemInterior:
         """Error of each field in each triangle, shape (triangle, 9)."""
         nodes = self.section.local_nodes
         change = np.abs(self.section.at_local(nodes) - self.other.at_local(nodes)).max(axis=1)
+        change[:, _GROUPS["pressure_gradient"]] *= INSIDE.gradient
         return np.asarray(INSIDE.share_of_change[self.section.contact.pair.degree] * change)
 
     def write(self, path: str | Path) -> None:
