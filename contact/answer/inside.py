@@ -40,8 +40,9 @@ class InsideFields:
         hydrostatic_pressure: -(sigma_rr + sigma_tt + sigma_zz)/3 [Pa].
         pressure_gradient_radial: Its derivative along r [Pa/m].
         pressure_gradient_axial: Its derivative along z [Pa/m].
-        error_estimate: Error of each field over its scale: the largest stress of these points, that over the smaller of
-            contact radius and thickness for gradients, the depth for displacements.
+        error_estimate: Error of each field over its scale: the largest stress of these points; for gradients the
+            largest of them, or that stress over the smaller of contact radius and thickness; the depth for
+            displacements.
     """
 
     radial_displacement: FloatArray

@@ -295,3 +295,18 @@ def test_more_nodes_change_nothing_beyond_the_stated_error(indenter, nu, radius,
     for name in names:
         change = np.abs(getattr(found, name) - getattr(finer, name)).max()
         assert change <= found.error_estimate["stress"] * largest
+
+
+@pytest.mark.parametrize("radius", [0.3, 4.0])
+def test_the_surface_and_rims_state_what_they_lose(radius):
+    """The surface is looked at a little below; positions beside a rim are rounded; the gradient cancels near it."""
+    path = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=10.0), radius)
+    surface = path.inside().at(0.5 * radius, 0.0)
+    largest = max(abs(float(surface.axial_stress)), abs(float(surface.radial_stress)))
+    assert 0.0 < abs(float(surface.shear_stress)) <= surface.error_estimate["stress"] * largest
+    assert surface.error_estimate["stress"] < 1e-9
+    shallow, deep = (path.inside().at(0.5 * radius, z * radius) for z in (1e-6, 0.2))
+    assert deep.error_estimate["pressure_gradient"] < 1e-12 < shallow.error_estimate["pressure_gradient"]
+    # What is below the surface by 1e-6 a and beside the edge by 1e-9 a, with a that is no binary fraction.
+    beside = path.inside().at(radius * (1.0 + 1e-9), 1e-10 * radius)
+    assert beside.error_estimate["stress"] > 1e-8

@@ -10,18 +10,11 @@ import numpy as np
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import stack_of
 from bem.layer_equation.inside.density import Density
+from bem.layer_equation.inside.errors import Magnitudes, stated_errors
 from bem.layer_equation.inside.fields import Body
 from contact import ElasticLayer
 from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
-
-# What quadrature and rounding leave of stresses, over the largest: 2e-14 at worst, five times that is
-# stated (540 points of 60 contacts, a/h 0.1 to 10, six kinds of profile, seed 2929, against rules of 36 nodes,
-# 2026-11-22).
-_QUADRATURE = 1e-13
-# The error of the pressure counts so many times in the stresses, since s_1 - 2 G u_r/r combines three integrals of it;
-# chosen.
-_PRESSURE_SHARE = 3.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,24 +35,26 @@ class ContactInterior:
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
-        unit = self.unit
-        found = self._body.at(radius / unit, np.minimum(depth, self.layer.thickness) / unit)
-        modulus = contact_modulus(self.layer)
+        unit, modulus = self.unit, contact_modulus(self.layer)
+        points = np.array([radius, np.minimum(depth, self.layer.thickness)]) / unit
+        found = self._body.at(*points)
         shear = found["modulus"] * self.layer.shear_modulus
-        rr, tt = found["s1"] - found["hoop_strain"], found["s2"] + found["hoop_strain"]
-        error = _PRESSURE_SHARE * self.pressure_error + _QUADRATURE
-        names = ("displacement", "stress", "hydrostatic_pressure", "pressure_gradient")
+        stresses = {
+            "radial_stress": found["s1"] - found["hoop_strain"],
+            "hoop_stress": found["s2"] + found["hoop_strain"],
+            "axial_stress": found["axial_stress"],
+            "shear_stress": found["shear_stress"],
+        }
+        slopes = {name: found[name] for name in ("pressure_gradient_radial", "pressure_gradient_axial")}
+        length = min(self.density.radius, self.layer.thickness / unit)
+        sizes = Magnitudes(*(np.abs([*parts.values()]).max(axis=0) for parts in (stresses, slopes)), length)
         return InsideFields(
             radial_displacement=modulus * found["hoop_strain"] * radius / (2.0 * shear),
             axial_displacement=modulus * found["axial"] * unit / (2.0 * shear),
-            radial_stress=modulus * rr,
-            hoop_stress=modulus * tt,
-            axial_stress=modulus * found["axial_stress"],
-            shear_stress=modulus * found["shear_stress"],
+            **{name: modulus * values for name, values in stresses.items()},
             hydrostatic_pressure=modulus * found["hydrostatic_pressure"],
-            pressure_gradient_radial=modulus * found["pressure_gradient_radial"] / unit,
-            pressure_gradient_axial=modulus * found["pressure_gradient_axial"] / unit,
-            error_estimate=dict.fromkeys(names, error),
+            **{name: modulus * values / unit for name, values in slopes.items()},
+            error_estimate=stated_errors(self.density, points, sizes, self.pressure_error),
         )
 
     @cached_property

@@ -112,13 +112,18 @@ CASE = Case(
     claims=(
         *exact(
             WHY["Huber"],
-            {
-                "axial stress under a paraboloid": ("axial_stress_inside", axial_under_paraboloid),
-                "radial stress under a paraboloid": ("radial_stress_inside", radial_under_paraboloid),
-            },
+            {"axial stress under a paraboloid": ("axial_stress_inside", axial_under_paraboloid)},
             scenes=HERTZ,
             tolerance=1e-11,
             tolerances=MESH_TOLERANCE,
+        ),
+        # Far below, where the radial stress has lost four digits, a mesh has none left of it.
+        *exact(
+            WHY["Huber"],
+            {"radial stress under a paraboloid": ("radial_stress_inside", radial_under_paraboloid)},
+            scenes=HERTZ,
+            methods=("mdr", "integral_equation"),
+            tolerance=1e-11,
         ),
         *exact(
             WHY["largest shear"],

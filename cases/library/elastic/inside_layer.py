@@ -40,7 +40,7 @@ SLOW = tuple(
     for label in LAYERS
     if label != "bonded nu=0.5"
 )
-MESH = MethodUse(label="fem", settings={"growth": 0.2, "truncation": 1e-10})
+MESH = MethodUse(label="fem", settings={"growth": 0.18, "truncation": 1e-10})
 
 
 def pressed(kind: str, label: str, ratio: float) -> CaseScene:

@@ -83,10 +83,11 @@ class FemInterior:
         return np.asarray(np.sqrt(self.missed) * (self.missed / np.maximum(away, np.finfo(float).tiny)) ** 1.5)
 
     def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
-        """Largest error of each group over its scale: the depth, the largest stress, that over the smallest length."""
+        """Largest error of each group over its scale: the depth, the largest stress and gradient."""
         mesh, depth = self.section.contact.layer_mesh, abs(self.section.depth)
         stress = np.abs(values[:, 2:7]).max(initial=np.finfo(float).tiny)
-        scales = (max(depth, np.finfo(float).tiny), stress, stress, stress / min(1.0, mesh.thickness))
+        steepest = max(np.abs(values[:, 7:]).max(initial=0.0), stress / min(1.0, mesh.thickness))
+        scales = (max(depth, np.finfo(float).tiny), stress, stress, steepest)
         return {
             name: float(error[:, group].max(initial=0.0)) / scale + self.own_error
             for (name, group), scale in zip(_GROUPS.items(), scales, strict=True)
