@@ -1,4 +1,4 @@
-"""What is stated of fields inside: errors of the pressure and of quadrature, and what rounded positions do near rims."""
+"""What is stated of fields inside: errors of pressure and quadrature, and what rounded positions do near rims."""
 
 from __future__ import annotations
 

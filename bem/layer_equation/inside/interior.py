@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -47,7 +48,7 @@ class ContactInterior:
         }
         slopes = {name: found[name] for name in ("pressure_gradient_radial", "pressure_gradient_axial")}
         length = min(self.density.radius, self.layer.thickness / unit)
-        sizes = Magnitudes(*(np.abs([*parts.values()]).max(axis=0) for parts in (stresses, slopes)), length)
+        sizes = Magnitudes(_largest(stresses), _largest(slopes), length)
         return InsideFields(
             radial_displacement=modulus * found["hoop_strain"] * radius / (2.0 * shear),
             axial_displacement=modulus * found["axial"] * unit / (2.0 * shear),
@@ -61,3 +62,8 @@ class ContactInterior:
     def _body(self) -> Body:
         kernel = None if self.layer.is_half_space else stack_of(self.layer)
         return Body(kernel, self.layer.surface.poissons_ratio, self.density)
+
+
+def _largest(parts: Mapping[str, FloatArray]) -> FloatArray:
+    """Largest magnitude of several fields at each point."""
+    return np.asarray(np.abs([*parts.values()]).max(axis=0))

@@ -70,19 +70,20 @@ def largest_pressure(scene: Scene) -> float:
 
 def axial_under_paraboloid(scene: Scene) -> list[float]:
     """Huber 1904."""
-    return (-largest_pressure(scene) / (1 + DEPTHS**2)).tolist()
+    return [float(stress) for stress in -largest_pressure(scene) / (1 + DEPTHS**2)]
 
 
 def radial_under_paraboloid(scene: Scene) -> list[float]:
     """Huber 1904."""
     nu, Z = scene.layer.poissons_ratio, DEPTHS
-    return (-largest_pressure(scene) * ((1 + nu) * (1 - Z * np.arctan2(1.0, Z)) - 0.5 / (1 + Z**2))).tolist()
+    share = (1 + nu) * (1 - Z * np.arctan2(1.0, Z)) - 0.5 / (1 + Z**2)
+    return [float(stress) for stress in -largest_pressure(scene) * share]
 
 
 def axial_under_punch(scene: Scene) -> list[float]:
     """Sneddon 1946: -(F/(2 pi a^2)) (1 + 3 Z^2)/(1 + Z^2)^2 with F = 2 E* a delta."""
     mean = contact_modulus(scene.layer) * DEPTH / (math.pi * RADIUS)
-    return (-mean * (1 + 3 * DEPTHS**2) / (1 + DEPTHS**2) ** 2).tolist()
+    return [float(stress) for stress in -mean * (1 + 3 * DEPTHS**2) / (1 + DEPTHS**2) ** 2]
 
 
 def largest_shear() -> dict[str, tuple[float, ...]]:

@@ -46,7 +46,7 @@ def residuals(path: ContactPath) -> dict[str, FloatArray]:
 def _rule(ends: Sequence[float], panels: int = PANELS) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights on equal panels between two ends."""
     x, w = legendre_rule(NODES)
-    edges = np.linspace(*ends, panels + 1)
+    edges = np.linspace(ends[0], ends[1], panels + 1)
     half = np.diff(edges)[:, None] / 2
     return (edges[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
 
