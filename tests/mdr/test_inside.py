@@ -286,6 +286,17 @@ def test_more_nodes_change_nothing_beyond_the_stated_error(indenter, nu, radius,
         path = pressed(unit_layer(nu), indenter, radius)
     draw = np.random.default_rng(7)
     r, z = draw.uniform(0.0, 1.4 * radius, 12), np.minimum(10.0 ** draw.uniform(-3.0, 0.0, 12) * radius, 1.0)
+    _change_nothing_with_more_nodes(path, r, z, monkeypatch)
+
+
+def test_the_tip_of_a_power_law_is_resolved(monkeypatch):
+    """4e-13 of the stress was left where 1.3e-13 was stated."""
+    path = pressed(unit_layer(0.0), PowerLaw(exponent=4.7, reference_radius=1.0, reference_height=0.02), 1.0)
+    r, z = np.meshgrid(np.linspace(0.1, 1.2, 5), np.linspace(0.3, 0.9, 5))
+    _change_nothing_with_more_nodes(path, r, z, monkeypatch)
+
+
+def _change_nothing_with_more_nodes(path, r, z, monkeypatch):
     found = path.inside().at(r, z)
     for module in ("half_space_part", "layer_part", "density"):
         monkeypatch.setattr(f"bem.layer_equation.inside.{module}._NODES", 36)

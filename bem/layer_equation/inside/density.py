@@ -16,6 +16,9 @@ from contact.records.validation import FloatArray
 
 # Share of the distance to a pole of the profile's slope by which pieces shrink towards it.
 _GRADING = 4.0
+# Share of its first piece by which a power-law tip is cut off: of the whole piece, 20 nodes left 4e-13 of the stress
+# (exponents 1.05 to 4.7 against 48 nodes, 30 points, seed 3, 2026-11-22).
+_TIP = 0.125
 # Longest piece of the density over the thickness: longer ones left 2e-10 of the stress at a/h = 10, where panels that
 # suit a depth span several thicknesses.
 _LONGEST = 1.0
@@ -96,6 +99,8 @@ def pieces_of(indenter: Profile, unit: float, stretches: Sequence[Stretch]) -> t
         start, stop = flat + stretch.start, flat + stretch.stop
         power = 2.0 if start > 0.0 else 4.0 if isinstance(indenter, PowerLaw) else 1.0
         ends = _graded(start, stop, stretch.room)
+        if power == 4.0:
+            ends.insert(1, start + _TIP * (ends[1] - start))
         pieces += _no_longer([Piece(one, two - one, power if one == start else 1.0) for one, two in pairwise(ends)])
     return tuple(pieces)
 
