@@ -318,6 +318,9 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
     assert surface.error_estimate["stress"] < 1e-9
     shallow, deep = (path.inside().at(0.5 * radius, z * radius) for z in (1e-6, 0.2))
     assert deep.error_estimate["pressure_gradient"] < 1e-12 < shallow.error_estimate["pressure_gradient"]
+    # Beside the contact stresses are small, and integrals err by a share of the mean pressure all the same.
+    far = path.inside().at(3.0 * radius, 0.3)
+    assert far.error_estimate["stress"] > 3.0 * deep.error_estimate["stress"]
     # What is below the surface by 1e-6 a and beside the edge by 1e-9 a, with a that is no binary fraction.
     beside = path.inside().at(radius * (1.0 + 1e-9), 1e-10 * radius)
     assert beside.error_estimate["stress"] > 1e-8

@@ -61,6 +61,11 @@ class Density:
     slope: Callable[[Piece, FloatArray], FloatArray]
     scale: float
 
+    @property
+    def mean_pressure(self) -> float:
+        """|F|/(pi a^2) in units of E*, from the transform at a wave much longer than the contact."""
+        return 2.0 / math.pi * abs(float(self.transform(np.array([1e-6 / self.radius]))[0])) / self.radius**2
+
     def transform(self, wavenumber: FloatArray) -> FloatArray:
         """int_0^a phi cos(kt) dt at k > 0, shape (k,): by parts, phi(a) sin(ka)/k - int phi' sin(kt)/k dt."""
         t, weighted = self._nodes(float(wavenumber.max(initial=1.0)))
