@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
@@ -16,7 +17,7 @@ from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
-from mdr.springs.inside import ContactInterior
+from mdr.springs.inside import density_of
 from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
@@ -106,7 +107,8 @@ class PathFields:
 
     def inside(self, step: int, pressure_error: float) -> ContactInterior:
         """The body under one step, whose pressure has this relative error."""
-        return ContactInterior(self.scene.layer, self.contact(step), pressure_error)
+        contact = self.contact(step)
+        return ContactInterior(self.scene.layer, density_of(contact), contact.unit, pressure_error)
 
     def contact(self, step: int) -> ContactFields:
         """One step's contact."""

@@ -292,7 +292,12 @@ def solve(
     ] = 0,
     write: Annotated[
         list[Path] | None,
-        typer.Option("--write", "-w", help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. May be repeated."),
+        typer.Option(
+            "--write",
+            "-w",
+            help="Also write the answer: FILE.csv, FILE.h5 or FILE.svg. inside.svg draws the stressed layer; FILE.vtu "
+            "and FILE.xdmf hold it for ParaView (--method fem). May be repeated.",
+        ),
     ] = None,
     example: Annotated[bool, EXAMPLE] = False,
 ) -> None:

@@ -17,6 +17,7 @@ from scipy.optimize import toms748
 
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.error_model import ONE_RADIUS
+from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.one_radius import DirectDensity
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (
@@ -196,6 +197,12 @@ class DirectFields:
         w[inside] = contact.depth * unit - self.scene.indenter.height(radius[inside])
         w[~inside] = unit * contact.density.displacement_outside(radius[~inside] / unit, contact.depth)
         return w
+
+    def inside(self, step: int, pressure_error: float) -> ContactInterior:
+        """The body under one step, whose pressure has this relative error."""
+        contact = self.contacts[step]
+        density = contact.density.inside(contact.depth, singular_edge=contact.singular_edge)
+        return ContactInterior(self.scene.layer, density, contact.density.unit, pressure_error)
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
 from bem.kernels.of_layer import surface_kernel
+from bem.layer_equation.inside.density import Density, Piece, pieces_of
 from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
@@ -183,8 +184,12 @@ class DirectDensity:
         return [Stretch(self.flat, float(start), float(stop), float(room)) for start, stop, room in starts]
 
     def _profile_slope(self, nodes: AbelNodes) -> FloatArray:
-        closed = profile_slope(self.indenter, self.unit * nodes.offset, self.unit * nodes.room)
-        return self._sampled_slope(nodes.offset) if closed is None else closed
+        return self._slope_at(nodes.offset, nodes.room)
+
+    def _slope_at(self, offset: FloatArray, room: FloatArray) -> FloatArray:
+        """g_hs' at offsets with what is left to the pole."""
+        closed = profile_slope(self.indenter, self.unit * offset, self.unit * room)
+        return self._sampled_slope(offset) if closed is None else closed
 
     @cached_property
     def _sampled_slope(self) -> StretchSlopes:
@@ -196,6 +201,22 @@ class DirectDensity:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt, psi'/t by its polynomials on the pieces."""
         slopes = MappedFunction(self.grid, (self._smooth_slopes @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
         return even_abel_integral(slopes, self.grid, radius)
+
+    def inside(self, depth: float, *, singular_edge: bool) -> Density:
+        """phi under a depth, as the fields inside ask for it."""
+        smooth = MappedFunction(self.grid, (self._smooth_slopes @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
+
+        def slope(piece: Piece, offset: FloatArray) -> FloatArray:
+            """phi' = psi' - g_hs'."""
+            t = np.minimum(piece.start + offset, self.contact_radius)
+            total = t * smooth(t)
+            if piece.start >= self.flat and self._stretches:
+                past = (piece.start - self.flat) + offset
+                total -= self._slope_at(past, self._stretches[-1].room + self.excess - past)
+            return np.asarray(total)
+
+        edge = float(self.edge_values @ _under(depth)) if singular_edge else 0.0
+        return Density(self.contact_radius, edge, pieces_of(self.indenter, self.unit, self._stretches), slope, 1.0)
 
     @cached_property
     def _smooth_slopes(self) -> FloatArray:

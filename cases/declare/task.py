@@ -16,11 +16,16 @@ class Sampling:
             empty keeps no pressure.
         nodes: Gauss nodes on each ring.
         scales: declared size of a quantity, by name; otherwise its largest magnitude.
+        inside: points of the body where fields of the last step are kept: r over the contact radius, z over the smaller
+            of contact radius and thickness; empty keeps none.
+        laws: whether the laws of elastic bodies are checked on these fields.
     """
 
     ring_edges: tuple[float, ...] = ()
     nodes: int = 12
     scales: dict[str, float] = field(default_factory=dict)
+    inside: tuple[tuple[float, float], ...] = ()
+    laws: bool = True
 
     @property
     def rings(self) -> RingQuadrature:

@@ -7,6 +7,7 @@ import numpy as np
 from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.declare.task import Sampling
 from cases.results.records.scene_run import CostRecord, Curve, Quantity, Stage
+from cases.run.inside.points import inside_curves, inside_quantities
 from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
 from contact.records.validation import FloatArray
 
@@ -25,6 +26,7 @@ def quantities(solution: Solution, sampling: Sampling) -> tuple[Quantity, ...]:
     return (
         *(_quantity(solution, name, sampling, end) for name in names),
         *(_check(solution, name) for name in own_checks),
+        *(inside_quantities(solution, sampling) if sampling.inside and isinstance(solution, ContactPath) else ()),
     )
 
 
@@ -75,7 +77,8 @@ def _size(values: FloatArray) -> float:
 def curves(solution: Solution, sampling: Sampling) -> tuple[Curve, ...]:
     """Return the sampled fields of a path's last step, or a history's channels over time."""
     if isinstance(solution, ContactPath):
-        return tuple(_pressure(solution, sampling)) if sampling.ring_edges else ()
+        pressure = _pressure(solution, sampling) if sampling.ring_edges else ()
+        return (*pressure, *(inside_curves(solution, sampling) if sampling.inside else ()))
     if isinstance(solution, ImpactHistory | HistoryPath):
         return tuple(_over(solution, "time", channel) for channel in solution.ARRAYS if channel != "time")
     return tuple(_over(solution, "contact_radius", channel) for channel in ("indentation_depth", "normal_force"))

@@ -9,11 +9,21 @@ from typing import Literal, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
+from contact.answer.extremes import Box, Extreme, largest_in
 from contact.answer.one_thread import one_thread
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
+from contact.scene.effects import Adhesion
+from contact.scene.layer_stack import LayerStack
+from contact.scene.profiles import FlatPunch
+from contact.scene.scene import Scene
 
 Searched: TypeAlias = Literal["von_mises", "interface_shear"]
+
+# Points of the first look in r and z.
+_SAMPLES = 40
+# Where the surface has rims, the search for von Mises stresses begins this share of the contact radius below; chosen.
+_BELOW_RIMS = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,8 +40,9 @@ class InsideFields:
         hydrostatic_pressure: -(sigma_rr + sigma_tt + sigma_zz)/3 [Pa].
         pressure_gradient_radial: Its derivative along r [Pa/m].
         pressure_gradient_axial: Its derivative along z [Pa/m].
-        error_estimate: Error of each field over its scale: the largest stress of these points, that over the smaller of
-            contact radius and thickness for gradients, the depth for displacements.
+        error_estimate: Error of each field over its scale: the largest stress of these points; for gradients the
+            largest of them, or that stress over the smaller of contact radius and thickness; the depth for
+            displacements.
     """
 
     radial_displacement: FloatArray
@@ -65,44 +76,26 @@ class InsideFields:
         return np.asarray((principal[0] - principal[-1]) / 2.0)
 
 
-@dataclass(frozen=True)
-class Extreme:
-    """Where a field is largest.
-
-    Attributes:
-        radius: r [m].
-        depth: z [m].
-        value: [Pa].
-    """
-
-    radius: float
-    depth: float
-    value: float
-
-
 class InteriorFields(Protocol):
     """What a method provides of one equilibrium."""
-
-    @property
-    def thickness(self) -> float:
-        """Depth [m] to which fields exist, infinite for a half-space."""
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points of shape (n,) inside the body."""
 
-    def largest(self, what: Searched) -> Extreme:
-        """Place and value of the largest von Mises stress, or of the shear at the interface."""
 
-
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Inside:
     """The body under one equilibrium of a path.
 
     Attributes:
         fields: Of the method that solved it.
+        scene: What was solved.
+        contact_radius: a [m] of the equilibrium.
     """
 
     fields: InteriorFields
+    scene: Scene
+    contact_radius: float
 
     @one_thread
     def at(self, radius: ArrayLike, depth: ArrayLike) -> InsideFields:
@@ -114,11 +107,15 @@ class Inside:
         r, z = np.broadcast_arrays(np.asarray(radius, dtype=np.float64), np.asarray(depth, dtype=np.float64))
         if not np.all(np.isfinite(r) & (r >= 0.0)):
             raise InvalidInput(f"radius = {_worst(r, 0.0, np.inf):g}: radii must be finite and not negative")
-        outside = ~(np.isfinite(z) & (z >= 0.0) & (z <= self.fields.thickness))
+        thickness = self.scene.layer.thickness
+        outside = ~(np.isfinite(z) & (z >= 0.0) & (z <= thickness))
         if np.any(outside):
             worst = float(z[outside].flat[0])
+            raise InvalidInput(f"depth = {worst:g}: points must lie in the layer, between 0 and {thickness:g} m")
+        infinite = r[(z == 0.0) & np.isin(r, self._rims)]
+        if infinite.size:
             raise InvalidInput(
-                f"depth = {worst:g}: points must lie in the layer, between 0 and {self.fields.thickness:g} m"
+                f"radius = {infinite[0]:g} m, depth = 0: stresses are infinite at this sharp rim; ask beside it"
             )
         found = self.fields.at(r.ravel(), z.ravel())
         arrays = {f.name: getattr(found, f.name).reshape(r.shape) for f in fields(found) if f.name != "error_estimate"}
@@ -131,9 +128,56 @@ class Inside:
         Raises:
             InvalidInput: Where the maximum is infinite: edges of flat punches, kinks of compressible layers' indenters.
         """
-        if what not in ("von_mises", "interface_shear"):
+        a, faces = self.contact_radius, self._faces
+        if what == "von_mises":
+            self._refuse_infinite_maximum()
+            # Below a rim of the incompressible surface only von Mises stresses are finite.
+            top = _BELOW_RIMS * a if self._rims else 0.0
+            deepest = min(self.scene.layer.thickness, 4.0 * a)
+            inner = [d for d in faces if top < d < deepest]
+            rows = [*np.linspace(top, deepest, _SAMPLES), *inner, *np.nextafter(inner, np.inf)]
+            box = Box((0.0, top), (1.5 * a, deepest))
+            points = np.meshgrid(np.linspace(0.0, 1.5 * a, _SAMPLES), rows)
+            return largest_in(box, points, lambda r, z: self.fields.at(r, z).von_mises)
+        if what != "interface_shear":
             raise InvalidInput(f"largest({what!r}): ask for 'von_mises' or 'interface_shear'")
-        return self.fields.largest(what)
+        if not faces:
+            raise InvalidInput('largest("interface_shear"): a half-space has no interface')
+        end = 2.0 * a + 2.0 * self.scene.layer.thickness
+        r = np.linspace(0.0, end, 4 * _SAMPLES)
+        boxes = [Box((0.0, depth), (end, depth)) for depth in faces]
+        found = [largest_in(box, [r, np.full_like(r, box.low[1])], self._shear) for box in boxes]
+        return max(found, key=lambda extreme: extreme.value)
+
+    def _shear(self, r: FloatArray, z: FloatArray) -> FloatArray:
+        return np.abs(self.fields.at(r, z).shear_stress)
+
+    @property
+    def _faces(self) -> list[float]:
+        """Depths [m] of interfaces and of the base."""
+        layer = self.scene.layer
+        if layer.is_half_space:
+            return []
+        parts = layer.sublayers if isinstance(layer, LayerStack) else (layer,)
+        return [*np.cumsum([part.thickness for part in parts])[:-1].tolist(), layer.thickness]
+
+    @property
+    def _rims(self) -> list[float]:
+        """Radii [m] at which stresses of the surface are infinite."""
+        indenter, a = self.scene.indenter, self.contact_radius
+        adhesion = self.scene.effect(Adhesion)
+        tip = [0.0] if float(indenter.slope_at(0.0)) > 0.0 else []
+        rims = [*tip, *(kink for kink in indenter.kinks if kink < a)]
+        singular = isinstance(indenter, FlatPunch) or (adhesion is not None and adhesion.work_of_adhesion > 0.0)
+        return [*rims, a] if singular else rims
+
+    def _refuse_infinite_maximum(self) -> None:
+        rims = self._rims
+        if rims and (rims[-1] == self.contact_radius or self.scene.layer.surface.poissons_ratio < 0.5):
+            raise InvalidInput(
+                f'largest("von_mises"): it is infinite at the rim r = {rims[-1]:g} m of the surface; ask for '
+                "fields at points of interest"
+            )
 
 
 def _worst(values: FloatArray, low: float, high: float) -> float:

@@ -194,7 +194,7 @@ class ContactPath(Solution):
         """
         inside = getattr(self.fields, "inside", None)
         if inside is None:
-            raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr")
+            raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr or fem")
         if not -len(self) <= step < len(self):
             raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
         if "pressure" not in self.error_estimate:
@@ -202,7 +202,8 @@ class ContactPath(Solution):
                 f"{self.method} states no error of this pressure, and so none of the fields it makes inside"
             )
         stated = np.broadcast_to(self.error_estimate["pressure"], len(self))
-        return Inside(inside(step % len(self), float(stated[step])))
+        fields = inside(step % len(self), float(stated[step]))
+        return Inside(fields=fields, scene=self.scene, contact_radius=float(self.contact_radius[step]))
 
     @one_thread
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:

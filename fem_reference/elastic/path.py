@@ -111,10 +111,7 @@ def contact_path(
     modulus = contact_modulus(scene.layer)
     radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
     stiffness = np.array([state.stiffness for state in equilibria])
-    states = tuple(
-        SurfaceState(state.contact.answer, state.contact.indenter.contact_radius, state.depth, modulus)
-        for state in equilibria
-    )
+    states = tuple(_surface_state(state, modulus) for state in equilibria)
     force = modulus * radius**2 * np.array([state.force for state in equilibria])
     depth = radius * np.array([state.depth for state in equilibria])
     errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
@@ -137,4 +134,17 @@ def contact_path(
         normal_force=force,
         contact_stiffness=modulus * radius * stiffness,
         fields=fields(states),
+    )
+
+
+def _surface_state(state: FemEquilibrium, modulus: float) -> SurfaceState:
+    contact, order = state.contact, state.contact.settings.order
+    return SurfaceState(
+        contact=contact.answer,
+        contact_radius=contact.indenter.contact_radius,
+        depth=state.depth,
+        contact_modulus=modulus,
+        other=contact.levels[order - 1 if order - 1 in contact.levels else order + 1],
+        error=max(state.error[name] for name in ContactPath.ARRAYS),
+        missed=abs(state.radius_factor - 1),
     )

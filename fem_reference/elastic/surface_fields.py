@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contact.records.validation import FloatArray
-from fem_reference.elastic.interior import Section
+from fem_reference.elastic.inside.interior import FemInterior
+from fem_reference.elastic.inside.section import Section
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
 
@@ -18,12 +19,18 @@ class SurfaceState:
         contact_radius: a [m].
         depth: delta / a.
         contact_modulus: E* [Pa].
+        other: that of the neighbouring degree on the same mesh.
+        error: relative error of depth, force, radius and stiffness, the largest of them.
+        missed: share of the radius by which the solved contact misses that of the state.
     """
 
     contact: PrescribedContact
     contact_radius: float
     depth: float
     contact_modulus: float
+    other: PrescribedContact
+    error: float
+    missed: float
 
 
 @dataclass(frozen=True)
@@ -37,10 +44,18 @@ class FemFields:
         state = self.states[step]
         return state.contact_modulus * state.contact.pressure(radius / state.contact_radius, state.depth)
 
-    def section(self, step: int = 0) -> Section:
-        """Displacement and stress inside the layer."""
+    def inside(self, step: int, pressure_error: float) -> FemInterior:
+        """The layer under one step; the error of the pressure is measured anew inside."""
         state = self.states[step]
-        return Section(state.contact, state.contact_radius, state.depth, state.contact_modulus)
+        moved = state.other.smooth_depth - state.contact.smooth_depth
+        return FemInterior(
+            section=Section(state.contact, state.depth),
+            other=Section(state.other, state.depth + moved),
+            contact_radius=state.contact_radius,
+            contact_modulus=state.contact_modulus,
+            own_error=state.error,
+            missed=state.missed,
+        )
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m], positive into the layer; zero beyond the mesh, where it is below the truncation error."""

@@ -6,14 +6,28 @@ from pathlib import Path
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
 from cases.results.files import write_whole
-from contact import ContactPath, InvalidInput, Method, NotConvergedError, Scene, Solution, Tabulated, load_scene
+from contact import (
+    ContactPath,
+    InvalidInput,
+    Method,
+    NotConvergedError,
+    Scene,
+    Solution,
+    Tabulated,
+    UnsupportedSceneError,
+    load_scene,
+)
 from contact.answer.accuracy import shortfalls, told_where_less
 from contact.files.scene_file import scene_notes
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
 from reports.words.numbers import duration, with_prefix
 
-ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG"}
+ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG", ".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
+MESHES = (".vtu", ".xdmf")
+# A picture of that name shows the layer inside, by these two methods where both model the scene.
+INSIDE = "inside"
+SHOWN_BESIDE = {"fem": "mdr"}
 
 
 def solve(
@@ -158,8 +172,32 @@ def _write(solution: Solution, path: Path) -> None:
         from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
 
         save_solution(path, solution)
+    elif path.suffix in MESHES:
+        _write_mesh(solution, path)
+    elif path.stem.startswith(INSIDE):
+        from reports.charts.inside import inside_svg  # noqa: PLC0415 - as below
+
+        write_whole(path, inside_svg(solution, _compared(solution)))
     else:
         from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
         write_whole(path, figure_svg(solution_figure(solution)))
+
+
+def _write_mesh(solution: Solution, path: Path) -> None:
+    """The fields inside on the mesh that solved the last state of a path."""
+    write = getattr(solution.inside(-1).fields, "write", None) if isinstance(solution, ContactPath) else None
+    if write is None:
+        raise InvalidInput(
+            f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
+        )
+    write(path)
+
+
+def _compared(solution: Solution) -> Solution | None:
+    """The scene by a second method, where that models it."""
+    try:
+        return build_guarded(SHOWN_BESIDE.get(solution.method, "fem"), {}).solve(solution.scene)
+    except (UnsupportedSceneError, NotConvergedError):
+        return None

@@ -167,7 +167,7 @@ def _compact(svg: str, key: str) -> str:
     svg = re.sub(r'(xlink:href="#|url\(#)([\w.-]+)', lambda place: place[1] + short[place[2]], svg)
     svg = svg.replace("font-family: 'DejaVu Sans'; ", "").replace("; font-family: 'DejaVu Sans'", "")
     svg = svg.replace("<svg ", f'<svg style="font-family: {FONT_FAMILY}" ', 1)
-    svg = re.sub(r"<!--.*?-->", "", svg, flags=re.DOTALL)
+    svg = re.sub(r"<!--.*?-->|<g\b[^>]*/>", "", svg, flags=re.DOTALL)
     svg = re.sub(r"\s+", " ", svg).replace("> <", "><")  # between the letters of a formula a line end would be a space
     svg = re.sub(r' transform="rotate\(-?0 [^)]*\)"', "", svg)
     svg = re.sub(r'style="[^"]*"', lambda style: re.sub(r"([:;]) ", r"\1", style[0]), svg)

@@ -87,8 +87,9 @@ def test_surface_inside_the_contact_stays_where_it_touched():
     path = Fem(order=3).solve(punch(layer(0.3), 2.0))
     r = np.array([0.0, 0.7, 1.9])
     assert path.surface_displacement(r) == pytest.approx(np.full(3, 1e-3), rel=1e-12, abs=0.0)
-    section = path.fields.section(0)
-    assert section is not None
+    found = path.inside().at(r, 0.0)
+    assert found.axial_displacement == pytest.approx(np.full(3, 1e-3), rel=1e-12, abs=0.0)
+    assert found.radial_displacement == pytest.approx(np.zeros(3), rel=0.0, abs=1e-15)
 
 
 def test_depths_and_forces_are_one_solution_scaled():

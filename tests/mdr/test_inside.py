@@ -286,6 +286,17 @@ def test_more_nodes_change_nothing_beyond_the_stated_error(indenter, nu, radius,
         path = pressed(unit_layer(nu), indenter, radius)
     draw = np.random.default_rng(7)
     r, z = draw.uniform(0.0, 1.4 * radius, 12), np.minimum(10.0 ** draw.uniform(-3.0, 0.0, 12) * radius, 1.0)
+    _change_nothing_with_more_nodes(path, r, z, monkeypatch)
+
+
+def test_the_tip_of_a_power_law_is_resolved(monkeypatch):
+    """4e-13 of the stress was left where 1.3e-13 was stated."""
+    path = pressed(unit_layer(0.0), PowerLaw(exponent=4.7, reference_radius=1.0, reference_height=0.02), 1.0)
+    r, z = np.meshgrid(np.linspace(0.1, 1.2, 5), np.linspace(0.3, 0.9, 5))
+    _change_nothing_with_more_nodes(path, r, z, monkeypatch)
+
+
+def _change_nothing_with_more_nodes(path, r, z, monkeypatch):
     found = path.inside().at(r, z)
     for module in ("half_space_part", "layer_part", "density"):
         monkeypatch.setattr(f"bem.layer_equation.inside.{module}._NODES", 36)
@@ -295,3 +306,21 @@ def test_more_nodes_change_nothing_beyond_the_stated_error(indenter, nu, radius,
     for name in names:
         change = np.abs(getattr(found, name) - getattr(finer, name)).max()
         assert change <= found.error_estimate["stress"] * largest
+
+
+@pytest.mark.parametrize("radius", [0.3, 4.0])
+def test_the_surface_and_rims_state_what_they_lose(radius):
+    """The surface is looked at a little below; positions beside a rim are rounded; the gradient cancels near it."""
+    path = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=10.0), radius)
+    surface = path.inside().at(0.5 * radius, 0.0)
+    largest = max(abs(float(surface.axial_stress)), abs(float(surface.radial_stress)))
+    assert 0.0 < abs(float(surface.shear_stress)) <= surface.error_estimate["stress"] * largest
+    assert surface.error_estimate["stress"] < 1e-9
+    shallow, deep = (path.inside().at(0.5 * radius, z * radius) for z in (1e-6, 0.2))
+    assert deep.error_estimate["pressure_gradient"] < 1e-12 < shallow.error_estimate["pressure_gradient"]
+    # Beside the contact stresses are small, and integrals err by a share of the mean pressure all the same.
+    far = path.inside().at(3.0 * radius, 0.3)
+    assert far.error_estimate["stress"] > 3.0 * deep.error_estimate["stress"]
+    # What is below the surface by 1e-6 a and beside the edge by 1e-9 a, with a that is no binary fraction.
+    beside = path.inside().at(radius * (1.0 + 1e-9), 1e-10 * radius)
+    assert beside.error_estimate["stress"] > 1e-8

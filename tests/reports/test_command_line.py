@@ -6,9 +6,11 @@ import os
 import re
 import subprocess
 import sys
+from xml.etree import ElementTree
 
 import h5py
 import pytest
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
 from contact import load_scene
 from reports import command_line
@@ -258,6 +260,22 @@ def test_an_accuracy_is_no_accuracy_of_the_pressure(punch, capsys):
     assert "relative error of pressure" in capsys.readouterr().err.replace("\n", " ")
     assert run(["solve", punch, "--pressure-accuracy", "1e-3"]) == 4
     assert "besides an --accuracy" in capsys.readouterr().err.replace("\n", " ")
+
+
+def test_the_layer_inside_as_a_picture_and_for_paraview(punch, tmp_path, capsys):
+    picture, mesh = tmp_path / "inside.svg", tmp_path / "field.vtu"
+    assert run(["solve", punch, "--method", "fem", "--write", str(mesh), "--write", str(picture)]) == 0
+    shown = " ".join(ElementTree.fromstring(picture.read_text(encoding="utf-8")).itertext())
+    for words in ("von Mises stress", "hydrostatic pressure", "difference", "MDR", "FEM", "[kPa]", "a = 1 mm"):
+        assert words in shown
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(mesh))
+    reader.Update()
+    data = reader.GetOutput().GetPointData()
+    names = {data.GetArrayName(i) for i in range(data.GetNumberOfArrays())}
+    assert {"displacement", "hydrostatic_pressure", "pressure_gradient", "von_mises", "principal_stresses"} <= names
+    assert run(["solve", punch, "--write", str(mesh)]) == 4
+    assert "mdr has no mesh of this scene; add --method fem" in capsys.readouterr().err.replace("\n", " ")
 
 
 @pytest.mark.parametrize("within", ["0.25", "0.25s", "250ms"])

@@ -16,7 +16,7 @@ from bem.layer_equation.inside.layer_part import NAMES, layer_fields
 from contact.records.validation import FloatArray
 
 # The surface itself is looked at this share of the contact radius below it: fields differ there by as much.
-_SURFACE = 1e-11
+SURFACE = 1e-11
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,7 @@ class Body:
 
     def at(self, r: FloatArray, z: FloatArray) -> dict[str, FloatArray]:
         """2 G u_r/r, 2 G u_z, stresses, pressure and gradient in E*, and G over the surface's, each of shape (n,)."""
-        z = np.maximum(z, _SURFACE * self.density.radius)
+        z = np.maximum(z, SURFACE * self.density.radius)
         if self.kernel is None:
             parts = half_space_fields(integrals(self.density, r, z), r, z, self.poissons_ratio)
             return {name: part / math.pi for name, part in parts.items()} | {"modulus": np.ones_like(r)}

@@ -1,4 +1,4 @@
-"""A sampled pressure of one method against that of another, in a norm that converges at a sharp rim."""
+"""A sampled field of one method against that of another, in a norm that converges at a sharp rim, or at points."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -11,23 +11,28 @@ from cases.declare.task import Answers, Task
 from cases.judgement.claims.declared import DeclaredClaim, first_missing
 from cases.judgement.rules.agreement import judge_agreement
 from cases.judgement.rules.judgement import Judgement, nothing_compared
-from cases.judgement.rules.norms import RingQuadrature, relative_difference, ring_load_difference
+from cases.judgement.rules.norms import RingQuadrature, relative_difference, ring_load_difference, ring_quadrature
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.scene_run import Curve, SceneRun
 from cases.results.status import Status
 from contact.records.validation import FloatArray
 
-Norm = Literal["weighted L2", "ring loads"]
+Norm = Literal["weighted L2", "ring loads", "largest", "root mean square"]
 
 _NORMS: dict[str, Callable[[FloatArray, FloatArray, RingQuadrature], float]] = {
     "weighted L2": relative_difference,
     "ring loads": ring_load_difference,
+    # Of fields that are kept over their scale, at points.
+    "largest": lambda first, second, _: float(np.abs(first - second).max()),
+    "root mean square": lambda first, second, _: float(np.sqrt(np.mean((first - second) ** 2))),
 }
+# Fields at points need no rings.
+NO_RINGS = ring_quadrature((0.0, 1.0), 1)
 
 
 @dataclass(frozen=True, kw_only=True)
 class FieldAgreement(DeclaredClaim):
-    """Two methods give the same pressure in the 2 pi r weighted L2 norm, or the same loads of rings.
+    """Two methods give the same pressure in the 2 pi r weighted L2 norm, loads of rings, or fields at points.
 
     Attributes:
         fast: label of the method under test.
@@ -81,7 +86,8 @@ class FieldAgreement(DeclaredClaim):
 
     def _difference(self, scene: CaseScene, first: SceneRun, second: SceneRun) -> float:
         a, b = first.curve(self.quantity), second.curve(self.quantity)
-        return _NORMS[self.norm](np.array(a.y), np.array(b.y), scene.sampling.rings)
+        rings = scene.sampling.rings if scene.sampling.ring_edges else NO_RINGS
+        return _NORMS[self.norm](np.array(a.y), np.array(b.y), rings)
 
     def _uncertainty(self, case: Case, scene: CaseScene, answers: Answers, run: SceneRun) -> float | None:
         if run.method not in self.refined:

@@ -20,6 +20,8 @@ FAMILIES = {
     "coated_pair",
     "near_incompressible",
     "friction_flat_punch",
+    "inside_half_space",
+    "inside_layer",
 }
 
 

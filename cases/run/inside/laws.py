@@ -1,0 +1,110 @@
+"""Laws that every elastic body obeys, as residuals of the fields inside, from integrals over cylinders about the axis.
+
+Integrals need no derivatives of a method's fields, so that the same laws judge meshes and closed forms.
+"""
+
+import math
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from bem.polynomials.gauss import legendre_rule
+from contact import ContactPath
+from contact.answer.inside import Inside
+from contact.records.validation import FloatArray
+
+# Gauss nodes on each panel, and panels of a depth; along the radius there are more where the layer is thin.
+NODES, PANELS = 12, 2
+# Radius of the cylinders over that of the contact.
+WIDTH = 1.5
+# Their depths over the smaller of contact radius and thickness.
+DEPTHS = (0.4, 1.0)
+# Where the surface is looked at: share of the contact radius below it, and radii over it.
+BELOW, BESIDE = 1e-8, (0.35, 0.65)
+
+
+def residuals(path: ContactPath) -> dict[str, FloatArray]:
+    """Of the last step, by name of the law; each over what it should equal, or over the mean pressure or the depth."""
+    inside, layer = path.inside(-1), path.scene.layer
+    a, delta = float(path.contact_radius[-1]), float(path.indentation_depth[-1])
+    mean = float(path.scale("pressure")[-1])
+    depths = min(a, layer.thickness) * np.array(DEPTHS)
+    radius = WIDTH * a
+    force = float(path.normal_force[-1])
+    found = {
+        "force_balance_inside": _force_balance(inside, radius, depths, force),
+        "dilatation_inside": _dilatation(path, inside, radius, depths) / (math.pi * a**2 * delta),
+        "gradient_law_inside": _gradient_law(inside, 0.5 * a, depths) / mean,
+        "surface_inside": _surface(path, inside, a) / mean,
+    }
+    if not layer.is_half_space:
+        found["base_inside"] = _base(path, inside, a, delta, mean)
+    return found
+
+
+def _rule(ends: Sequence[float], panels: int = PANELS) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights on equal panels between two ends."""
+    x, w = legendre_rule(NODES)
+    edges = np.linspace(ends[0], ends[1], panels + 1)
+    half = np.diff(edges)[:, None] / 2
+    return (edges[:-1, None] + half * (x + 1)).ravel(), (half * w).ravel()
+
+
+def _disc(radius: float, shallowest: float) -> tuple[FloatArray, FloatArray]:
+    """Nodes r and weights 2 pi r dr of a disc, its panels no wider than fields vary at a depth."""
+    a = radius / WIDTH
+    parts = [_rule(ends, max(PANELS, math.ceil((ends[1] - ends[0]) / shallowest))) for ends in ((0.0, a), (a, radius))]
+    r, w = (np.concatenate(values) for values in zip(*parts, strict=True))
+    return r, 2.0 * math.pi * r * w
+
+
+def _force_balance(inside: Inside, radius: float, depths: FloatArray, force: float) -> FloatArray:
+    """What presses on top leaves through bottom and side of a cylinder."""
+    r, area = _disc(radius, float(depths[0]))
+    bottom = inside.at(r, depths[:, None] * np.ones_like(r)).axial_stress @ area
+    side = []
+    for depth in depths:
+        z, w = _rule((0.0, depth))
+        side.append(2.0 * math.pi * radius * float(inside.at(radius, z).shear_stress @ w))
+    return np.asarray((force + bottom + np.array(side)) / force)
+
+
+def _dilatation(path: ContactPath, inside: Inside, radius: float, depths: FloatArray) -> FloatArray:
+    """div u = (1 - 2 nu)/E tr sigma, over cylinders between one depth and the next [m^3]."""
+    material = path.scene.layer.surface
+    compliance = 3.0 * (1.0 - 2.0 * material.poissons_ratio) / material.youngs_modulus
+    r, area = _disc(radius, float(depths[0]))
+    left = []
+    for top, bottom in pairwise(depths):
+        faces = inside.at(r, np.array([[top], [bottom]])).axial_displacement @ area
+        z, w = _rule((top, bottom))
+        side = 2.0 * math.pi * radius * float(inside.at(radius, z).radial_displacement @ w)
+        pressed = float(w @ inside.at(r, z[:, None]).hydrostatic_pressure @ area)
+        left.append(faces[1] - faces[0] + side + compliance * pressed)
+    return np.array(left)
+
+
+def _gradient_law(inside: Inside, radius: float, depths: FloatArray) -> FloatArray:
+    """The gradient along z adds up to the difference of the pressure [Pa]."""
+    left = []
+    for top, bottom in pairwise(depths):
+        z, w = _rule((top, bottom))
+        ends = inside.at(radius, np.array([top, bottom])).hydrostatic_pressure
+        left.append(float(ends[1] - ends[0] - inside.at(radius, z).pressure_gradient_axial @ w))
+    return np.array(left)
+
+
+def _surface(path: ContactPath, inside: Inside, a: float) -> FloatArray:
+    """sigma_zz = -p just below the surface, sigma_rz = 0 there [Pa]."""
+    r = a * np.array(BESIDE)
+    pressed = inside.at(r, BELOW * a).axial_stress + path.pressure(r, len(path) - 1)
+    return np.concatenate([pressed, inside.at(r, 0.0).shear_stress])
+
+
+def _base(path: ContactPath, inside: Inside, a: float, delta: float, mean: float) -> FloatArray:
+    """u = 0 on a bonded base, u_z = 0 and sigma_rz = 0 on an unbonded one."""
+    found = inside.at(a * np.array([0.2, 0.7, 1.2]), path.scene.layer.thickness)
+    bonded = path.scene.layer.support == "bonded"
+    other = found.radial_displacement / delta if bonded else found.shear_stress / mean
+    return np.concatenate([found.axial_displacement / delta, other])

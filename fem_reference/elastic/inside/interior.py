@@ -1,0 +1,113 @@
+"""Fields inside the layer in one equilibrium, with an error from what the last degree of the elements changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from contact import InvalidInput
+from contact.answer.inside import InsideFields
+from contact.records.validation import FloatArray
+from fem_reference.elastic.inside.places import places_of
+from fem_reference.elastic.inside.section import NAMES, Section
+from fem_reference.error_model import INSIDE
+
+# Which errors are stated together, as columns of the fields.
+_GROUPS = {
+    "displacement": slice(0, 2),
+    "stress": slice(2, 6),
+    "hydrostatic_pressure": slice(6, 7),
+    "pressure_gradient": slice(7, 9),
+}
+
+
+@dataclass(frozen=True, eq=False)
+class FemInterior:
+    """One equilibrium, seen inside the layer.
+
+    Attributes:
+        section: the solution that answers.
+        other: that of the neighbouring degree on the same mesh.
+        contact_radius: a [m].
+        contact_modulus: E* [Pa].
+        own_error: relative error of the state's depth, force, radius and stiffness, the largest of them.
+        missed: share of the radius by which the mesh's contact misses that of the state.
+    """
+
+    section: Section
+    other: Section
+    contact_radius: float
+    contact_modulus: float
+    own_error: float
+    missed: float
+
+    def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
+        """At points [m] of shape (n,).
+
+        Raises:
+            InvalidInput: a point lies beyond the mesh.
+        """
+        points = self._within_mesh(np.array([radius, depth]) / self.contact_radius)
+        mesh = self.section.contact.layer_mesh.mesh
+        places = places_of(mesh.p, mesh.t, points)
+        values = self.section.at(places)
+        error = self._error_of_triangles[places.triangles]
+        error[:, 2:7] += np.abs(values[:, 2:6]).max(initial=0.0) * self._share_at_edge(points)[:, None]
+        return InsideFields(
+            **dict(zip(NAMES, (values * self._units).T, strict=True)), error_estimate=self._stated(values, error)
+        )
+
+    def _within_mesh(self, points: FloatArray) -> FloatArray:
+        """Points (2, n) of the mesh; rounding does not take them out of it."""
+        mesh = self.section.contact.layer_mesh
+        r, z = points
+        rounded = np.where(z <= mesh.thickness * (1 + 1e-14), np.minimum(z, mesh.thickness), z)
+        beyond = (r > mesh.outer_radius) | (rounded > mesh.thickness)
+        if beyond.any():
+            first = points[:, beyond][:, 0] * self.contact_radius
+            raise InvalidInput(
+                f"(r, z) = ({first[0]:g}, {first[1]:g}) m lies beyond the mesh of finite elements, which ends at r = "
+                f"{mesh.outer_radius * self.contact_radius:g} m; ask nearer, or mdr"
+            )
+        return np.array([r, rounded])
+
+    def _share_at_edge(self, points: FloatArray) -> FloatArray:
+        """Of the stress: what a contact wider by a share e of its radius changes beside it in second order, of a root.
+
+        sqrt(2 rho) changes by less than e^2/rho^(3/2) at a distance rho from the edge, and by less than sqrt(e) there.
+        """
+        away = np.hypot(points[0] - 1.0, points[1]) + self.missed
+        return np.asarray(np.sqrt(self.missed) * (self.missed / np.maximum(away, np.finfo(float).tiny)) ** 1.5)
+
+    def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
+        """Largest error of each group over its scale: the depth, the largest stress and gradient."""
+        mesh, depth = self.section.contact.layer_mesh, abs(self.section.depth)
+        stress = np.abs(values[:, 2:7]).max(initial=np.finfo(float).tiny)
+        steepest = max(np.abs(values[:, 7:]).max(initial=0.0), stress / min(1.0, mesh.thickness))
+        scales = (max(depth, np.finfo(float).tiny), stress, stress, steepest)
+        return {
+            name: float(error[:, group].max(initial=0.0)) / scale + self.own_error
+            for (name, group), scale in zip(_GROUPS.items(), scales, strict=True)
+        }
+
+    @property
+    def _units(self) -> FloatArray:
+        a, modulus = self.contact_radius, self.contact_modulus
+        return np.array([a, a, *[modulus] * 5, modulus / a, modulus / a])
+
+    @cached_property
+    def _error_of_triangles(self) -> FloatArray:
+        """Error of each field in each triangle, shape (triangle, 9)."""
+        nodes = self.section.local_nodes
+        change = np.abs(self.section.at_local(nodes) - self.other.at_local(nodes)).max(axis=1)
+        change[:, _GROUPS["pressure_gradient"]] *= INSIDE.gradient
+        return np.asarray(INSIDE.share_of_change[self.section.contact.pair.degree] * change)
+
+    def write(self, path: str | Path) -> None:
+        """Write a .vtu or .xdmf file for ParaView, see `export.write_section`."""
+        from fem_reference.elastic.inside.export import write_section  # noqa: PLC0415 - meshio where a file is written
+
+        write_section(self.section, self._units, Path(path))

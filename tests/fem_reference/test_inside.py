@@ -1,0 +1,205 @@
+"""Fields inside by finite elements: the base, the axis, Hertz, MDR's answer, files and refusals."""
+
+from __future__ import annotations
+
+import meshio
+import numpy as np
+import pytest
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
+from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+from contact import (
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    TruncatedCone,
+)
+from fem_reference import Fem
+from mdr import Mdr
+
+A, R = 1e-3, 0.1
+LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
+STRESSES = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress")
+
+
+@pytest.fixture(scope="module")
+def path():
+    scene = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=R), loading=ContactRadii([A]))
+    return Fem(growth=0.7).solve(scene)
+
+
+def test_surface_values_agree_with_the_surface_fields(path):
+    r = np.array([0.0, 0.31, 0.62, 0.93, 1.5]) * A
+    found = path.inside().at(r, 0.0)
+    assert found.axial_displacement == pytest.approx(path.surface_displacement(r), rel=0, abs=1e-12)
+    largest = path.pressure(0.0)
+    assert -found.axial_stress == pytest.approx(path.pressure(r), rel=0, abs=3e-3 * largest)
+    # No friction.
+    assert np.abs(found.shear_stress).max() < 3e-3 * largest
+
+
+def test_base_holds_and_axis_is_symmetric(path):
+    r = np.linspace(0, 2, 7) * A
+    base = path.inside().at(r, LAYER.thickness)
+    assert np.abs([base.radial_displacement, base.axial_displacement]).max() < 1e-15
+    on_axis = path.inside().at(0.0, np.linspace(0.1, 0.9, 5) * LAYER.thickness)
+    assert on_axis.radial_stress == pytest.approx(on_axis.hoop_stress, rel=1e-3, abs=0.0)
+    beside = path.inside().at(1e-13 * A, 0.5 * LAYER.thickness)
+    assert beside.hoop_stress == pytest.approx(
+        path.inside().at(0.0, 0.5 * LAYER.thickness).hoop_stress, rel=1e-9, abs=0
+    )
+
+
+def test_stress_on_the_axis_below_a_hertz_contact():
+    """Huber 1904: sigma_zz/p0 = -1/(1 + Z^2), and the largest shear 0.310021 p0 at 0.480864 a."""
+    nu = 0.3
+    layer = Layer.half_space(youngs_modulus=1e6, poissons_ratio=nu)
+    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=R), loading=ContactRadii([A]))
+    inside = Fem(growth=0.4).solve(scene).inside()
+    p0 = 2 * layer.contact_modulus * A / (np.pi * R)
+    z = np.array([0.25, 0.5, 1.0, 3.0])
+    found = inside.at(0.0, z * A)
+    decay = 1 / (1 + z**2)
+    error = pytest.approx(np.zeros(4), rel=0, abs=found.error_estimate["stress"] * p0)
+    assert found.axial_stress + p0 * decay == error
+    assert found.radial_stress + p0 * ((1 + nu) * (1 - z * np.arctan(1 / z)) - decay / 2) == error
+    assert found.error_estimate["stress"] < 1e-3
+    worst = inside.largest("von_mises")
+    assert worst.value / p0 == pytest.approx(2 * 0.310021, rel=1e-3, abs=0)
+    assert [worst.radius / A, worst.depth / A] == pytest.approx([0.0, 0.480864], rel=0, abs=0.02)
+
+
+CONTACTS = {
+    "bonded": (0.3, "bonded", 1.0, Paraboloid(radius_of_curvature=10.0)),
+    "nearly incompressible": (0.45, "bonded", 0.5, TruncatedCone(flat_radius=0.25, slope=0.1)),
+    "incompressible": (0.5, "bonded", 1.0, Paraboloid(radius_of_curvature=10.0)),
+    "thin and incompressible": (0.5, "bonded", 5.0, TruncatedCone(flat_radius=2.0, slope=0.1)),
+    "unbonded": (0.3, "unbonded", 1.0, Cone(slope=0.1)),
+    "punch": (0.4, "bonded", 2.0, FlatPunch(radius=2.0)),
+}
+
+
+SLOW = ("nearly incompressible", "thin and incompressible", "unbonded")
+
+
+@pytest.mark.parametrize("kind", [pytest.param(one, marks=pytest.mark.slow if one in SLOW else ()) for one in CONTACTS])
+def test_fields_are_those_of_mdr_within_the_stated_error(kind):
+    """Displacements to 1e-5 of the depth, stresses to 1e-3 of the mean pressure (root mean square), away from rims."""
+    nu, support, a, indenter = CONTACTS[kind]
+    layer = Layer(thickness=1.0, youngs_modulus=1.0 - nu**2, poissons_ratio=nu, support=support)
+    loading = NormalForces([1.0]) if isinstance(indenter, FlatPunch) else ContactRadii([a])
+    scene = Scene(layer=layer, indenter=indenter, loading=loading)
+    fem, mdr = Fem(growth=0.4).solve(scene), Mdr().solve(scene)
+    draw = np.random.default_rng(5)
+    r, z = draw.uniform(0.0, 1.6 * a, 50), draw.uniform(0.05, 1.0, 50)
+    found, exact = fem.inside().at(r, z), mdr.inside().at(r, z)
+    mean, delta = mdr.normal_force[0] / (np.pi * a**2), mdr.indentation_depth[0]
+
+    def differences(names):
+        return np.array([getattr(found, name) - getattr(exact, name) for name in names])
+
+    stress = max(np.abs(getattr(exact, name)).max() for name in STRESSES)
+    moved = differences(["radial_displacement", "axial_displacement"])
+    stresses, pressure = differences(STRESSES), differences(["hydrostatic_pressure"])
+    gradient = differences(["pressure_gradient_radial", "pressure_gradient_axial"])
+    assert np.sqrt(np.mean(moved**2)) < 1e-5 * delta
+    assert np.sqrt(np.mean(stresses**2)) < 1e-3 * mean
+    assert np.sqrt(np.mean(pressure**2)) < 3e-4 * mean
+    scales = {"displacement": delta, "stress": stress, "hydrostatic_pressure": stress}
+    scales |= {"pressure_gradient": stress / min(a, 1.0)}
+    for (name, scale), difference in zip(scales.items(), (moved, stresses, pressure, gradient), strict=True):
+        stated = found.error_estimate[name] * scale
+        assert np.abs(difference).max() <= stated, name
+
+
+def test_scattered_points_are_each_found_alone(path):
+    draw = np.random.default_rng(2)
+    r, z = draw.uniform(0.0, 8.0, 40) * A, draw.uniform(0.0, 1.0, 40) * LAYER.thickness
+    together = path.inside().at(r, z)
+    for i in range(0, 40, 7):
+        assert path.inside().at(r[i], z[i]).von_mises == pytest.approx(together.von_mises[i], rel=1e-9, abs=0)
+
+
+def read_by_vtk(file):
+    """Points, cell types and point data as ParaView's own library reads them."""
+    reader = vtkXMLUnstructuredGridReader() if file.suffix == ".vtu" else vtkXdmfReader()
+    reader.SetFileName(str(file))
+    reader.Update()
+    grid = reader.GetOutputDataObject(0)
+    data = grid.GetPointData()
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)) for i in range(data.GetNumberOfArrays())}
+    types = {grid.GetCellType(i) for i in range(grid.GetNumberOfCells())}
+    return vtk_to_numpy(grid.GetPoints().GetData()), types, arrays
+
+
+WRITTEN = {
+    "displacement",
+    *STRESSES,
+    "hydrostatic_pressure",
+    "pressure_gradient",
+    "von_mises",
+    "largest_shear",
+    "principal_stresses",
+}
+
+
+@pytest.mark.parametrize("ending", [".vtu", ".xdmf"])
+def test_files_carry_all_fields_to_the_library_of_paraview(path, tmp_path, ending):
+    file = tmp_path / f"section{ending}"
+    path.inside().fields.write(file)
+    points, types, arrays = read_by_vtk(file)
+    back = meshio.read(file)
+    assert types == {22}
+    assert set(arrays) == set(back.point_data) == WRITTEN
+    assert np.array_equal(back.point_data["von_mises"], arrays["von_mises"])
+    some = slice(None, None, 97)
+    found = path.inside().at(points[some, 0], points[some, 1])
+    scale = float(path.pressure(0.0))
+    for name in (*STRESSES, "hydrostatic_pressure", "von_mises", "largest_shear"):
+        assert arrays[name][some] == pytest.approx(getattr(found, name), rel=0, abs=1e-9 * scale), name
+    assert np.transpose(arrays["principal_stresses"][some]) == pytest.approx(
+        found.principal_stresses, rel=0, abs=1e-9 * scale
+    )
+    assert arrays["pressure_gradient"][some, 0] == pytest.approx(
+        found.pressure_gradient_radial, rel=0, abs=1e-6 * scale / A
+    )
+    assert arrays["displacement"][some, 1] == pytest.approx(found.axial_displacement, rel=0, abs=1e-15)
+
+
+def test_settings_name_the_mesh(path):
+    assert path.settings["mesh"] == path.fields.states[0].contact.layer_mesh.fingerprint
+
+
+def test_refusals_by_name(path, tmp_path):
+    with pytest.raises(InvalidInput, match=r"depth = 0\.002: points must lie in the layer, between 0 and 0.001 m"):
+        path.inside().at(0.0, 2e-3)
+    with pytest.raises(InvalidInput, match="depth = nan"):
+        path.inside().at(0.0, np.nan)
+    with pytest.raises(
+        InvalidInput, match=r"\(r, z\) = \(1, 0\) m lies beyond the mesh of finite elements, which ends"
+    ):
+        path.inside().at(1.0, 0.0)
+    with pytest.raises(InvalidInput, match=r"section\.png: the ending must be \.vtu or \.xdmf"):
+        path.inside().fields.write(tmp_path / "section.png")
+    punch = Scene(layer=LAYER, indenter=FlatPunch(radius=A), loading=IndentationDepths([1e-6]))
+    inside = Fem(order=2, growth=1.0).solve(punch).inside()
+    with pytest.raises(InvalidInput, match="stresses are infinite at this sharp rim"):
+        inside.at(A, 0.0)
+    with pytest.raises(InvalidInput, match="it is infinite at the rim"):
+        inside.largest("von_mises")
+
+
+def test_the_base_carries_the_force():
+    scene = Scene(layer=LAYER, indenter=FlatPunch(radius=A), loading=IndentationDepths([1e-6]))
+    path = Fem(growth=0.7).solve(scene)
+    r = np.linspace(0, 11, 4001) * A
+    traction = -path.inside().at(r, LAYER.thickness).axial_stress
+    load = np.trapezoid(2 * np.pi * r * traction, r)
+    assert load == pytest.approx(path.normal_force[0], rel=1e-3, abs=0.0)
