@@ -32,7 +32,8 @@ def with_registered(case: Case, chosen: Collection[str] | None = None) -> Case:
     Raises:
         InvalidInput: if such a method cannot be imported, or claims an accuracy that is none.
     """
-    names = [name for name in registered() if chosen is None or name in chosen]
+    own = {use.label for use in case.methods}
+    names = [name for name in registered() if name not in own and (chosen is None or name in chosen)]
     return with_foreign_methods(case, {name: claimed_accuracy(name) for name in names})
 
 

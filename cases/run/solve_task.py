@@ -6,8 +6,9 @@ from collections import deque
 # This package ships no types.
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]
 
-from cases.declare.methods import shared_inputs
+from cases.declare.methods import registered, shared_inputs
 from cases.declare.task import Task
+from cases.judgement.convergence.from_refinement import with_estimated_errors
 from cases.results.records.field_types import Scalar
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
@@ -56,6 +57,8 @@ def _solved(task: Task, key: str) -> SceneRun:
     samples = timed_warm(lambda: solutions.append(task.solver.solve(task.problem))).samples if task.timed else ()
     # The row of a timing run shows the stages of a warm solve.
     solution = solutions[0]
+    if not task.timed and task.method in registered():
+        solution = with_estimated_errors(task.solver, task.problem, solution)
     return SceneRun(
         key=key,
         scene=task.scene,
