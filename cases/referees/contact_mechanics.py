@@ -37,7 +37,7 @@ class ContactMechanics:
     name: ClassVar[str] = "contact_mechanics"
     shared_inputs: ClassVar[tuple[str, ...]] = ()
 
-    points: int = 128
+    points: int = 64
     tolerance: float = 1e-9
 
     def supports(self, scene: Scene) -> Supported | Unsupported:

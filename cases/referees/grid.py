@@ -3,8 +3,8 @@
 from contact import Cone, FlatPunch, Loading, Paraboloid, Scene, TruncatedCone, TruncatedParaboloid, other_layer
 
 SHAPES = (FlatPunch, Paraboloid, Cone, TruncatedCone, TruncatedParaboloid)
-# A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another falls
-# like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
+# A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
+# falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
 BESIDE = 4.0
 # The rest of the grid around the contact of a half-space, which is not repeated: a rim of free cells.
 RIM = 1.1

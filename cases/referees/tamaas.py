@@ -10,6 +10,7 @@ from cases.referees.process import ask, lacks, shape_of, version
 from contact import (
     ContactPath,
     FlatPunch,
+    IndentationDepths,
     NormalForces,
     Scene,
     StageLog,
@@ -17,6 +18,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.from_depth import inverted
 from contact.records.validation import FloatArray
 
 PACKAGE = "tamaas"
@@ -36,23 +38,24 @@ class Tamaas:
     name: ClassVar[str] = "tamaas"
     shared_inputs: ClassVar[tuple[str, ...]] = ()
 
-    points: int = 128
+    points: int = 64
     tolerance: float = 1e-9
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether the package is installed and models the scene."""
-        reason = refusal(scene, PACKAGE, (NormalForces,))
+        reason = refusal(scene, PACKAGE, (IndentationDepths, NormalForces))
         reason = reason or ("" if scene.layer.is_half_space else "it models half-spaces") or lacks(PACKAGE)
         return Unsupported(reason) if reason else Supported()
 
     def solve(self, scene: Scene) -> ContactPath:
         """The equilibria; it states no errors."""
         support = self.supports(scene)
-        if isinstance(support, Unsupported) or not isinstance(scene.loading, NormalForces):
-            raise UnsupportedSceneError(getattr(support, "reason", "forces only"))
-        log, forces = StageLog(), scene.loading.values
+        if isinstance(support, Unsupported):
+            raise UnsupportedSceneError(support.reason)
+        log = StageLog()
         with log.stage("grid"):
-            answer = self._asked(scene, forces)
+            forces = self._forces(scene)
+            answer = self._asked(scene, np.multiply.outer(forces, 1.0 + STEP * np.array([-1.0, 0.0, 1.0])).ravel())
         depth, radius = answer["indentation_depth"].reshape(-1, 3), answer["contact_radius"].reshape(-1, 3)
         return ContactPath(
             scene=scene,
@@ -71,20 +74,35 @@ class Tamaas:
         """A copy with half the distance of points."""
         return replace(self, points=2 * self.points)
 
+    def _forces(self, scene: Scene) -> FloatArray:
+        """The forces [N] prescribed, or those at which the prescribed depths are reached: it is driven by forces."""
+        if isinstance(scene.loading, NormalForces):
+            return scene.loading.values
+        if not isinstance(scene.loading, IndentationDepths):
+            raise UnsupportedSceneError("Tamaas takes depths and forces")
+        depths = scene.loading.values
+        reach = scene.indenter.flat_radius + depths
+        first = scene.layer.contact_modulus * reach * depths
+        return inverted(lambda forces: self._asked(scene, forces)["indentation_depth"], depths, first)
+
     def _asked(self, scene: Scene, forces: FloatArray) -> dict[str, FloatArray]:
-        """Depths and radii at each force, a little less and a little more."""
+        """Depths and radii at each force."""
         layer = scene.layer
-        length = scene.indenter.radius if isinstance(scene.indenter, FlatPunch) else _radius(scene, forces)
+        if isinstance(scene.loading, IndentationDepths):
+            depth = float(scene.loading.values.max())
+        else:
+            length = scene.indenter.radius if isinstance(scene.indenter, FlatPunch) else _radius(scene, forces)
+            depth = float(forces.max()) / (layer.contact_modulus * length)
         return ask(
             "tamaas_grid",
             {
                 **shape_of(scene),
                 "points": self.points,
-                "size": box(scene, float(forces.max()) / (layer.contact_modulus * length)),
+                "size": box(scene, depth),
                 "young": layer.youngs_modulus,
                 "poisson": layer.poissons_ratio,
                 "tolerance": self.tolerance,
-                "forces": np.multiply.outer(forces, 1.0 + STEP * np.array([-1.0, 0.0, 1.0])).ravel().tolist(),
+                "forces": forces.tolist(),
             },
         )
 

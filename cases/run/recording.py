@@ -7,7 +7,17 @@ import numpy as np
 from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.declare.task import Sampling
 from cases.results.records.scene_run import CostRecord, Curve, Quantity, Stage
-from contact import UNITS, ContactPath, Cost, DetachmentPath, ForceCurve, HistoryPath, ImpactHistory, Solution, StageRecord
+from contact import (
+    UNITS,
+    ContactPath,
+    Cost,
+    DetachmentPath,
+    ForceCurve,
+    HistoryPath,
+    ImpactHistory,
+    Solution,
+    StageRecord,
+)
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     from contact.scene.scene import Scene
 
 QUANTITIES = ContactPath.ARRAYS
-# Depths of the difference quotient of the stiffness, relative. Fourth differences leave step^4/30 of a power law: 3e-10.
+# Depths of the difference quotient of the stiffness, relative. Differences of fourth order leave step^4/30 of a power
+# law: 3e-10.
 STEP = 1e-2
 # Prescribed forces and radii are met within this, relative; secant steps double their digits, so few are needed.
 MET, MOST_STEPS = 1e-10, 40
@@ -82,14 +83,37 @@ def answer_from_depths(
     return ContactPath(**common, contact_radius=radius, **numbers, **cost)
 
 
+def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, first: FloatArray) -> FloatArray:
+    """Return where an increasing positive function has the wanted values: secant steps on the logarithms.
+
+    Args:
+        function: of arrays, shape (n,), entry by entry.
+        wanted: positive, shape (n,).
+        first: a first guess, shape (n,); any positive one will do.
+
+    Raises:
+        NotConvergedError: if no argument gives what is wanted.
+    """
+    old, new = np.log(first), np.log(first) + np.log(2.0)
+    target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))
+    for _ in range(MOST_STEPS):
+        if np.max(np.abs(now - target)) <= MET:
+            return np.exp(new)
+        rise = np.where(now == before, 1.0, (now - before) / np.where(new == old, 1.0, new - old))
+        old, new, before = new, new + np.clip((target - now) / np.where(rise > 0, rise, 1.0), -2.0, 2.0), now
+        now = np.log(function(np.exp(new)))
+    worst = float(wanted[np.argmax(np.abs(now - target))])
+    raise NotConvergedError(f"no argument gives {worst:g}; the nearest misses it by {np.max(np.abs(now - target)):.0e}")
+
+
 def _depths(scene: Scene, respond: Respond) -> FloatArray:
     match scene.loading:
         case IndentationDepths(values=values):
             return values
         case NormalForces(values=values):
-            return _inverted(lambda depths: respond(depths).normal_force, values, _scale(scene, values))
+            return inverted(lambda depths: respond(depths).normal_force, values, _scale(scene, values))
         case ContactRadii(values=values):
-            return _inverted(lambda depths: _radius(respond(depths)), values, scene.indenter.height(values))
+            return inverted(lambda depths: _radius(respond(depths)), values, scene.indenter.height(values))
         case other:
             raise UnsupportedSceneError(f"loading = {type(other).__name__}: a force at depths answers no such scene")
 
@@ -104,20 +128,6 @@ def _scale(scene: Scene, forces: FloatArray) -> FloatArray:
     """A first depth [m]: any will do, the steps are those of logarithms."""
     length = scene.indenter.flat_radius or float(np.sqrt(np.max(forces) / scene.layer.contact_modulus))
     return np.asarray(forces / (2 * scene.layer.contact_modulus * length))
-
-
-def _inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, first: FloatArray) -> FloatArray:
-    """Depths at which an increasing positive function has the wanted values: secant steps on the logarithms."""
-    old, new = np.log(first), np.log(first) + np.log(2.0)
-    target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))
-    for _ in range(MOST_STEPS):
-        if np.max(np.abs(now - target)) <= MET:
-            return np.exp(new)
-        rise = np.where(now == before, 1.0, (now - before) / np.where(new == old, 1.0, new - old))
-        old, new, before = new, new + np.clip((target - now) / np.where(rise > 0, rise, 1.0), -2.0, 2.0), now
-        now = np.log(function(np.exp(new)))
-    worst = float(wanted[np.argmax(np.abs(now - target))])
-    raise NotConvergedError(f"no depth gives {worst:g}; the nearest misses it by {np.max(np.abs(now - target)):.0e}")
 
 
 def _slope(respond: Respond, depths: FloatArray) -> FloatArray:

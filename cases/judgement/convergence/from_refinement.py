@@ -27,8 +27,12 @@ def with_estimated_errors(method: Method, scene: Scene, answer: Solution) -> Sol
     if not silent or answer.error_estimate:
         return answer
     start = time.perf_counter()
-    finer = method.refined()
-    answers = [answer, finer.solve(scene), finer.refined().solve(scene)]
+    try:
+        finer = method.refined()
+        answers = [answer, finer.solve(scene), finer.refined().solve(scene)]
+    except Exception as error:
+        # The answer itself stands, whatever becomes of finer ones.
+        return replace(answer, notes=(*answer.notes, f"no errors stated; its own refinement failed: {error!s:.200}"))
     estimated = {name: _error(*(_values(one, name) for one in answers)) for name in silent if _alike(answers, name)}
     for kind, prescribed in ((IndentationDepths, "indentation_depth"), (NormalForces, "normal_force")):
         if isinstance(scene.loading, kind):

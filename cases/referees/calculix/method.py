@@ -114,7 +114,11 @@ class CalculiX:
 
 
 def _loadings(scene: Scene) -> tuple[type, ...]:
-    return (IndentationDepths, NormalForces) if isinstance(scene.indenter, FlatPunch) else (ContactRadii, IndentationDepths)
+    return (
+        (IndentationDepths, NormalForces)
+        if isinstance(scene.indenter, FlatPunch)
+        else (ContactRadii, IndentationDepths)
+    )
 
 
 def _on_mesh(scene: Scene, value: float, cells: int, start: float) -> Mesh:
@@ -131,7 +135,7 @@ def _on_mesh(scene: Scene, value: float, cells: int, start: float) -> Mesh:
 def _at_radius(scene: Scene, radius: float, cells: int) -> Mesh:
     """Superposes the two steps so that the outermost node in contact carries nothing.
 
-    The deck is written in contact radii and Young's moduli: CalculiX takes small volumes for elements turned inside out.
+    The deck is written in contact radii and Young's moduli: it takes tiny elements for inverted ones.
     """
     kinks = tuple(kink / radius for kink in scene.indenter.kinks if 0.0 < kink < radius)
     mesh = section(1.0, scene.layer.thickness / radius, cells, kinks)
