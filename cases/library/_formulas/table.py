@@ -131,7 +131,7 @@ PARABOLOIDS = (
         support="bonded",
         factor=paraboloid.clifford,
         poissons_ratios=COMPRESSIBLE,
-        source="Clifford, Seah, Nanotechnology 20 (2009) 145708; constants as nanite has them, its limit of a rigid base",
+        source="Clifford, Seah, Nanotechnology 20 (2009) 145708; constants of nanite, limit of a rigid base",
         claim="films on substrates of about 100 GPa; not made for rigid bases",
     ),
     Formula(
