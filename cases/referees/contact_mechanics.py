@@ -20,6 +20,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from contact.answer.from_depth import Response, answer_from_depths
+from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 
 PACKAGE = "ContactMechanics"
@@ -74,7 +75,11 @@ class ContactMechanics:
                 )
             return Response(**answer)
 
-        settings = {"points": self.points, "tolerance": self.tolerance, "package": f"{PACKAGE} {version(PACKAGE)}"}
+        settings: dict[str, Setting] = {
+            "points": self.points,
+            "tolerance": self.tolerance,
+            "package": f"{PACKAGE} {version(PACKAGE)}",
+        }
         return answer_from_depths(scene, respond, log, method=self.name, settings=settings, unknowns=self.points**2)
 
     def refined(self) -> Self:

@@ -43,7 +43,7 @@ def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
     )
     try:
         # Packages may print what they like before the answer, which is the last line.
-        answer = json.loads(done.stdout.splitlines()[-1]) if done.returncode == 0 else None
+        answer: Any = json.loads(done.stdout.splitlines()[-1]) if done.returncode == 0 else None
         return {name: np.asarray(values, dtype=np.float64) for name, values in answer.items()}
     except (AttributeError, IndexError, TypeError, ValueError):
         last = " ".join((done.stderr or done.stdout).split())[-300:]

@@ -71,13 +71,19 @@ def answer_from_depths(
     depths = _depths(scene, respond)
     found = respond(depths)
     radius, stiffness = found.contact_radius, found.contact_stiffness
-    common = {"scene": scene, "method": method, "settings": dict(settings or {}), "error_estimate": {}, **further}
-    numbers = {
+    common: dict[str, Any] = {
+        "scene": scene,
+        "method": method,
+        "settings": dict(settings or {}),
+        "error_estimate": {},
+        **further,
+    }
+    numbers: dict[str, Any] = {
         "indentation_depth": depths,
         "normal_force": found.normal_force,
         "contact_stiffness": _slope(respond, depths) if stiffness is None else stiffness,
     }
-    cost = {"cost": log.cost(unknowns=unknowns), "stages": log.records}
+    cost: dict[str, Any] = {"cost": log.cost(unknowns=unknowns), "stages": log.records}
     if radius is None:
         return ForceCurve(**common, **numbers, **cost)
     return ContactPath(**common, contact_radius=radius, **numbers, **cost)
@@ -98,7 +104,7 @@ def inverted(function: Callable[[FloatArray], FloatArray], wanted: FloatArray, f
     target, before, now = np.log(wanted), np.log(function(np.exp(old))), np.log(function(np.exp(new)))
     for _ in range(MOST_STEPS):
         if np.max(np.abs(now - target)) <= MET:
-            return np.exp(new)
+            return np.asarray(np.exp(new))
         rise = np.where(now == before, 1.0, (now - before) / np.where(new == old, 1.0, new - old))
         old, new, before = new, new + np.clip((target - now) / np.where(rise > 0, rise, 1.0), -2.0, 2.0), now
         now = np.log(function(np.exp(new)))

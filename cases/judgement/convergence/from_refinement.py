@@ -64,4 +64,4 @@ def _error(coarse: FloatArray, middle: FloatArray, fine: FloatArray) -> FloatArr
     """Of the coarse values: their distance to the fine ones, and the error of those."""
     order = min(max(_order(coarse, middle, fine), LEAST_ORDER), LARGEST_ORDER)
     remains = SAFETY * float(np.max(np.abs(fine - middle))) / (2.0**order - 1.0)
-    return np.abs(fine - coarse) + remains + ROUNDINGS * np.finfo(float).eps * np.abs(fine)
+    return np.asarray(np.abs(fine - coarse) + remains + ROUNDINGS * np.finfo(float).eps * np.abs(fine))

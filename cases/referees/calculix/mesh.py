@@ -34,17 +34,17 @@ class Section:
     @property
     def surface(self) -> NDArray[np.int64]:
         """Numbers of the nodes at the surface."""
-        return self.number[:, -1]
+        return np.asarray(self.number[:, -1])
 
     @property
     def base(self) -> NDArray[np.int64]:
         """Numbers of the nodes at the base."""
-        return self.number[:, 0]
+        return np.asarray(self.number[:, 0])
 
     @property
     def axis(self) -> NDArray[np.int64]:
         """Numbers of the nodes at the axis."""
-        return self.number[0]
+        return np.asarray(self.number[0])
 
     def nodes(self) -> Iterator[tuple[int, float, float]]:
         """Number, radius and height of every node."""
@@ -99,4 +99,4 @@ def _with_middles(corners: FloatArray) -> FloatArray:
 
 
 def _odd(count: int) -> NDArray[np.bool_]:
-    return np.arange(count) % 2 == 1
+    return np.asarray(np.arange(count) % 2 == 1)

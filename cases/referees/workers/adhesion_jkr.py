@@ -2,6 +2,7 @@
 
 import json
 import sys
+from collections.abc import Callable
 
 import numpy as np
 from Adhesion.ReferenceSolutions import JKR
@@ -14,9 +15,13 @@ def main() -> None:
     by_force, states = question.pop("by_force"), question.pop("states")
     unit = JKR.radius_unit(**question)
 
-    def lost(function: object) -> float:
+    def lost(function: Callable[..., float]) -> float:
         """Radius at the minimum of a function of the radius."""
-        found = minimize_scalar(lambda x: function(contact_radius=x * unit, **question), bounds=(0.05, 5.0), method="bounded", options={"xatol": 1e-10})  # type: ignore[operator]  # fmt: skip  # noqa: E501
+
+        def at(radius: float) -> float:
+            return function(contact_radius=radius * unit, **question)
+
+        found = minimize_scalar(at, bounds=(0.05, 5.0), method="bounded", options={"xatol": 1e-10})
         return float(found.x * unit)
 
     force_control = lost(JKR.force)

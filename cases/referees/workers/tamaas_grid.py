@@ -23,7 +23,7 @@ def heights(question: dict[str, Any]) -> np.ndarray:
     x = (np.arange(n) - n / 2 + 0.5) * size / n
     r, b = np.hypot(x[:, None], x[None, :]), question["flat_radius"]
     above = question["slope"] * np.maximum(r - b, 0) + question["curvature"] * np.maximum(r**2 - b**2, 0) / 2
-    return -above - np.where(r > b, question["beyond"], 0.0)
+    return np.asarray(-above - np.where(r > b, question["beyond"], 0.0))
 
 
 def solved(question: dict[str, Any], surface: np.ndarray, force: float) -> tuple[float, float]:

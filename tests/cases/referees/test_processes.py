@@ -45,7 +45,8 @@ def worker(tmp_path, monkeypatch):
 
 def test_arrays_come_back_to_the_last_digit(worker):
     worker(
-        "import json, sys\nx = json.load(sys.stdin)['x']\nprint('talk')\nprint(json.dumps({'twice': [2 * v for v in x]}))"
+        "import json, sys\nx = json.load(sys.stdin)['x']\nprint('talk')\n"
+        "print(json.dumps({'twice': [2 * v for v in x]}))"
     )
     assert process.ask("some", {"x": [0.1, 1 / 3]})["twice"].tolist() == [0.2, 2 / 3]
 
