@@ -4,6 +4,8 @@ import math
 
 # Safety factor of three grids whose observed order is none that the mesh could have (VERIFICATION, Roache).
 SAFETY = 3.0
+# Safety factor of a change that shrinks at least like the cells (the same source).
+SAFETY_OF_CHANGE = 1.25
 # Half a unit of the last of seven printed digits, at worst.
 PRINTED = 5e-7
 
@@ -22,8 +24,8 @@ def extrapolated(coarse: float, middle: float, fine: float) -> tuple[float, floa
 
 
 def last_change(middle: float, fine: float) -> tuple[float, float]:
-    """Return the finest value with the last change as its error: for what no order is known of."""
-    return fine, abs(fine - middle) + PRINTED * abs(fine)
+    """Return the finest value with the last change and a quarter as its error: for what is of first order at least."""
+    return fine, SAFETY_OF_CHANGE * abs(fine - middle) + PRINTED * abs(fine)
 
 
 def observed_order(coarse: float, middle: float, fine: float) -> float:

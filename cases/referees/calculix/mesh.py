@@ -13,8 +13,10 @@ from contact.records.validation import FloatArray
 # cells.  Measured at a/h = 1, nu = 0.3 (16, 32 and 64 cells; 2026-11-22): 13 leaves 3e-7 of the stiffness after
 # extrapolation, 16 leaves 1.2e-6, and 8 an error of first order in the edge cell of 5e-5.
 GRADING = 13.0
-# The mesh ends so many thicknesses beyond the contact: 6 and 8 give the same seven digits at nu = 0.3.
-OUTER_DISTANCE = 8.0
+# The mesh ends so many thicknesses beyond the contact. On bonded layers everything decays exponentially: 6 and 8 give
+# the same seven digits at nu = 0.3. An unbonded layer slides on its base like a sheet, whose displacement falls like
+# 1/r: a free edge at 8 thicknesses costs 1.7e-3 of the force at a/h = 1, and that falls with the square.
+OUTER_DISTANCE = {"bonded": 8.0, "unbonded": 400.0}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,16 +63,23 @@ class Section:
                 yield tuple(int(node) for node in (*corners, *middles))
 
 
-def section(contact_radius: float, thickness: float, cells: int, kinks: tuple[float, ...] = ()) -> Section:
+def section(
+    contact_radius: float, thickness: float, cells: int, kinks: tuple[float, ...] = (), support: str = "bonded"
+) -> Section:
     """Return the mesh; twice the cells give a mesh that has all its nodes.
 
     Args:
         contact_radius: a [m], where cells are smallest.
         thickness: h [m].
-        cells: on the contact, beyond it, and over the thickness.
+        cells: on the contact and over the thickness; half as many again beyond it where the layer slides.
         kinks: radii inside the contact [m] where the profile has a corner: cells are small there, too.
+        support: of the layer, which says how far the mesh must reach.
     """
-    outside = contact_radius + _graded(OUTER_DISTANCE * thickness, cells)
+    farther = OUTER_DISTANCE[support] / OUTER_DISTANCE["bonded"]
+    beyond = cells if farther == 1.0 else cells * 3 // 2
+    # The first cell is the same however far the mesh reaches.
+    grading = GRADING + float(np.log(farther))
+    outside = contact_radius + _graded(OUTER_DISTANCE[support] * thickness, beyond, grading)
     columns = _with_middles(np.concatenate([_inside((*kinks, contact_radius), cells), outside[1:]]))
     rows = _with_middles(-_graded(thickness, cells)[::-1])
     there = ~(_odd(columns.size)[:, None] & _odd(rows.size)[None, :])
@@ -78,9 +87,9 @@ def section(contact_radius: float, thickness: float, cells: int, kinks: tuple[fl
     return Section(radius=columns, depth=rows, number=number)
 
 
-def _graded(length: float, cells: int) -> FloatArray:
+def _graded(length: float, cells: int, grading: float = GRADING) -> FloatArray:
     """From zero to the length; cells grow like an exponential, and half of the nodes of twice as many are these."""
-    grown: FloatArray = length * np.expm1(GRADING * np.linspace(0.0, 1.0, cells + 1)) / np.expm1(GRADING)
+    grown: FloatArray = length * np.expm1(grading * np.linspace(0.0, 1.0, cells + 1)) / np.expm1(grading)
     return grown
 
 

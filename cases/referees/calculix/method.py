@@ -19,6 +19,7 @@ from contact import (
     ContactRadii,
     FlatPunch,
     IndentationDepths,
+    InvalidInput,
     NormalForces,
     NotConvergedError,
     Scene,
@@ -59,13 +60,21 @@ class CalculiX:
     """Axisymmetric quadratic displacement elements on a layer of finite thickness, nu < 1/2.
 
     Attributes:
-        cells: of the coarsest of three meshes, on the contact, beyond it, and over the thickness.
+        cells: of the coarsest of three meshes, on the contact and over the thickness; even.
+
+    Raises:
+        InvalidInput: if the meshes would not be nested.
     """
 
     name: ClassVar[str] = "calculix"
     shared_inputs: ClassVar[tuple[str, ...]] = ()
 
     cells: int = 16
+
+    def __post_init__(self) -> None:
+        """Refuse meshes that are not nested: beyond the contact there are half as many cells again."""
+        if self.cells < 2 or self.cells % 2:
+            raise InvalidInput(f"cells = {self.cells}: give an even number, so that meshes are nested")
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether CalculiX is installed and has elements for the layer."""
@@ -138,7 +147,7 @@ def _at_radius(scene: Scene, radius: float, cells: int) -> Mesh:
     The deck is written in contact radii and Young's moduli: it takes tiny elements for inverted ones.
     """
     kinks = tuple(kink / radius for kink in scene.indenter.kinks if 0.0 < kink < radius)
-    mesh = section(1.0, scene.layer.thickness / radius, cells, kinks)
+    mesh = section(1.0, scene.layer.thickness / radius, cells, kinks, scene.layer.support)
     flat = isinstance(scene.indenter, FlatPunch)
     heights = np.zeros(mesh.radius.size) if flat else scene.indenter.height(radius * mesh.radius) / radius
     found = reactions(deck(mesh, scene.layer.replace(youngs_modulus=1.0), 1.0, heights))
