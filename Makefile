@@ -58,7 +58,7 @@ format: $(READY)  ## Reformat the sources
 
 constraints:  ## Renew constraints.txt from the newest releases that pyproject.toml admits
 	rm -rf build/constraints && $(PYTHON) -m venv build/constraints
-	PIP_CONSTRAINT= build/constraints/bin/python -m pip install --quiet --upgrade '.[dev,docs,test]' setuptools
+	PIP_CONSTRAINT= build/constraints/bin/python -m pip install --quiet --upgrade '.[dev,docs,test,referees]' setuptools
 	{ echo "# Exact versions of every direct and transitive dependency: the same answer on every machine."; \
 	  echo "# Renewed by: make constraints"; \
 	  build/constraints/bin/python -m pip freeze --all --exclude pip --exclude contact-verification | sort -f; } > constraints.txt

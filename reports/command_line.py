@@ -38,6 +38,7 @@ class Suite(StrEnum):
 
     CI = "ci"
     NIGHTLY = "nightly"
+    REFEREES = "referees"
 
 
 Cases = Annotated[

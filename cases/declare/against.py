@@ -4,6 +4,7 @@ from collections.abc import Collection, Iterator
 from dataclasses import replace
 
 from cases.declare.case import Case, CaseScene, ClaimOfCase
+from cases.declare.foreign.restated import with_restated
 from cases.declare.foreign_agreements import agreements_between
 from cases.declare.foreign_methods import claimed_accuracy
 from cases.declare.guarded_method import BrokenMethodError, build_guarded
@@ -27,7 +28,8 @@ def against(cases: Collection[Case], methods: Collection[str], others: Collectio
     if not pairs:
         raise InvalidInput(f"--against {' '.join(others)}: name with --method what is compared with it")
     accuracies = {label: claimed_accuracy(label) for label in registered() if label in (*methods, *others)}
-    found = [(case, tuple(_agreements(case, pairs, accuracies))) for case in cases]
+    asked = [with_restated(case, accuracies) for case in cases]
+    found = [(case, tuple(_agreements(case, pairs, accuracies))) for case in asked]
     compared = tuple(_compared(case, pairs, claims) for case, claims in found if claims)
     if not compared:
         raise InvalidInput(f"{', '.join(case.name for case in cases)}: methods are not compared there; run it without")

@@ -11,7 +11,9 @@ from cases.results.records.field_types import Scalar
 from cases.results.records.figure import Figure
 from contact import InvalidInput, Scene
 
-SUITES = ("ci", "nightly")
+# Suites that every case is in unless it says otherwise, and that of the outside referees.
+USUAL_SUITES = ("ci", "nightly")
+SUITES = (*USUAL_SUITES, "referees")
 
 
 class ClaimOfCase(Protocol):
@@ -115,7 +117,7 @@ class Case:
         question: what a reader learns.
         equations: of the source.
         text: the paper's body: set-up, what to expect and why.
-        suites: "ci" (minutes) and "nightly".
+        suites: "ci" (minutes) and "nightly"; "referees" (minutes) asks solvers of others.
         scenes: solved by every method.
         methods: compared methods.
         claims: what must hold.
@@ -129,7 +131,7 @@ class Case:
     question: str
     equations: tuple[str, ...]
     text: str
-    suites: tuple[str, ...] = SUITES
+    suites: tuple[str, ...] = USUAL_SUITES
     scenes: tuple[CaseScene, ...]
     methods: tuple[MethodUse, ...]
     claims: tuple[ClaimOfCase, ...]

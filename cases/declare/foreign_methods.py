@@ -11,8 +11,9 @@ from numbers import Real
 from typing import Any, Final
 
 from cases.declare.case import Case, ClaimOfCase
+from cases.declare.foreign.restated import with_restated
 from cases.declare.foreign_agreements import foreign_agreements, relaxed
-from cases.declare.methods import MethodUse, load, registered
+from cases.declare.methods import REFEREES, MethodUse, load, registered
 from cases.judgement.claims.declared import PerMethod
 from cases.judgement.claims.residual import Residual
 from contact import InvalidInput
@@ -27,12 +28,14 @@ def with_registered(case: Case, chosen: Collection[str] | None = None) -> Case:
 
     Args:
         case: with its own methods.
-        chosen: names of methods; None for every registered one.
+        chosen: names of methods; None for every registered one but the outside referees, which are asked by name.
 
     Raises:
         InvalidInput: if such a method cannot be imported, or claims an accuracy that is none.
     """
-    names = [name for name in registered() if chosen is None or name in chosen]
+    own = {use.label for use in case.methods}
+    asked = [name for name in registered() if name not in REFEREES] if chosen is None else chosen
+    names = [name for name in registered() if name in asked and name not in own]
     return with_foreign_methods(case, {name: claimed_accuracy(name) for name in names})
 
 
@@ -74,9 +77,11 @@ def with_foreign_methods(case: Case, accuracies: Mapping[str, float]) -> Case:
     if not accuracies:
         return case
     uses = tuple(MethodUse(label=name) for name in accuracies)
-    scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in case.scenes)
-    own = (_extended(case, claim, accuracies) for claim in case.claims)
-    agreements = (new for name, accuracy in accuracies.items() for new in foreign_agreements(case, name, accuracy))
+    asked = with_restated(case, accuracies)
+    scenes = (replace(scene, methods=(*scene.methods, *uses)) if scene.methods else scene for scene in asked.scenes)
+    # The first claims of what is asked are the case's own, of its own scenes.
+    own = (_extended(case, claim, accuracies) for claim in asked.claims[: len(case.claims)])
+    agreements = (new for name, accuracy in accuracies.items() for new in foreign_agreements(asked, name, accuracy))
     return replace(case, methods=(*case.methods, *uses), scenes=tuple(scenes), claims=(*own, *agreements))
 
 

@@ -51,13 +51,26 @@ BUILT_IN: Mapping[str, TableEntry] = {
 }
 
 
+# Solvers of others that this project can ask, as if their packages had registered them.
+REFEREES: Mapping[str, EntryPoint] = {
+    name: EntryPoint(name, f"cases.referees.{place}", ENTRY_POINT_GROUP)
+    for name, place in {
+        "calculix": "calculix.method:CalculiX",
+        "contact_mechanics": "contact_mechanics:ContactMechanics",
+        "tamaas": "tamaas:Tamaas",
+        "nanite": "nanite:Nanite",
+        "adhesion_jkr": "jkr:Jkr",
+    }.items()
+}
+
+
 def registered() -> dict[str, EntryPoint]:
-    """Return the methods of installed packages by name.
+    """Return the methods of installed packages by name, the outside referees first.
 
     Raises:
         InvalidInput: if two packages, or a package and this project, use one name, or if a name could not name a file.
     """
-    found: dict[str, EntryPoint] = {}
+    found = dict(REFEREES)
     for entry in entry_points(group=ENTRY_POINT_GROUP):
         check_name(entry.name, entry.value)
         if entry.name in BUILT_IN or entry.name in found:

@@ -14,8 +14,17 @@ LAYERS: dict[str, str | None] = {f"bonded nu={nu}": nu for nu in ("0.3", "0.4", 
 # Gauss nodes that give at least twelve digits up to this a/h.
 NODES = {"0.1": 16, "0.2": 16, "0.5": 18, "1": 20, "2": 24, "5": 34, "10": 50}
 PRESSURE_AT = ("0", "0.2", "0.4", "0.6", "0.8", "0.9", "0.95")
-PARABOLOIDS = {"bonded nu=0.5": ("0.2", "1", "2", "5", "10"), "unbonded": ("1", "2", "5")}
-CONES = {"bonded nu=0.5": ("0.1", "1", "2", "5"), "bonded nu=0.45": ("1", "2", "5"), "unbonded": ("1", "2", "5")}
+PARABOLOIDS = {
+    "bonded nu=0.5": ("0.2", "1", "2", "5", "10"),
+    "bonded nu=0.3": ("1",),
+    "unbonded": ("1", "2", "5"),
+}
+CONES = {
+    "bonded nu=0.5": ("0.1", "1", "2", "5"),
+    "bonded nu=0.45": ("1", "2", "5"),
+    "bonded nu=0.3": ("1",),
+    "unbonded": ("1", "2", "5"),
+}
 ELONGATIONS = {"0.5": "0.46", "0.45": "0.6", "0.4": "0.914"}
 # Thickness [mm] of the impacted layers; zero stands for the half-space.
 THICKNESSES = ("0", "1", "2", "3")

@@ -8,7 +8,17 @@ from cases.declare.quantities import IMPACT_NUMBERS, values_of
 from cases.declare.task import Sampling
 from cases.results.records.scene_run import CostRecord, Curve, Quantity, Stage
 from cases.run.inside.points import inside_curves, inside_quantities
-from contact import UNITS, ContactPath, Cost, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
+from contact import (
+    UNITS,
+    ContactPath,
+    Cost,
+    DetachmentPath,
+    ForcePath,
+    HistoryPath,
+    ImpactHistory,
+    Solution,
+    StageRecord,
+)
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
@@ -81,6 +91,8 @@ def curves(solution: Solution, sampling: Sampling) -> tuple[Curve, ...]:
         return (*pressure, *(inside_curves(solution, sampling) if sampling.inside else ()))
     if isinstance(solution, ImpactHistory | HistoryPath):
         return tuple(_over(solution, "time", channel) for channel in solution.ARRAYS if channel != "time")
+    if isinstance(solution, ForcePath):
+        return ()
     return tuple(_over(solution, "contact_radius", channel) for channel in ("indentation_depth", "normal_force"))
 
 

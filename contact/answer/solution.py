@@ -218,6 +218,28 @@ class ContactPath(Solution):
         return _frozen(name, values, self.method).reshape(r.shape)
 
 
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ForcePath(Solution):
+    """Equilibria of a solver that knows no contact radius.
+
+    Attributes:
+        indentation_depth: delta [m], shape (n,).
+        normal_force: F_N [N], shape (n,).
+        contact_stiffness: dF/d(delta) [N/m], shape (n,).
+    """
+
+    ARRAYS: ClassVar[tuple[str, ...]] = ("indentation_depth", "normal_force", "contact_stiffness")
+    ASKED: ClassVar[tuple[str, ...]] = ARRAYS
+
+    indentation_depth: FloatArray
+    normal_force: FloatArray
+    contact_stiffness: FloatArray
+
+    def scale(self, quantity: str) -> FloatArray:
+        """The quantity's own magnitude."""
+        return np.abs(np.asarray(getattr(self, quantity, 1.0), dtype=np.float64))
+
+
 @dataclass(frozen=True, kw_only=True)
 class CriticalPoint:
     """A state where the equilibrium branch gains or loses stability.

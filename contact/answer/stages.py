@@ -36,8 +36,9 @@ class Cost:
 
     Attributes:
         wall_seconds: [s].
-        cpu_seconds: [s], all threads.
-        peak_memory_bytes: High-water mark of the process so far; meaningful in a process of its own.
+        cpu_seconds: [s], all threads, and processes that the method started and that have ended.
+        peak_memory_bytes: High-water mark of the process so far, and of the largest process that it started; meaningful
+            in a process of its own.
         unknowns: Size of the largest system solved.
         counters: Deterministic counts (factorisations, iterations, transforms, steps).
     """
@@ -64,8 +65,8 @@ class StageLog:
     _tallies: dict[str, _Tally] = field(default_factory=dict)
     _counters: dict[str, int] = field(default_factory=dict)
     _open: list[str] = field(default_factory=list)
-    _mark: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
-    _start: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), time.process_time()))
+    _mark: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), processor_seconds()))
+    _start: tuple[float, float] = field(default_factory=lambda: (time.perf_counter(), processor_seconds()))
 
     @contextmanager
     def stage(self, name: str) -> Iterator[None]:
@@ -89,7 +90,7 @@ class StageLog:
 
     def _settle(self) -> None:
         """Give the time since the last mark to the innermost open stage."""
-        now = (time.perf_counter(), time.process_time())
+        now = (time.perf_counter(), processor_seconds())
         if self._open:
             tally = self._tallies[self._open[-1]]
             tally.wall += now[0] - self._mark[0]
@@ -108,18 +109,32 @@ class StageLog:
         """Cost since the log was made."""
         return Cost(
             wall_seconds=time.perf_counter() - self._start[0],
-            cpu_seconds=time.process_time() - self._start[1],
+            cpu_seconds=processor_seconds() - self._start[1],
             peak_memory_bytes=peak_memory_bytes(),
             unknowns=unknowns,
             counters=dict(self._counters),
         )
 
 
+def processor_seconds() -> float:
+    """Processor time of this process and of those that it started and that have ended [s]."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
+
+
 def peak_memory_bytes() -> int:
-    """High-water mark of this program's resident memory."""
+    """High-water mark of this program's resident memory, and that of the largest process that it started."""
+    return _own_peak() + _in_bytes(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
+
+
+def _own_peak() -> int:
     status = Path("/proc/self/status")
     # On Linux `getrusage` also remembers the program that started this one, so the kernel's own file is read.
     if status.exists():
         return 1024 * int(status.read_text(encoding="ascii").split("VmHWM:")[1].split()[0])
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return _in_bytes(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+
+
+def _in_bytes(peak: int) -> int:
+    """As `getrusage` tells it: kilobytes, but on macOS bytes."""
     return peak if sys.platform == "darwin" else 1024 * peak

@@ -10,7 +10,7 @@ from reports.figures.figure import ReportFigure
 from reports.figures.figure_files import FigureFolder, PlacedFigure
 from reports.figures.renderer import report_figure
 from reports.pages.claim_blocks import claim_blocks
-from reports.tables import case_tables, cost_tables, hard_tables
+from reports.tables import case_tables, cost_tables, hard_tables, referee_table
 from reports.tables.table import Table
 from reports.words.outcomes import case_outcomes, severity
 
@@ -29,6 +29,7 @@ def case_view(case: CaseResult, folder: FigureFolder, command: str) -> CaseView:
         "figures": placed(report_figure(figure, case.name) for figure in case.figures),
         "agreement": placed(agreement.figures(case)),
         "answers": case_tables.answers(case),
+        "side_by_side": referee_table.side_by_side(case),
         "convergence": placed(convergence.figures(case)),
         "work": tuple(map(_timed, placed(work_precision.figures(case)), case.work_precision)),
         "ladders": placed(ladder.figures(case)),

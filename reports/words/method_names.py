@@ -9,6 +9,10 @@ NAMES: Mapping[str, str] = {
     "bem": "BEM",
     "integral_equation": "integral equation",
     "mdr_table": "MDR (FFT table)",
+    "calculix": "CalculiX",
+    "contact_mechanics": "ContactMechanics",
+    "tamaas": "Tamaas",
+    "adhesion_jkr": "Adhesion (JKR)",
 }
 
 

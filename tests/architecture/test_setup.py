@@ -23,7 +23,7 @@ def test_every_constraint_is_one_exact_version_and_no_address():
         assert re.fullmatch(r"[A-Za-z0-9._-]+==[A-Za-z0-9.+!]+", line), line
 
 
-@pytest.mark.parametrize("group", ["dependencies", "dev", "cluster", "test", "docs"])
+@pytest.mark.parametrize("group", ["dependencies", "dev", "cluster", "test", "docs", "referees"])
 def test_every_direct_dependency_is_pinned(group):
     wanted = PROJECT["dependencies"] if group == "dependencies" else PROJECT["optional-dependencies"][group]
     pinned = {normalized(line.split("==")[0]) for line in PINS}

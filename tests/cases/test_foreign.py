@@ -87,7 +87,7 @@ def test_a_name_that_is_no_plain_word_is_refused_before_anything_is_computed(reg
 @pytest.mark.parametrize("name", ["hertz_half_space", "Fem-2.1", "x"])
 def test_plain_names_are_taken(register, name):
     register(name)
-    assert set(methods.registered()) == {name}
+    assert set(methods.registered()) - set(methods.REFEREES) == {name}
 
 
 @pytest.mark.parametrize("claimed", [0.11, 1.0, 1e9, -1e-3, np.nan, np.inf, "1e-3", True, None, [1e-3]], ids=repr)

@@ -43,7 +43,7 @@ class Agreement(DeclaredClaim):
         for scene in self.scenes_of(case):
             fast, reference = (answers.of(case.task(scene, case.use(scene, m))) for m in self.labels(case, scene))
             labels, shared = self.labels(case, scene), self.shared(case, fast, reference)
-            judged = first_missing(fast, reference)
+            judged = first_missing(fast, reference, quantity=self.quantity)
             if judged is not None:
                 yield self.record(judged, scene.name, labels, shared=shared)
                 continue

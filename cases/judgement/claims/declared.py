@@ -209,13 +209,15 @@ class PerMethod(DeclaredClaim, ABC):
         return positive_tolerance(self.tolerances.get(label, self.tolerance))
 
 
-def missing(run: SceneRun) -> Judgement | None:
-    """Return why ``run`` cannot be compared, or None when it has numbers."""
-    if run.solved:
-        return None
-    return nothing_compared(run.status, f"{run.method}: {run.reason}")
+def missing(run: SceneRun, quantity: str = "") -> Judgement | None:
+    """Return why ``run`` cannot be compared (in ``quantity``, where one is named), or None when it has numbers."""
+    if not run.solved:
+        return nothing_compared(run.status, f"{run.method}: {run.reason}")
+    if quantity and quantity not in {found.name for found in run.quantities}:
+        return nothing_compared(Status.SKIP, f"{run.method} gives no {quantity.replace('_', ' ')}")
+    return None
 
 
-def first_missing(*runs: SceneRun) -> Judgement | None:
-    """Return why the first of ``runs`` without numbers cannot be compared, or None."""
-    return next((judged for run in runs if (judged := missing(run)) is not None), None)
+def first_missing(*runs: SceneRun, quantity: str = "") -> Judgement | None:
+    """Return why the first of ``runs`` without numbers (of ``quantity``) cannot be compared, or None."""
+    return next((judged for run in runs if (judged := missing(run, quantity)) is not None), None)

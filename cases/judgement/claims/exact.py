@@ -38,7 +38,7 @@ class Exact(PerMethod):
         """Judge each scene and method by its worst step."""
         for scene, label, run, tolerance in self.answered(case, answers):
             expected = self.expected_on(scene)
-            judged, stated = missing(run), None
+            judged, stated = missing(run, self.quantity), None
             if judged is None:
                 judged, stated, _ = worst_step(run.quantity(self.quantity), expected, tolerance)
             single = expected[0] if len(expected) == 1 else None

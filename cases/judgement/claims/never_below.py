@@ -36,7 +36,7 @@ class NeverBelow(PerMethod):
         """Judge each scene and method by its worst step."""
         for scene, label, run, tolerance in self.answered(case, answers):
             bound = answers.of(self._changed(case.task(scene, case.use(scene, label))))
-            judged = first_missing(run, bound) or self._judged(run, bound, tolerance)
+            judged = first_missing(run, bound, quantity=self.quantity) or self._judged(run, bound, tolerance)
             yield self.record(judged, scene.name, (label,), tolerance=tolerance)
 
     def _changed(self, task: Task) -> Task:

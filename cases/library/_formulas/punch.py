@@ -1,0 +1,87 @@
+"""Flat punches on layers: what multiplies the stiffness 2 E* a of the half-space, over t = a/h.
+
+Every function takes t, shape (n,), and Poisson's ratio, and returns k_N / (2 E* a).
+"""
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+
+from contact.records.validation import FloatArray
+
+# Hayes, Keer, Herrmann and Mockros, J. Biomech. 5 (1972) 541, as code that cites the table has it, nu = 1/2.
+HAYES_AT = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0])
+HAYES = np.array(
+    [1, 1.281, 1.683, 2.211, 2.855, 3.609, 5.970, 9.069, 13.0, 17.86, 23.74, 30.75, 48.47, 71.75, 101.27, 137.7]
+)
+# A column in circulation under the heading nu = 0.5, at a/h = 0.2, 0.4, .. 2.0.
+MISLABELLED_AT = 0.2 * np.arange(11)
+MISLABELLED = np.array([1, 1.268, 1.645, 2.129, 2.704, 3.359, 4.085, 4.878, 5.737, 6.659, 7.644])
+
+
+def boussinesq(t: FloatArray, nu: float) -> FloatArray:
+    """One: the layer is taken for a half-space."""
+    return np.ones_like(t)
+
+
+def hayes(t: FloatArray, nu: float) -> FloatArray:
+    """Hayes et al. 1972, table for nu = 1/2 with a cubic spline: bonded."""
+    return np.where(t <= HAYES_AT[-1], CubicSpline(HAYES_AT, HAYES)(t), np.nan)
+
+
+def hayes_mislabelled(t: FloatArray, nu: float) -> FloatArray:
+    """The column in circulation as nu = 0.5, with a cubic spline: bonded."""
+    return np.where(t <= MISLABELLED_AT[-1], CubicSpline(MISLABELLED_AT, MISLABELLED)(t), np.nan)
+
+
+def garcia(t: FloatArray, nu: float) -> FloatArray:
+    """Garcia and Garcia 2018: bonded, nu = 1/2."""
+    return 1 + 1.133 * t + 1.283 * t**2 + 0.598 * t**3 - 0.291 * t**4
+
+
+def lin_hui_conway(t: FloatArray, nu: float) -> FloatArray:
+    """Lin, Hui and Conway 2000, Shull 2002: bonded, nu = 1/2."""
+    return 1 + 1.33 * t + 1.33 * t**3
+
+
+def hermanowicz_bonded(t: FloatArray, nu: float) -> FloatArray:
+    """Hermanowicz 2021: bonded, nu = 1/2."""
+    small = _polynomial(
+        t, 1.127294838473304, 1.2534743855684407, 0.7845575578931572, -0.8066500581952372, 0.25992549153472266
+    )
+    large = -0.32200988000179354 + _polynomial(t, 1.9372155069019295, 0.8542206369854419, 0.1474038965378127)
+    return 1 + np.where(t <= 1.2, small, large)
+
+
+def hermanowicz_compressible(t: FloatArray, nu: float) -> FloatArray:
+    """Hermanowicz 2021: bonded, nu = 0."""
+    small = _polynomial(
+        t, 0.770308111530346, 0.6165420289577782, -0.0384621101679078, -0.19394949807916162, 0.07260749644777371
+    )
+    large = -0.33294442393732854 + _polynomial(
+        t, 1.5342411518628014, 0.005042851886799859, -0.000260182832698187, 4.362991470005079e-6
+    )
+    return 1 + np.where(t > 1.5, large, small)
+
+
+def hermanowicz_loose(t: FloatArray, nu: float) -> FloatArray:
+    """Hermanowicz 2021: frictionless base, any nu."""
+    small = _polynomial(
+        t, 0.7426462444663599, 0.5708600467411756, 0.008619952995014581, -0.1799716509234812, 0.0574929480459991
+    )
+    large = -0.3838553953270864 + _polynomial(t, 1.553893809221951, 0.00138818040746098, -3.107802923772486e-5)
+    return 1 + np.where(t <= 1.65, small, large)
+
+
+def thin_compressible(t: FloatArray, nu: float) -> FloatArray:
+    """A thin compressible bonded layer as a bed of springs: k_N = pi a^2/h E(1-nu)/((1+nu)(1-2nu)), Barber 1990."""
+    return np.pi / 4 * t * (1 - nu) ** 2 / (1 - 2 * nu) * 2
+
+
+def thin_incompressible(t: FloatArray, nu: float) -> FloatArray:
+    """A thin incompressible bonded layer: k_N = 3 pi G a^4/(8 h^3), squeezed like a viscous film."""
+    return 3 * np.pi / 64 * t**3
+
+
+def _polynomial(t: FloatArray, *coefficients: float) -> FloatArray:
+    """c1 t + c2 t^2 + .."""
+    return sum((c * t**power for power, c in enumerate(coefficients, 1)), np.zeros_like(t))

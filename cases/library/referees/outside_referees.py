@@ -1,0 +1,205 @@
+"""Solvers that nobody here wrote answer the same scenes: who gets what right, and at which price.
+
+CalculiX (finite elements of displacements, a program of its own), ContactMechanics and Tamaas (grids with fast
+transforms), nanite (formulas of a program that fits force curves) and Adhesion (closed forms of JKR) are asked as they
+come, none is tuned to agree, and each may skip what it does not model.  All scenes prescribe the depth, since that is
+what these solvers take; contact radius, force and stiffness are compared with closed forms on the half-space and with
+the integral equation in extended precision on layers.  A depth that belongs to a/h = 1 is known to fourteen digits.
+
+CalculiX solves three nested meshes, and its force and stiffness agree with MDR and finite elements within 1e-5.  A
+solver that states no error gets one from its own refinement, which its answer says.  The curve has 200 depths;
+CalculiX, which searches the radius of each depth on three meshes, would need hours for it and is left out.
+"""
+
+import numpy as np
+
+from cases.declare.case import Case, CaseScene, text_of
+from cases.declare.methods import MethodUse
+from cases.judgement.claims.agreement import Agreement
+from cases.library._claims import exact
+from cases.library._layers import THICKNESS, contact_modulus, half_space, layer, scene_name
+from cases.library._methods import BEM, DETACHING_FEM, EQUATION, FEM, MDR
+from cases.library._reasons import SHARED, reasons, with_tolerance
+from cases.library._references import numbers
+from contact import (
+    Adhesion,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    Layer,
+    Paraboloid,
+    Profile,
+    Scene,
+    TruncatedCone,
+)
+
+WHY = reasons("outside_referees")
+
+REFEREES = tuple(MethodUse(label=name) for name in ("calculix", "contact_mechanics", "tamaas", "nanite"))
+JKR = MethodUse(label="adhesion_jkr")
+
+A = THICKNESS  # m, the radius of every contact
+PUNCH_DEPTH = 1e-5  # m
+CURVATURE = 1e-2  # m
+SLOPE, FLAT = 0.1, 0.5
+WORK_OF_ADHESION = 0.05  # J/m^2
+LAYERS: dict[str, Layer] = {
+    "half-space": half_space(),
+    **{label: layer(label) for label in ("bonded nu=0.3", "bonded nu=0.5", "unbonded")},
+}
+INDENTERS: dict[str, Profile] = {
+    "flat punch": FlatPunch(radius=A),
+    "paraboloid": Paraboloid(radius_of_curvature=CURVATURE),
+    "truncated cone": TruncatedCone(flat_radius=FLAT * A, slope=SLOPE),
+}
+CURVE_DEPTHS = 200
+
+
+def stiffness(label: str) -> float:
+    """Return k_N [N/m] of a circle of radius a: 2 E* a, and on layers its tabulated multiple."""
+    kbar = 1.0 if label == "half-space" else numbers("stiffness")[scene_name(label, 1.0)][0]
+    return 2 * contact_modulus(LAYERS[label]) * A * kbar
+
+
+def depth_and_force(label: str, indenter: str) -> tuple[float, float]:
+    """Return depth [m] and force [N] at contact radius a."""
+    modulus = contact_modulus(LAYERS[label])
+    if indenter == "flat punch":
+        return PUNCH_DEPTH, PUNCH_DEPTH * stiffness(label)
+    if indenter == "paraboloid":
+        scaled = (1.0, 4 / 3) if label == "half-space" else numbers("paraboloid")[scene_name(label, 1.0)]
+        return scaled[0] * A**2 / CURVATURE, scaled[1] * modulus * A**3 / CURVATURE
+    angle = float(np.arccos(FLAT))
+    closed = (angle, angle + FLAT * float(np.sqrt(1 - FLAT**2)))
+    scaled = closed if label == "half-space" else numbers("truncated_cone")[scene_name(label, 1.0)]
+    return scaled[0] * A * SLOPE, scaled[1] * modulus * A**2 * SLOPE
+
+
+def at_depth(label: str, indenter: str) -> CaseScene:
+    """Return the scene whose contact radius is a."""
+    depth = depth_and_force(label, indenter)[0]
+    return CaseScene(
+        name=f"{indenter}, {label}",
+        parameters={"indenter": indenter, "layer": label},
+        scene=Scene(
+            layer=LAYERS[label], indenter=INDENTERS[indenter], loading=IndentationDepths(values=np.array([depth]))
+        ),
+    )
+
+
+PLACES = tuple((label, indenter) for indenter in INDENTERS for label in LAYERS)
+SCENES = tuple(at_depth(label, indenter) for label, indenter in PLACES)
+PULLED = CaseScene(
+    name="pull-off of a paraboloid, half-space",
+    parameters={"indenter": "paraboloid", "layer": "half-space"},
+    scene=Scene(
+        layer=half_space(),
+        indenter=INDENTERS["paraboloid"],
+        loading=Detachment(control="force"),
+        effects=(Adhesion(work_of_adhesion=WORK_OF_ADHESION),),
+    ),
+    methods=(MDR, DETACHING_FEM, BEM, EQUATION, JKR),
+)
+CURVE = CaseScene(
+    name="curve of 200 depths, half-space",
+    parameters={"indenter": "paraboloid", "layer": "half-space"},
+    scene=Scene(
+        layer=half_space(),
+        indenter=INDENTERS["paraboloid"],
+        loading=IndentationDepths(values=np.linspace(0.05, 1.0, CURVE_DEPTHS) * A**2 / CURVATURE),
+    ),
+    methods=(MDR, EQUATION, *REFEREES[1:]),
+)
+
+EXPECTED = {
+    "contact_radius": {
+        scene.name: (A,) for scene, (_, indenter) in zip(SCENES, PLACES, strict=True) if indenter != "flat punch"
+    },
+    "normal_force": {scene.name: (depth_and_force(*place)[1],) for scene, place in zip(SCENES, PLACES, strict=True)},
+    "contact_stiffness": {scene.name: (stiffness(label),) for scene, (label, _) in zip(SCENES, PLACES, strict=True)},
+}
+# Requirements by method: grids of others two digits, CalculiX five, formulas all that doubles hold but a few.
+TOLERANCES = {
+    "fem": 3e-6,
+    "bem": 2e-3,
+    "calculix": 1e-5,
+    "contact_mechanics": 1e-2,
+    "tamaas": 1e-2,
+    "nanite": 1e-9,
+    "adhesion_jkr": 1e-6,
+}
+# A contact radius is known to the root of what a force is known to, which is stationary there.
+RADII = {**TOLERANCES, "fem": 2e-5, "contact_mechanics": 3e-2, "tamaas": 3e-2, "calculix": 2e-5}
+
+
+def hertz_force(scene: Scene) -> list[float]:
+    """F = 4/3 E* sqrt(R) delta^(3/2) at every prescribed depth."""
+    depths = scene.loading.values if isinstance(scene.loading, IndentationDepths) else np.empty(0)
+    return list(4 / 3 * contact_modulus(scene.layer) * np.sqrt(CURVATURE) * depths**1.5)
+
+
+def jkr_force(scene: Scene) -> list[float]:
+    """F = -(3/2) pi R Delta gamma."""
+    return [-1.5 * np.pi * CURVATURE * WORK_OF_ADHESION]
+
+
+def jkr_radius(scene: Scene) -> list[float]:
+    """a = (9 pi Delta gamma R^2/(8 E*))^(1/3): lost under force control."""
+    return [float(np.cbrt(9 / 8 * np.pi * WORK_OF_ADHESION * CURVATURE**2 / contact_modulus(scene.layer)))]
+
+
+CLAIMS = (
+    *(
+        claim
+        for quantity, expected in EXPECTED.items()
+        for claim in exact(
+            WHY["exact"],
+            {quantity.replace("_", " "): (quantity, expected)},
+            tolerance=1e-9,
+            tolerances=RADII if quantity == "contact_radius" else TOLERANCES,
+        )
+    ),
+    *exact(
+        WHY["hertz"],
+        {"200 forces of Hertz": ("normal_force", hertz_force)},
+        scenes=(CURVE,),
+        tolerance=1e-9,
+        tolerances={**TOLERANCES, "contact_mechanics": 1e-1, "tamaas": 1e-1},
+    ),
+    *exact(
+        WHY["jkr"],
+        {"JKR force": ("pull_off_force", jkr_force), "JKR radius": ("pull_off_contact_radius", jkr_radius)},
+        scenes=(PULLED,),
+        tolerance=1e-6,
+        tolerances={"fem": 1e-3, "bem": 6e-3},
+    ),
+    *(
+        Agreement(
+            name=f"{quantity.replace('_', ' ')}: CalculiX and {other}",
+            quantity=quantity,
+            scenes=tuple(
+                scene.name
+                for scene, (label, _) in zip(SCENES, PLACES, strict=True)
+                if label in ("bonded nu=0.3", "unbonded")
+            ),
+            fast="calculix",
+            reference=other,
+            tolerance=1e-5,
+            reason=with_tolerance(SHARED["fem"], "a requirement: five digits of a program that prints seven"),
+        )
+        for other in ("mdr", "fem")
+        for quantity in ("normal_force", "contact_stiffness")
+    ),
+)
+
+CASE = Case(
+    name="outside_referees",
+    title="Outside referees",
+    question="Do solvers that nobody here wrote give the same answers, and at which price?",
+    equations=("Eq. (4)", "Eq. (8)", "Eq. (29)", "Eq. (35)", "Eq. (40)"),
+    text=text_of(__doc__),
+    suites=("referees",),
+    scenes=(*SCENES, PULLED, CURVE),
+    methods=(MDR, FEM, BEM, EQUATION, *REFEREES),
+    claims=CLAIMS,
+)

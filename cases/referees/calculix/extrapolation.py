@@ -1,0 +1,34 @@
+"""Three nested meshes become one number with an error: Richardson's extrapolation with the observed order."""
+
+import math
+
+# Safety factor of three grids whose observed order is none that the mesh could have (VERIFICATION, Roache).
+SAFETY = 3.0
+# Safety factor of a change that shrinks at least like the cells (the same source).
+SAFETY_OF_CHANGE = 1.25
+# Half a unit of the last of seven printed digits, at worst.
+PRINTED = 5e-7
+
+
+def extrapolated(coarse: float, middle: float, fine: float) -> tuple[float, float]:
+    """Return the value at vanishing cells and its error: the whole correction beyond the finest mesh.
+
+    Where the changes do not shrink by at least two, an order below one, nothing is extrapolated.
+    """
+    change, before = fine - middle, middle - coarse
+    digits = PRINTED * abs(fine)
+    if change and before / change >= 2.0:
+        correction = change / (before / change - 1.0)
+        return fine + correction, abs(correction) + digits
+    return fine, SAFETY * abs(change) + digits
+
+
+def last_change(middle: float, fine: float) -> tuple[float, float]:
+    """Return the finest value with the last change and a quarter as its error: for what is of first order at least."""
+    return fine, SAFETY_OF_CHANGE * abs(fine - middle) + PRINTED * abs(fine)
+
+
+def observed_order(coarse: float, middle: float, fine: float) -> float:
+    """Of meshes of half the cell each time; zero where changes do not shrink."""
+    change, before = fine - middle, middle - coarse
+    return math.log2(before / change) if change and before / change > 1.0 else 0.0

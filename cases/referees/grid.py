@@ -1,0 +1,46 @@
+"""What grid codes of others need to know of a scene: whether its shape is one of theirs, and how large the grid is."""
+
+from contact import Cone, FlatPunch, Loading, Paraboloid, Scene, TruncatedCone, TruncatedParaboloid, other_layer
+
+SHAPES = (FlatPunch, Paraboloid, Cone, TruncatedCone, TruncatedParaboloid)
+# A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
+# falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
+BESIDE = 4.0
+# The rest of the grid around the contact of a half-space, which is not repeated: a rim of free cells.
+RIM = 1.1
+
+
+def refusal(scene: Scene, code: str, loadings: tuple[type[Loading], ...]) -> str:
+    """Why a grid code does not model a scene, empty where it may."""
+    other = other_layer(code, scene.layer)
+    reasons = {
+        other.reason if other else "": other is not None,
+        "elastic contact only": bool(scene.effects),
+        f"no {type(scene.indenter).__name__} is written down for it": not isinstance(scene.indenter, SHAPES),
+        f"takes {' and '.join(kind.__name__ for kind in loadings)} only": not isinstance(scene.loading, loadings),
+    }
+    return next((reason for reason, there in reasons.items() if there), "")
+
+
+def box(scene: Scene, depth: float) -> float:
+    """Length of the grid's sides [m] for depths up to ``depth``.
+
+    No half-space is touched where the profile stands higher than the depth, no layer where it stands twice as high
+    (thin incompressible layers pile up to that).
+    """
+    if isinstance(scene.indenter, FlatPunch):
+        reach = scene.indenter.radius
+    else:
+        reach = _where_high(scene, depth if scene.layer.is_half_space else 2.0 * depth)
+    return 2.0 * (RIM * reach if scene.layer.is_half_space else reach + BESIDE * scene.layer.thickness)
+
+
+def _where_high(scene: Scene, height: float) -> float:
+    """Radius [m] at which the profile has a height, within a thousandth."""
+    low = high = max(scene.indenter.flat_radius, height)
+    while float(scene.indenter.height(high)) < height:
+        low, high = high, 2.0 * high
+    while high - low > 1e-3 * high:
+        middle = (low + high) / 2.0
+        low, high = (middle, high) if float(scene.indenter.height(middle)) < height else (low, middle)
+    return high

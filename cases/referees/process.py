@@ -1,0 +1,81 @@
+"""Asks a solver of others in a process of its own: a scene in as JSON, arrays out.
+
+A crash, a pinned package and a licence stay in that process.  It runs in this interpreter, or in the one that the
+environment variable CONTACT_REFEREES_PYTHON names: another environment may hold what would not fit into this one.
+"""
+
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contact import FlatPunch, NotConvergedError, Scene
+from contact.records.validation import FloatArray
+
+WORKERS = Path(__file__).with_name("workers")
+INTERPRETER = "CONTACT_REFEREES_PYTHON"
+# A rim higher than this many contact radii never touches.
+FAR = 1e3
+
+
+def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
+    """Return the arrays that a script of `workers` answers by name.
+
+    Args:
+        worker: name of the script, without the ending.
+        question: numbers, words and lists.
+
+    Raises:
+        NotConvergedError: if the process fails or answers no arrays; with its last words.
+    """
+    done = subprocess.run(
+        [_interpreter(), str(WORKERS / f"{worker}.py")],
+        input=json.dumps(dict(question)),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    try:
+        # Packages may print what they like before the answer, which is the last line.
+        answer: Any = json.loads(done.stdout.splitlines()[-1]) if done.returncode == 0 else None
+        return {name: np.asarray(values, dtype=np.float64) for name, values in answer.items()}
+    except (AttributeError, IndexError, TypeError, ValueError):
+        last = " ".join((done.stderr or done.stdout).split())[-300:]
+        raise NotConvergedError(f"{worker} ended with code {done.returncode} and no answer: {last}") from None
+
+
+@cache
+def version(package: str) -> str:
+    """The version of an installed package, empty where it is not installed."""
+    script = f"import importlib.metadata as m; print(m.version({package!r}))"
+    done = subprocess.run([_interpreter(), "-c", script], capture_output=True, text=True, check=False)
+    return done.stdout.strip() if done.returncode == 0 else ""
+
+
+def lacks(package: str) -> str:
+    """Why a package cannot be asked, empty where it can."""
+    if version(package):
+        return ""
+    return f"{package} is not installed: pip install 'contact-verification[referees]'"
+
+
+def shape_of(scene: Scene) -> dict[str, float]:
+    """A profile of the usual shapes as numbers: height(r) = slope (r - b) + curvature (r^2 - b^2)/2 beyond b."""
+    indenter = scene.indenter
+    radius = getattr(indenter, "radius_of_curvature", 0.0)
+    return {
+        "flat_radius": indenter.flat_radius,
+        "slope": float(getattr(indenter, "slope", 0.0)) if not isinstance(indenter, FlatPunch) else 0.0,
+        "curvature": 1.0 / radius if radius else 0.0,
+        "beyond": FAR * indenter.flat_radius if isinstance(indenter, FlatPunch) else 0.0,
+    }
+
+
+def _interpreter() -> str:
+    return os.environ.get(INTERPRETER) or sys.executable

@@ -1,0 +1,117 @@
+"""The deck, the meshes and the extrapolation of CalculiX; and, where it is installed, its answers."""
+
+import numpy as np
+import pytest
+
+from cases.referees.calculix.deck import deck
+from cases.referees.calculix.extrapolation import extrapolated, observed_order
+from cases.referees.calculix.mesh import section
+from cases.referees.calculix.method import CalculiX
+from cases.referees.calculix.program import _read, program
+from contact import (
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NotConvergedError,
+    Paraboloid,
+    Scene,
+    TruncatedCone,
+)
+from mdr import Mdr
+
+LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3)
+QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+installed = pytest.mark.skipif(not program(), reason="CalculiX is not installed")
+
+
+def test_odd_numbers_of_cells_are_refused():
+    with pytest.raises(InvalidInput, match="cells = 5: give an even number"):
+        CalculiX(cells=5)
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("kinks", [(), (0.5,)])
+def test_meshes_are_nested(kinks, support):
+    coarse, fine = (section(1.0, 0.7, cells, kinks, support) for cells in (6, 12))
+    for few, many in ((coarse.radius[::2], fine.radius[::2]), (coarse.depth[::2], fine.depth[::2])):
+        assert np.max(np.min(np.abs(few[:, None] - many[None, :]), axis=1)) < 1e-14
+    for radius in (*kinks, 1.0):
+        assert np.min(np.abs(coarse.radius[::2] - radius)) < 1e-14
+
+
+def test_numbers_of_the_deck_are_not_cut():
+    mesh = section(1.0, 1.0, 4)
+    lines = deck(mesh, LAYER.replace(youngs_modulus=1.0), 1.0, mesh.radius**2).splitlines()
+    assert max(len(word) for line in lines if "*" not in line for word in line.split(",")) <= 20
+    assert sum("CAX8" in line for line in lines) == 1
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0, 4.0])
+def test_extrapolation_finds_the_limit_of_any_order(order):
+    values = [3.0 + 0.1 * 2.0 ** (-order * level) for level in range(3)]
+    value, error = extrapolated(*values)
+    assert value == pytest.approx(3.0, rel=1e-12, abs=0.0)
+    assert error >= values[2] - 3.0
+    assert observed_order(*values) == pytest.approx(order, rel=1e-9, abs=0.0)
+
+
+def test_changes_that_do_not_shrink_are_not_extrapolated():
+    value, error = extrapolated(1.0, 1.1, 1.05)
+    assert (value, error) == (1.05, pytest.approx(0.15, rel=1e-4, abs=0.0))
+
+
+def test_a_base_that_does_not_carry_the_load_is_refused():
+    line = "  1.000000E-09 {} 0.000000E+00\n"
+    printed = "".join(line.format(force) for force in ("-1.0E+00", "9.0E-01", "-1.0E-03") * 2)
+    with pytest.raises(NotConvergedError, match="they must be equal"):
+        _read(printed.replace("1.0E", "1.000000E").replace("9.0E", "9.000000E"))
+
+
+@installed
+def test_an_inverted_element_is_an_error_of_its_name():
+    mesh = section(1.0, 1.0, 2)
+    broken = deck(mesh, LAYER.replace(poissons_ratio=0.3), 1.0, mesh.radius**2).replace("*ELASTIC", "*NONSENSE")
+    from cases.referees.calculix.program import reactions
+
+    with pytest.raises(NotConvergedError, match="calculix ended with code"):
+        reactions(broken)
+
+
+def scene(indenter, loading, support="bonded"):
+    return Scene(layer=LAYER.replace(support=support), indenter=indenter, loading=loading)
+
+
+SCENES = {
+    "punch": scene(FlatPunch(radius=1e-3), IndentationDepths(values=np.array([1e-5]))),
+    "paraboloid": scene(Paraboloid(radius_of_curvature=1e-2), ContactRadii(values=np.array([1e-3]))),
+    "unbonded": scene(Paraboloid(radius_of_curvature=1e-2), ContactRadii(values=np.array([1e-3])), "unbonded"),
+    "cone": scene(TruncatedCone(flat_radius=5e-4, slope=0.1), ContactRadii(values=np.array([1e-3]))),
+    "at depth": scene(Paraboloid(radius_of_curvature=1e-2), IndentationDepths(values=np.array([6e-5]))),
+}
+
+
+def compared(name, cells):
+    answer, right = CalculiX(cells=cells).solve(SCENES[name]), Mdr().solve(SCENES[name])
+    for quantity in QUANTITIES:
+        error = abs(getattr(answer, quantity)[0] / getattr(right, quantity)[0] - 1)
+        yield error, answer.error_estimate[quantity][0]
+
+
+@installed
+@pytest.mark.parametrize(("name", "cells"), [("paraboloid", 4), ("unbonded", 6)])
+def test_coarse_meshes_cover_what_they_miss(name, cells):
+    """An unbonded layer with a free edge eight thicknesses away missed its stated error a hundred times."""
+    for error, stated in compared(name, cells):
+        assert error <= stated + 1e-12
+        assert error < 1e-2
+
+
+@installed
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_its_own_error_covers_and_is_five_digits(name):
+    for error, stated in compared(name, 16):
+        assert error <= stated + 1e-12
+        assert error < 5e-6
