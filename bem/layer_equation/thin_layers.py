@@ -104,6 +104,12 @@ class LargeRatioSolution(FlatPunchSolution):
             return self.wide_alone, ratio
         return self, min(known for known in self.densities if known >= ratio * (1 - 1e-12))
 
+    def error_steepness(self, ratio: FloatArray) -> FloatArray:
+        """That of `near` within its reach."""
+        ratio = self._covered(ratio)
+        within = self.near.error_steepness(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, np.inf)
+
     @property
     def nodes(self) -> int:
         """As many as `near` has on a panel."""
