@@ -11,6 +11,7 @@ import numpy as np
 from bem.adhesion.beside_contact import refuse_touching_beside
 from bem.adhesion.branch import RIM, DiscBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
+from bem.adhesion.energy_balance import edge_errors
 from bem.adhesion.fields import AdheringFields, pressure_change
 from bem.adhesion.sequence import FollowedState, at_radii, followed
 from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
@@ -139,17 +140,22 @@ class AdheringDiscs:
         )
 
     def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
-        """Errors of depth and force along a branch, relative to their largest values."""
+        """Errors of depth and force along a branch, relative to their largest values: the lesser of two estimates.
+
+        Two grids agree on what the ring of their edge values leaves out; stiffness and moment do not tell errors beside
+        a rim or a kink.
+        """
         depth, force, errors = fine.depth(radius), fine.force(radius), {}
-        truncated = DISCS.truncation * fine.truncation(radius)
+        truncated, released = DISCS.truncation * fine.truncation(radius), edge_errors(fine, coarse, radius)
         displaced = np.abs(depth) + fine.elongation(radius)
-        for name, values, others, terms in (
-            ("indentation_depth", depth, coarse.depth(radius), displaced),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced),
+        for name, values, others, terms, by_energy in (
+            ("indentation_depth", depth, coarse.depth(radius), displaced, released[0]),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, released[1]),
         ):
-            rounding = (DISCS.floor + self._by_ring(radius)) * terms / np.max(np.abs(values))
-            nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
-            errors[name] = DISCS.difference * nearby + truncated + rounding
+            nearby = _largest_nearby(np.abs(values - others) / terms, radius)
+            by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
+            edge = np.minimum(by_grids, by_energy) + DISCS.floor * terms
+            errors[name] = edge / np.max(np.abs(values)) + truncated
         return errors
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:

@@ -75,6 +75,15 @@ class AdheringDiscCoefficients:
     # Times (w/h)^3: what a fit over a ring of cells of width w leaves of an edge value that changes over the thickness
     # h, where two grids agree by accident. A flat punch at a/h = 1 left 0.11 of it (2026-11-22).
     ring: float = 0.12
+    # Times the difference of depth and force to what stiffness and moment tell of them (`bem.adhesion.energy_balance`),
+    # which was 0.9 to 1.1 of the error where a layer counts, a/h from 0.1 to 5 (30 detachments, seed 7101, 2026-11-22).
+    released: float = 1.5
+    # Share of what extrapolation from two grids changes there that counts as its error: the moment of smooth profiles
+    # changes by 3.11 times its error from half as many cells, where second order makes it 3 (same scenes).
+    extrapolated: float = 0.2
+    # Times what so many last orders change there, whose derivatives are the largest; chosen, and measured as a whole.
+    released_truncation: float = 2.0
+    released_orders: int = 2
 
 
 @dataclass(frozen=True)

@@ -90,11 +90,11 @@ class IntegralEquationSolution(FlatPunchSolution):
         """
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
-        panels = self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny)
+        share = self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny)
         own, of_kernel = self._spring_truncation(ratio)
-        springs = np.minimum(0.5, integrated(self.nodes) * panels) * own
-        springs += np.minimum(0.5, FACTOR.own_panel * panels) * of_kernel
-        truncated = self._stiffness_share.left_out(ratio) / k + springs
+        springs = np.minimum(0.5, integrated(self.nodes) * share) * own
+        springs += np.minimum(0.5, FACTOR.own_panel * share) * of_kernel
+        truncated = self._left_out(self._stiffness_share, ratio) / k + springs
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
@@ -183,7 +183,11 @@ class IntegralEquationSolution(FlatPunchSolution):
         """Of c_bar = y1^2, relative: orders of y1 left out, and of the kernel that gives its values at the nodes."""
         panels, s = self._panels.locate(ratio)
         of_kernel = self.factor.truncation[panels] * np.where(panels == 0, integrated_share(self.nodes, s), 1.0)
-        return 2 * self._edge_share.left_out(ratio) / self.edge_density(ratio), 2 * of_kernel
+        return 2 * self._left_out(self._edge_share, ratio) / self.edge_density(ratio), 2 * of_kernel
+
+    def _left_out(self, function: MappedFunction, ratio: FloatArray) -> FloatArray:
+        """By its polynomials, with their safety beyond the first panel."""
+        return np.asarray(np.where(ratio <= self._panels.width[0], 1.0, FACTOR.own_safety) * function.left_out(ratio))
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)

@@ -165,7 +165,7 @@ class AnyLayerSolution(IntegralEquationSolution):
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
         length = np.maximum(ratio, np.finfo(float).tiny)
-        truncated = self._stiffness_share.left_out(ratio) / k + self._before(length) / (length * k)
+        truncated = self._left_out(self._stiffness_share, ratio) / k + self._before(length) / (length * k)
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def panel_ends(self, ratio: float) -> FloatArray:
