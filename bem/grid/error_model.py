@@ -65,6 +65,9 @@ class AdheringDiscCoefficients:
     # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
     # an odd power, added up to three times as much.
     truncation: float = 4.0
+    # Times what the last quarter of those orders moves a pull-off of a profile with breakpoints: orders that fall with
+    # their square leave three times as much beyond.
+    broken_orders: float = 3.0
     # Relative error of depth and force by the linear solutions, which are solved to 1e-8.
     floor: float = 2e-8
     # Relative error of a radius at which minimisation finds a function least: at rims up to 2.3e-8.
