@@ -80,11 +80,11 @@ class AdheringDiscCoefficients:
     ring: float = 0.12
     # Times the difference of depth and force to what stiffness and moment tell of them (`bem.adhesion.energy_balance`),
     # which was 0.9 to 1.1 of the error where a layer counts, a/h from 0.1 to 5 (30 detachments, seed 7101, 2026-11-22).
-    released: float = 1.5
+    released: float = 2.0
     # Share of what extrapolation from two grids changes there that counts as its error. Half as many cells change the
     # moment by 3.1 times its error on 128 cells, by 5.4 times on 96, where second order makes it 3: 0.04 and 0.44 of it
     # were needed (same scenes, and a sphere on unbonded layers, 2026-11-22).
-    extrapolated: float = 0.6
+    extrapolated: float = 1.0
     # Times what so many last orders change there, whose derivatives are the largest; chosen, and measured as a whole.
     released_truncation: float = 2.0
     released_orders: int = 2
