@@ -81,11 +81,26 @@ class DiscBranchPiece:
         t = np.sqrt(np.clip((radius - self.inner) / (self.outer - self.inner), 0.0, 1.0))
         return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series) + self.half_space(radius))
 
-    @property
-    def truncation(self) -> float:
-        """What the last two orders contribute, relative to the largest value."""
+    def slopes(self, radius: FloatArray) -> FloatArray:
+        """Derivatives of stiffness and moment by the radius, shape (2, n); those of the half-space are 2 and 2 g_hs."""
+        width = self.outer - self.inner
+        t = np.sqrt(np.clip((radius - self.inner) / width, 0.0, 1.0))
+        by_t = 2.0 * chebyshev.chebval(2.0 * t - 1.0, chebyshev.chebder(self.series[:, 2:]))
+        return np.asarray(by_t / (2.0 * width * t) + 2.0 * self.half_space(radius)[:2])
+
+    def truncation(self, radius: FloatArray) -> FloatArray:
+        """What the last two orders contribute at radii [m], relative to the largest value.
+
+        Profile and moment vanish where the piece begins: what they are there is left out of them up to the third node.
+        """
         last = np.abs(self.series[-2:]).sum(axis=0)
-        return float(np.max(last / np.maximum(self.scales, np.finfo(float).tiny)))
+        begin = np.abs(chebyshev.chebval(-1.0, self.series)) * np.array([0.0, 1.0, 0.0, 1.0])
+        middle, beside = (
+            float(np.max(part / np.maximum(self.scales, np.finfo(float).tiny)))
+            for part in (last, np.maximum(last, begin))
+        )
+        third = 0.5 - 0.5 * np.cos(2.5 * pi / len(self.series))
+        return np.where(radius - self.inner < (self.outer - self.inner) * third**2, beside, middle)
 
 
 def _zeros(radius: FloatArray) -> FloatArray:
@@ -138,37 +153,46 @@ class DiscBranch:
         """Where the branch ends [m]."""
         return self.pieces[-1].outer
 
-    def cut(self) -> DiscBranch:
-        """The branch without the last quarter of its orders: how far turning points move shows what is left out.
+    def cut(self, dropped: int | None = None) -> DiscBranch:
+        """The branch without so many of its orders, by default a quarter: what it changes shows what is left out.
 
         Beside breakpoints the orders decay like a power, so that the last ones say less than the sum of those beyond.
         """
-        pieces = (replace(piece, series=piece.series[: 3 * len(piece.series) // 4]) for piece in self.pieces)
+        pieces = tuple(
+            replace(piece, series=piece.series[: -(dropped or len(piece.series) // 4)]) for piece in self.pieces
+        )
+        return replace(self, pieces=pieces)
+
+    def extrapolated(self, coarse: DiscBranch) -> DiscBranch:
+        """The branch that this and one on half as many cells tell by second order."""
+        pairs = zip(self.pieces, coarse.pieces, strict=True)
+        pieces = (replace(fine, series=fine.series + (fine.series - half.series) / 3.0) for fine, half in pairs)
         return replace(self, pieces=tuple(pieces))
 
     def truncation(self, radius: FloatArray) -> FloatArray:
-        """Relative error of the polynomials of the piece that each radius [m] lies on."""
-        answer = np.full(np.shape(radius), self.pieces[0].truncation)
-        for piece in self.pieces[1:]:
-            answer = np.where(radius > piece.inner * (1.0 + RIM), piece.truncation, answer)
-        return answer
+        """Relative error of the polynomials of the piece that each radius [m] lies on, at a rim of the inner one."""
+        return self._by_piece(lambda piece: piece.truncation(radius), radius / (1.0 + RIM))
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""
-        return np.asarray(contact_modulus(self.scene.layer) * self._at(radius)[2])
+        return np.asarray(contact_modulus(self.scene.layer) * self.values(radius)[2])
 
     def depth(self, radius: FloatArray) -> FloatArray:
         """delta [m] where phi = -sqrt(2 pi dgamma a/E*): Eq. (40)."""
-        flat, risen, _, _ = self._at(radius)
+        flat, risen, _, _ = self.values(radius)
         return np.asarray(risen / flat - self.elongation(radius))
 
     def elongation(self, radius: FloatArray) -> FloatArray:
         """By how much adhesion holds the edge below where it would touch [m]."""
-        return np.asarray(np.sqrt(2.0 * pi * adhesive_length(self.scene) * radius) / self._at(radius)[0])
+        return np.asarray(self.critical_length(radius) / self.values(radius)[0])
+
+    def critical_length(self, radius: FloatArray) -> FloatArray:
+        """The same on the half-space [m], whose edge value is one."""
+        return np.asarray(np.sqrt(2.0 * pi * adhesive_length(self.scene) * radius))
 
     def force(self, radius: FloatArray, depth: FloatArray | None = None) -> FloatArray:
         """F_N [N], in equilibrium or at another depth."""
-        _, _, stiffness, moment = self._at(radius)
+        _, _, stiffness, moment = self.values(radius)
         delta = self.depth(radius) if depth is None else depth
         return np.asarray(contact_modulus(self.scene.layer) * (stiffness * delta - moment))
 
@@ -217,10 +241,19 @@ class DiscBranch:
             )
         )
 
-    def _at(self, radius: FloatArray) -> FloatArray:
-        answer = self.pieces[0].at(radius)
+    def values(self, radius: FloatArray) -> FloatArray:
+        """Edge values, stiffness and moment at radii, shape (4, n)."""
+        return self._by_piece(lambda piece: piece.at(radius), radius)
+
+    def slopes(self, radius: FloatArray) -> FloatArray:
+        """Derivatives of stiffness and moment by the radius, shape (2, n)."""
+        return self._by_piece(lambda piece: piece.slopes(radius), radius)
+
+    def _by_piece(self, of: Callable[[DiscBranchPiece], FloatArray], radius: FloatArray) -> FloatArray:
+        """What the piece says that each radius lies on."""
+        answer = of(self.pieces[0])
         for piece in self.pieces[1:]:
-            answer = np.where(radius > piece.inner, piece.at(radius), answer)
+            answer = np.where(radius > piece.inner, of(piece), answer)
         return answer
 
 

@@ -11,9 +11,10 @@ import numpy as np
 from bem.adhesion.beside_contact import refuse_touching_beside
 from bem.adhesion.branch import RIM, DiscBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
+from bem.adhesion.energy_balance import edge_errors
 from bem.adhesion.fields import AdheringFields, pressure_change
 from bem.adhesion.sequence import FollowedState, at_radii, followed
-from bem.adhesion.withdrawal import Control, Withdrawal, stable, strength
+from bem.adhesion.withdrawal import QUANTITIES, Control, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
 from bem.grid.error_model import DISCS
 from bem.grid.quadrant import refuse_thin_layer
@@ -106,19 +107,11 @@ class AdheringDiscs:
         start = self._start(fine)
         self._refuse_thin_layer(start)
         withdrawal = Withdrawal(fine, start)
-        pull_off, other = withdrawal.pull_off(control), withdrawal.compared(coarse, control)
-        cut = Withdrawal(fine.cut(), start).pull_off(control)
+        pull_off = withdrawal.pull_off(control)
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
         depth, force = fine.depth(radius), fine.force(radius)
         refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)
-        share = self._pull_off_floors(fine, np.array(pull_off["pull_off_contact_radius"]))
-        errors = {
-            name: np.array(
-                [DISCS.difference * abs(other[name] / value - 1.0) + abs(cut[name] / value - 1.0) + share[name]]
-            )
-            for name, value in pull_off.items()
-        }
-        errors["pull_off_contact_radius"] += DISCS.radius_floor
+        errors = self._pull_off_errors(withdrawal, coarse, control)
         errors |= self._branch_errors(fine, coarse, radius)
         return DetachmentPath(
             scene=self.scene,
@@ -138,18 +131,50 @@ class AdheringDiscs:
             pull_off_contact_radius=pull_off["pull_off_contact_radius"],
         )
 
+    def _pull_off_errors(self, way: Withdrawal, coarse: DiscBranch, control: Control) -> dict[str, FloatArray]:
+        """Relative errors of the scalars: of depth and force the lesser of two estimates, as along the branch."""
+        branch, pull_off, other = way.branch, way.pull_off(control), way.compared(coarse, control)
+        cut = Withdrawal(branch.cut(), way.start).pull_off(control)
+        left_out = DISCS.broken_orders if self.scene.indenter.breakpoints else 1.0
+        floors = self._pull_off_floors(branch, np.array(pull_off["pull_off_contact_radius"]))
+        change, beyond = (
+            {name: abs(values[name] / value - 1.0) for name, value in pull_off.items()} for values in (other, cut)
+        )
+        by_grids = {name: DISCS.difference * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
+        by_grids["pull_off_contact_radius"] += DISCS.radius_floor
+        places = np.array([way.loss(control), way.strongest(control)])
+        for row, name in enumerate(("pull_off_depth", "pull_off_force")):
+            value, by_energy = pull_off[name], edge_errors(branch, coarse, places[row : row + 1])[row, 0]
+            quantity = QUANTITIES["displacement" if row == 0 else "force"]
+            moved = places[row] * (1.0 + by_grids["pull_off_contact_radius"] * np.array([-1.0, 1.0]))
+            by_place = np.max(np.abs(branch.value(quantity, np.minimum(moved, branch.largest_radius)) - value))
+            solved = self._solved(branch, places[row : row + 1])[row]
+            by_grids[name] = min(by_grids[name], float((by_energy + by_place + solved) / abs(value)))
+        return {name: np.array([error]) for name, error in by_grids.items()}
+
+    def _solved(self, branch: DiscBranch, radius: FloatArray) -> FloatArray:
+        """Errors of depth [m] and force [N] by linear solutions and the branch's polynomials at one radius [m]."""
+        terms = np.abs(branch.depth(radius)) + branch.elongation(radius)
+        error = (DISCS.floor + DISCS.truncation * branch.truncation(radius)) * terms
+        return np.concatenate([error, branch.stiffness(radius) * error])
+
     def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
-        """Errors of depth and force along a branch, relative to their largest values."""
+        """Errors of depth and force along a branch, relative to their largest values: the lesser of two estimates.
+
+        Two grids agree on what the ring of their edge values leaves out; stiffness and moment do not tell errors beside
+        a rim or a kink.
+        """
         depth, force, errors = fine.depth(radius), fine.force(radius), {}
-        truncated = DISCS.truncation * fine.truncation(radius)
+        truncated, released = DISCS.truncation * fine.truncation(radius), edge_errors(fine, coarse, radius)
         displaced = np.abs(depth) + fine.elongation(radius)
-        for name, values, others, terms in (
-            ("indentation_depth", depth, coarse.depth(radius), displaced),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced),
+        for name, values, others, terms, by_energy in (
+            ("indentation_depth", depth, coarse.depth(radius), displaced, released[0]),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, released[1]),
         ):
-            rounding = (DISCS.floor + self._by_ring(radius)) * terms / np.max(np.abs(values))
-            nearby = _largest_nearby(np.abs(values - others) / terms, radius) * terms / np.max(np.abs(values))
-            errors[name] = DISCS.difference * nearby + truncated + rounding
+            nearby = _largest_nearby(np.abs(values - others) / terms, radius)
+            by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
+            edge = np.minimum(by_grids, by_energy) + DISCS.floor * terms
+            errors[name] = edge / np.max(np.abs(values)) + truncated
         return errors
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:

@@ -17,11 +17,15 @@ class FactorCoefficients:
     (``contact-verify coverage``, MDR with 12 nodes, 200 scenes, seed 1401, 2026-11-22).
     """
 
-    # They multiply what the decay of coefficients lets expect of the orders left out of k_bar, of c_bar, and of the
-    # profile g, whose two edge values err mostly with the same sign.
+    # They multiply what the decay of coefficients lets expect of the orders left out of k_bar, of the kernel in c_bar,
+    # and of the kernel in the profile g, whose two edge values err mostly with the same sign.
     stiffness_safety: float = 1.0
     spring_safety: float = 2.5
     profile_safety: float = 1.5
+    # The same for the orders that polynomials leave out of y1 and k_bar beyond the first panel: 2.06 was needed at
+    # most, by 8 nodes on panels half a thickness wide, and 1.4 by 12 to 16; on the first panel 0.7 (five layers, 120
+    # radii, 2026-11-22).
+    own_safety: float = 2.1
     # Multiplies what polynomials leave of the slope of the layer's share of a density, which grows towards the kernel's
     # singularity. Without it true errors were up to 3.7 times the stated ones for a/h from 0.01 to 25 (pressures of 68
     # random contacts with 12 nodes, seed 41, 2026-11-22).

@@ -14,9 +14,9 @@ from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
-from bem.polynomials.gauss_panels import gauss_nodes, partial_panel_interpolation
+from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
-from bem.polynomials.truncation import between_nodes, orders_beyond, rate_of_decay
+from bem.polynomials.truncation import integrated, integrated_share, rate_of_decay
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
@@ -47,7 +47,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar = (1/ratio) int_0^ratio c_bar dx, Eqs. (6) and (10)."""
-        return self._contact_stiffness(self._covered(ratio))
+        return 1 + self._stiffness_share(self._covered(ratio))
 
     def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """c_bar = y1^2, y1 the edge value of the density under a unit displacement."""
@@ -55,7 +55,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def edge_density(self, ratio: ArrayLike) -> FloatArray:
         """y1(x) = phi(x; a = x) of a flat punch pressed in by 1."""
-        return self._edge_density(self._covered(ratio))
+        return 1 + self._edge_share(self._covered(ratio))
 
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
         """q = p_bar sqrt(1 - rho^2) from the density, one solution for each different ratio."""
@@ -86,20 +86,35 @@ class IntegralEquationSolution(FlatPunchSolution):
         """Error of k_bar, relative: orders left out, and rounding times condition.
 
         An error of c_bar counts in k_bar = (1/x) int c_bar dx by its panel's share of x, and oscillates within it.
+        Close to the axis it grows with x, so that half of it is its mean.
         """
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
-        share = np.minimum(1.0, FACTOR.own_panel * self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny))
-        truncated = polynomial_truncation(self._contact_stiffness, ratio) / k + share * self._spring_truncation(ratio)
+        share = self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny)
+        own, of_kernel = self._spring_truncation(ratio)
+        springs = np.minimum(0.5, integrated(self.nodes) * share) * own
+        springs += np.minimum(0.5, FACTOR.own_panel * share) * of_kernel
+        truncated = self._left_out(self._stiffness_share, ratio) / k + springs
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Error of c_bar, relative, made likewise."""
-        return self._edge_error(self._covered(ratio), FACTOR.spring_safety)
+        return self._edge_error(self._covered(ratio), 1.0, FACTOR.spring_safety)
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """In g = yg/y1 each edge value has half the relative error of c_bar = y1^2, mostly of the same sign."""
-        return self._edge_error(self._covered(ratio), FACTOR.profile_safety)
+        """In g = yg/y1 the kernel errs alike in both edge values, by half of what it does in c_bar = y1^2 each.
+
+        yg is not interpolated between the nodes of a panel, or less of it is than of y1, so that the orders that
+        polynomials leave out of y1 count once.
+        """
+        return self._edge_error(self._covered(ratio), 0.5, FACTOR.profile_safety)
+
+    def error_steepness(self, ratio: FloatArray) -> FloatArray:
+        """On a panel errors go with P_m, whose slope is bounded by Bernstein and Markov; on the first with x too."""
+        panels, s = self._panels.locate(self._covered(ratio))
+        m, tiny = self.nodes, np.finfo(float).tiny
+        inside = m / np.maximum(2.0 * np.sqrt(s * (1.0 - s)), 2.0 / (m + 1))
+        return np.asarray(2.0 / self._panels.width[panels] * inside + (panels == 0) / np.maximum(ratio, tiny))
 
     @property
     def nodes(self) -> int:
@@ -138,7 +153,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
-        panels, _ = self._edge_density.grid.locate(ratio)
+        panels, _ = self._panels.locate(ratio)
         rounded = 4 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
         return self.contact_pressure_error(ratio, 2 * self.factor.truncation[panels] + EPS * rounded)
 
@@ -153,21 +168,26 @@ class IntegralEquationSolution(FlatPunchSolution):
         steepest = np.minimum(2.0 * m, width / np.maximum(ratio, np.finfo(float).tiny))
         return np.asarray(FACTOR.slope_safety * m * steepest * rate_of_decay(2 * STRIP / width) ** m)
 
-    @property
-    def panel_error(self) -> float:
-        """The largest `spring_error` at ends and middles of all panels."""
-        ratios = self.max_ratio * np.arange(1.0, 2 * self.factor.panels + 1) / (2 * self.factor.panels)
-        return float(self.spring_error(ratios).max())
+    def panel_error(self, ratio: float) -> float:
+        """The largest `spring_error` at ends and middles of all panels up to a ratio, and there."""
+        ends = self._panels.ends
+        ratios = np.concatenate([ends[1:], (ends[1:] + ends[:-1]) / 2])
+        return float(self.spring_error(np.append(ratios[ratios < ratio], ratio)).max())
 
-    def _edge_error(self, ratio: FloatArray, safety: float) -> FloatArray:
+    def _edge_error(self, ratio: FloatArray, own_share: float, kernel_share: float) -> FloatArray:
+        own, of_kernel = self._spring_truncation(ratio)
         rounded = 2 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
-        return safety * self._spring_truncation(ratio) + EPS * rounded
+        return own_share * own + kernel_share * of_kernel + EPS * rounded
 
-    def _spring_truncation(self, ratio: FloatArray) -> FloatArray:
+    def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Of c_bar = y1^2, relative: orders of y1 left out, and of the kernel that gives its values at the nodes."""
-        panels, _ = self._edge_density.grid.locate(ratio)
-        own: FloatArray = polynomial_truncation(self._edge_density, ratio) / self.edge_density(ratio)
-        return 2 * (own + self.factor.truncation[panels])
+        panels, s = self._panels.locate(ratio)
+        of_kernel = self.factor.truncation[panels] * np.where(panels == 0, integrated_share(self.nodes, s), 1.0)
+        return 2 * self._left_out(self._edge_share, ratio) / self.edge_density(ratio), 2 * of_kernel
+
+    def _left_out(self, function: MappedFunction, ratio: FloatArray) -> FloatArray:
+        """By its polynomials, with their safety beyond the first panel."""
+        return np.asarray(np.where(ratio <= self._panels.width[0], 1.0, FACTOR.own_safety) * function.left_out(ratio))
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)
@@ -182,24 +202,18 @@ class IntegralEquationSolution(FlatPunchSolution):
         return MappedGrid.between(self.factor.all_ends, self.factor.count)
 
     @cached_property
-    def _edge_density(self) -> MappedFunction:
+    def _edge_share(self) -> MappedFunction:
+        """y1 - 1, which vanishes at the axis like x: there its polynomials are right, however few nodes there are."""
         unit = np.ones((self.factor.panels, self.factor.count))
         _, inherited = self.factor.eliminate(unit)
-        return MappedFunction(self._panels, self.factor.edge_values(unit + inherited), 0.0)
+        return MappedFunction(self._panels, self.factor.edge_values(unit + inherited) - 1, 1.0)
 
     @cached_property
-    def _contact_stiffness(self) -> MappedFunction:
-        """k_bar at every node: full panels before it, and the part of its own panel by scaled Gauss nodes."""
-        tau, omega = gauss_nodes(self.factor.count)
-        width, panels = self.factor.panel_width, np.arange(self.factor.panels)[:, None]
-        y = self._edge_density(width * (panels + tau))
-        partial = width * tau * ((partial_panel_interpolation(tau.size) @ y[:, None, :, None])[..., 0] ** 2 @ omega)
-        full = np.concatenate([[0.0], np.cumsum(width * y**2 @ omega)[:-1]])
-        return MappedFunction(self._panels, (full[:, None] + partial) / (width * (panels + tau)), 0.0)  # Eqs. (6), (10)
-
-
-def polynomial_truncation(function: MappedFunction, x: FloatArray) -> FloatArray:
-    """Size of what the polynomials leave out at points x, as the decay of all their coefficients tells."""
-    panels, s = function.grid.locate(x)
-    beyond: FloatArray = orders_beyond(function.coefficients)[panels] * between_nodes(function.grid.count, 2 * s - 1)
-    return beyond
+    def _stiffness_share(self) -> MappedFunction:
+        """k_bar - 1 at every node: full panels before it, and the part of its own panel by scaled Gauss nodes."""
+        grid, (tau, omega) = self._panels, gauss_nodes(self.factor.count)
+        y = 1 + self._edge_share.node_values
+        inside = 1 + self._edge_share.within_nodes()
+        partial = grid.width[:, None] * tau * (inside**2 @ omega)
+        full = np.concatenate([[0.0], np.cumsum(grid.width * (y**2 @ omega))[:-1]])
+        return MappedFunction(grid, (full[:, None] + partial) / grid.nodes - 1, 1.0)  # Eqs. (6), (10)

@@ -73,6 +73,10 @@ class FlatPunchSolution(Protocol):
         radius b `start` is b/a.
         """
 
+    def error_steepness(self, ratio: FloatArray) -> FloatArray:
+        """How fast relative errors change with the ratio at most, as a share of their bounds; inf where not known."""
+        return np.full(np.shape(ratio), inf)
+
     @property
     def nodes(self) -> int:
         """Gauss nodes on each piece of a profile's grid."""
@@ -135,9 +139,8 @@ class FlatPunchSolution(Protocol):
         """The ratio beyond which `profile_of` fits the profile, so that its error counts there; inf for nowhere."""
         return inf
 
-    @property
-    def panel_error(self) -> float:
-        """The largest relative error that the nodes of a panel leave in c_bar; profiles need no finer pieces."""
+    def panel_error(self, ratio: float) -> float:
+        """The largest relative error that the nodes of panels leave in c_bar up to a ratio; pieces need be no finer."""
         return 0.0
 
     @property

@@ -53,6 +53,10 @@ DEGREE = 26
 # taken over: half a wave of its last term, because it crosses zero twice in each wave.
 SAMPLES = 4
 NEARBY = 3 * SAMPLES
+# Times what the fall of errors from one number of terms to the next lets expect of the last; chosen. At nu = 0.4999
+# c_bar states 27 times its error in the median without that fall, 16 times with 4 for this factor (60 radii, against 60
+# radii and degree 36, 2026-11-22).
+FALL_SAFETY = 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +107,12 @@ class LargeRatioSolution(FlatPunchSolution):
         if last_break > FIRST_RATIO / 2:
             return self.wide_alone, ratio
         return self, min(known for known in self.densities if known >= ratio * (1 - 1e-12))
+
+    def error_steepness(self, ratio: FloatArray) -> FloatArray:
+        """That of `near` within its reach."""
+        ratio = self._covered(ratio)
+        within = self.near.error_steepness(np.minimum(ratio, self.near.max_ratio))
+        return np.where(ratio <= self.near.max_ratio, within, np.inf)
 
     @property
     def nodes(self) -> int:
@@ -217,11 +227,17 @@ class LargeRatioSolution(FlatPunchSolution):
 
     @cached_property
     def _misfit(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """What the last terms of the fit make of ln k_bar and of its slope around some ln(a/h), which come first."""
+        """What the fit leaves of ln k_bar and of its slope around some ln(a/h), which come first.
+
+        Its last terms say what the fit without them leaves; from there on errors fall as they did up to there.
+        """
         log_ratio = np.linspace(np.log(self.near.max_ratio), np.log(LARGEST_RATIO), SAMPLES * DEGREE)
-        last = self.log_stiffness - self._fitted(DEGREE - LAST_TERMS)
+        shorter = self._fitted(DEGREE - LAST_TERMS)
+        last, before = self.log_stiffness - shorter, shorter - self._fitted(DEGREE - 2 * LAST_TERMS)
+        share = min(1.0, FALL_SAFETY * float(np.max(np.abs(last(log_ratio))) / np.max(np.abs(before(log_ratio)))))
         value, slope = (
-            maximum_filter1d(np.abs(error(log_ratio)), 2 * NEARBY + 1, mode="nearest") for error in (last, last.deriv())
+            share * maximum_filter1d(np.abs(error(log_ratio)), 2 * NEARBY + 1, mode="nearest")
+            for error in (last, last.deriv())
         )
         return log_ratio, value, slope
 

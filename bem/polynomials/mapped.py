@@ -156,6 +156,19 @@ class MappedFunction:
         partial = stretch * np.sum(inside * inner**exponent * np.multiply.outer(u, omega), axis=2)
         return MappedFunction(grid, full[:, None] + partial, self.lead + float(grid.power[0]))
 
+    def within_nodes(self) -> FloatArray:
+        """Values on unmapped pieces at shares tau_i tau_j of the width, shape (q, m, m), by the pieces' polynomials."""
+        u = gauss_nodes(self.grid.count)[0]
+        inside = (partial_panel_interpolation(self.grid.count) @ self._regular[:, None, :, None])[..., 0]
+        inside[0] *= np.multiply.outer(u, u) ** self.lead
+        return np.asarray(inside)
+
+    def left_out(self, d: FloatArray) -> FloatArray:
+        """Size of what the polynomials leave out at points d, as the decay of all their coefficients tells."""
+        piece, u = self.grid.locate(d)
+        beyond = orders_beyond(self.coefficients)[piece] * between_nodes(self.grid.count, 2 * u - 1)
+        return np.asarray(beyond * self._factor(piece, u))
+
     def truncation(self) -> FloatArray:
         """Size of the last coefficients of each piece relative to its largest, shape (q,)."""
         size = np.abs(self.coefficients)

@@ -64,3 +64,8 @@ def at_end(count: int) -> float:
 def integrated(count: int) -> float:
     """Integral of that error from one end to any s, the panel's length being 1: int P_m = (P_m+1 - P_m-1)/(2m + 1)."""
     return float(np.sqrt(2.0 / (np.pi * count)) / (2 * count + 1) * at_end(count))
+
+
+def integrated_share(count: int, s: FloatArray) -> FloatArray:
+    """What of that is left at s in [0, 1] close to the end: int_0^s |P_m| is at most s."""
+    return np.asarray(np.minimum(1.0, s * at_end(count) / integrated(count)))

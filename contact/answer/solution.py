@@ -15,6 +15,7 @@ from contact.answer.stages import Cost, StageRecord
 from contact.answer.summary import quantity_line, scene_line
 from contact.records.errors import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
+from contact.scene.effects import Adhesion
 from contact.scene.scene import Scene
 
 Setting: TypeAlias = bool | int | float | str | None
@@ -167,16 +168,20 @@ class ContactPath(Solution):
         """
         if quantity == "pressure":
             return self._mean_pressure()
-        if self.scene.effects or not hasattr(self, quantity):
+        if self._adheres or not hasattr(self, quantity):
             return super().scale(quantity)
         return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))
 
     def _mean_pressure(self) -> FloatArray:
         force, area = np.abs(self.normal_force), np.pi * self.contact_radius**2
-        if self.scene.effects:
+        if self._adheres:
             force = np.maximum(force, self.contact_stiffness * np.abs(self.indentation_depth))
         pressure = np.divide(force, area, out=np.zeros_like(force), where=area > 0)
-        return np.full(force.shape, pressure.max(initial=0.0)) if self.scene.effects else pressure
+        return np.full(force.shape, pressure.max(initial=0.0)) if self._adheres else pressure
+
+    @property
+    def _adheres(self) -> bool:
+        return self.scene.effect(Adhesion) is not None
 
     def pressure(self, radius: ArrayLike, step: int = 0) -> FloatArray:
         """Contact pressure p(r) [Pa] of one step at radii [m], zero outside the contact."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from contact import Adhesion, ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
@@ -116,8 +116,8 @@ def contact_path(
     depth = radius * np.array([state.depth for state in equilibria])
     errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
     own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
-    # With effects depth and force may cross zero: their errors refer to the largest value along the path.
-    if scene.effects:
+    # With adhesion depth and force may cross zero: their errors refer to the largest value along the path.
+    if scene.effect(Adhesion) is not None:
         errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
         errors["normal_force"] *= np.abs(force) / np.abs(force).max()
     meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))

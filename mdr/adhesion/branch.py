@@ -14,6 +14,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev as series
+from numpy.typing import NDArray
 
 from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, SampledPanel, resolved_panels
@@ -64,14 +65,16 @@ class MdrAdhesiveBranch:
         coefficients: Chebyshev coefficients of the two slopes, shape (count, 2, panels).
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
         section_radii: a [m] there.
-        truncation: What the polynomials leave out of delta [m] and F [N], and the rounding of y moves, shape (2,).
+        tails: What the polynomials of each panel leave out of delta [m] and F [N], shape (2, panels).
+        rounding: What the rounding of y moves in them, shape (2,).
     """
 
     functions: Piecewise
     coefficients: FloatArray
     section_ends: FloatArray
     section_radii: FloatArray
-    truncation: FloatArray
+    tails: FloatArray
+    rounding: FloatArray
 
     def radius(self, y: FloatArray) -> FloatArray:
         """a [m] at y."""
@@ -79,8 +82,19 @@ class MdrAdhesiveBranch:
 
     def excess(self, y: FloatArray, flat_radius: float) -> FloatArray:
         """a - b [m] at y over the radius b of a flat end, with the digits that the rounded a loses close to it."""
-        section = np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
+        section = self._section(y)
         return np.asarray((self.section_radii[section] - flat_radius) + (y - self.section_ends[section]) ** 2)
+
+    def section_start(self, y: FloatArray) -> FloatArray:
+        """Where in y the section begins that y lies on."""
+        return np.asarray(self.section_ends[self._section(y)])
+
+    def truncation(self, y: FloatArray) -> FloatArray:
+        """What the polynomials leave out of delta [m] and F [N] at y, and roundings of y, shape (2, n)."""
+        return np.asarray(self.tails[:, self.functions.panel(y)] + self.rounding[:, None])
+
+    def _section(self, y: FloatArray) -> NDArray[np.intp]:
+        return np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)
 
     def values(self, y: FloatArray) -> FloatArray:
         """delta [m] and F_N [N], shape (2, n)."""
@@ -192,7 +206,8 @@ def adhesive_branch(
         coefficients=rows[:, 2:4],
         section_ends=ends,
         section_radii=radii,
-        truncation=np.max([panel.tails for panel in panels], axis=0) + _Y_ROUNDING * ends[-1] * _steepest(panels),
+        tails=np.array([panel.tails for panel in panels]).T,
+        rounding=_Y_ROUNDING * ends[-1] * _steepest(panels),
     )
 
 

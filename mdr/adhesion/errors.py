@@ -8,7 +8,6 @@ other quantities with it; at a fold, where the slope vanishes, the curvature bou
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -16,26 +15,37 @@ from bem.polynomials.adaptive import NODES
 from contact.records.validation import FloatArray
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.error_model import SPRING_ROUNDING
 from mdr.springs.table_errors import adhesive_errors
 
 # Row behind those of DEPTH and FORCE.
 RADIUS = 2
-# Radii along a branch at which bounds are computed: they vary slowly. Chosen.
-_SAMPLES = 24
+# Share of a position over which terms are differentiated: their slopes need two digits. Chosen.
+_STEP = 1e-4
 
 
 def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
     """Bounds of the errors of delta [m] and F [N] of equilibria with these radii, shape (2, n)."""
     if system.variants:
         return adhesive_errors(system, radius, depth)
+    terms, relative = _terms(system, radius, depth)
+    return np.asarray(np.linalg.norm(terms * relative, axis=1))
+
+
+def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """What errors of g, c_N and k_N count against in delta and F, shape (2, 3, n), and these errors, relative, (3, n).
+
+    delta = g - dl, and dl goes with c_N^(-1/2), Eq. (40). F = int k_N dg - k_N dl: the first term is the contact
+    without adhesion, and k_N is a factor of both. The three oscillate along the radius with different phases, so that
+    they add up like independent errors.
+    """
     relative = system.relative_errors(radius)
-    stiffness = system.contact_stiffness(radius)
-    g, moment = system.mdr_profile(radius), system.profile_moment(radius)
-    elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - moment)
-    by_depth = relative["indentation_depth"] * g + 0.5 * relative["spring_stiffness"] * elongation  # Eq. (41)
-    by_force = stiffness * by_depth + relative["indentation_depth"] * moment  # Eq. (4), int k_N dg being elastic
-    by_force += relative["contact_stiffness"] * (elastic + stiffness * elongation)
-    return np.stack([by_depth, by_force])
+    stiffness, g = system.contact_stiffness(radius), system.mdr_profile(radius)
+    elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - system.profile_moment(radius))
+    pull = stiffness * elongation
+    terms = np.array([[g, elongation, np.zeros_like(g)], [elastic, pull, np.abs(elastic - pull)]])
+    errors = [relative["indentation_depth"], 0.5 * relative["spring_stiffness"], relative["contact_stiffness"]]
+    return terms, np.array(errors)
 
 
 @dataclass(frozen=True)
@@ -72,21 +82,33 @@ class BranchErrors:
         return np.asarray(2.0 * error / np.maximum(root, np.sqrt(curvature * error)))
 
     def _fold_shift(self, quantity: int, y: FloatArray) -> FloatArray:
-        """How far a fold moves: the error of the slope, by Bernstein's inequality, over the curvature."""
-        scale = self.branch.functions.scales[self.branch.functions.panel(y)]
-        return np.asarray(NODES * scale * self._at_radius(y)[quantity] / np.abs(self.branch.curvatures(y)[quantity]))
+        """How far a fold moves: the error of the slope over the curvature."""
+        return np.asarray(self._slope_error(quantity, y) / np.abs(self.branch.curvatures(y)[quantity]))
+
+    def _slope_error(self, quantity: int, y: FloatArray) -> FloatArray:
+        """Errors of d(delta)/dy or dF/dy: relative ones change along the branch as fast as flat-punch data let them.
+
+        What the polynomials of branch and profile leave out, and roundings, change as fast as such polynomials can, by
+        Bernstein's inequality.
+        """
+        branch, panel = self.branch, self.branch.functions.panel(y)
+        steepest = NODES * branch.functions.scales[panel]
+        if self.system.variants:
+            return np.asarray(steepest * self._at_radius(y)[quantity])
+        radius, start = branch.radius(y), branch.section_start(y)
+        back = np.maximum((1.0 - _STEP) * y, 0.5 * (start + y))
+        terms, relative = self._terms(y)
+        slopes = np.abs(terms - self._terms(back)[0])[quantity] / (y - back)
+        # da = 2 (y - start) dy.
+        of_data = np.minimum(2.0 * (y - start) * self.system.error_steepness(radius), steepest)
+        smooth = np.concatenate([slopes * relative, terms[quantity] * relative * of_data])
+        rough = SPRING_ROUNDING * terms[quantity].sum(axis=0) + branch.truncation(y)[quantity]
+        rough = rough + self.system.profile_truncation(radius) * terms[quantity, 0]
+        return np.asarray(np.linalg.norm(smooth, axis=0) + rough * steepest)
+
+    def _terms(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        return _terms(self.system, self.branch.radius(y), self.branch.values(y)[DEPTH])
 
     def _at_radius(self, y: FloatArray) -> FloatArray:
-        return np.stack([np.interp(y, self._samples, bound) for bound in self._bounds])
-
-    @cached_property
-    def _samples(self) -> FloatArray:
-        """Where bounds are computed: they vary slowly."""
-        ends = self.branch.section_ends
-        return np.union1d(ends[-1] * np.arange(1.0, _SAMPLES + 1.0) / _SAMPLES, ends[1:])
-
-    @cached_property
-    def _bounds(self) -> FloatArray:
-        y = self._samples
         own = errors_at_radius(self.system, self.branch.radius(y), self.branch.values(y)[DEPTH])
-        return own + self.branch.truncation[:, None]
+        return np.asarray(own + self.branch.truncation(y))

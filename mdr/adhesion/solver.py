@@ -326,11 +326,13 @@ def _states(
     """Radius, depth and force, their errors (as rows depth, force, radius) and stability by control, radius falling.
 
     A pinned front comes first: from rest to where it sets off, depth and force are shares of what they are there.
+    Errors of depth and force are those at the state's own radius; how far radii may be off, their start alone decides.
     """
     held, branch = _PINNED if route.pinned else 0, route.branch
     share = np.append(np.arange(held) / max(held, 1), np.ones(POINTS - held))
     y = np.append(np.full(held, route.start), route.start * np.linspace(1.0, 0.0, POINTS - held, endpoint=False))
-    errors = share * bounds.of_states(y, uncertain * y / route.start)
+    errors = share * bounds.of_states(y, np.zeros(y.shape))
+    errors[RADIUS] = branch.radius(y + uncertain * y / route.start) - branch.radius(y)
     return branch.radius(y), share * branch.values(y), errors, (branch.slopes(y) > 0.0) | (share < 1.0)
 
 

@@ -149,7 +149,7 @@ def _samples(motion: Trajectory) -> FloatArray:
     """States of a single lane in order of time, shape (m, n)."""
     state = np.swapaxes(states(motion, _Z), 1, 2)[..., 0].reshape(motion.final.shape[0], -1)
     # The first sample is first touch and the last one the end itself, not the polynomials' rounded values there.
-    state[1, 0], state[:, -1] = 0.0, motion.final[:, 0]
+    state[1, 0], state[3, 0], state[:, -1] = 0.0, 1.0, motion.final[:, 0]
     return state[:, distinct(state[1])]
 
 

@@ -183,7 +183,7 @@ def _half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: f
         return MappedFunction(rest, np.zeros((1, count)), 0.0)
     grid, lead = _initial_grid(solution, indenter, unit, excess, count)
     far = (indenter.max_radius - indenter.flat_radius) / unit
-    tolerance = max(RESOLVED, SHARE * solution.panel_error)
+    tolerance = max(RESOLVED, SHARE * solution.panel_error((indenter.flat_radius + excess) / unit))
     return resolve(
         lambda d: half_space_profile(indenter, unit * d) / unit,
         grid,

@@ -150,6 +150,10 @@ class EquivalentSystem:
             "spring_stiffness": springs,
         }
 
+    def error_steepness(self, contact_radius: FloatArray) -> FloatArray:
+        """How fast relative errors of flat-punch data change with the radius at most [1/m]."""
+        return self.flat_punch.error_steepness(self._ratio(contact_radius)) / self.length_unit
+
     def profile_truncation(self, contact_radius: FloatArray) -> FloatArray:
         """What the polynomials of g leave out at each radius, relative to it."""
         return self.profile.relative_error(self._beyond(contact_radius - self.flat_radius))

@@ -34,6 +34,17 @@ def test_stated_error_covers_the_true_one(layer, settings):
         assert np.all(error <= stated + getattr(best, bound)(RATIOS)), value
 
 
+@pytest.mark.parametrize("layer", LAYERS)
+def test_narrow_contacts_are_those_of_the_half_space_however_few_the_nodes(layer):
+    """Errors vanish with a/h, as what the layer adds does; seen to fail with 3e-6 on 8 nodes, whatever a/h was."""
+    ratios = np.array([1e-6, 1e-4])
+    coarse, fine = (IntegralEquation(nodes=nodes).solution(layer, 1.0) for nodes in (8, 24))
+    for quantity, bound in (("contact", "relative_error"), ("spring", "spring_error")):
+        values, best = (getattr(s, f"normalized_{quantity}_stiffness")(ratios) for s in (coarse, fine))
+        assert np.all(np.abs(values / best - 1) < 1e-3 * ratios)
+        assert np.all(getattr(coarse, bound)(ratios) < 1e-2 * ratios + 1e-14)
+
+
 def test_error_falls_exponentially_with_the_nodes():
     """Each eight nodes more on a panel gain at least three and a half digits, until rounding."""
     best = IntegralEquation(panel_width=0.25).solution(LAYERS[-1], 2.0).normalized_contact_stiffness(RATIOS[:60])

@@ -78,10 +78,14 @@ def test_impacts_of_every_size(size):
     assert_repeated(impacts(scenes(loading, (VISCOUS,), size), PUNCH), alone, size, tolerance=0.0)
 
 
-def test_different_impacts_are_the_same_bits_together_and_alone():
-    """Two thirds of them relax, on nought to three branches; a third are flat punches."""
+@pytest.mark.parametrize("seed", [5, 6])
+def test_different_impacts_are_the_same_bits_together_and_alone(seed):
+    """Two thirds of them relax, on nought to three branches; a third are flat punches.
+
+    Seen to fail on seed 6: a flat punch's first speed came out a rounding below the one prescribed.
+    """
     draw, indenters = (
-        np.random.default_rng(5),
+        np.random.default_rng(seed),
         (
             Paraboloid(radius_of_curvature=5e-3),
             TruncatedCone(flat_radius=2e-4, slope=0.1),

@@ -51,6 +51,17 @@ def test_paraboloid_on_a_half_space(nu, depth, force):
     assert path.normal_force == pytest.approx(force * hertz, rel=5e-9, abs=0)
 
 
+@pytest.mark.parametrize("indenter", [PARABOLOID, FlatPunch(radius=0.5)], ids=lambda i: type(i).__name__)
+def test_each_step_states_its_own_error(indenter):
+    """Seen to fail while errors of all steps referred to the largest value along the path."""
+    depths = [1e-5, 1e-2]
+    path = stuck(0.3, indenter, IndentationDepths(depths))
+    for quantity in ("contact_radius", "normal_force", "contact_stiffness"):
+        values = np.abs(getattr(path, quantity))
+        np.testing.assert_array_equal(path.scale(quantity), values)
+        np.testing.assert_array_equal(path.uncertainty(quantity), path.error_estimate[quantity] * values)
+
+
 def test_cone_on_a_half_space():
     """delta = (pi/2) a slope sinh(pi eps)/(pi eps), eps = ln(3 - 4 nu)/(2 pi)."""
     eps = math.log(3.0 - 4.0 * 0.2) / (2.0 * math.pi)

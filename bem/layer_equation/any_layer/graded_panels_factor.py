@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bem.layer_equation.error_model import FACTOR
-from bem.layer_equation.flat_punch_solution import EPS, IntegralEquationSolution, polynomial_truncation
+from bem.layer_equation.flat_punch_solution import EPS, IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import (
     STRIP,
@@ -30,7 +30,6 @@ from bem.polynomials.gauss_panels import (
     lagrange_matrix,
     partial_panel_interpolation,
 )
-from bem.polynomials.mapped import MappedFunction
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
@@ -166,7 +165,7 @@ class AnyLayerSolution(IntegralEquationSolution):
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
         length = np.maximum(ratio, np.finfo(float).tiny)
-        truncated = polynomial_truncation(self._contact_stiffness, ratio) / k + self._before(length) / (length * k)
+        truncated = self._left_out(self._stiffness_share, ratio) / k + self._before(length) / (length * k)
         return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
 
     def panel_ends(self, ratio: float) -> FloatArray:
@@ -174,30 +173,13 @@ class AnyLayerSolution(IntegralEquationSolution):
         inner = self.factor.ends[1:-1]
         return inner[inner < ratio]
 
-    @property
-    def panel_error(self) -> float:
-        """The largest `spring_error` at ends and middles of all panels."""
-        ends = self.factor.ends
-        return float(self.spring_error(np.concatenate([ends[1:], (ends[1:] + ends[:-1]) / 2])).max())
-
     def _before(self, ratio: FloatArray) -> FloatArray:
         """Error of int c_bar up to a ratio: of each panel before it, and of its own up to there."""
         ends = self.factor.ends
         middles = (ends[1:] + ends[:-1]) / 2
-        density = self._spring_truncation(middles) * self.normalized_spring_stiffness(middles)
+        density = np.add(*self._spring_truncation(middles)) * self.normalized_spring_stiffness(middles)
         each = FACTOR.own_panel * density * np.diff(ends)
         panel, _ = self._panels.locate(ratio)
         earlier = np.append(0.0, np.cumsum(each))[panel]
         own = np.minimum(each[panel], density[panel] * ratio)
         return np.asarray(earlier + own)
-
-    @cached_property
-    def _contact_stiffness(self) -> MappedFunction:
-        """k_bar at every node, as for equal panels."""
-        tau, omega = gauss_nodes(self.factor.count)
-        widths, starts = np.diff(self.factor.ends)[:, None], self.factor.ends[:-1, None]
-        x = starts + widths * tau
-        y = self._edge_density(x)
-        partial = widths * tau * ((partial_panel_interpolation(tau.size) @ y[:, None, :, None])[..., 0] ** 2 @ omega)
-        full = np.concatenate([[0.0], np.cumsum(widths[:, 0] * (y**2 @ omega))[:-1]])
-        return MappedFunction(self._panels, (full[:, None] + partial) / x, 0.0)

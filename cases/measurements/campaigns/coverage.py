@@ -73,6 +73,7 @@ PLANS: Final = (
     CoveragePlan(method="mdr", settings={}, family="elastic", count=400),
     CoveragePlan(method="mdr", settings={"nodes": 12}, family="elastic", count=200),
     CoveragePlan(method="mdr", settings={}, family="adhesive", count=300),
+    CoveragePlan(method="mdr", settings={"nodes": 12}, family="adhesive", count=100),
     CoveragePlan(method="mdr", settings={}, family="impact", count=300),
     CoveragePlan(method="mdr", settings={}, family="history", count=200),
     CoveragePlan(method="mdr", settings={}, family="creep", count=40, largest=10.0),
