@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, cast
+from typing import TYPE_CHECKING, Annotated, Any, cast
 
 import typer
 
@@ -158,7 +158,7 @@ def campaign(
     return FAILED if wrong else 0
 
 
-COMMANDS = (advise, ladders, coverage, accuracy, scaling, maps, calibrate, campaign)
+COMMANDS: tuple[Callable[..., Any], ...] = (advise, ladders, coverage, accuracy, scaling, maps, calibrate, campaign)
 
 
 def published(study: Callable[[], CaseResult], out: Path | None) -> int:
