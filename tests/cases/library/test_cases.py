@@ -20,6 +20,10 @@ FAMILIES = {
     "coated_pair",
     "near_incompressible",
     "friction_flat_punch",
+    "two_layers",
+    "film_on_substrate",
+    "three_zone_cartilage",
+    "graded_layer",
 }
 
 
