@@ -66,6 +66,11 @@ class ContactDensity:
         # Every Chebyshev polynomial is 1 at the right end.
         return float(self.psi.coefficients[-1].sum())
 
+    @property
+    def first_shell(self) -> float:
+        """The kernel is analytic within two thicknesses of the real axis."""
+        return 1.0
+
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
         return even_abel_integral(self.slope_over_position, self.psi.grid, radius)

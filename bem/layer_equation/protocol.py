@@ -36,6 +36,11 @@ class LayerShare(Protocol):
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
 
+    @property
+    def first_shell(self) -> float:
+        """Distance from the edge within which `outside` is a polynomial to rounding."""
+        return 1.0
+
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
 
