@@ -320,8 +320,8 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
 
 def _rounding(density: DirectDensity) -> float:
     """Of positions, and of the kernel times the condition of the equation, which is about k_bar."""
-    growth = ONE_RADIUS.growth * float(np.finfo(float).eps) * density.stiffness / (2 * density.contact_radius)
-    return _position_rounding(density) + growth
+    kernel = ONE_RADIUS.growth * float(np.finfo(float).eps) + density.kernel_error
+    return _position_rounding(density) + kernel * density.stiffness / (2 * density.contact_radius)
 
 
 def _position_rounding(density: DirectDensity) -> float:

@@ -108,6 +108,11 @@ class DirectDensity:
         return cls(layer, indenter, unit, excess / unit, load, at_edge, grid, psi, k, amplitudes)
 
     @property
+    def kernel_error(self) -> float:
+        """Error of chi beyond a rounding."""
+        return 0.0
+
+    @property
     def flat(self) -> float:
         """b, in length units."""
         return self.indenter.flat_radius / self.unit

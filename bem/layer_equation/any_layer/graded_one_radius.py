@@ -7,11 +7,12 @@ a root. So its panels shrink towards all these points, where `one_radius` takes 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final, Self
 
 import numpy as np
 
-from bem.kernels.graded import GradedKernel
+from bem.kernels.graded import TOLERANCE, GradedKernel
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.any_layer.graded_density import PanelSlopes
 from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
@@ -79,6 +80,11 @@ class GradedDirectDensity(DirectDensity):
         )  # fmt: skip
 
     @property
+    def kernel_error(self) -> float:
+        """The tolerance to which the kernel was integrated over the depth."""
+        return TOLERANCE
+
+    @property
     def edge_values(self) -> FloatArray:
         """phi(a), shape (2,)."""
         return np.asarray(np.array([1.0, self.load_at_edge]) + self.at_edge)
@@ -128,7 +134,7 @@ def _panel_ends(indenter: Profile, contact_radius: float, widest: float) -> Floa
     marks = np.array([indenter.flat_radius, *indenter.breakpoints]) / contact_radius
     points = np.unique(np.concatenate([[0.0], marks[(marks > 0) & (marks < 1)], [1.0]]))
     parts = []
-    for start, stop in zip(points[:-1], points[1:], strict=True):
+    for start, stop in pairwise(points):
         half = (stop - start) / 2
         before = AXIS_LEVELS if start == 0 else BEND_LEVELS
         after = EDGE_LEVELS if stop == 1 else BEND_LEVELS

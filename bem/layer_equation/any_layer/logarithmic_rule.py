@@ -43,7 +43,9 @@ def _integrals(z: FloatArray, count: int) -> FloatArray:
     Q = np.where((np.abs(z) <= UPWARDS_TO)[..., None], _upwards(z, count + 1), _downwards(z, count + 1))
     order = np.arange(1, count)
     first = (1 + z) * np.log(np.abs(1 + z)) + (1 - z) * np.log(np.abs(1 - z)) - 2
-    return np.concatenate([first[..., None], 2 * (Q[..., 2:] - Q[..., :-2])[..., : count - 1] / (2 * order + 1)], axis=-1)
+    return np.concatenate(
+        [first[..., None], 2 * (Q[..., 2:] - Q[..., :-2])[..., : count - 1] / (2 * order + 1)], axis=-1
+    )
 
 
 def _upwards(z: FloatArray, count: int) -> FloatArray:
