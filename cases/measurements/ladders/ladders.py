@@ -118,34 +118,4 @@ def _beside_the_fast_method(method: Method, answer: Solution, quantity: str) -> 
 
 def _stated(answer: Solution, quantity: str) -> float:
     """The largest relative error the method states for the quantity; zero where it states none."""
-    return float(np.max(answer.error_estimate.get(quantity, np.zeros(1)))    LadderPlan(
-        name="contrast of two layers",
-        parameter="E1/E2",
-        values=tuple(10.0**k for k in range(-4, 5)),
-        scene=lambda contrast: layered((0.5, contrast), (0.5, 1.0)),
-    ),
-    LadderPlan(
-        name="thinner and thinner top layer",
-        parameter="h1/H",
-        values=(0.9, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001),
-        scene=lambda share: layered((share, 3.0), (1.0 - share, 1.0), ratio=0.3),
-    ),
-    LadderPlan(
-        name="number of layers",
-        parameter="n",
-        values=(2.0, 3.0, 5.0, 10.0, 20.0, 50.0),
-        scene=alternating,
-    ),
-    LadderPlan(
-        name="steepness of grading",
-        parameter="E(h)/E(0)",
-        values=tuple(10.0**k for k in range(-3, 4) if k),
-        scene=graded_in_depth,
-    ),
-    LadderPlan(
-        name="one layer nearly incompressible",
-        parameter="1/2 - nu1",
-        values=(*(10.0**-k for k in range(1, 13, 2)), 1e-17),
-        scene=lambda gap: layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap),
-    ),
-)
+    return float(np.max(answer.error_estimate.get(quantity, np.zeros(1))))
