@@ -33,6 +33,11 @@ class LayerShare(Protocol):
     def edge_value(self) -> float:
         """psi(a)."""
 
+    @property
+    def falls(self) -> bool:
+        """Whether the density under a convex indenter is known to fall to an edge value that is not negative."""
+        return False
+
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
 

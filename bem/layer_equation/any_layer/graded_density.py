@@ -78,6 +78,11 @@ class GradedDensity:
         return float(self.psi[-1])
 
     @property
+    def falls(self) -> bool:
+        """phi at the nodes, which are dense at both ends."""
+        return bool(np.all(np.diff(self.phi) <= 0.0) and self.phi[-1] >= 0.0)
+
+    @property
     def first_shell(self) -> float:
         """The last panel: the logarithm has its kink at the edge."""
         return float(self.ratio * self.panels.widths[-1])

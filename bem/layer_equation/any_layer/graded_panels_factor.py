@@ -174,7 +174,7 @@ class AnyLayerSolution(IntegralEquationSolution):
         inner = self.factor.ends[1:-1]
         return inner[inner < ratio]
 
-    @property
+    @cached_property
     def panel_error(self) -> float:
         """The largest `spring_error` at ends and middles of all panels."""
         ends = self.factor.ends

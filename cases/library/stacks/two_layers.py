@@ -115,12 +115,13 @@ def flowing(scene: AnyScene) -> float:
     for thickness, shear_modulus in shear_moduli(scene.layer):
         compliance += ((start + thickness) ** 3 - start**3) / (3 * shear_modulus)
         start += thickness
-    return float(math.pi * scene.indenter.flat_radius**4 / (8 * compliance))
+    a = float(scene.indenter.flat_radius)
+    return math.pi * a * a * a * a / (8 * compliance)
 
 
 def thinness(scene: AnyScene) -> float:
     """H/a."""
-    return scene.layer.thickness / scene.indenter.flat_radius
+    return float(scene.layer.thickness / scene.indenter.flat_radius)
 
 
 FIRST_SCENE = on_two(*FIRST)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial, reduce
+from functools import partial
 
 from cases.declare.quantities import relative_change, single_numbers, values_of
 from cases.measurements.advice.simpler_layers import layer_parts, simpler
 from cases.results.records.cost import EffectEntry
 from cases.run.empty_caches import forget
-from contact import Adhesion, ContactError, Detachment, Method, Scene, Solution
+from contact import Adhesion, ContactError, Detachment, ElasticLayer, Method, Scene, Solution
 
 _IMPORTS_COUNT = 2.0  # seconds: a longer solution hides them
 NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
@@ -54,7 +54,9 @@ def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> flo
 def without(scene: Scene, parts: Sequence[str]) -> Scene:
     """The scene with these parts left out."""
     effects = tuple(effect for effect in scene.effects if type(effect).__name__ not in parts)
-    layer = reduce(simpler, (part for part in layer_parts(scene.layer) if part in parts), scene.layer)
+    layer: ElasticLayer = scene.layer
+    for part in layer_parts(layer):
+        layer = simpler(layer, part) if part in parts else layer
     return scene.replace(effects=effects, layer=layer)
 
 

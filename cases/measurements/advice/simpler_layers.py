@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import partial
+from itertools import pairwise
 
 from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack
 
@@ -77,7 +78,7 @@ def _bonded(layer: LayerStack, number: int) -> LayerStack:
 def _pairs(layer: LayerStack) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """Materials of neighbours, from the top."""
     materials = [(one.youngs_modulus, one.poissons_ratio) for one in layer.sublayers]
-    return list(zip(materials[:-1], materials[1:], strict=True))
+    return list(pairwise(materials))
 
 
 def _buried(number: int) -> str:
