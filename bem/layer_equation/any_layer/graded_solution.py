@@ -151,8 +151,8 @@ class GradedSolution(FlatPunchSolution):
         """
         if indenter.flat_radius or indenter.breakpoints:
             raise UnsupportedSceneError(
-                f"{type(indenter).__name__} on a graded layer: profiles with a flat end, kinks or breakpoints are not "
-                "modelled there; cut the layer into a LayerStack, which takes every profile"
+                f"{type(indenter).__name__} on a graded layer: edge values are not smooth in ln(x) where a profile has "
+                "a flat end, kinks or breakpoints; ask integral_equation, or cut the layer into a LayerStack"
             )
         share = self._smooth_share(load)(load.grid.nodes)
         values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)

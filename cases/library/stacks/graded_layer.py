@@ -1,7 +1,8 @@
 """Layers whose modulus grows or falls exponentially with depth, and what many uniform sublayers make of them.
 
 Such a layer is stiffer or softer below than at its surface; its kernel differs from the half-space's like 1/k, so that
-the pressure has a logarithm at the edge of the contact. MDR solves it by edges in ln x. The kernel of an exponential
+the pressure has a logarithm at the edge of the contact. MDR solves it by edges in ln x, with the kernel on complex
+wavenumbers; the direct integral equation splits the logarithm off and stays on real ones. The kernel of an exponential
 modulus has a closed form with four complex exponentials, which is written here separately: by it the contact's pressure
 must press the paraboloid's shape into the surface. Cut into n uniform sublayers with the modulus of their middles, the
 layer is approached with nearly the second order of 1/n: the top one, of constant modulus, costs a logarithm.
