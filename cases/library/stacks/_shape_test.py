@@ -39,12 +39,14 @@ class PressedShape(PerMethod):
     Attributes:
         compliance: the second kernel.
         waves: wavenumbers, times the thickness of the surface material, beyond which the half-space answers.
+        radial_waves: the least such number times the contact radius, for kernels that fall like 1/k.
     """
 
     kind: ClassVar[Kind] = Kind.INVARIANT
 
     compliance: Compliance = surface_compliance
     waves: float = 24.0
+    radial_waves: float = 0.0
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge each scene and method."""
@@ -59,7 +61,8 @@ class PressedShape(PerMethod):
         indenter, layer, rings = scene.scene.indenter, scene.scene.layer, scene.sampling.rings
         pressed = Pressed(rings, np.array(curves[0].y), singular=isinstance(indenter, FlatPunch))
         radius = COMPARED * rings.edges[-1]
-        found = pressed.displacement(layer, self.compliance, radius, self.waves)
+        largest = max(self.waves / layer.surface.thickness, self.radial_waves / rings.edges[-1])
+        found = pressed.displacement(layer, self.compliance, radius, largest)
         depth = run.quantity("indentation_depth").values[-1]
         height = indenter.height(radius)
         return judge_invariant(float(np.max(np.abs(found - depth + height))) / depth, tolerance=tolerance)
@@ -94,11 +97,13 @@ class Pressed:
             total += (high - low) / 2 * (w @ q)
         return total
 
-    def displacement(self, layer: ElasticLayer, compliance: Compliance, radius: FloatArray, waves: float) -> FloatArray:
-        """w [m] at radii inside the contact: as on the half-space, and what the layer answers otherwise."""
+    def displacement(
+        self, layer: ElasticLayer, compliance: Compliance, radius: FloatArray, largest: float
+    ) -> FloatArray:
+        """w [m] at radii inside: as on the half-space, and what the layer answers otherwise up to k = largest [1/m]."""
         x, w = legendre_rule(NODES)
         sine = np.sin(np.pi / 4 * (x + 1))
-        k, dk = self._wavenumbers(waves / layer.surface.thickness)
+        k, dk = self._wavenumbers(largest)
         softer = compliance(layer, k) - 2 / layer.contact_modulus
         whole = [np.pi / 4 * w @ self._inner(r * sine) for r in radius]
         t, dt = self._positions(float(k[-1]))

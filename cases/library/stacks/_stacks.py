@@ -121,7 +121,7 @@ def pressed_shape(
     tolerance: float = 1e-9,
     *,
     compliance: Compliance = surface_compliance,
-    waves: float = 24.0,
+    radial_waves: float = 0.0,
     methods: tuple[str, ...] = ("mdr", "integral_equation"),
 ) -> PressedShape:
     """Return the shape test of scenes whose pressure is sampled."""
@@ -133,5 +133,5 @@ def pressed_shape(
         tolerance=tolerance,
         reason=WHY["shape test"],
         compliance=compliance,
-        waves=waves,
+        radial_waves=radial_waves,
     )

@@ -48,7 +48,7 @@ def missed(case_scene, compliance):
     path = Mdr().solve(scene)
     own = Pressed(rings, path.pressure(rings.radius.ravel(), 0), singular=isinstance(scene.indenter, FlatPunch))
     radius, depth = COMPARED * rings.edges[-1], values_of(path, "indentation_depth")[0]
-    found = own.displacement(scene.layer, compliance, radius, 24.0)
+    found = own.displacement(scene.layer, compliance, radius, 24.0 / scene.layer.surface.thickness)
     return float(np.max(np.abs(found - depth + scene.indenter.height(radius)))) / depth
 
 
