@@ -32,7 +32,6 @@ from contact import (
     Supported,
     Unsupported,
     UnsupportedSceneError,
-    other_layer,
 )
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import refuse_touching_path
@@ -99,8 +98,8 @@ class Bem(Record):
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic and adhesive contact under prescribed radii, depths or forces, and detachment with adhesion."""
-        if (other := other_layer("bem", scene.layer)) is not None:
-            return other
+        if self.boundary == "periodic" and not scene.layer.is_uniform:
+            return Unsupported(reason=f'a {type(scene.layer).__name__} has no periodic answer; use boundary="free"')
         others = [type(effect).__name__ for effect in scene.effects if not isinstance(effect, Adhesion)]
         if others:
             return Unsupported(reason=f"bem models adhesion only, not {others[0]}; ask mdr or fem")

@@ -105,6 +105,11 @@ class PathFields:
         """w(r) [m]."""
         return self.contact(step).surface_displacement(radius)
 
+    def falls(self, step: int) -> bool:
+        """Whether the Abel density of one step falls from the axis to an edge value that is not negative."""
+        density = self.contact(step).density
+        return self.scene.indenter.is_convex and density is not None and density.falls
+
     def inside(self, step: int, pressure_error: float) -> ContactInterior:
         """The body under one step, whose pressure has this relative error."""
         contact = self.contact(step)

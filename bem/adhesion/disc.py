@@ -29,7 +29,7 @@ from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
-from contact import Layer, Profile
+from contact import ElasticLayer, Layer, Profile
 from contact.records.validation import FloatArray
 
 # The quotient is fitted up to so many cells inside the edge, but no farther than this part of the radius.
@@ -55,7 +55,7 @@ class AdheringDisc:
         known: phi [m] that goes with it.
     """
 
-    layer: Layer
+    layer: ElasticLayer
     disc: PixelDisc
     grid: QuadrantGrid
     flat: FloatArray
@@ -64,7 +64,7 @@ class AdheringDisc:
     known: float
 
     @classmethod
-    def solved(cls, layer: Layer, indenter: Profile, radius: float, cells: int, threads: int) -> AdheringDisc:
+    def solved(cls, layer: ElasticLayer, indenter: Profile, radius: float, cells: int, threads: int) -> AdheringDisc:
         """Solve both on the disc of this radius [m]."""
         disc = measured_disc(cells, False)
         grid = QuadrantGrid(cells, radius / disc.radius)
@@ -125,7 +125,7 @@ class AdheringDisc:
         return float(fit[0])
 
 
-def is_measured(layer: Layer, indenter: Profile) -> bool:
+def is_measured(layer: ElasticLayer, indenter: Profile) -> bool:
     """Whether the profile's own edge value is measured by the half-space."""
     return not layer.is_half_space or bool(indenter.breakpoints)
 

@@ -264,7 +264,7 @@ class AdheringDiscs:
     def _by_ring(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""
         width = FARTHEST * radius / measured_disc(self.points, False).radius
-        return np.asarray(DISCS.ring * np.minimum(width / self.scene.layer.thickness, 1.0) ** 3)
+        return np.asarray(DISCS.ring * np.minimum(width / self.scene.layer.surface.thickness, 1.0) ** 3)
 
     def _fields(self, held: FollowedState, points: int) -> AdheringFields:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, points, self.threads)

@@ -27,7 +27,7 @@ import numpy.typing as npt
 from bem.grid.conjugate_gradients import GridSolution, solve_on_contact
 from bem.grid.operators import BandLimitedHalfSpace, FreeSpaceOperator, PeriodicOperator
 from bem.grid.transforms import fast_period
-from contact import Layer
+from contact import ElasticLayer, Layer
 from contact.records.validation import BoolArray, FloatArray
 from contact.scene.layer import Support
 
@@ -91,12 +91,17 @@ class PixelDisc:
 
     def solve(self, ratio: float, support: Support, poissons_ratio: float, start: FloatArray | None) -> PunchSolution:
         """Flat punch on a layer with a/h = `ratio`."""
-        youngs_modulus = 1.0 - poissons_ratio**2
-        thickness = self.radius / ratio
         layer = Layer(
-            thickness=thickness, youngs_modulus=youngs_modulus, poissons_ratio=poissons_ratio, support=support
+            thickness=self.radius / ratio,
+            youngs_modulus=1.0 - poissons_ratio**2,
+            poissons_ratio=poissons_ratio,
+            support=support,
         )
-        cells = fast_period(ceil(2 * self.radius + GAP * thickness)) if self.periodic else self.cells
+        return self.on_layer(layer, ratio, start)
+
+    def on_layer(self, layer: ElasticLayer, ratio: float, start: FloatArray | None) -> PunchSolution:
+        """Flat punch on a layer in this disc's units, as thick as its radius over `ratio`, with E* = 1."""
+        cells = fast_period(ceil(2 * self.radius + GAP * layer.thickness)) if self.periodic else self.cells
         kind = PeriodicOperator if self.periodic else FreeSpaceOperator
         operator = kind(layer, cell_size=1.0, cells=cells, quarter=True)
         contact = _resized(self.contact, cells // 2)

@@ -17,7 +17,7 @@ from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffnes
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid, grid_sequence, prolonged, refuse_thin_layer
 from bem.kernels.moduli import contact_modulus
-from contact import InvalidInput, Layer, NotConvergedError, Profile, StageLog, UnsupportedSceneError
+from contact import ElasticLayer, InvalidInput, NotConvergedError, Profile, StageLog, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
 
@@ -142,7 +142,7 @@ class GridContactSearch:
         log: Stage log.
     """
 
-    layer: Layer
+    layer: ElasticLayer
     indenter: Profile
     boundary: Boundary
     tolerance: float
@@ -240,7 +240,7 @@ class GridContactSearch:
         """Equilibrium on a coarse grid whose box grows until the contact lies well inside."""
         radius = FIRST_BOX * self._geometric_radius(depth)
         for _ in range(40):
-            thin = self.layer.thickness < 4.0 * radius / COARSE_CELLS
+            thin = self.layer.is_uniform and self.layer.thickness < 4.0 * radius / COARSE_CELLS
             on_grid = self._on_grid(radius, COARSE_CELLS, "periodic" if thin else "free", COARSE_TOLERANCE)
             try:
                 answer = on_grid.at_depth(depth, None)
@@ -273,14 +273,14 @@ class GridContactSearch:
         punch_cell = self._punch_cell(on_grid.grid.cells, radius)
         scatter = (
             DIRECT.slope_scatter * on_grid.grid.cell_size
-            + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.thickness) ** 2
+            + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.surface.thickness) ** 2
         )
         exponent = stiffness_exponent(radius / self.layer.thickness)
         return CircularContact(on_grid.grid, answer, radius, scatter, on_grid.force(answer), stiffness, exponent)
 
     def _punch_cells(self, cells: int, radius: float) -> int:
         """Cells of the flat punch behind k_N."""
-        thin = 2.0 * STIFFNESS_LAYER / DISC_FILL * radius / self.layer.thickness
+        thin = 2.0 * STIFFNESS_LAYER / DISC_FILL * radius / self.layer.surface.thickness
         return min(cells, 1 << ceil(log2(max(STIFFNESS_CELLS, thin))))
 
     def _punch_cell(self, cells: int, radius: float) -> float:

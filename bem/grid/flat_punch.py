@@ -9,14 +9,17 @@ import numpy as np
 from bem.grid.calibrated_disc import THIN, PixelDisc, PunchSolution, measured_disc
 from bem.grid.error_model import DIRECT
 from bem.kernels.moduli import contact_modulus
-from contact import Layer, NotConvergedError
+from contact import ElasticLayer, Layer, NotConvergedError
 from contact.records.validation import FloatArray
 
 
-def grid_punch(layer: Layer, radius: float, cells: int) -> tuple[PunchSolution, PixelDisc]:
+def grid_punch(layer: ElasticLayer, radius: float, cells: int) -> tuple[PunchSolution, PixelDisc]:
     """The flat punch of this radius [m], and the grid disc it was computed with."""
     # The ratio is zero on a half-space.
     ratio = radius / layer.thickness
+    if not isinstance(layer, Layer):
+        disc = measured_disc(cells, False)
+        return disc.on_layer(layer.in_own_units().stretched(disc.radius / ratio), ratio, None), disc
     disc = measured_disc(cells, bool(ratio > THIN))
     if layer.is_half_space:
         return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
@@ -28,23 +31,23 @@ def stiffness_exponent(ratio: float) -> float:
     return min(1.0 + DIRECT.exponent_growth * ratio, DIRECT.largest_exponent)
 
 
-def contact_stiffness(layer: Layer, radius: float, cells: int) -> float:
+def contact_stiffness(layer: ElasticLayer, radius: float, cells: int) -> float:
     """k_N(a) [N/m], Eq. (10)."""
     punch, _ = grid_punch(layer, radius, cells)
     return punch_stiffness(layer, radius, punch)
 
 
-def punch_stiffness(layer: Layer, radius: float, punch: PunchSolution) -> float:
+def punch_stiffness(layer: ElasticLayer, radius: float, punch: PunchSolution) -> float:
     """k_N [N/m] of a punch of this radius [m], Eq. (10)."""
     return 2.0 * contact_modulus(layer) * radius * punch.stiffness
 
 
-def cell_pressure(layer: Layer, depth: float, cell_size: float, punch: PunchSolution) -> FloatArray:
+def cell_pressure(layer: ElasticLayer, depth: float, cell_size: float, punch: PunchSolution) -> FloatArray:
     """p [Pa] on the cells of the quadrant under a depth [m]."""
     return np.asarray(punch.pressure * (contact_modulus(layer) * depth / cell_size))
 
 
-def radius_of_stiffness(layer: Layer, stiffness: float, near: float, cells: int) -> float:
+def radius_of_stiffness(layer: ElasticLayer, stiffness: float, near: float, cells: int) -> float:
     """The radius a [m] with k_N(a) = stiffness to 1e-7, by the secant method in logarithms.
 
     Raises:

@@ -23,7 +23,7 @@ from scipy.fft import dctn
 from scipy.interpolate import CubicSpline
 from scipy.special import itj0y0, j0
 
-from bem.kernels.layer import one_minus_kernel
+from bem.kernels.layer import one_minus_kernel, zero_mode
 from bem.polynomials.gauss import legendre_rule
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -105,6 +105,11 @@ def correction_function(support: Support, poissons_ratio: float) -> CubicSpline:
     density = np.tile(half * weights, panels) * one_minus_kernel(q, support, poissons_ratio)
     rho = REACH * np.sinh(4.0 * np.linspace(0.0, 1.0, knots)) / np.sinh(4.0)
     return CubicSpline(rho, -j0(rho[:, None] * q) @ density)
+
+
+def uniform_response(support: Support, poissons_ratio: float) -> float:
+    """Displacement by a uniform pressure over a whole layer, times E*/(2 h p); zero if bonded and incompressible."""
+    return zero_mode(support, poissons_ratio)
 
 
 def band_limited_influence(offsets: int) -> FloatArray:

@@ -13,6 +13,7 @@ from typing import ClassVar, Final, Protocol
 import numpy as np
 
 from bem.grid.influence import band_limited_influence, layer_influence
+from bem.grid.other_layers import other_layer_influence
 from bem.grid.transforms import (
     FullTransform,
     Planning,
@@ -23,7 +24,7 @@ from bem.grid.transforms import (
 )
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import surface_kernel
-from contact import ElasticLayer, InvalidInput, refuse_other_layers
+from contact import ElasticLayer, InvalidInput, Layer
 from contact.records.validation import FloatArray
 
 # Least answer of the mean mode over that of the next mode. Below it conjugate gradients with the mean mode's inverse
@@ -81,8 +82,9 @@ class GridOperator:
 
     def _influence(self, layer: ElasticLayer, offsets: int, cell_size: float) -> FloatArray:
         """Displacement by a unit pressure on one cell, lengths in cell sizes, E* = 1."""
-        plain = refuse_other_layers("the grid in free space", layer)
-        return layer_influence(offsets, plain.thickness / cell_size, plain.support, plain.poissons_ratio)
+        if not isinstance(layer, Layer):
+            return other_layer_influence(offsets, layer, cell_size)
+        return layer_influence(offsets, layer.thickness / cell_size, layer.support, layer.poissons_ratio)
 
     def displacement(self, pressure: FloatArray) -> FloatArray:
         """u [m] by p [Pa], both of shape (m, m)."""

@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from contact import Layer, UnsupportedSceneError
+from contact import ElasticLayer, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
 # Cells across the coarse grids on which first guesses and largest radii are looked for.
@@ -43,16 +43,17 @@ class UnresolvedLayer(UnsupportedSceneError):
     """The layer is too thin for the cells: two such grids may agree on what neither of them resolves."""
 
 
-def refuse_thin_layer(layer: Layer, cell_size: float, least: float) -> None:
+def refuse_thin_layer(layer: ElasticLayer, cell_size: float, least: float) -> None:
     """Ask for a layer that is so many cells thick.
 
     Raises:
         UnresolvedLayer: If it is thinner.
     """
-    spanned = layer.thickness / cell_size
+    thickness = layer.surface.thickness
+    spanned = thickness / cell_size
     if spanned < least:
         raise UnresolvedLayer(
-            f"the layer of thickness {layer.thickness:g} m is {spanned:.2g} cells thick and needs {least:g}; "
+            f"the layer of thickness {thickness:g} m is {spanned:.2g} cells thick and needs {least:g}; "
             f"take {least / spanned:.1f} times as many points, or ask mdr or fem"
         )
 

@@ -16,9 +16,10 @@ from scipy.interpolate import PchipInterpolator
 
 from bem.grid.equilibrium import CircularContact
 from bem.grid.influence import REACH, correction_function
+from bem.grid.other_layers import point_response
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
-from contact import Layer, Profile
+from contact import ElasticLayer, Layer, Profile
 from contact.records.validation import FloatArray
 
 # Radii summed at a time beyond the box, which bounds the memory.
@@ -56,7 +57,7 @@ class FieldSequence:
 class SmoothIndenterFields:
     """Fields under and around a smooth indenter."""
 
-    layer: Layer
+    layer: ElasticLayer
     indenter: Profile
     state: CircularContact
 
@@ -102,7 +103,7 @@ class SmoothIndenterFields:
 class FlatPunchFields:
     """Fields under and around a flat punch: p = c q(r/a) / sqrt(1 - (r/a)^2)."""
 
-    layer: Layer
+    layer: ElasticLayer
     radius: float
     indentation_depth: float
     pressure_scale: float
@@ -130,7 +131,7 @@ class FlatPunchFields:
 class Rim:
     """The edge of a contact with a singular pressure, and what causes displacements beyond it."""
 
-    layer: Layer
+    layer: ElasticLayer
     grid: QuadrantGrid
     pressure: FloatArray
     radius: float
@@ -146,7 +147,9 @@ class Rim:
         return w
 
 
-def summed_displacement(layer: Layer, grid: QuadrantGrid, pressure: FloatArray, radius: FloatArray) -> FloatArray:
+def summed_displacement(
+    layer: ElasticLayer, grid: QuadrantGrid, pressure: FloatArray, radius: FloatArray
+) -> FloatArray:
     """w(r) [m] outside the contact: each cell acts as a point force at its centre, mirrored into four quadrants.
 
     Args:
@@ -170,10 +173,12 @@ def summed_displacement(layer: Layer, grid: QuadrantGrid, pressure: FloatArray, 
     return w
 
 
-def _point_response(layer: Layer, distance: FloatArray) -> FloatArray:
+def _point_response(layer: ElasticLayer, distance: FloatArray) -> FloatArray:
     """1/r + V(r/h)/h [1/m]."""
     if layer.is_half_space:
         return 1.0 / distance
+    if not isinstance(layer, Layer):
+        return point_response(layer, distance)
     rho = distance / layer.thickness
     smooth = correction_function(layer.support, layer.poissons_ratio)
     return np.where(rho < REACH, 1.0 / distance + smooth(np.minimum(rho, REACH)) / layer.thickness, 0.0)

@@ -19,7 +19,7 @@ from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.abel_integral import even_abel_integral
-from bem.polynomials.chebyshev import chebyshev_sum, differentiation
+from bem.polynomials.chebyshev import differentiation, piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.truncation import rate_of_decay
@@ -66,6 +66,17 @@ class ContactDensity:
         # Every Chebyshev polynomial is 1 at the right end.
         return float(self.psi.coefficients[-1].sum())
 
+    @property
+    def falls(self) -> bool:
+        """phi at the nodes; on a panel it is a polynomial to rounding, but for the load's own kinks."""
+        phi = (self.load + self.psi.node_values).ravel()
+        return bool(np.all(np.diff(phi) <= EPS * phi[0]) and phi[-1] >= 0.0)
+
+    @property
+    def first_shell(self) -> float:
+        """The kernel is analytic within two thicknesses of the real axis."""
+        return 1.0
+
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
         return even_abel_integral(self.slope_over_position, self.psi.grid, radius)
@@ -76,7 +87,7 @@ class ContactDensity:
         left, width, coefficients = self._slopes
         share = (t - left[panel]) / width[panel]
         innermost = panel == 0
-        values = chebyshev_sum(coefficients[panel], 2 * np.where(innermost, share**2, share) - 1)
+        values = piecewise_sum(coefficients, panel, 2 * np.where(innermost, share**2, share) - 1)
         return values / np.where(innermost, 1.0, t)
 
     def outside(self, distance: FloatArray) -> FloatArray:

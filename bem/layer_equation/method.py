@@ -16,6 +16,7 @@ from pydantic import Field
 from scipy.optimize import toms748
 
 from bem.kernels.moduli import contact_modulus
+from bem.layer_equation.any_layer.graded_one_radius import GradedDirectDensity
 from bem.layer_equation.error_model import ONE_RADIUS
 from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.one_radius import DirectDensity
@@ -42,6 +43,8 @@ from contact.records.validation import FloatArray, positive
 ARRAYS = ContactPath.ARRAYS
 # Largest a/h: its dense system has two thousand unknowns there and takes two seconds.
 LARGEST_RATIO = 100.0
+# The same on a graded layer, as far as MDR goes.
+LARGEST_GRADED_RATIO = 16.0
 # Relative tolerance of the search for the radius of a prescribed depth or force.
 RADIUS_TOLERANCE = 1e-13
 # Radii on each smooth stretch of the profile at which the pressure is compared and must not pull.
@@ -66,8 +69,6 @@ class IntegralEquationMethod(Record):
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Elastic contact of any profile with layers and half-spaces."""
-        if not scene.layer.is_piecewise_uniform:
-            return Unsupported(f"the direct integral equation does not model a {type(scene.layer).__name__}; ask mdr")
         if scene.effects:
             names = ", ".join(type(effect).__name__ for effect in scene.effects)
             return Unsupported(f"the direct integral equation models elastic contact only, not {names}")
@@ -75,7 +76,7 @@ class IntegralEquationMethod(Record):
             return Unsupported(f"the direct integral equation does not model {type(scene.loading).__name__}")
         if isinstance(scene.loading, ContactRadii):
             ratio = float(scene.loading.values.max()) / scene.layer.surface.thickness
-            return Supported() if ratio <= LARGEST_RATIO else Unsupported(_too_thin(ratio))
+            return Supported() if ratio <= _largest(scene) else Unsupported(_too_thin(ratio, scene))
         return Supported()
 
     def refined(self) -> Self:
@@ -123,8 +124,12 @@ class IntegralEquationMethod(Record):
         return refuse_touching_path(path)
 
 
-def _too_thin(ratio: float) -> str:
-    return f"a/h = {ratio:g}: the direct integral equation covers ratios up to {LARGEST_RATIO:g}"
+def _largest(scene: Scene) -> float:
+    return LARGEST_RATIO if scene.layer.is_piecewise_uniform else LARGEST_GRADED_RATIO
+
+
+def _too_thin(ratio: float, scene: Scene) -> str:
+    return f"a/h = {ratio:g}: the direct integral equation covers ratios up to {_largest(scene):g}"
 
 
 @dataclass(frozen=True, eq=False)
@@ -241,10 +246,11 @@ class _Solver:
 
     def _density(self, excess: float) -> DirectDensity:
         ratio = (self.scene.indenter.flat_radius + excess) / self.scene.layer.surface.thickness
-        if ratio > LARGEST_RATIO:
-            raise UnsupportedSceneError(_too_thin(ratio))
+        if ratio > _largest(self.scene):
+            raise UnsupportedSceneError(_too_thin(ratio, self.scene))
         self.log.count("factorisations", 0 if self.scene.layer.is_half_space else 1)
-        return DirectDensity.solve(self.scene.layer, self.scene.indenter, excess, self.panel_width, self.nodes)
+        kind = DirectDensity if self.scene.layer.is_piecewise_uniform else GradedDirectDensity
+        return kind.solve(self.scene.layer, self.scene.indenter, excess, self.panel_width, self.nodes)
 
     def _excess(self, value: float) -> float:
         """a - b [m] with this depth or force: bracketed by doubling, then found by TOMS 748."""
@@ -321,8 +327,8 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
 
 def _rounding(density: DirectDensity) -> float:
     """Of positions, and of the kernel times the condition of the equation, which is about k_bar."""
-    growth = ONE_RADIUS.growth * float(np.finfo(float).eps) * density.stiffness / (2 * density.contact_radius)
-    return _position_rounding(density) + growth
+    kernel = ONE_RADIUS.growth * float(np.finfo(float).eps) + density.kernel_error
+    return _position_rounding(density) + kernel * density.stiffness / (2 * density.contact_radius)
 
 
 def _position_rounding(density: DirectDensity) -> float:

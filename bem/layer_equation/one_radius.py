@@ -109,6 +109,11 @@ class DirectDensity:
         return cls(layer, indenter, unit, excess / unit, load, at_edge, grid, psi, k, amplitudes)
 
     @property
+    def kernel_error(self) -> float:
+        """Error of chi beyond a rounding."""
+        return 0.0
+
+    @property
     def flat(self) -> float:
         """b, in length units."""
         return self.indenter.flat_radius / self.unit
@@ -150,7 +155,7 @@ class DirectDensity:
 
     def force(self, depth: float) -> float:
         """F_N/(E* unit^2) = 2 int phi dt under a depth in length units."""
-        return 2 * float(self.integrals @ _under(depth))
+        return 2 * float(self.integrals @ under(depth))
 
     @property
     def stiffness(self) -> float:
@@ -164,7 +169,7 @@ class DirectDensity:
         for stretch in self._stretches:
             total += abel_integral(self._profile_slope, stretch, radius, offset)
         if singular_edge:
-            edge = self.edge_values @ _under(depth)
+            edge = self.edge_values @ under(depth)
             total += edge / np.sqrt((self.excess - offset) * (self.contact_radius + radius))
         return total / np.pi
 
@@ -199,12 +204,12 @@ class DirectDensity:
 
     def _smooth_integral(self, radius: FloatArray, depth: float) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt, psi'/t by its polynomials on the pieces."""
-        slopes = MappedFunction(self.grid, (self._smooth_slopes @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
+        slopes = MappedFunction(self.grid, (self._smooth_slopes @ under(depth)).reshape(self.grid.nodes.shape), 0.0)
         return even_abel_integral(slopes, self.grid, radius)
 
     def inside(self, depth: float, *, singular_edge: bool) -> Density:
         """phi under a depth, as the fields inside ask for it."""
-        smooth = MappedFunction(self.grid, (self._smooth_slopes @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
+        smooth = MappedFunction(self.grid, (self._smooth_slopes @ under(depth)).reshape(self.grid.nodes.shape), 0.0)
 
         def slope(piece: Piece, offset: FloatArray) -> FloatArray:
             """phi' = psi' - g_hs'."""
@@ -215,7 +220,7 @@ class DirectDensity:
                 total -= self._slope_at(past, self._stretches[-1].room + self.excess - past)
             return np.asarray(total)
 
-        edge = float(self.edge_values @ _under(depth)) if singular_edge else 0.0
+        edge = float(self.edge_values @ under(depth)) if singular_edge else 0.0
         return Density(self.contact_radius, edge, pieces_of(self.indenter, self.unit, self._stretches), slope, 1.0)
 
     @cached_property
@@ -232,18 +237,18 @@ class DirectDensity:
             return np.zeros(0)
         k, weight = _wavenumbers(self.layer, self.contact_radius + float(radius.max()))
         transform = _moments(self.load, self.flat, self.contact_radius, k) + _transform(self.grid, self.psi, k)
-        layer = j0(np.multiply.outer(radius, k)) @ (weight * (transform @ _under(depth)))
+        layer = j0(np.multiply.outer(radius, k)) @ (weight * (transform @ under(depth)))
         outside: FloatArray = 2 / np.pi * (self._half_space_displacement(radius, depth) - layer)
         return outside
 
     def _half_space_displacement(self, radius: FloatArray, depth: float) -> FloatArray:
         """int_0^a phi/sqrt(r^2 - t^2) dt."""
-        psi = MappedFunction(self.grid, (self.psi @ _under(depth)).reshape(self.grid.nodes.shape), 0.0)
+        psi = MappedFunction(self.grid, (self.psi @ under(depth)).reshape(self.grid.nodes.shape), 0.0)
         total = depth * np.arcsin(self.contact_radius / radius) + arc_integral(radius, psi, 0.0, self.grid.count)
         return total - arc_integral(radius, self.load, self.flat, self.grid.count) if self._stretches else total
 
 
-def _under(depth: float) -> FloatArray:
+def under(depth: float) -> FloatArray:
     """W = delta - g_hs in terms of the two loads."""
     return np.array([depth, -1.0])
 

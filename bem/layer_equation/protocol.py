@@ -33,8 +33,18 @@ class LayerShare(Protocol):
     def edge_value(self) -> float:
         """psi(a)."""
 
+    @property
+    def falls(self) -> bool:
+        """Whether the density under a convex indenter is known to fall to an edge value that is not negative."""
+        return False
+
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
+
+    @property
+    def first_shell(self) -> float:
+        """Distance from the edge within which `outside` is a polynomial to rounding."""
+        return 1.0
 
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""

@@ -18,8 +18,7 @@ from typing import Any, Final, Self
 import numpy as np
 from scipy.integrate import simpson
 
-from bem.grid.influence import correction_function
-from bem.kernels.layer import zero_mode
+from bem.grid.influence import correction_function, uniform_response
 from bem.tables.table import FlatPunchTable
 from contact import ElasticLayer, InvalidInput, refuse_other_layers
 from contact.files.storage import read_tree, write_tree
@@ -226,5 +225,5 @@ def _check_limits(path: str | Path, table: FlatPunchTable) -> float:
 
 def _thin_layer_stiffness(table: FlatPunchTable) -> float:
     """k_bar of a thin layer at the largest ratio, Eqs. (16), (18), (21)."""
-    xi, compliance = table.max_ratio, zero_mode(table.support, table.poissons_ratio)
+    xi, compliance = table.max_ratio, uniform_response(table.support, table.poissons_ratio)
     return 3.0 * np.pi / 64.0 * xi**3 if compliance == 0.0 else np.pi / 4.0 * xi / compliance

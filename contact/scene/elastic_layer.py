@@ -86,3 +86,7 @@ class ElasticLayer(Record):
     def in_own_units(self) -> Self:
         """The same layer with thickness 1 and E* = 1; a half-space stays infinite."""
         raise TypeError(f"{type(self).__name__} has no units of its own")
+
+    def stretched(self, factor: float) -> ElasticLayer:
+        """The same layer with all depths so many times as large."""
+        raise TypeError(f"{type(self).__name__} cannot be stretched")

@@ -106,6 +106,15 @@ class GradedLayer(ElasticLayer):
             support=support.scaled(modulus) if isinstance(support, ElasticBase) else support,
         )
 
+    def stretched(self, factor: float) -> Self:
+        """The same layer with all depths so many times as large."""
+        nu = self.poissons_ratio
+        return self.replace(
+            thickness=self.thickness * factor,
+            youngs_modulus=self.youngs_modulus.scaled(1 / factor, 1.0),
+            poissons_ratio=nu.scaled(1 / factor, 1.0) if isinstance(nu, TabulatedDepth) else nu,
+        )
+
 
 def _refuse_zero(table: TabulatedDepth) -> None:
     zero = np.flatnonzero(table.values <= 0.0)

@@ -131,3 +131,7 @@ class LayerStack(ElasticLayer):
         )
         base = support.scaled(modulus) if isinstance(support, ElasticBase) else support
         return self.replace(sublayers=sublayers, support=base)
+
+    def stretched(self, factor: float) -> Self:
+        """The same stack with every sublayer so many times as thick."""
+        return self.replace(sublayers=tuple(one.replace(thickness=one.thickness * factor) for one in self.sublayers))

@@ -35,6 +35,9 @@ class Pressures(Protocol):
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa]."""
 
+    def falls(self, step: int) -> bool:
+        """Whether the Abel density falls from the axis to an edge value that is not negative: then p >= 0."""
+
 
 class PullingContact(UnsupportedSceneError):
     """The surfaces would have to pull at each other inside the contact, and nothing lets them.
@@ -74,6 +77,8 @@ def refuse_pulling(
     if scene.layer.is_uniform:
         return
     for step, (a, load) in enumerate(zip(contact_radius.tolist(), force.tolist(), strict=True)):
+        if fields.falls(step):
+            continue
         radius = _radii(scene, a)
         pressure = fields.pressure(radius, step)
         mean, lowest = load / (np.pi * a**2), int(pressure.argmin())
@@ -111,6 +116,10 @@ class _OneStep:
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa]."""
         return self._pressure(radius)
+
+    def falls(self, step: int) -> bool:
+        """Not asked for."""
+        return False
 
 
 def _radii(scene: Scene, contact_radius: float) -> FloatArray:

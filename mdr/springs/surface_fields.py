@@ -171,7 +171,8 @@ class ContactFields:
 
 
 def _remainder(density: LayerShare, reach: float) -> MappedFunction:
-    """Phi(a + d) on shells of width 1, 1, 2, 4, ... up to d = reach."""
-    shells = int(np.ceil(np.log2(max(reach, 1.0)))) + 1
-    grid = MappedGrid.between(np.concatenate([[0.0], 2.0 ** np.arange(shells)]), NODES)
+    """Phi(a + d) on shells that double from the first on, up to d = reach."""
+    first = density.first_shell
+    shells = int(np.ceil(np.log2(max(reach / first, 1.0)))) + 1
+    grid = MappedGrid.between(first * np.concatenate([[0.0], 2.0 ** np.arange(shells)]), NODES)
     return MappedFunction(grid, density.outside(grid.nodes), 0.0)

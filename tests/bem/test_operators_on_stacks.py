@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from bem.grid.operators import FreeSpaceOperator, PeriodicOperator
+from bem.grid.operators import PeriodicOperator
 from bem.kernels.of_layer import surface_kernel
-from contact import ElasticBase, ExponentialDepth, GradedLayer, LayerStack, Sublayer, UnsupportedSceneError
+from contact import ElasticBase, ExponentialDepth, GradedLayer, LayerStack, Sublayer
 
 TOP = Sublayer(thickness=0.2, youngs_modulus=2.0, poissons_ratio=0.3)
 LOWER = Sublayer(thickness=0.8, youngs_modulus=9.0, poissons_ratio=0.4)
@@ -42,9 +42,3 @@ def test_a_uniform_pressure_answers_with_the_finite_mode():
     )
     found = PeriodicOperator(STACK, cell_size=0.25, cells=16).displacement(uniform)
     np.testing.assert_allclose(found, confined, rtol=1e-12)
-
-
-@pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
-def test_free_space_refuses_by_name(layer):
-    with pytest.raises(UnsupportedSceneError, match=f"free space models one uniform layer.*{type(layer).__name__}"):
-        FreeSpaceOperator(layer, cell_size=0.25, cells=16)

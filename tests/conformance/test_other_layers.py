@@ -5,7 +5,6 @@ from __future__ import annotations
 import pytest
 
 from cases.declare.methods import build
-from cases.measurements.advice.advise import advise
 from cases.measurements.evidence.choice import solve
 from contact import (
     ContactRadii,
@@ -26,7 +25,7 @@ LAYERS = (
     LayerStack(sublayers=(TOP, TOP), interfaces=("unbonded",)),
     GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=2.0), poissons_ratio=0.3),
 )
-PLAIN_ONLY = {"fem": {}, "bem": {"points": 96}}
+PLAIN_ONLY = {"fem": {}}
 
 
 def scene_of(layer):
@@ -58,8 +57,6 @@ def test_flat_punch_tables_refuse_other_layers(layer):
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)
-def test_advice_and_the_choice_by_accuracy_refuse_other_layers(layer):
-    with pytest.raises(UnsupportedSceneError, match=type(layer).__name__):
-        advise(build("mdr", {}), scene_of(layer), 1e-3)
+def test_the_choice_by_accuracy_refuses_other_layers(layer):
     with pytest.raises(UnsupportedSceneError, match=type(layer).__name__):
         solve(scene_of(layer), accuracy=1e-3)

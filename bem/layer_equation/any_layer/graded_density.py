@@ -15,6 +15,46 @@ from contact.records.validation import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
+class PanelSlopes:
+    """A function on [0, a] by its values on relative panels, of which slopes and their Abel integrals are asked.
+
+    Attributes:
+        panels: On [0, 1].
+        ratio: a, in thicknesses.
+        values: At the nodes, shape (n,).
+    """
+
+    panels: RelativePanels
+    ratio: float
+    values: FloatArray
+
+    def slope(self, t: FloatArray) -> FloatArray:
+        """psi'(t) at points of [0, a]."""
+        ends = self.ratio * self.panels.ends
+        panel = np.clip(np.searchsorted(ends, t, side="left") - 1, 0, len(ends) - 2)
+        s = 2 * (t - ends[panel]) / np.diff(ends)[panel] - 1
+        return chebyshev_sum(self._slope_coefficients[panel], s)
+
+    def abel_integral(self, radius: FloatArray) -> FloatArray:
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], with t^2 = r^2 + s^2 on every panel."""
+        v, omega = gauss_nodes(self.panels.count)
+        ends = np.maximum(self.ratio * self.panels.ends, radius[:, None])
+        s_ends = np.sqrt((ends - radius[:, None]) * (ends + radius[:, None]))
+        width = np.diff(s_ends, axis=1)[..., None]
+        s = s_ends[:, :-1, None] + width * v
+        t = np.minimum(np.hypot(radius[:, None, None], s), self.ratio)
+        values: FloatArray = np.sum(width * omega * self.slope(t) / np.maximum(t, 1e-300), axis=(1, 2))
+        return values
+
+    @cached_property
+    def _slope_coefficients(self) -> FloatArray:
+        coefficients = self.values.reshape(-1, self.panels.count) @ chebyshev_from_nodes(self.panels.count).T
+        slope = np.zeros_like(coefficients)
+        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(coefficients, axis=1)
+        return slope / (self.ratio * self.panels.widths[:, None])
+
+
+@dataclass(frozen=True, eq=False)
 class GradedDensity:
     """psi on [0, a]; it has the logarithm's kinks at both ends, towards which the panels are graded.
 
@@ -37,23 +77,19 @@ class GradedDensity:
         """psi(a)."""
         return float(self.psi[-1])
 
-    def slope(self, t: FloatArray) -> FloatArray:
-        """psi'(t) at points of [0, a]."""
-        ends = self.ratio * self.panels.ends
-        panel = np.clip(np.searchsorted(ends, t, side="left") - 1, 0, len(ends) - 2)
-        s = 2 * (t - ends[panel]) / np.diff(ends)[panel] - 1
-        return chebyshev_sum(self._slope_coefficients[panel], s)
+    @property
+    def falls(self) -> bool:
+        """phi at the nodes, which are dense at both ends."""
+        return bool(np.all(np.diff(self.phi) <= 0.0) and self.phi[-1] >= 0.0)
+
+    @property
+    def first_shell(self) -> float:
+        """The last panel: the logarithm has its kink at the edge."""
+        return float(self.ratio * self.panels.widths[-1])
 
     def abel_integral(self, radius: FloatArray) -> FloatArray:
-        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], with t^2 = r^2 + s^2 on every panel."""
-        v, omega = gauss_nodes(self.panels.count)
-        ends = np.maximum(self.ratio * self.panels.ends, radius[:, None])
-        s_ends = np.sqrt((ends - radius[:, None]) * (ends + radius[:, None]))
-        width = np.diff(s_ends, axis=1)[..., None]
-        s = s_ends[:, :-1, None] + width * v
-        t = np.minimum(np.hypot(radius[:, None, None], s), self.ratio)
-        values: FloatArray = np.sum(width * omega * self.slope(t) / np.maximum(t, 1e-300), axis=(1, 2))
-        return values
+        """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a]."""
+        return PanelSlopes(self.panels, self.ratio, self.psi[:-1]).abel_integral(radius)
 
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance."""
@@ -64,10 +100,3 @@ class GradedDensity:
         decay = np.exp(-np.multiply.outer(distance, self.kernel.exponentials.rates))
         values: FloatArray = -(decay @ (self.kernel.exponentials.weights * moments)).real / np.pi
         return values
-
-    @cached_property
-    def _slope_coefficients(self) -> FloatArray:
-        coefficients = self.psi[:-1].reshape(-1, self.panels.count) @ chebyshev_from_nodes(self.panels.count).T
-        slope = np.zeros_like(coefficients)
-        slope[:, :-1] = 2 * np.polynomial.chebyshev.chebder(coefficients, axis=1)
-        return slope / (self.ratio * self.panels.widths[:, None])

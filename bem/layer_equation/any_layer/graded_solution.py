@@ -26,6 +26,8 @@ from contact.records.validation import FloatArray
 
 # Ends of the pieces in ln x below one thickness; from there on they double. Below the first, values continue linearly.
 SMALL_ENDS: Final = (2.0**-18, 2.0**-9, 2.0**-5, 2.0**-4, 2.0**-3, 0.25, 0.5, 1.0)
+# A profile's pieces begin at this power of two: the moment of a cone, whose density is x ln x there, keeps 1e-12.
+FINEST_PIECE: Final = -12
 # Edges on each piece.
 PIECE_NODES: Final = 12
 # Nodes of a panel, and those of the coarser panels with which the edges of `CHECKED` are compared.
@@ -135,9 +137,9 @@ class GradedSolution(FlatPunchSolution):
         return self.spring_error(ratio)
 
     def panel_ends(self, ratio: float) -> FloatArray:
-        """A profile has the logarithm's kink at the axis: its pieces double from there."""
-        ends = np.array(self._ends)
-        return np.asarray(ends[(ends > 2.0**-9) & (ends < ratio)])
+        """A profile and its moment have the logarithm's kink at the axis: pieces double from close to it."""
+        ends = np.append(2.0 ** np.arange(FINEST_PIECE, -5.0), self._ends[2:])
+        return np.asarray(ends[ends < ratio])
 
     def profile_of(
         self, indenter: Profile, unit: float, load: MappedFunction, springs: FloatArray
@@ -149,8 +151,8 @@ class GradedSolution(FlatPunchSolution):
         """
         if indenter.flat_radius or indenter.breakpoints:
             raise UnsupportedSceneError(
-                f"{type(indenter).__name__} on a graded layer: profiles with a flat end, kinks or breakpoints are not "
-                "modelled there; cut the layer into a LayerStack, which takes every profile"
+                f"{type(indenter).__name__} on a graded layer: edge values are not smooth in ln(x) where a profile has "
+                "a flat end, kinks or breakpoints; ask integral_equation, or cut the layer into a LayerStack"
             )
         share = self._smooth_share(load)(load.grid.nodes)
         values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)

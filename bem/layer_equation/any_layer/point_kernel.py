@@ -19,7 +19,7 @@ from contact.records.validation import FloatArray
 COARSEST: Final = 44
 SHORTEST: Final = 40
 # Largest distance, a power of two as well.
-FARTHEST: Final = 6
+FARTHEST: Final = 13
 # Nodes on each octave: the logarithm's singularity at the octave's own length leaves 5.8^-18.
 OCTAVE_NODES: Final = 18
 

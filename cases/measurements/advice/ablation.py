@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from functools import partial
 
 from cases.declare.quantities import relative_change, single_numbers, values_of
+from cases.measurements.advice.simpler_layers import layer_parts, simpler
 from cases.results.records.cost import EffectEntry
 from cases.run.empty_caches import forget
-from contact import Adhesion, ContactError, Detachment, Layer, Method, Scene, Solution
+from contact import Adhesion, ContactError, Detachment, ElasticLayer, Method, Scene, Solution
 
-THICKNESS = "finite thickness"
 _IMPORTS_COUNT = 2.0  # seconds: a longer solution hides them
 NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
@@ -41,9 +41,8 @@ def ablations_of(method: Method, whole: Solution) -> list[EffectEntry]:
 
 
 def parts_of(scene: Scene) -> tuple[str, ...]:
-    """What can be left out: each listed effect, and the finite thickness of a layer."""
-    effects = tuple(type(effect).__name__ for effect in scene.effects)
-    return effects if scene.layer.is_half_space else (*effects, THICKNESS)
+    """What can be left out: each listed effect, and the parts of a layer, its finite thickness among them."""
+    return (*(type(effect).__name__ for effect in scene.effects), *layer_parts(scene.layer))
 
 
 def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> float:
@@ -55,16 +54,10 @@ def change_without(method: Method, whole: Solution, parts: Sequence[str]) -> flo
 def without(scene: Scene, parts: Sequence[str]) -> Scene:
     """The scene with these parts left out."""
     effects = tuple(effect for effect in scene.effects if type(effect).__name__ not in parts)
-    left = scene.replace(effects=effects)
-    return on_half_space(left) if THICKNESS in parts else left
-
-
-def on_half_space(scene: Scene) -> Scene:
-    """The scene on a half-space of the same material."""
-    layer = scene.layer
-    return scene.replace(
-        layer=Layer.half_space(youngs_modulus=layer.youngs_modulus, poissons_ratio=layer.poissons_ratio)
-    )
+    layer: ElasticLayer = scene.layer
+    for part in layer_parts(layer):
+        layer = simpler(layer, part) if part in parts else layer
+    return scene.replace(effects=effects, layer=layer)
 
 
 def _ablation(method: Method, whole: Solution, part: str) -> EffectEntry:

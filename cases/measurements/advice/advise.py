@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from cases.measurements.advice.ablation import ablations_of, change_without, first_solution
 from cases.measurements.advice.dimensionless_numbers import Number, numbers
 from cases.results.records.cost import EffectEntry
-from contact import InvalidInput, Method, Scene, Solution, refuse_other_layers
+from contact import InvalidInput, Method, Scene, Solution
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,7 +53,6 @@ def advise(method: Method, scene: Scene, accuracy: float) -> Advice:
     """
     if not 0.0 < accuracy < 1.0:
         raise InvalidInput(f"accuracy = {accuracy:g}: must lie between 0 and 1; it is a relative change")
-    refuse_other_layers("advise", scene.layer)
     whole = first_solution(method, scene)
     parts = ablations_of(method, whole)
     droppable = tuple(part for part in parts if part.may_be_dropped(accuracy))

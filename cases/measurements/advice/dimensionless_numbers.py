@@ -87,7 +87,7 @@ def numbers(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
 
 def _thickness(scene: Scene, answer: Solution, accuracy: float) -> Number | None:
     ratio = _largest(answer, "contact_radius") / scene.layer.thickness
-    if not ratio:
+    if not ratio or not scene.layer.is_uniform:
         return None
     low, high = (share * ratio for share in _HALF_SPACE_MOVES)
     verdict = "may do" if high <= accuracy else "will not do" if low > accuracy else "is near its limit"

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -15,19 +15,24 @@ from contact import (
     Cone,
     ContactRadii,
     Detachment,
+    ExponentialDepth,
     FlatPunch,
+    GradedLayer,
     Impact,
     IndentationDepths,
     KelvinVoigt,
     Layer,
+    LayerStack,
     Method,
     Paraboloid,
     Scene,
     StandardSolid,
+    Sublayer,
     Tabulated,
     TruncatedCone,
 )
 from contact.scene.layer import Support
+from contact.scene.layer_stack import Interface
 
 DECADES: Final = tuple(10.0**k for k in range(-3, 4))
 
@@ -133,6 +138,33 @@ def noisy_table(noise: float) -> Scene:
     return Scene(layer=_layer(0.45), indenter=indenter, loading=IndentationDepths(values=np.array([0.1])))
 
 
+def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -> Scene[Any, Any]:
+    """A paraboloid at a given a/H on bonded layers, each with its thickness and modulus, and nu of the first."""
+    parts = tuple(
+        Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=0.3 if place else nu)
+        for place, (h, E) in enumerate(layers)
+    )
+    interface: Interface = "bonded"
+    stack = LayerStack(sublayers=parts, interfaces=(interface,) * (len(parts) - 1))
+    return Scene(
+        layer=stack, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([ratio]))
+    )
+
+
+def alternating(count: float) -> Scene[Any, Any]:
+    """The same on so many equally thick layers, every second one ten times as stiff."""
+    return layered(*((1.0 / count, 10.0 ** (n % 2)) for n in range(round(count))), ratio=0.5)
+
+
+def graded_in_depth(growth: float) -> Scene[Any, Any]:
+    """The same on a layer whose modulus is `growth` times as large at the base as at the surface."""
+    modulus = ExponentialDepth(surface=1.0, base=growth)
+    layer = GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3)
+    return Scene(
+        layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([1.0]))
+    )
+
+
 def finer_edge(method: Method, cell: float) -> Method:
     """The finite element method with another cell at the contact's edge."""
     finer: Method = dataclasses.replace(method, edge_cell=cell)  # type: ignore[type-var]  # only Fem climbs this ladder
@@ -234,5 +266,35 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
         parameter="relative noise",
         values=tuple(10.0**k for k in range(-12, 1)),
         scene=noisy_table,
+    ),
+    LadderPlan(
+        name="contrast of two layers",
+        parameter="E1/E2",
+        values=tuple(10.0**k for k in range(-4, 5)),
+        scene=lambda contrast: layered((0.5, contrast), (0.5, 1.0)),
+    ),
+    LadderPlan(
+        name="thinner and thinner top layer",
+        parameter="h1/H",
+        values=(0.9, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001),
+        scene=lambda share: layered((share, 3.0), (1.0 - share, 1.0), ratio=0.3),
+    ),
+    LadderPlan(
+        name="number of layers",
+        parameter="n",
+        values=(2.0, 3.0, 5.0, 10.0, 20.0, 50.0),
+        scene=alternating,
+    ),
+    LadderPlan(
+        name="steepness of grading",
+        parameter="E(h)/E(0)",
+        values=tuple(10.0**k for k in range(-3, 4) if k),
+        scene=graded_in_depth,
+    ),
+    LadderPlan(
+        name="one layer nearly incompressible",
+        parameter="1/2 - nu1",
+        values=(*(10.0**-k for k in range(1, 13, 2)), 1e-17),
+        scene=lambda gap: layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap),
     ),
 )

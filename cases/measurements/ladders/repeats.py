@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # s
 
 from cases.declare.quantities import values_of
 from cases.measurements.campaigns.units import Units, in_units, with_numbers
-from contact import ContactRadii, IndentationDepths, Method, NormalForces, Scene, Solution
+from contact import ContactRadii, DepthFunction, IndentationDepths, Method, NormalForces, Scene, Solution
 
 DOUBLE_DIGITS: Final = -float(np.log10(2.0**-53))
 NUDGES: Final = 3
@@ -49,11 +49,13 @@ def digits_of(spread: float) -> float:
 
 
 def nudged(scene: Scene, draw: np.random.Generator) -> Scene:
-    """Every number of the scene one unit in the last place up or down, or left alone, at random."""
+    """Every number of the scene one unit in the last place up or down, or left alone, at random; no moduli of depth."""
     return with_numbers(scene, lambda _, name, value: _one_ulp(name, value, draw))
 
 
 def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
+    if isinstance(value, DepthFunction):
+        return value
     steps = draw.integers(-1, 2, np.shape(value))
     moved = np.where(steps == 0, value, np.nextafter(value, np.where(steps > 0, np.inf, -np.inf)))
     moved = np.where(np.asarray(value) == 0.0, value, moved)  # zero has no last place

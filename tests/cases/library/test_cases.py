@@ -22,6 +22,10 @@ FAMILIES = {
     "friction_flat_punch",
     "inside_half_space",
     "inside_layer",
+    "two_layers",
+    "film_on_substrate",
+    "three_zone_cartilage",
+    "graded_layer",
 }
 
 

@@ -8,7 +8,9 @@ from cases.declare.registry import load_cases
 from cases.library import _reasons
 from contact import InvalidInput
 
-OWN = [name for name in _reasons.TABLE if name not in ("shared", "convergence")]
+# Tables that several cases read.
+SHARED_TABLES = ("convergence", "stacks")
+OWN = [name for name in _reasons.TABLE if name not in ("shared", *SHARED_TABLES)]
 
 
 @pytest.mark.parametrize("case", OWN)
@@ -18,9 +20,10 @@ def test_every_reason_of_a_case_is_given_by_one_of_its_claims(case):
     assert unused == []
 
 
-def test_every_reason_of_convergence_is_given_by_a_claim_of_some_case():
+@pytest.mark.parametrize("table", SHARED_TABLES)
+def test_every_reason_of_a_shared_table_is_given_by_a_claim_of_some_case(table):
     given = {dataclasses.astuple(claim.reason) for case in load_cases().values() for claim in case.claims}
-    unused = [name for name, why in _reasons.reasons("convergence").items() if dataclasses.astuple(why) not in given]
+    unused = [name for name, why in _reasons.reasons(table).items() if dataclasses.astuple(why) not in given]
     assert unused == []
 
 

@@ -1,0 +1,1 @@
+"""Layers of several materials, graded layers, and films on elastic bases."""

@@ -1,0 +1,154 @@
+"""The direct equation on graded layers: exact rules for the logarithm, any split, MDR, kinks and flat ends."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from bem.kernels.of_layer import surface_kernel
+from bem.layer_equation.any_layer import graded_one_radius
+from bem.layer_equation.any_layer.graded_one_radius import GradedDirectDensity
+from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
+from bem.layer_equation.any_layer.point_kernel import PointKernel
+from bem.layer_equation.any_layer.split_kernel import SplitKernel
+from bem.layer_equation.method import IntegralEquationMethod
+from bem.polynomials.gauss_panels import gauss_nodes
+from contact import (
+    Cone,
+    ContactRadii,
+    ElasticBase,
+    ExponentialDepth,
+    FlatPunch,
+    GradedLayer,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    PowerLawDepth,
+    Scene,
+    Tabulated,
+    TabulatedDepth,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from mdr import Mdr
+
+PARABOLOID = Paraboloid(radius_of_curvature=1.0)
+CONE = TruncatedCone(flat_radius=0.5, slope=0.1)
+EXPONENTIAL = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3)
+LAYERS = {
+    "exponential": EXPONENTIAL,
+    "steep": EXPONENTIAL.replace(youngs_modulus=ExponentialDepth(surface=1.0, base=100.0)),
+    "softer below, elastic base": EXPONENTIAL.replace(
+        youngs_modulus=ExponentialDepth(surface=1.0, base=0.1),
+        support=ElasticBase(youngs_modulus=0.5, poissons_ratio=0.3),
+    ),
+    "incompressible": EXPONENTIAL.replace(poissons_ratio=0.5),
+    "unbonded": EXPONENTIAL.replace(support="unbonded"),
+    "power law": EXPONENTIAL.replace(youngs_modulus=PowerLawDepth(surface=1.0, reference_depth=0.1, exponent=1.0)),
+}
+QUANTITIES = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
+
+
+@pytest.mark.parametrize("target", [0.0503, 0.101, 0.3, 0.9999, 1.0, 1.01, 1.3, 5.0, -0.2, -3.0])
+def test_polynomials_times_a_logarithm_are_integrated_exactly(target):
+    ends, count = np.array([0.0, 0.1, 0.5, 1.0]), 12
+    t = (ends[:-1, None] + np.diff(ends)[:, None] * gauss_nodes(count)[0]).ravel()
+    found = logarithmic_weights(ends, count, np.array([target]))[0] @ (1 + t**7)
+    inside = [target] if 0 < target < 1 else None
+    expected, _ = quad(lambda s: (1 + s**7) * np.log(abs(target - s)), 0, 1, points=inside, epsabs=1e-13, limit=200)
+    assert found == pytest.approx(expected, rel=1e-12, abs=1e-13)
+
+
+@pytest.mark.parametrize("length", [0.3, 1.0, 3.0])
+def test_the_kernel_by_another_path_and_any_split(length):
+    """Complex wavenumbers against real ones: nothing but 1 - chi is shared."""
+    surface = surface_kernel(EXPONENTIAL)
+    s = np.geomspace(1e-9, 40.0, 40)
+    np.testing.assert_allclose(SplitKernel(surface, length)(s), PointKernel.of_surface(surface)(s), rtol=0, atol=3e-13)
+
+
+def test_the_answer_does_not_depend_on_the_split(monkeypatch):
+    whole = GradedDirectDensity.solve(EXPONENTIAL, PARABOLOID, 1.0, 0.75, 12)
+    monkeypatch.setattr(graded_one_radius, "SPLIT_LENGTH", 3.0)
+    other = GradedDirectDensity.solve(EXPONENTIAL, PARABOLOID, 1.0, 0.75, 12)
+    assert other.split.length != whole.split.length
+    assert other.force(other.depth) == pytest.approx(whole.force(whole.depth), rel=1e-13, abs=0.0)
+    assert other.depth == pytest.approx(whole.depth, rel=1e-13, abs=0.0)
+
+
+CONTACTS = {
+    "paraboloid": (PARABOLOID, ContactRadii([0.1, 1.0, 5.0])),
+    "paraboloid, force": (PARABOLOID, NormalForces([0.5])),
+    "cone, depth": (Cone(slope=0.1), IndentationDepths([0.05])),
+    "cone, small": (Cone(slope=0.1), ContactRadii([0.2, 0.5])),
+    "flat punch": (FlatPunch(radius=1.0), NormalForces([1.0])),
+}
+
+
+def compared(layer, indenter, loading, tolerance=1e-8):
+    scene = Scene(layer=layer, indenter=indenter, loading=loading)
+    ours, other = Mdr().solve(scene), IntegralEquationMethod().solve(scene)
+    for quantity in QUANTITIES:
+        one, two = getattr(ours, quantity), getattr(other, quantity)
+        np.testing.assert_allclose(one, two, rtol=tolerance / 10)
+        stated = ours.error_estimate[quantity] + other.error_estimate[quantity] + 1e-15
+        assert np.all(np.abs(one / two - 1) <= stated), quantity
+    a = float(ours.contact_radius[0])
+    inside, outside = a * np.array([0.1, 0.5, 0.9, 0.99]), a * np.array([1.001, 1.1, 2.0, 4.0])
+    np.testing.assert_allclose(ours.pressure(inside, 0), other.pressure(inside, 0), rtol=1e-6)
+    np.testing.assert_allclose(
+        ours.surface_displacement(outside, 0),
+        other.surface_displacement(outside, 0),
+        rtol=0,
+        atol=1e-10 * ours.indentation_depth[0],
+    )
+
+
+@pytest.mark.parametrize("contact", ["cone, small", "flat punch"])
+def test_mdr_agrees(contact):
+    compared(LAYERS["softer below, elastic base"], *CONTACTS[contact])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("name", LAYERS)
+def test_mdr_agrees_on_every_layer(name, contact):
+    compared(LAYERS[name], *CONTACTS[contact])
+
+
+def solved(layer, indenter, loading, **settings):
+    return IntegralEquationMethod(**settings).solve(Scene(layer=layer, indenter=indenter, loading=loading))
+
+
+MEASURED = Tabulated(radii=[0.0, 0.2, 0.5, 1.5], heights=[0.0, 0.01, 0.07, 0.71])
+
+
+@pytest.mark.parametrize("indenter", [CONE, pytest.param(MEASURED, marks=pytest.mark.slow)], ids=["cone", "measured"])
+def test_kinks_and_bends_on_a_uniform_table_are_those_of_one_layer(indenter):
+    """A table of one modulus is a graded layer without a logarithm; panels shrink towards its kinks all the same."""
+    plain = Layer(thickness=2.0, youngs_modulus=3.0, poissons_ratio=0.4)
+    table = TabulatedDepth(depths=[0.0, 1.0, 2.0], values=[3.0, 3.0, 3.0])
+    graded = GradedLayer(thickness=2.0, youngs_modulus=table, poissons_ratio=0.4)
+    one, other = (solved(layer, indenter, ContactRadii([0.8, 1.2])) for layer in (plain, graded))
+    for quantity in QUANTITIES:
+        np.testing.assert_allclose(getattr(other, quantity), getattr(one, quantity), rtol=1e-10)
+    inside = np.array([0.1, 0.45, 0.55, 0.79])
+    np.testing.assert_allclose(other.pressure(inside, 0), one.pressure(inside, 0), rtol=1e-7)
+
+
+@pytest.mark.parametrize("nodes", [10, 12])
+def test_fewer_nodes_stay_within_the_stated_errors(nodes):
+    """Flat ends on a layer with a logarithm."""
+    coarse = solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=nodes)
+    fine = solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=20)
+    for quantity in QUANTITIES[1:]:
+        change = np.abs(getattr(coarse, quantity) / getattr(fine, quantity) - 1)
+        assert np.all(change <= coarse.error_estimate[quantity] + fine.error_estimate[quantity]), quantity
+        assert np.all(coarse.error_estimate[quantity] < 1e-8), quantity
+
+
+def test_wide_contacts_are_refused_with_the_limit():
+    with pytest.raises(UnsupportedSceneError, match=r"a/h = 20: .* ratios up to 16"):
+        solved(EXPONENTIAL, PARABOLOID, ContactRadii([20.0]))
