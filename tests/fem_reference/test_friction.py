@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.special import ellipk
 
 from contact import (
     Adhesion,
@@ -54,7 +55,7 @@ def agree(path, exact):
     ("nu", "support", "radius", "indenter"),
     [
         (0.0, "bonded", 1.0, PARABOLOID),
-        (0.3, "unbonded", 0.3, Sphere(radius=20.0)),
+        pytest.param(0.3, "unbonded", 0.3, Sphere(radius=20.0), marks=pytest.mark.slow),
         (0.5, "bonded", 2.0, PARABOLOID),
     ],
 )
@@ -73,7 +74,9 @@ def test_full_stick_is_that_of_mdr(nu, support, radius, indenter):
     assert path.tangential_traction(r) == pytest.approx(traction, rel=0.0, abs=1e-2 * mean)
 
 
-@pytest.mark.parametrize("loading", [IndentationDepths([2e-3, 0.05]), NormalForces([0.1])])
+@pytest.mark.parametrize(
+    "loading", [pytest.param(IndentationDepths([2e-3, 0.05]), marks=pytest.mark.slow), NormalForces([0.1])]
+)
 def test_vanishing_friction_is_the_frictionless_contact(loading):
     path = COARSE.solve(rubbed(1e-9, layer(0.45), loading))
     agree(path, Mdr().solve(rubbed(None, layer(0.45), loading)))
@@ -119,7 +122,7 @@ def test_coulombs_law_holds_and_slip_goes_against_the_traction():
 
 
 def test_the_stick_radius_of_a_thick_layer_is_self_similar():
-    """Spence 1975: on the half-space c/a depends on nu and the coefficient alone, not on depth or shape of the load."""
+    """Spence 1975: on the half-space c/a depends on nu and the coefficient alone, not on the depth."""
     body = Layer(thickness=100.0, youngs_modulus=3.0, poissons_ratio=0.0)
     path = COARSE.solve(rubbed(0.2, body, IndentationDepths([0.01, 0.02, 0.03])))
     share = path.stick_radius / path.contact_radius
@@ -127,6 +130,19 @@ def test_the_stick_radius_of_a_thick_layer_is_self_similar():
     assert share == pytest.approx(np.full(3, share[-1]), rel=0.0, abs=0.01)
 
 
+def test_the_stick_radius_of_a_thick_layer_with_weak_coupling():
+    """Spence 1975, uncoupled: (a/2c) ln((a + c)/(a - c)) = (mu/beta) K(sqrt(1 - c^2/a^2)).
+
+    Here 2 beta = (1 - 2 nu)/(1 - nu); the coupling that it leaves out is of the order of beta.
+    """
+    beta, body = 0.02 / (2.0 * 0.51), Layer(thickness=100.0, youngs_modulus=3.0, poissons_ratio=0.49)
+    path = COARSE.solve(rubbed(0.5 * beta, body, IndentationDepths([0.02])))
+    share = float(path.stick_radius[0] / path.contact_radius[0])
+    left = math.log((1.0 + share) / (1.0 - share)) / (2.0 * share)
+    assert left == pytest.approx(0.5 * float(ellipk(1.0 - share**2)), rel=2e-2, abs=0.0)
+
+
+@pytest.mark.slow
 def test_force_rises_from_free_slip_to_full_stick():
     coefficients = (0.02, 0.3, 1.0, math.inf)
     forces = [COARSE.solve(rubbed(mu, layer(0.5), IndentationDepths([0.1]))).normal_force[0] for mu in coefficients]
@@ -140,7 +156,9 @@ CYCLE = (0.0, 0.05, 0.1, 0.05, 0.02, 0.06, 0.1, 0.0, 0.1, -0.01)
 def test_a_cycle_of_depth_dissipates_and_closes():
     scene = rubbed(0.2, layer(0.5), DepthHistory(time=np.arange(float(len(CYCLE))), depth=np.array(CYCLE)))
     history = COARSE.solve(scene)
-    assert np.all(np.diff(history.dissipated_energy) >= 0.0)
+    assert np.all(history.error_estimate["heat_given_back"] == 0.0)
+    assert history.error_estimate["base_force_defect"].max() < 1e-10
+    assert history.error_estimate["energy_defect"].max() < 2e-3
     assert history.dissipated_energy[3] > history.dissipated_energy[2] > 0.0
     # Less force on the way back; none where the contact is lost, after which everything begins anew.
     assert history.normal_force[3] < history.normal_force[1]
@@ -151,6 +169,7 @@ def test_a_cycle_of_depth_dissipates_and_closes():
     assert history.normal_force[1:3] == pytest.approx(loading.normal_force, rel=0.0, abs=stated)
 
 
+@pytest.mark.slow
 def test_a_history_of_force_is_that_of_its_depths():
     time = np.arange(5.0)
     depths = rubbed(0.2, layer(0.3), DepthHistory(time=time, depth=np.array([0.0, 0.05, 0.02, 0.05, 0.0])))
@@ -172,10 +191,7 @@ def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
     defects = []
     for cells in (40, 80):
         contact, states = followed_strip(cells)
-        stored = []
-        for state in states:
-            normal, radial = contact.displacement(state.pressure, state.shear)
-            stored.append((state.pressure @ normal + state.shear @ radial) / 2.0)
+        stored = [contact.stored_energy(state) for state in states]
         heat, work = (np.array([getattr(state, name) for state in states]) for name in ("dissipated", "work"))
         assert np.all(np.diff(heat) >= 0.0)
         defects.append(np.abs(work - np.array(stored) - heat).max() / work.max())

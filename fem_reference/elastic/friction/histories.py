@@ -22,7 +22,7 @@ from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.contact_search import edge_radius
-from fem_reference.elastic.friction.step import RubbedContact
+from fem_reference.elastic.friction.step import RubbedContact, RubbedState
 from fem_reference.elastic.friction.strips import StripMaker
 from fem_reference.elastic.friction.walk import followed, stick_radius
 
@@ -47,12 +47,15 @@ def rubbed_history(
     by_depth = isinstance(pressed, IndentationDepths)
     with log.stage("follow"):
         modulus = contact_modulus(scene.layer)
-        numbers, others = (_numbers(contact, targets, modulus, by_depth=by_depth) for contact in (fine, coarse))
+        states, others = (_states(contact, targets, modulus, by_depth=by_depth) for contact in (fine, coarse))
+        numbers, coarser = (_numbers(contact, found, modulus) for contact, found in ((fine, states), (coarse, others)))
+        if by_depth:
+            numbers["indentation_depth"] = coarser["indentation_depth"] = targets
     cell = fine.radius * fine.surface.radii[1] / numbers["contact_radius"].max()
     # What half the cells change, in the worst instant; radii are known to a share of a cell.
     unseen = {"contact_radius": EDGE_UNCERTAIN * cell, "stick_radius": cell}
     errors = {
-        name: np.full(len(targets), np.abs(values - others[name]).max() / np.abs(values).max() + unseen.get(name, 0.0))
+        name: np.full(len(targets), np.abs(values - coarser[name]).max() / np.abs(values).max() + unseen.get(name, 0.0))
         for name, values in numbers.items()
         if np.any(values)
     }
@@ -60,7 +63,7 @@ def rubbed_history(
         scene=scene,
         method="fem",
         settings={**written, "mesh": fine.surface.fingerprint},
-        error_estimate=errors,
+        error_estimate=errors | _own_checks(fine, states),
         cost=log.cost(unknowns=fine.surface.unknowns),
         stages=log.records,
         time=time,
@@ -82,17 +85,40 @@ def _prescribed(scene: Scene) -> tuple[FloatArray, FloatArray, IndentationDepths
     raise UnsupportedSceneError(f"loading = {type(loading).__name__}: friction follows histories of depth or force")
 
 
-def _numbers(contact: RubbedContact, targets: FloatArray, modulus: float, *, by_depth: bool) -> dict[str, FloatArray]:
+def _states(contact: RubbedContact, targets: FloatArray, modulus: float, *, by_depth: bool) -> list[RubbedState]:
+    unit = contact.radius if by_depth else modulus * contact.radius**2
+    return followed(contact, [max(0.0, float(target)) / unit for target in targets], by_depth=by_depth)
+
+
+def _numbers(contact: RubbedContact, states: list[RubbedState], modulus: float) -> dict[str, FloatArray]:
     """Everything at each instant, in SI units."""
-    unit = contact.radius
-    scaled = targets / (unit if by_depth else modulus * unit**2)
-    states = followed(contact, [max(0.0, float(target)) for target in scaled], by_depth=by_depth)
-    radii = contact.surface.radii
-    depth = np.array([state.depth for state in states]) * unit
+    unit, radii = contact.radius, contact.surface.radii
     return {
-        "indentation_depth": targets if by_depth else depth,
+        "indentation_depth": unit * np.array([state.depth for state in states]),
         "normal_force": modulus * unit**2 * np.array([state.force for state in states]),
         "contact_radius": unit * np.array([edge_radius(radii, state.pressure) for state in states]),
         "stick_radius": unit * np.array([stick_radius(contact, state) for state in states]),
         "dissipated_energy": modulus * unit**3 * np.array([state.dissipated for state in states]),
+    }
+
+
+def _own_checks(contact: RubbedContact, states: list[RubbedState]) -> dict[str, FloatArray]:
+    """What the indenter's work has that is neither stored nor heat, what heat was given back, what the base misses."""
+    work, heat, stored, force, base = np.array(
+        [
+            (
+                state.work,
+                state.dissipated,
+                contact.stored_energy(state),
+                state.force,
+                contact.surface.base_forces @ np.concatenate([state.pressure, state.shear]),
+            )
+            for state in states
+        ]
+    ).T
+    lost = np.diff(heat, prepend=0.0)
+    return {
+        "energy_defect": np.abs(work - stored - heat) / work.max(),
+        "heat_given_back": np.maximum(-lost, 0.0) / work.max(),
+        "base_force_defect": np.abs(base - force) / force.max(),
     }

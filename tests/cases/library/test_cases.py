@@ -22,6 +22,7 @@ FAMILIES = {
     "friction_flat_punch",
     "inside_half_space",
     "inside_layer",
+    "friction_paraboloid",
 }
 
 
