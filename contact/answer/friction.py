@@ -1,4 +1,4 @@
-"""Answers with friction: beside depth, force and radius what sticks, what slides, and what turns into heat."""
+"""Answers with friction, and what answers without it say about it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,19 @@ from numpy.typing import ArrayLike
 
 from contact.answer.solution import ContactPath, HistoryPath
 from contact.records.validation import FloatArray
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import Layer
+
+# From this Poisson's ratio on, and from this a/h, an answer without friction says what friction would move: a
+# coefficient of 0.1 then moves it by up to four per cent or more (0.405 and 0.346 of the bound below at a/h = 1 and
+# nu = 1/2 and 0.49, `FrictionlessPunch.largest`, 2026-11-22).
+_NEARLY_INCOMPRESSIBLE = 0.49
+_THIN = 1.0
+# Largest radial displacement under a frictionless unit punch, over a/h: 3/4 on a thin incompressible bonded layer, 1/2
+# on an unbonded one (lubrication theory); less on every other layer from a/h = 0.5 on (nu from 0.45 on, 2026-11-22).
+_SLIDES = {"bonded": 0.75, "unbonded": 0.5}
+# Coefficient of friction that is spoken of.
+_SPOKEN_OF = 0.1
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -62,3 +75,18 @@ class FrictionHistory(HistoryPath):
 
     stick_radius: FloatArray
     dissipated_energy: FloatArray
+
+
+def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]:
+    """What dry friction would move of frictionless contacts of these radii [m]: a note on thin soft layers, or none.
+
+    With u_r1 the radial displacement under the frictionless unit punch, F <= F_0/(1 - mu max |u_r1|) by reciprocity.
+    """
+    ratio = float(np.max(radius, initial=0.0)) / layer.thickness
+    if not isinstance(layer, Layer) or layer.poissons_ratio < _NEARLY_INCOMPRESSIBLE or ratio < _THIN:
+        return ()
+    slip = _SPOKEN_OF * _SLIDES[layer.support] * ratio
+    most = f"by up to {100.0 * slip / (1.0 - slip):.2g} %" if slip < 0.5 else "by more than half of it"
+    place = f"at a/h = {ratio:.3g} and nu = {layer.poissons_ratio:g}"
+    told = f"frictionless: {place} dry friction of {_SPOKEN_OF:g} may raise the force {most}"
+    return (f"{told}; contact-verify advise tells more closely, Friction(coefficient=..) solves it",)

@@ -56,7 +56,10 @@ def rubbed(name: str, layer: Layer, coefficient: float, *methods: MethodUse, dep
     )
     return CaseScene(
         name=name,
-        parameters={"poissons_ratio": layer.poissons_ratio, "friction": coefficient},
+        parameters={
+            "poissons_ratio": layer.poissons_ratio,
+            "friction": coefficient if math.isfinite(coefficient) else "stick",
+        },
         scene=scene,
         methods=methods,
         nightly=() if name in QUICK else tuple(use.label for use in methods or (CELLS,)),
