@@ -114,8 +114,8 @@ def good_ranges(case: CaseResult) -> Table | None:
         dict.fromkeys(row for found in case.maps for row in found.rows),
         {"layer": _layer} | columns,
         title="Range of a/h that is good to 1 %",
-        note="Smallest and largest a/h of the map with an error of at most 1 %, or what its head says; between them a hole "
-        "may lie.",
+        note="Smallest and largest a/h of the map with an error of at most 1 %, or what its head says; "
+        "between them a hole may lie.",
     )
 
 
