@@ -27,7 +27,7 @@ from cases.library._claims import agreements, names_of
 from cases.library._layers import THICKNESS, layer_of
 from cases.library._methods import MDR
 from cases.library._reasons import reasons
-from contact import DepthHistory, Friction, IndentationDepths, Layer, Paraboloid, Scene
+from contact import ContactPath, DepthHistory, Friction, IndentationDepths, Layer, Paraboloid, Scene
 
 WHY = reasons("friction_paraboloid")
 
@@ -123,6 +123,7 @@ def statement(scene: Scene) -> tuple[float, float, float, float]:
     from mdr.friction.statement import friction_effect  # noqa: PLC0415
 
     path = Mdr().solve(frictionless(scene))
+    assert isinstance(path, ContactPath)
     effect = friction_effect(path, coefficient(scene), Mdr().solve)
     force = float(path.normal_force[0])
     return force, 1 + float(effect.lower[0]), 1 + float(effect.upper[0]), 1 + float(effect.first_order[0])
@@ -132,6 +133,16 @@ def to_first_order(scene: Scene) -> float:
     """Return F_0 (1 + mu int p_0 |u_r1| dA/F_0)."""
     force, _, _, first = statement(scene)
     return force * first
+
+
+def least(scene: Scene) -> float:
+    """Return the lower bound of F/F_0."""
+    return statement(scene)[1]
+
+
+def most(scene: Scene) -> float:
+    """Return the upper bound of F/F_0."""
+    return statement(scene)[2]
 
 
 def stick_radius_of_spence(scene: Scene) -> list[float]:
@@ -146,13 +157,13 @@ BOUNDS = tuple(
         quantity="normal_force",
         scenes=names_of(SLIDING),
         change=frictionless,
-        multiple=lambda scene, place=place: statement(scene)[place],
-        at_most=place == 2,
+        multiple=multiple,
+        at_most=side == "above",
         tolerance=1e-4,
         reason=WHY["bound"],
         nightly=True,
     )
-    for side, place in (("below", 1), ("above", 2))
+    for side, multiple in (("below", least), ("above", most))
 )
 SPENCE = Exact(
     name="self-similar stick radius",

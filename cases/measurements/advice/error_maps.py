@@ -111,7 +111,7 @@ class MostFriction:
         punches = [frictionless_punch(float(x), layer.support, layer.poissons_ratio) for x in ratios]
         slip = self.coefficient * np.array([punch.largest() for punch in punches])
         expected = np.asarray(build_guarded("mdr", {}).solve(_scene(layer, radii)).normal_force)  # type: ignore[attr-defined]
-        return np.divide(expected, 1.0 - slip, out=np.full_like(slip, np.nan), where=slip < 1.0)
+        return np.asarray(np.divide(expected, 1.0 - slip, out=np.full_like(slip, np.nan), where=slip < 1.0))
 
 
 FRICTION: Final = tuple(
