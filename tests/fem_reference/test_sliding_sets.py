@@ -7,7 +7,7 @@ from fem_reference import Fem
 
 
 def test_a_cycle_that_turns_where_a_node_is_at_its_limit():
-    """From random history 24 of seed 99: where slip turned, a node beside the edge was at its limit to the last digit."""
+    """From random history 24 of seed 99: where slip turned, a node at the edge was just at its limit."""
     depth = np.array([0.0, 0.4533136059819994, 0.09134039243570012, 0.4533136059819994, 0.09134039243570012])
     scene = Scene(
         layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
