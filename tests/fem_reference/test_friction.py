@@ -217,6 +217,12 @@ def test_an_answer_with_friction_is_stored_and_read(tmp_path):
     assert again.stick_radius[0] == path.stick_radius[0]
 
 
+def test_a_depth_of_zero_is_no_contact():
+    path = COARSE.solve(rubbed(0.2, layer(0.3), IndentationDepths([0.0, 0.02])))
+    assert path.stick_radius[0] == path.dissipated_energy[0] == path.tangential_traction(0.1, 0) == 0.0
+    assert path.slip(0.9 * path.contact_radius[1], 1) != 0.0
+
+
 @pytest.mark.parametrize(
     ("scene", "named"),
     [
