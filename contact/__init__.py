@@ -3,6 +3,7 @@
 Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
 """
 
+from contact.answer.friction import FrictionHistory, FrictionPath
 from contact.answer.method import Method, Supported, Unsupported, other_layer, refuse_other_layers
 from contact.answer.solution import (
     UNITS,
@@ -86,6 +87,8 @@ __all__ = [
     "ForceHistory",
     "ForcePath",
     "Friction",
+    "FrictionHistory",
+    "FrictionPath",
     "GradedLayer",
     "HistoryLoading",
     "HistoryPath",

@@ -158,15 +158,36 @@ class Fem:
             from fem_reference.adhesion.detachment import detachment_path  # noqa: PLC0415 - only listed effects load
 
             return detachment_path(scene, self._solver(scene, log), self.accuracy, asdict(self), log)
+        if scene.effect(Friction) is not None:
+            return self._solve_rubbed(scene, log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
-        if scene.effect(Friction) is not None:
-            return self._solve_adhered(scene, log)
         equilibria = self._equilibria(scene, log)
         if not scene.effects and not isinstance(scene.indenter, FlatPunch):
             refuse_pulled_contacts(scene, (state.contact for state in equilibria))
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
         return contact_path(scene, equilibria, asdict(self), log)
+
+    def _solve_rubbed(self, scene: Scene, log: StageLog) -> ContactPath | HistoryPath:
+        if isinstance(scene.indenter, FlatPunch):
+            return self._solve_adhered(scene, log)
+        if isinstance(scene.loading, DepthHistory | ForceHistory):
+            from fem_reference.elastic.friction.histories import rubbed_history  # noqa: PLC0415 - only listed effects
+
+            def history(settings: Discretisation) -> HistoryPath:
+                return rubbed_history(scene, settings, asdict(self), log)
+
+            return (
+                history(self.discretisation)
+                if self.accuracy is None
+                else solve_history_to_accuracy(history, self.accuracy)
+            )
+        from fem_reference.elastic.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
+
+        return self._to_accuracy(
+            lambda settings: rubbed_path(scene, settings, asdict(self), log),
+            lambda path: {name: float(error.max()) for name, error in path.error_estimate.items()},
+        )
 
     def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
         from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
@@ -272,15 +293,21 @@ class Fem:
 
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:
-    """Full stick of a flat punch at depths or forces, and no other friction."""
-    punch, loading = isinstance(scene.indenter, FlatPunch), scene.loading
-    static = isinstance(loading, IndentationDepths | NormalForces)
-    if scene.effects == (Friction(coefficient=math.inf),) and punch and static:
-        return Supported()
+    """Flat punches that stick, and rounded or pointed indenters with any friction; no second effect."""
+    friction = next(effect for effect in scene.effects if isinstance(effect, Friction))
+    static = isinstance(scene.loading, IndentationDepths | NormalForces)
+    grows = not scene.indenter.flat_radius
+    if len(scene.effects) == 1:
+        if isinstance(scene.indenter, FlatPunch) and static and friction.is_stick:
+            return Supported()
+        if grows and (static or isinstance(scene.loading, ContactRadii)):
+            return Supported()
+        if grows and isinstance(scene.loading, DepthHistory | ForceHistory) and not friction.is_stick:
+            return Supported()
     listed = ", ".join(f"{type(effect).__name__}" for effect in scene.effects)
-    coefficient = next(effect.coefficient for effect in scene.effects if isinstance(effect, Friction))
     return Unsupported(
-        f"fem does not model a {type(scene.indenter).__name__} under {type(loading).__name__} with {listed} at "
-        f"Friction.coefficient = {coefficient:g}; it models full stick (inf) of a FlatPunch under IndentationDepths or "
-        "NormalForces"
+        f"fem does not model a {type(scene.indenter).__name__} under {type(scene.loading).__name__} with {listed} at "
+        f"Friction.coefficient = {friction.coefficient:g}; it models full stick (inf) of a FlatPunch under "
+        "IndentationDepths or NormalForces, and any friction of indenters without a flat end, at finite coefficients "
+        "under DepthHistory and ForceHistory, too"
     )

@@ -11,6 +11,7 @@ from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
+from contact.answer.friction import told_of_friction
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
@@ -56,6 +57,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         error_estimate=errors,
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
+        notes=told_of_friction(scene.layer, radius),
         fields=fields,
     )
 

@@ -65,10 +65,10 @@ def quick_coverage() -> CaseResult:
 
 
 def quick_maps() -> CaseResult:
-    """Where closed forms are good."""
-    from cases.measurements.advice.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, map_case  # noqa: PLC0415
+    """Where closed forms are good, and where friction does not matter."""
+    from cases.measurements.advice.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, FRICTION, map_case  # noqa: PLC0415
 
-    return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in FORMULAS)
+    return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in (*FORMULAS, *FRICTION))
 
 
 def code_verification() -> CaseResult:

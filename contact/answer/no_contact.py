@@ -61,6 +61,18 @@ class _PressedFields:
         known = self.number[step]
         return np.zeros_like(radius) if known < 0 else self.fields.surface_displacement(radius, known)
 
+    def tangential_traction(self, radius: FloatArray, step: int) -> FloatArray:
+        """q(r) [Pa] where the method gives it, zero without contact."""
+        return self._of_friction("tangential_traction", radius, step)
+
+    def slip(self, radius: FloatArray, step: int) -> FloatArray:
+        """How far the surface slid [m] where the method gives it, zero without contact."""
+        return self._of_friction("slip", radius, step)
+
+    def _of_friction(self, name: str, radius: FloatArray, step: int) -> FloatArray:
+        known = self.number[step]
+        return np.zeros_like(radius) if known < 0 else np.asarray(getattr(self.fields, name)(radius, known))
+
     def inside(self, step: int, pressure_error: float) -> InteriorFields:
         """The body under one step that presses.
 
@@ -100,7 +112,7 @@ def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactP
         found[presses] = values
         return found
 
-    arrays: dict[str, Any] = {name: filled(getattr(path, name)) for name in ContactPath.ARRAYS}
+    arrays: dict[str, Any] = {name: filled(getattr(path, name)) for name in path.ARRAYS}
     number = np.where(presses, np.cumsum(presses) - 1, -1)
     return dataclasses.replace(
         path,

@@ -34,6 +34,7 @@ UNITS: Mapping[str, str] = {
     "dissipated_energy": "J",
     "coefficient_of_restitution": "1",
     "contact_time": "s",
+    "stick_radius": "m",
     "peak_force": "N",
     "peak_depth": "m",
     "peak_contact_radius": "m",

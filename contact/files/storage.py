@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from contact.answer.friction import FrictionHistory, FrictionPath
 from contact.answer.solution import ContactPath, CriticalPoint, DetachmentPath, HistoryPath, ImpactHistory, Solution
 from contact.answer.stages import Cost, StageRecord
 from contact.files.scene_file import scene_from_mapping, scene_to_mapping
@@ -39,7 +40,8 @@ MAX_NAME = 200
 _BLOCK = 512
 
 _KINDS: dict[str, type[Solution]] = {
-    cls.__name__: cls for cls in (ContactPath, DetachmentPath, HistoryPath, ImpactHistory)
+    cls.__name__: cls
+    for cls in (ContactPath, DetachmentPath, FrictionHistory, FrictionPath, HistoryPath, ImpactHistory)
 }
 
 

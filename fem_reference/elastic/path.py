@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact import Adhesion, ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
+from contact.answer.friction import told_of_friction
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
@@ -120,6 +121,8 @@ def contact_path(
     if scene.effect(Adhesion) is not None:
         errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
         errors["normal_force"] *= np.abs(force) / np.abs(force).max()
+    elif not scene.effects:
+        notes = (*notes, *told_of_friction(scene.layer, radius))
     meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))
     return ContactPath(
         scene=scene,

@@ -7,7 +7,17 @@ from collections.abc import Iterable
 import numpy as np
 
 from cases.declare.quantities import single_numbers
-from contact import UNITS, ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution, StageRecord
+from contact import (
+    UNITS,
+    ContactPath,
+    DetachmentPath,
+    FrictionHistory,
+    FrictionPath,
+    HistoryPath,
+    ImpactHistory,
+    Solution,
+    StageRecord,
+)
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, memory, prefix_for, scaled_unit, small
@@ -25,6 +35,8 @@ LONGEST = 40
 PRINTED = {
     ContactPath: ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"),
     DetachmentPath: ("contact_radius", "indentation_depth", "normal_force"),
+    FrictionPath: ("contact_radius", "indentation_depth", "normal_force", "stick_radius", "dissipated_energy"),
+    FrictionHistory: ("time", "indentation_depth", "normal_force", "contact_radius", "dissipated_energy"),
     HistoryPath: ("time", "indentation_depth", "normal_force", "contact_radius"),
     ImpactHistory: ("time", "indentation_depth", "velocity", "normal_force", "contact_radius"),
 }

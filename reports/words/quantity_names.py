@@ -10,4 +10,5 @@ SYMBOLS = {
     "kinetic_energy": "E_kin",
     "stored_energy": "E_el",
     "dissipated_energy": "E_diss",
+    "stick_radius": "c",
 }

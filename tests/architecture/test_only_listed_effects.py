@@ -54,7 +54,7 @@ def solved(method, scene, settings="{}"):
 
 IN_TIME = ("mdr.history", "mdr.impact", "fem_reference.in_time")
 ADHESION = ("bem.adhesion", "mdr.adhesion", "fem_reference.adhesion")
-FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.elastic.stick")
+FRICTION = ("bem.layer_equation.stick", "mdr.friction", "fem_reference.elastic.stick", "fem_reference.elastic.friction")
 EFFECT_ROOMS = (*IN_TIME, *ADHESION, *FRICTION)
 
 

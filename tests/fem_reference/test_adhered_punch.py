@@ -14,8 +14,8 @@ from contact import (
     IndentationDepths,
     Layer,
     NormalForces,
-    Paraboloid,
     Scene,
+    TruncatedCone,
     UnsupportedSceneError,
 )
 from fem_reference import Fem
@@ -127,11 +127,11 @@ def test_stick_is_never_softer_than_free_slip(nu, support):
         (
             Scene(
                 layer=layer(0.3),
-                indenter=Paraboloid(radius_of_curvature=10.0),
+                indenter=TruncatedCone(flat_radius=0.5, slope=0.1),
                 loading=ContactRadii([1.0]),
                 effects=STICK,
             ),
-            r"a Paraboloid under ContactRadii with Friction at",
+            r"a TruncatedCone under ContactRadii with Friction at",
         ),
         (
             punch(layer(0.3), loading=DepthHistory(time=[0.0, 1.0], depth=[0.0, 1e-3])),

@@ -1,4 +1,4 @@
-"""An inequality: the answer is at least that of a changed scene, as a constraint makes a body stiffer."""
+"""An inequality: the answer is at least, or at most, a multiple of that of a changed scene."""
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -20,11 +20,15 @@ class NeverBelow(PerMethod):
 
     Attributes:
         change: from the scene to the one that bounds it.
+        multiple: of the changed scene's values that bounds the quantity, of the scene; one where omitted.
+        at_most: whether it bounds it from above.
     """
 
     kind: ClassVar[Kind] = Kind.INVARIANT
 
     change: Callable[[Scene], Scene]
+    multiple: Callable[[Scene], float] | None = None
+    at_most: bool = False
 
     def tasks(self, case: Case) -> Iterable[Task]:
         """Return the changed scenes to solve."""
@@ -36,14 +40,16 @@ class NeverBelow(PerMethod):
         """Judge each scene and method by its worst step."""
         for scene, label, run, tolerance in self.answered(case, answers):
             bound = answers.of(self._changed(case.task(scene, case.use(scene, label))))
-            judged = first_missing(run, bound, quantity=self.quantity) or self._judged(run, bound, tolerance)
+            multiple = 1.0 if self.multiple is None else self.multiple(scene.scene)
+            judged = first_missing(run, bound, quantity=self.quantity) or self._judged(run, bound, tolerance, multiple)
             yield self.record(judged, scene.name, (label,), tolerance=tolerance)
 
     def _changed(self, task: Task) -> Task:
         return task.changed(self.name, problem=self.change(task.problem))
 
-    def _judged(self, run: SceneRun, bound: SceneRun, tolerance: float) -> Judgement:
+    def _judged(self, run: SceneRun, bound: SceneRun, tolerance: float, multiple: float = 1.0) -> Judgement:
         values, bounds = run.quantity(self.quantity), bound.quantity(self.quantity)
         steps = zip(values.values, bounds.values, strict=True)
-        lacking = (max(0.0, least - value) / bounds.scale for value, least in steps)
+        sign = -1.0 if self.at_most else 1.0
+        lacking = (max(0.0, sign * (multiple * least - value)) / bounds.scale for value, least in steps)
         return worst_judgement([judge_invariant(share, tolerance=tolerance) for share in lacking])

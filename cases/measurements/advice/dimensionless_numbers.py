@@ -44,6 +44,8 @@ _SMALL_INERTIA = 0.1
 _TYPICAL_FRICTION = 0.1
 # Relative accuracy that notes beside an answer are told for: that of careful indentation tests.
 _USUAL_ACCURACY = 0.01
+# Shares of the force for which the coefficient is told up to which friction moves less.
+_GOOD_TO = (0.01, 0.05)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -129,9 +131,13 @@ def _friction(scene: Scene, answer: Solution) -> Number | None:
     effect = friction_effect(path, _TYPICAL_FRICTION, fast.solve)
     low, high = float(effect.lower[0]), float(effect.upper[0])
     order = f", by {100 * effect.first_order[0]:.2g} % to first order" if effect.one_direction[0] else ""
+    # The bound at a coefficient mu is mu U/(1 - mu U).
+    slip = high / (1 + high) / _TYPICAL_FRICTION if math.isfinite(high) else 1 / _TYPICAL_FRICTION
+    below = " and ".join(f"{100 * share:g} % below {share / (1 + share) / slip:.2g}" for share in _GOOD_TO)
     meaning = (
         f"dry friction of {_TYPICAL_FRICTION:g} moves the force at this depth by {100 * low:.2g} to {100 * high:.2g} %"
-        f"{order}; Friction(coefficient=inf) tells what full stick moves"
+        f"{order}; frictionless is good to {below}; finite elements solve Friction(coefficient=..), and "
+        "Friction(coefficient=inf) tells what full stick moves"
     )
     return Number(name="friction", value=max(-low, high), meaning=meaning)
 

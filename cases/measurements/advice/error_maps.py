@@ -30,7 +30,9 @@ TEXT: Final = """
 A paraboloid touches a layer up to a prescribed radius a. Each map shows the signed relative error of the force over a/h
 and Poisson's ratio; the unbonded layer, which does not see it, is a row of its own. Closed forms: the half-space
 (Hertz) and the thin layer, a bed of springs, Eqs. (17) and (22), or the incompressible film, Eq. (20). Methods: at
-coarse settings, so that their errors are seen.
+coarse settings, so that their errors are seen. Friction: how much larger than the frictionless force, at most, that
+with dry friction of a coefficient is at the same depth and radius, F_0/(1 - mu max |u_r1|) by reciprocity; no number
+where that says nothing.
 """
 
 Answer = Callable[[Layer, FloatArray], FloatArray]
@@ -95,6 +97,33 @@ def _force(method: Method, layer: Layer, radius: float) -> float:
     return float(path.normal_force[-1]) if isinstance(path, ContactPath) else float("nan")
 
 
+@dataclass(frozen=True)
+class MostFriction:
+    """The largest force that dry friction allows, from the radial displacement u_r1 under the frictionless punch."""
+
+    coefficient: float
+
+    def __call__(self, layer: Layer, radii: FloatArray) -> FloatArray:
+        """F_0/(1 - mu max |u_r1|); NaN where the bound is infinite."""
+        from bem.layer_equation.stick.frictionless_slip import frictionless_punch  # noqa: PLC0415 - used here only
+
+        ratios = radii / layer.thickness
+        punches = [frictionless_punch(float(x), layer.support, layer.poissons_ratio) for x in ratios]
+        slip = self.coefficient * np.array([punch.largest() for punch in punches])
+        expected = np.asarray(build_guarded("mdr", {}).solve(_scene(layer, radii)).normal_force)  # type: ignore[attr-defined]
+        return np.asarray(np.divide(expected, 1.0 - slip, out=np.full_like(slip, np.nan), where=slip < 1.0))
+
+
+FRICTION: Final = tuple(
+    MapPlan(
+        name=f"friction {mu:g}",
+        title=f"Friction of {mu:g} left out: at most",
+        answer=MostFriction(mu),
+        ratios=FEW_RATIOS,
+        rows=FEW_ROWS,
+    )
+    for mu in (0.1, 0.3)
+)
 FORMULAS: Final = (
     MapPlan(name="half-space", title="Half-space (Hertz)", answer=half_space_force),
     MapPlan(name="thin layer", title="Thin layer: bed, at nu = 0.5 film", answer=thin_layer_force),
@@ -125,7 +154,7 @@ def plans_of(names: Collection[str], methods: Collection[str]) -> tuple[MapPlan,
     """
     for method in methods:
         check_known(method)
-    known = {plan.name: plan for plan in (*FORMULAS, *METHODS)}
+    known = {plan.name: plan for plan in (*FORMULAS, *FRICTION, *METHODS)}
     for name in names:
         if name not in known:
             raise InvalidInput(f"no map of {name!r}; there are {', '.join(known)}")
@@ -137,7 +166,7 @@ def _as_it_comes(method: str) -> MapPlan:
     return MapPlan(name=method, title=method, answer=Solved(method), ratios=FEW_RATIOS, rows=FEW_ROWS)
 
 
-def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *METHODS), progress: Say = silent) -> CaseResult:
+def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *FRICTION, *METHODS), progress: Say = silent) -> CaseResult:
     """Draw up the maps; ``progress`` is told of each."""
     return study_case(
         NAME,

@@ -26,6 +26,7 @@ FAMILIES = {
     "film_on_substrate",
     "three_zone_cartilage",
     "graded_layer",
+    "friction_paraboloid",
 }
 
 

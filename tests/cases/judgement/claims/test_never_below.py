@@ -1,5 +1,7 @@
 """An inequality of two answers: what is above passes, what is below by more than the tolerance fails."""
 
+from dataclasses import replace
+
 import pytest
 
 from cases.judgement.claims.never_below import NeverBelow
@@ -22,3 +24,9 @@ def test_the_worst_step_decides(values, status):
     claim = STIFFER[0]
     assert isinstance(claim, NeverBelow)
     assert claim._judged(run(*values), run(1.0, 2.0), 1e-9).status is status
+
+
+@pytest.mark.parametrize(("multiple", "status"), [(1.1, Status.PASS), (1.05, Status.FAIL)])
+def test_a_multiple_bounds_from_above(multiple, status):
+    claim = replace(STIFFER[0], at_most=True)
+    assert claim._judged(run(1.0, 2.2 - 1e-9), run(1.0, 2.0), 1e-9, multiple).status is status

@@ -178,3 +178,5 @@ def test_friction_is_told_with_a_bound_and_its_first_order():
     (line,) = [line for line in advise(Mdr(), scene, 1e-2).lines if line.startswith("friction = ")]
     assert "dry friction of 0.1 moves the force at this depth by" in line
     assert "by 8.2 % to first order" in line
+    # max |u_r1| is 1.19121: 0.01 = 1.19121 mu/(1 - 1.19121 mu).
+    assert "frictionless is good to 1 % below 0.0083 and 5 % below 0.04;" in line

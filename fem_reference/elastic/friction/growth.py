@@ -1,0 +1,172 @@
+"""A contact that grows, on three strips: its numbers at any depth, freed of the cells' leading error, and what is left.
+
+At touching points depth and force err by ``c_1 h + c_2 h^2`` in the cell h, smoothly; a polynomial through some of them
+tells their values between. c_1 is small. Two strips give the next order, ``(4 F_1 - F_2)/3``; a third one, of cells
+four times as large, tells what c_1 leaves of it: ``|F_3 - F_2 - 4 (F_2 - F_1)|/3``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import brentq
+
+from contact.records.validation import FloatArray
+from fem_reference.elastic.friction.step import RubbedContact, RubbedState
+from fem_reference.elastic.friction.walk import grown, stick_radius
+
+# A touching node lies this share of a cell inside the contact's edge. Measured against MDR (paraboloids, nu 0, 0.3 and
+# 1/2, a/h 0.5 to 5, with and without stick, 80 to 240 cells, 2026-11-22): 0.03 to 0.04.
+EDGE_SHARE = 0.035
+# The share is uncertain by so much.
+EDGE_UNCERTAIN = 0.01
+# One touching point on either side for so many of a strip, and two at least, make the cubic that tells the values
+# between.
+PER_NEIGHBOUR = 15
+# Degree of that polynomial, in the logarithm of the depth.
+DEGREE = 3
+# What is left of a correction where the third strip sees nothing.
+SHARE_LEFT = 0.1
+# Depths, relative to the one asked for, over which the largest correction is taken: at one depth it may vanish.
+NEARBY = (0.7, 0.85, 1.0)
+
+
+@dataclass(frozen=True)
+class Growing:
+    """One strip; lengths in metres, forces over E*.
+
+    Attributes:
+        contact: the strip.
+        states: in which each node touches.
+    """
+
+    contact: RubbedContact
+    states: list[RubbedState]
+
+    @cached_property
+    def depth(self) -> FloatArray:
+        """delta [m] at touching points."""
+        return np.asarray(self.contact.radius * np.array([state.depth for state in self.states]))
+
+    @cached_property
+    def force(self) -> FloatArray:
+        """F/E* [m^2]."""
+        return np.asarray(self.contact.radius**2 * np.array([state.force for state in self.states]))
+
+    @cached_property
+    def radius(self) -> FloatArray:
+        """a [m]."""
+        radii = self.contact.surface.radii
+        return np.asarray(self.contact.radius * (radii[1 : len(self.states) + 1] + EDGE_SHARE * radii[1]))
+
+    @cached_property
+    def stick(self) -> FloatArray:
+        """Stick radius over a."""
+        inner = [stick_radius(self.contact, state) / self.contact.surface.radii[state.active] for state in self.states]
+        return np.array(inner)
+
+    @cached_property
+    def heat(self) -> FloatArray:
+        """Dissipated energy over force times depth."""
+        heat = self.contact.radius**3 * np.array([state.dissipated for state in self.states])
+        return np.asarray(heat / (self.force * self.depth))
+
+    def local(self, values: FloatArray, depth: float) -> tuple[float, float]:
+        """Value and slope in ln(depth) of a quantity at a depth, by the cubic through its neighbours."""
+        log = np.log(self.depth)
+        middle, aside = int(np.searchsorted(log, np.log(depth))), max(2, len(log) // PER_NEIGHBOUR)
+        first = max(0, min(middle - aside, len(log) - 2 * aside))
+        near = slice(first, first + 2 * aside)
+        fit = np.polynomial.Polynomial.fit(log[near], values[near], DEGREE)
+        return float(fit(np.log(depth))), float(fit.deriv()(np.log(depth)))
+
+
+@dataclass(frozen=True)
+class Point:
+    """Numbers of one depth; lengths [m], forces over E*, with relative errors by the names of a contact path."""
+
+    depth: float
+    radius: float
+    force: float
+    stiffness: float
+    stick_radius: float
+    heat: float
+    error: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Growth:
+    """The contact on three strips, finest first."""
+
+    strips: tuple[Growing, ...]
+
+    @classmethod
+    def of(cls, contacts: Iterable[RubbedContact]) -> Growth:
+        """Let it grow on each."""
+        return cls(tuple(Growing(contact, grown(contact)) for contact in contacts))
+
+    def at_depth(self, depth: float) -> Point:
+        """Everything at one depth [m]."""
+        (force, of_force), (stiffness, of_stiffness) = (self._extrapolated(f, depth) for f in (_force, _stiffness))
+        heat, of_heat = self._extrapolated(_heat, depth)
+        (fine, exponent), (coarse, _) = (g.local(np.log(g.radius), depth) for g in self.strips[:2])
+        radius, of_radius = float(np.exp(fine)), abs(fine - coarse) / 2.0 + EDGE_UNCERTAIN * self._cell / np.exp(fine)
+        stick = [float(np.interp(depth, g.depth, g.stick)) for g in self.strips[:2]]
+        full = min(stick) == 1.0
+        error = {
+            "contact_radius": of_radius,
+            "indentation_depth": of_radius / exponent,
+            "normal_force": of_force,
+            "contact_stiffness": of_stiffness,
+            # The end of the stick is known to a cell.
+            "stick_radius": of_radius if full else of_radius + abs(stick[0] - stick[1]) + self._cell / radius,
+            "dissipated_energy": of_heat,
+        }
+        return Point(depth, radius, force, stiffness, stick[0] * radius, heat * force * depth, error)
+
+    def depth_of(self, name: str, value: float) -> float:
+        """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
+
+        def missing(log_depth: float) -> float:
+            depth = float(np.exp(log_depth))
+            if name == "force":
+                return self._extrapolated(_force, depth)[0] / value - 1.0
+            return float(np.exp(finest.local(np.log(finest.radius), depth)[0])) / value - 1.0
+
+        finest = self.strips[0]
+        reached = np.log(finest.depth)
+        return float(np.exp(brentq(missing, reached[0], reached[-1] + 0.1, xtol=1e-14)))
+
+    @property
+    def _cell(self) -> float:
+        """Of the finer strip [m]."""
+        finest = self.strips[0].contact
+        return float(finest.radius * finest.surface.radii[1])
+
+    def _extrapolated(self, quantity: Callable[[Growing, float], float], depth: float) -> tuple[float, float]:
+        """Value to the next order, and its error: relative, but for the heat."""
+        changes = []
+        for share in NEARBY:
+            fine, middle, coarse = (quantity(strip, share * depth) for strip in self.strips)
+            changes.append((middle - fine, coarse - middle))
+        first, second = np.array(changes).T
+        left = np.abs(second - 4.0 * first) / 3.0 + SHARE_LEFT * np.abs(first) / 3.0
+        value = fine - float(first[-1]) / 3.0
+        return value, float(left.max()) / (1.0 if quantity is _heat else abs(value))
+
+
+def _force(strip: Growing, depth: float) -> float:
+    return float(np.exp(strip.local(np.log(strip.force), depth)[0]))
+
+
+def _stiffness(strip: Growing, depth: float) -> float:
+    """dF/d delta, which is k_N, too: at the edge the pressure vanishes."""
+    log_force, exponent = strip.local(np.log(strip.force), depth)
+    return float(np.exp(log_force)) / depth * exponent
+
+
+def _heat(strip: Growing, depth: float) -> float:
+    return strip.local(strip.heat, depth)[0]

@@ -1,0 +1,257 @@
+"""Growing contact with friction by finite elements: MDR under full stick and without friction, laws, cycles, errors."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import ellipk
+
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    DepthHistory,
+    ForceHistory,
+    Friction,
+    FrictionPath,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    Sphere,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from contact.files.storage import load_solution, save_solution
+from fem_reference import Fem
+from fem_reference.elastic.friction import growth, step, strips, walk
+from mdr import Mdr
+from mdr.friction.statement import friction_effect
+
+# 80, 40 and 20 cells.
+COARSE = Fem(growth=1.0)
+PARABOLOID = Paraboloid(radius_of_curvature=10.0)
+
+
+def layer(nu, support="bonded"):
+    return Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=nu, support=support)
+
+
+def rubbed(coefficient, body, loading, indenter=PARABOLOID):
+    effects = () if coefficient is None else (Friction(coefficient=coefficient),)
+    return Scene(layer=body, indenter=indenter, loading=loading, effects=effects)
+
+
+def agree(path, exact):
+    """Every number of a path within what it states, where anything is stated."""
+    for name in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
+        stated = path.uncertainty(name) + 1e-9 * np.abs(getattr(exact, name))
+        assert np.all(np.abs(getattr(path, name) - getattr(exact, name)) <= stated), name
+
+
+@pytest.mark.parametrize(
+    ("nu", "support", "radius", "indenter"),
+    [
+        (0.0, "bonded", 1.0, PARABOLOID),
+        pytest.param(0.3, "unbonded", 0.3, Sphere(radius=20.0), marks=pytest.mark.slow),
+        (0.5, "bonded", 2.0, PARABOLOID),
+    ],
+)
+def test_full_stick_is_that_of_mdr(nu, support, radius, indenter):
+    scene = rubbed(math.inf, layer(nu, support), ContactRadii([radius]), indenter)
+    path, exact = COARSE.solve(scene), Mdr().solve(scene)
+    assert isinstance(path, FrictionPath)
+    agree(path, exact)
+    assert path.normal_force == pytest.approx(exact.normal_force, rel=5e-4, abs=0.0)
+    assert path.stick_radius == pytest.approx(path.contact_radius, rel=1e-12, abs=0.0)
+    assert np.all(path.dissipated_energy == 0.0)
+    r = np.linspace(0.0, 0.9, 7) * radius
+    mean = float(exact.normal_force[0]) / (math.pi * radius**2)
+    assert path.pressure(r) == pytest.approx(exact.pressure(r), rel=0.0, abs=5e-3 * mean)
+    traction = exact.fields.tangential_traction(r, 0)
+    assert path.tangential_traction(r) == pytest.approx(traction, rel=0.0, abs=1e-2 * mean)
+
+
+@pytest.mark.parametrize(
+    "loading", [pytest.param(IndentationDepths([2e-3, 0.05]), marks=pytest.mark.slow), NormalForces([0.1])]
+)
+def test_vanishing_friction_is_the_frictionless_contact(loading):
+    path = COARSE.solve(rubbed(1e-9, layer(0.45), loading))
+    agree(path, Mdr().solve(rubbed(None, layer(0.45), loading)))
+    assert path.error_estimate["normal_force"].max() < 1e-3
+
+
+def test_slope_at_vanishing_friction_is_that_of_reciprocity():
+    """THEORY_STICK's slope of a paraboloid of R = 10 h on a bonded layer with nu = 1/2, without a mesh."""
+    path = Mdr().solve(rubbed(None, layer(0.5), IndentationDepths([0.12])))
+    first_order = float(friction_effect(path, 1.0, Mdr().solve).first_order[0])
+    assert first_order == pytest.approx(0.55063, rel=2e-5, abs=0.0)
+    forces = [_force_on_one_strip(mu) for mu in (0.0, 0.01, 0.02)]
+    slopes = (np.array(forces[1:]) / forces[0] - 1.0) / [0.01, 0.02]
+    assert 2.0 * slopes[0] - slopes[1] == pytest.approx(first_order, rel=1e-3, abs=0.0)
+
+
+def _force_on_one_strip(coefficient):
+    """F/E* at a depth of 0.12: a coefficient of zero, which no scene lists, shares cells with the others."""
+    scene = rubbed(1.0, layer(0.5), ContactRadii([2.0]))
+    maker = strips.StripMaker(scene, Fem().discretisation, "superlu", strips.StageLog())
+    contact = _with_coefficient(maker.contact(2.0, 80), coefficient)
+    strip = growth.Growing(contact, walk.grown(contact))
+    return math.exp(strip.local(np.log(strip.force), 0.12)[0])
+
+
+def _with_coefficient(contact, coefficient):
+    return step.RubbedContact(contact.surface, contact.profile, coefficient, contact.radius)
+
+
+def test_coulombs_law_holds_and_slip_goes_against_the_traction():
+    path = COARSE.solve(rubbed(0.2, layer(0.5), IndentationDepths([0.1])))
+    a, c = float(path.contact_radius[0]), float(path.stick_radius[0])
+    assert 0.1 * a < c < 0.9 * a
+    r = np.linspace(0.0, 0.97, 50) * a
+    p, q, slip = path.pressure(r), path.tangential_traction(r), path.slip(r)
+    assert np.all(np.abs(q) <= 0.2 * p * (1.0 + 1e-9))
+    beyond, within = r > 1.05 * c, r < 0.95 * c
+    assert q[beyond] == pytest.approx(-0.2 * p[beyond], rel=1e-9, abs=0.0)
+    assert np.all(slip[beyond] > 0.0)
+    assert slip[within] == pytest.approx(np.zeros(within.sum()), rel=0.0, abs=1e-12)
+    assert path.error_estimate["base_force_defect"][0] < 1e-10
+    assert path.dissipated_energy[0] > 0.0
+
+
+def test_the_stick_radius_of_a_thick_layer_is_self_similar():
+    """Spence 1975: on the half-space c/a depends on nu and the coefficient alone, not on the depth."""
+    body = Layer(thickness=100.0, youngs_modulus=3.0, poissons_ratio=0.0)
+    path = COARSE.solve(rubbed(0.2, body, IndentationDepths([0.01, 0.02, 0.03])))
+    share = path.stick_radius / path.contact_radius
+    assert 0.1 < share[0] < 0.9
+    assert share == pytest.approx(np.full(3, share[-1]), rel=0.0, abs=0.01)
+
+
+def test_the_stick_radius_of_a_thick_layer_with_weak_coupling():
+    """Spence 1975, uncoupled: (a/2c) ln((a + c)/(a - c)) = (mu/beta) K(sqrt(1 - c^2/a^2)).
+
+    Here 2 beta = (1 - 2 nu)/(1 - nu); the coupling that it leaves out is of the order of beta.
+    """
+    beta, body = 0.02 / (2.0 * 0.51), Layer(thickness=100.0, youngs_modulus=3.0, poissons_ratio=0.49)
+    path = COARSE.solve(rubbed(0.5 * beta, body, IndentationDepths([0.02])))
+    share = float(path.stick_radius[0] / path.contact_radius[0])
+    left = math.log((1.0 + share) / (1.0 - share)) / (2.0 * share)
+    assert left == pytest.approx(0.5 * float(ellipk(1.0 - share**2)), rel=2e-2, abs=0.0)
+
+
+@pytest.mark.slow
+def test_force_rises_from_free_slip_to_full_stick():
+    coefficients = (0.02, 0.3, 1.0, math.inf)
+    forces = [COARSE.solve(rubbed(mu, layer(0.5), IndentationDepths([0.1]))).normal_force[0] for mu in coefficients]
+    assert np.all(np.diff(forces) > -1e-4 * forces[0])
+    assert forces[-1] > 1.1 * forces[0]
+
+
+CYCLE = (0.0, 0.05, 0.1, 0.05, 0.02, 0.06, 0.1, 0.0, 0.1, -0.01)
+
+
+def test_a_cycle_of_depth_dissipates_and_closes():
+    scene = rubbed(0.2, layer(0.5), DepthHistory(time=np.arange(float(len(CYCLE))), depth=np.array(CYCLE)))
+    history = COARSE.solve(scene)
+    assert np.all(history.error_estimate["heat_given_back"] == 0.0)
+    assert history.error_estimate["base_force_defect"].max() < 1e-10
+    assert history.error_estimate["energy_defect"].max() < 2e-3
+    assert history.dissipated_energy[3] > history.dissipated_energy[2] > 0.0
+    # Less force on the way back; none where the contact is lost, after which everything begins anew.
+    assert history.normal_force[3] < history.normal_force[1]
+    assert history.normal_force[[0, 7, 9]] == pytest.approx(np.zeros(3), rel=0.0, abs=1e-12)
+    assert history.normal_force[8] == pytest.approx(history.normal_force[2], rel=1e-10, abs=0.0)
+    loading = COARSE.solve(rubbed(0.2, layer(0.5), IndentationDepths([0.05, 0.1])))
+    stated = history.error_estimate["normal_force"][0] * loading.normal_force[1]
+    assert history.normal_force[1:3] == pytest.approx(loading.normal_force, rel=0.0, abs=stated)
+
+
+@pytest.mark.slow
+def test_a_history_of_force_is_that_of_its_depths():
+    time = np.arange(5.0)
+    depths = rubbed(0.2, layer(0.3), DepthHistory(time=time, depth=np.array([0.0, 0.05, 0.02, 0.05, 0.0])))
+    first = COARSE.solve(depths)
+    forces = rubbed(0.2, layer(0.3), ForceHistory(time=time, force=first.normal_force))
+    again = COARSE.solve(forces)
+    assert again.indentation_depth == pytest.approx(first.indentation_depth, rel=1e-3, abs=1e-9)
+    assert again.dissipated_energy == pytest.approx(first.dissipated_energy, rel=2e-2, abs=1e-9)
+
+
+def followed_strip(cells):
+    scene = rubbed(0.2, layer(0.5), ContactRadii([2.0]))
+    maker = strips.StripMaker(scene, Fem().discretisation, "superlu", strips.StageLog())
+    contact = maker.contact(2.0, cells)
+    return contact, walk.followed(contact, [0.04, 0.02, 0.04, 0.01], by_depth=True)
+
+
+def test_work_is_stored_or_dissipated_with_second_order_in_the_cells():
+    defects = []
+    for cells in (40, 80):
+        contact, states = followed_strip(cells)
+        stored = [contact.stored_energy(state) for state in states]
+        heat, work = (np.array([getattr(state, name) for state in states]) for name in ("dissipated", "work"))
+        assert np.all(np.diff(heat) >= 0.0)
+        defects.append(np.abs(work - np.array(stored) - heat).max() / work.max())
+    assert defects[1] < 1e-3
+    assert defects[1] < 0.5 * defects[0]
+
+
+def test_forces_converge_with_second_order_in_the_cells():
+    scene = rubbed(0.3, layer(0.5), ContactRadii([2.0]))
+    maker = strips.StripMaker(scene, Fem().discretisation, "superlu", strips.StageLog())
+    contacts = [maker.contact(2.0, cells) for cells in (20, 40, 80)]
+    grown = [growth.Growing(contact, walk.grown(contact)) for contact in contacts]
+    logs = [strip.local(np.log(strip.force), 0.06)[0] for strip in grown]
+    assert math.log2((logs[1] - logs[0]) / (logs[2] - logs[1])) == pytest.approx(2.0, rel=0.0, abs=0.5)
+    assert abs(logs[2] - logs[1]) < 2e-3
+
+
+def test_an_answer_with_friction_is_stored_and_read(tmp_path):
+    path = COARSE.solve(rubbed(0.2, layer(0.3), ContactRadii([0.5])))
+    save_solution(tmp_path / "path.h5", path)
+    again = load_solution(tmp_path / "path.h5")
+    assert isinstance(again, FrictionPath)
+    assert again.stick_radius[0] == path.stick_radius[0]
+
+
+def test_a_depth_of_zero_is_no_contact():
+    path = COARSE.solve(rubbed(0.2, layer(0.3), IndentationDepths([0.0, 0.02])))
+    assert path.stick_radius[0] == path.dissipated_energy[0] == path.tangential_traction(0.1, 0) == 0.0
+    assert path.slip(0.9 * path.contact_radius[1], 1) != 0.0
+
+
+@pytest.mark.parametrize(
+    ("scene", "named"),
+    [
+        (rubbed(0.2, layer(0.3), ContactRadii([1.0]), TruncatedCone(flat_radius=0.5, slope=0.1)), "TruncatedCone"),
+        (rubbed(math.inf, layer(0.3), DepthHistory(time=[0.0, 1.0], depth=[0.0, 0.1])), "= inf; it models"),
+        (
+            rubbed(0.2, layer(0.3), ContactRadii([1.0])).replace(
+                effects=(Friction(coefficient=0.2), Adhesion(work_of_adhesion=1.0))
+            ),
+            "Friction, Adhesion",
+        ),
+    ],
+)
+def test_what_is_not_modelled_is_refused_by_name(scene, named):
+    with pytest.raises(UnsupportedSceneError, match=named):
+        Fem().solve(scene)
+
+
+def test_a_contact_beyond_the_profile_is_refused():
+    with pytest.raises(InvalidInput, match="end of the profile at 1 m"):
+        COARSE.solve(rubbed(0.2, layer(0.3), IndentationDepths([5.0]), Sphere(radius=1.0)))
+
+
+@pytest.mark.slow
+def test_two_times_the_cells_are_within_what_is_stated():
+    for nu, mu, indenter in ((0.5, 0.1, PARABOLOID), (0.3, 0.3, Cone(slope=0.1)), (0.0, 0.05, PARABOLOID)):
+        scene = rubbed(mu, layer(nu), IndentationDepths([0.1]), indenter)
+        path, finer = Fem().solve(scene), Fem().refined().solve(scene)
+        assert path.normal_force == pytest.approx(finer.normal_force, rel=2e-4, abs=0.0)
+        for name in ("contact_radius", "normal_force", "contact_stiffness", "dissipated_energy", "stick_radius"):
+            stated = path.uncertainty(name) + finer.uncertainty(name)
+            assert np.all(np.abs(getattr(path, name) - getattr(finer, name)) <= stated), name

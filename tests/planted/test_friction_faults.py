@@ -1,0 +1,85 @@
+"""The checks of friction are seen to fail: each plants one error and must see it refused."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from bem.kernels import tangential
+from contact import NotConvergedError, UnsupportedSceneError
+from fem_reference.elastic.friction import step, walk
+from tests.fem_reference import test_friction as friction
+from tests.planted.planting import swap
+
+CAUGHT = (AssertionError, NotConvergedError, UnsupportedSceneError)
+
+
+def test_friction_along_the_slip(monkeypatch):
+    """Points slide with the traction and not against it: that feeds energy in."""
+    swap("fem_reference.elastic.friction.step:_sliding", lambda right: lambda *args: -right(*args))(monkeypatch)
+    with pytest.raises(CAUGHT):
+        friction.test_coulombs_law_holds_and_slip_goes_against_the_traction()
+
+
+def test_stick_held_at_zero(monkeypatch):
+    """A new point is pulled back to where it lay before anything was pressed."""
+    right = step._equilibrium
+
+    def wrong(contact, before, *others):
+        return right(contact, dataclasses.replace(before, radial=np.zeros_like(before.radial)), *others)
+
+    monkeypatch.setattr(step, "_equilibrium", wrong)
+    with pytest.raises(CAUGHT):
+        friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
+
+
+def test_pressure_that_pushes_the_surface_the_other_way(monkeypatch):
+    """The coupling of pressure and radial displacement has the other sign: the force does not change, q does."""
+    right = step.RubbedContact
+
+    def turned(surface, *others):
+        return right(dataclasses.replace(surface, coupled=-surface.coupled), *others)
+
+    monkeypatch.setattr("fem_reference.elastic.friction.strips.RubbedContact", turned)
+    with pytest.raises(CAUGHT):
+        friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
+
+
+def test_heat_given_back(monkeypatch):
+    """What slid is counted with the traction before the step, which pointed the other way where the slip turned."""
+    right = step._accounted
+
+    def wrong(contact, before, after):
+        found = right(contact, before, after)
+        heat = -(before.shear * (after.radial - before.radial))[after.sliding != 0]
+        return dataclasses.replace(found, dissipated=before.dissipated + float(heat.sum()))
+
+    monkeypatch.setattr(step, "_accounted", wrong)
+    with pytest.raises(CAUGHT):
+        friction.test_work_is_stored_or_dissipated_with_second_order_in_the_cells()
+
+
+def test_new_points_forget_that_they_slid_on_the_way(monkeypatch):
+    """The displacement of points ahead of the contact is not remembered when they touch."""
+    right = walk.advance
+
+    def wrong(contact, before, active, control):
+        ahead = np.arange(len(before.radial)) >= before.active
+        return right(contact, dataclasses.replace(before, radial=np.where(ahead, 0.0, before.radial)), active, control)
+
+    monkeypatch.setattr(walk, "advance", wrong)
+    with pytest.raises(CAUGHT):
+        friction.test_full_stick_is_that_of_mdr(0.0, "bonded", 1.0, friction.PARABOLOID)
+
+
+def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
+    """The fast method's kernel of the radial displacement without its sign: the slope at vanishing friction notices."""
+    right = tangential.beyond_half_space
+
+    def wrong(*args):
+        found = right(*args)
+        return dataclasses.replace(found, coupling=-0.9 * found.coupling)
+
+    swap("bem.kernels.tangential:beyond_half_space", lambda _: wrong)(monkeypatch)
+    with pytest.raises(CAUGHT):
+        friction.test_slope_at_vanishing_friction_is_that_of_reciprocity()
