@@ -117,11 +117,11 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
-        if (other := other_layer("fem", scene.layer)) is not None:
-            return other
         if scene.effect(Friction) is not None:
-            return _supports_friction(scene)
+            return other_layer("full stick by fem", scene.layer) or _supports_friction(scene)
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
+        if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:
+            return other
         modelled = Viscoelasticity if in_time else Adhesion
         if all(isinstance(effect, modelled) for effect in scene.effects):
             return Supported()
@@ -163,10 +163,19 @@ class Fem:
         if scene.effect(Friction) is not None:
             return self._solve_adhered(scene, log)
         equilibria = self._equilibria(scene, log)
-        if not scene.effects and not isinstance(scene.indenter, FlatPunch):
-            refuse_pulled_contacts(scene, (state.contact for state in equilibria))
+        if not scene.effects and not (scene.layer.is_uniform and isinstance(scene.indenter, FlatPunch)):
+            gap = partial(self._gap, scene, log=log)
+            refuse_pulled_contacts(scene, (state.contact for state in equilibria), gap)
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
         return contact_path(scene, equilibria, asdict(self), log)
+
+    def _gap(self, scene: Scene, contact: ContactWithErrors, log: StageLog) -> str:
+        """Where the surface lifts off below a contact that would be pulled, found without tension."""
+        if scene.layer.is_uniform:
+            return ""
+        from fem_reference.elastic.several_layers.lifting import gap_below  # noqa: PLC0415 - only stacks lift off
+
+        return gap_below(scene, contact, self.discretisation, self.solver, log)
 
     def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
         from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load

@@ -10,16 +10,33 @@ import numpy as np
 from scipy import sparse
 from skfem import ElementVector, FacetBasis
 
+from contact import ElasticLayer, Layer
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.assembly import Space, node_positions, stiffness_matrix
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.linear_solver import CheckedSolver
-from fem_reference.discrete_layer.material import Moduli, moduli
+from fem_reference.discrete_layer.material import ElasticConstants, Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.ordering import nested_dissection
+from fem_reference.discrete_layer.outer_edge import decay_rate
 
 Support = Literal["bonded", "unbonded"]
+
+
+@dataclass(frozen=True)
+class MeshEnd:
+    """How energies decay where the mesh ends.
+
+    Attributes:
+        strip_start: radius from which on the outermost strip extends.
+        strip_over_beyond: its energy over that which a longer section would store beyond it.
+        decay: rate per length at which the latter falls with the outer radius.
+    """
+
+    strip_start: float
+    strip_over_beyond: float
+    decay: float
 
 
 @dataclass(frozen=True)
@@ -45,21 +62,44 @@ class LayerProblem:
         """Shear modulus and compressibility at E* = 1."""
         return moduli(self.poissons_ratio)
 
+    @property
+    def constants(self) -> ElasticConstants:
+        """Moduli at the points of the mesh."""
+        return self.moduli
+
     @cached_property
     def space(self) -> Space:
         """Unknowns and basis."""
-        return Space(self.layer_mesh.mesh, self.pair)
+        return self.layer_mesh.space(self.pair)
 
     @cached_property
     def matrix(self) -> sparse.csc_array:
         """Stiffness matrix of all unknowns, the outer edge of an unbonded layer included."""
         matrix = stiffness_matrix(self.space, self.moduli)
-        return matrix + self.outer_edge_matrix if self.support == "unbonded" else matrix
+        return matrix + self.outer_edge_matrix if self.has_elastic_edge else matrix
+
+    @property
+    def uniform_matrix(self) -> sparse.csc_array:
+        """That of the surface's material everywhere, for the patch test."""
+        return self.matrix
+
+    @property
+    def has_elastic_edge(self) -> bool:
+        """Whether a spring on the outer edge carries on the membrane mode of an unbonded layer."""
+        return self.support == "unbonded"
 
     @cached_property
     def outer_edge_matrix(self) -> sparse.csc_array:
         """The elastic edge that replaces the unbonded layer beyond the mesh."""
         return outer_edge_matrix(self.space, self.moduli.shear)
+
+    @property
+    def end(self) -> MeshEnd:
+        """Energy densities decay like ``exp(-2 s r / h)``, hence ``beyond = strip / (exp(2 s w / h) - 1)``, width w."""
+        layer = self.layer_mesh
+        decay = 2 * decay_rate(self.poissons_ratio, self.support) / layer.thickness
+        width = min(layer.thickness, layer.outer_radius / 2)
+        return MeshEnd(layer.outer_radius - width, float(np.expm1(decay * width)), decay)
 
     @cached_property
     def positions(self) -> FloatArray:
@@ -89,6 +129,21 @@ class LayerProblem:
     def solver(self, held: IntArray) -> RestrictedSolver:
         """Factorise once with these unknowns prescribed."""
         return RestrictedSolver(self, held)
+
+
+def problem_of(
+    layer: ElasticLayer,
+    mesh: LayerMesh,
+    pair: ElementPair,
+    backend: str = "superlu",
+    kind: type[LayerProblem] | None = None,
+) -> LayerProblem:
+    """The discrete layer; ``kind`` may hold a uniform one in more ways."""
+    if isinstance(layer, Layer):
+        return (kind or LayerProblem)(mesh, pair, layer.poissons_ratio, layer.support, backend)
+    from fem_reference.discrete_layer.several_layers.problem import several_layers  # noqa: PLC0415 - only they load it
+
+    return several_layers(layer, mesh, pair, backend)
 
 
 def facet_nodes(space: Space, facets: IntArray) -> IntArray:

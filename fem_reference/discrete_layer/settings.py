@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Self
 
-from contact import InvalidInput, Layer, Profile
+from contact import ElasticLayer, InvalidInput, Layer, Profile
 from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
@@ -89,8 +89,12 @@ class Discretisation:
         return self.outer_distance or outer_distance(layer.poissons_ratio, layer.support, self.truncation)
 
 
-def contact_mesh(layer: Layer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
+def contact_mesh(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
     """The graded section, lengths by the contact radius, with vertices at the edge and at every kink and breakpoint."""
+    if not isinstance(layer, Layer):
+        from fem_reference.discrete_layer.several_layers.mesh import contact_parts_mesh  # noqa: PLC0415 - only they load it
+
+        return contact_parts_mesh(layer, indenter, settings)
     thickness = settings.thickness(layer, indenter.contact_radius)
     grading = Grading(
         points=graded_points(thickness, indenter, settings),

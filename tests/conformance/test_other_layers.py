@@ -26,7 +26,7 @@ LAYERS = (
     LayerStack(sublayers=(TOP, TOP), interfaces=("unbonded",)),
     GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=2.0), poissons_ratio=0.3),
 )
-PLAIN_ONLY = {"fem": {}, "bem": {"points": 96}}
+PLAIN_ONLY = {"bem": {"points": 96}}
 
 
 def scene_of(layer):
