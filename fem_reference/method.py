@@ -118,7 +118,8 @@ class Fem:
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
         if scene.effect(Friction) is not None:
-            return other_layer("full stick by fem", scene.layer) or _supports_friction(scene)
+            other = other_layer("full stick by fem", scene.layer)
+            return _supports_friction(scene) if other is None else other
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
         if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:
             return other

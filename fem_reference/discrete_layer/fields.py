@@ -110,8 +110,7 @@ def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> MutualEnerg
     fields = point_fields(problem.space, problem.constants, solutions, np.arange(mesh.t.shape[1]))
     by_triangle = np.einsum("ijtq,tq->ijt", fields.energy_products, fields.measure)
     end = problem.end
-    strip = mesh.p[0, mesh.t].mean(axis=0) > end.strip_start
-    beyond = by_triangle[:, :, strip].sum(axis=2) / end.strip_over_beyond
+    beyond = by_triangle[:, :, end.strip].sum(axis=2) / end.strip_over_beyond
     total = by_triangle.sum(axis=2)
     if problem.has_elastic_edge:
         total = total + solutions.T @ (problem.outer_edge_matrix @ solutions)

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy import sparse
 from skfem import ElementVector, FacetBasis
 
 from contact import ElasticLayer, Layer
-from contact.records.validation import FloatArray, IntArray
+from contact.records.validation import BoolArray, FloatArray, IntArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.assembly import Space, node_positions, stiffness_matrix
 from fem_reference.discrete_layer.elements import ElementPair
@@ -29,12 +29,12 @@ class MeshEnd:
     """How energies decay where the mesh ends.
 
     Attributes:
-        strip_start: radius from which on the outermost strip extends.
+        strip: which triangles make up the outermost strip, shape (triangle,).
         strip_over_beyond: its energy over that which a longer section would store beyond it.
         decay: rate per length at which the latter falls with the outer radius.
     """
 
-    strip_start: float
+    strip: BoolArray
     strip_over_beyond: float
     decay: float
 
@@ -50,6 +50,9 @@ class LayerProblem:
         support: "bonded" or "unbonded" base.
         backend: linear solver, a key of `linear_solver.BACKENDS`.
     """
+
+    # Each row of the linear system is judged by its own terms.
+    least_share: ClassVar[float] = 0.0
 
     layer_mesh: LayerMesh
     pair: ElementPair
@@ -99,7 +102,8 @@ class LayerProblem:
         layer = self.layer_mesh
         decay = 2 * decay_rate(self.poissons_ratio, self.support) / layer.thickness
         width = min(layer.thickness, layer.outer_radius / 2)
-        return MeshEnd(layer.outer_radius - width, float(np.expm1(decay * width)), decay)
+        strip = layer.mesh.p[0, layer.mesh.t].mean(axis=0) > layer.outer_radius - width
+        return MeshEnd(strip, float(np.expm1(decay * width)), decay)
 
     @cached_property
     def positions(self) -> FloatArray:
@@ -177,7 +181,7 @@ class RestrictedSolver:
         # The transpose is the same symmetric matrix, stored by rows.
         rows = problem.matrix.T[self._free]
         self._coupling = rows[:, held]
-        self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend)
+        self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend, problem.least_share)
 
     def solve_displaced(self, values: FloatArray) -> FloatArray:
         """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""

@@ -47,7 +47,7 @@ class PartsMesh(LayerMesh):
 
 def contact_parts_mesh(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> PartsMesh:
     """The graded section of a contact of known radius."""
-    body = parts_of(layer, indenter.contact_radius, settings.half_space_thickness)
+    body = parts_of(layer, indenter.contact_radius, base_reach(layer, settings))
     points = graded_points(body.parts[0].thickness, indenter, settings)
     return _mesh_of(Drawing(body, outer_radius(body, settings), points, settings.growth))
 
@@ -60,8 +60,14 @@ def parts_mesh(
     strip: float = 0.0,
 ) -> PartsMesh:
     """A section with cells of one size on a strip of a radius [m]; lengths by that radius."""
-    body = parts_of(layer, radius, settings.half_space_thickness)
+    body = parts_of(layer, radius, base_reach(layer, settings))
     return _mesh_of(Drawing(body, outer_radius(body, settings), points, settings.growth, strip))
+
+
+def base_reach(layer: ElasticLayer, settings: Discretisation) -> float:
+    """How far an elastic base is meshed: what is left out falls with the square, and a stiff film spreads the load."""
+    contrast = parts_of(layer, 1.0, 1.0).contrast
+    return float(np.sqrt(settings.half_space_thickness) * contrast**0.25)
 
 
 def outer_radius(body: LayerParts, settings: Discretisation) -> float:

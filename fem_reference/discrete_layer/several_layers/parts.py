@@ -54,7 +54,7 @@ class LayerParts:
     """The parts from the top; lengths by the contact radius, moduli by E* of the surface.
 
     Attributes:
-        parts: the last is the elastic base where there is one, as thick as what stands for a half-space.
+        parts: the last is the elastic base where there is one, as thick as it is meshed.
         base_modulus: E* of the elastic base, zero for a rigid one.
         slides: whether some face slides, so that disturbances die out like powers of the distance.
     """
@@ -90,13 +90,13 @@ class LayerParts:
         return any(part.poissons_ratio(np.array([part.top])).max() >= 0.49 for part in self.parts)
 
 
-def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: float) -> LayerParts:
+def parts_of(layer: ElasticLayer, contact_radius: float, base_reach: float) -> LayerParts:
     """A stack or graded layer in units of a contact radius [m].
 
     Args:
         layer: a `LayerStack` or `GradedLayer`.
         contact_radius: a [m].
-        half_space_thickness: thickness, in the larger of contact radius and layer, of what stands for an elastic base.
+        base_reach: how much of an elastic base is meshed, in the larger of contact radius and layer.
 
     Raises:
         UnsupportedSceneError: another kind of layer, or more parts than meshes bear.
@@ -117,7 +117,7 @@ def parts_of(layer: ElasticLayer, contact_radius: float, half_space_thickness: f
     if isinstance(base, ElasticBase):
         modulus, nu, thickness = base.youngs_modulus / unit, base.poissons_ratio, layer.thickness / contact_radius
         parts[-1] = _with_face(parts[-1], slips=base.interface == "unbonded")
-        parts.append(Part(thickness, half_space_thickness * max(1.0, thickness), _constant(modulus), _constant(nu)))
+        parts.append(Part(thickness, base_reach * max(1.0, thickness), _constant(modulus), _constant(nu)))
         base_modulus = modulus / ((1 - nu) * (1 + nu))
     slides = any(part.slips for part in parts) or base == "unbonded"
     return LayerParts(tuple(parts), base_modulus, slides)

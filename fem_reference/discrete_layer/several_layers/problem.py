@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from scipy import sparse
@@ -22,6 +23,7 @@ from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import PointModuli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.problem import LayerProblem, MeshEnd
+from fem_reference.discrete_layer.several_layers.far_base import far_spring
 from fem_reference.discrete_layer.several_layers.joined_space import JoinedSpace
 from fem_reference.discrete_layer.several_layers.mesh import PartsMesh
 
@@ -57,6 +59,10 @@ class PartsModuli:
 class SeveralLayersProblem(LayerProblem):
     """A stack or graded layer; ``poissons_ratio`` is that of the surface."""
 
+    # Where the section is long, displacements far away fall below the rounding of those under the contact, and no row
+    # there can be as accurate as its own terms are small.
+    least_share: ClassVar[float] = float(np.finfo(float).eps)
+
     @property
     def parts_mesh(self) -> PartsMesh:
         """The mesh with its parts.
@@ -77,7 +83,21 @@ class SeveralLayersProblem(LayerProblem):
     def matrix(self) -> sparse.csc_array:
         """Stiffness matrix of all unknowns; rows of unused ones are zero."""
         moduli = self.constants.on(np.arange(len(self.parts_mesh.part)))
-        return parts_matrix(self.space, moduli)
+        matrix = parts_matrix(self.space, moduli)
+        return matrix + self.outer_edge_matrix if self.has_elastic_edge else matrix
+
+    @cached_property
+    def joined(self) -> JoinedSpace:
+        """Unknowns and basis."""
+        return self.parts_mesh.space(self.pair)
+
+    @cached_property
+    def outer_edge_matrix(self) -> sparse.csc_array:
+        """The elastic base beyond the mesh."""
+        mesh, parts = self.parts_mesh.mesh, self.parts_mesh.body.parts
+        in_base = self.parts_mesh.part[mesh.f2t[0]] == len(parts) - 1
+        sides = {side: mesh.boundaries[side][in_base[mesh.boundaries[side]]] for side in ("outer", "base")}
+        return far_spring(self.joined, parts[-1], sides)
 
     @property
     def uniform_matrix(self) -> sparse.csc_array:
@@ -87,21 +107,22 @@ class SeveralLayersProblem(LayerProblem):
     @cached_property
     def supported_unknowns(self) -> IntArray:
         """Displacements that the axis and the base hold at zero, and those that others stand for."""
-        space = self.layer_mesh.space(self.pair)
-        unused = space.unused if isinstance(space, JoinedSpace) else np.empty(0, dtype=np.int64)
-        return np.union1d(super().supported_unknowns, unused)
+        held = 2 * self.nodes_on("axis") if self.has_elastic_edge else super().supported_unknowns
+        return np.union1d(held, self.joined.unused)
 
     @property
     def has_elastic_edge(self) -> bool:
-        """Never: the section ends where little is left of any mode."""
-        return False
+        """Whether an elastic base goes on beyond the mesh."""
+        return self.parts_mesh.body.base_modulus > 0
 
     @property
     def end(self) -> MeshEnd:
-        """Energy densities decay no slower than those of a membrane, or of a half-space, in the outer half."""
-        radius = self.layer_mesh.outer_radius
-        power = 1.0 if self.parts_mesh.body.base_modulus else 2.0
-        return MeshEnd(radius / 2, 2.0**power - 1, power / radius)
+        """Energies of parts fall no slower than those of a membrane, like 1/r^2; springs stand for the base beyond."""
+        mesh, body = self.parts_mesh, self.parts_mesh.body
+        strip = mesh.mesh.p[0, mesh.mesh.t].mean(axis=0) > mesh.outer_radius / 2
+        if body.base_modulus:
+            strip &= mesh.part < len(body.parts) - 1
+        return MeshEnd(strip, 3.0, 2 / mesh.outer_radius)
 
 
 def several_layers(layer: ElasticLayer, mesh: LayerMesh, pair: ElementPair, backend: str) -> SeveralLayersProblem:

@@ -25,13 +25,14 @@ class StackedContactWithErrors(ContactWithErrors):
 
     @property
     def common_error(self) -> float:
-        """Rounding, and the thick layer that stands for an elastic base.
+        """Rounding, and the far field of an elastic base.
 
-        A layer of thickness T instead of a half-space leaves out a share of the depth that a punch of radius a loses
-        as well: ``F / (2 E* a)`` is then smaller by up to 1.2 a / T (`error_model`), hence by 0.6 F / (E* T), and so is
-        the depth of a stack under the force ``k_N delta``.
+        A base that ends at a distance T takes up to ``0.6 F / (E* T)`` off the depth (`error_model`, for ``F = 2 E* a
+        delta``).  The springs there are right for a point force on its surface; the layers above and the size of the
+        contact move that force by their share of T.
         """
         if not self.body.base_modulus:
             return FIXED_RADIUS.rounding
-        compliance = FIXED_RADIUS.half_space / (2 * self.body.base_modulus * self.body.thicknesses[-1])
-        return float(FIXED_RADIUS.rounding + 2 * compliance * self.answer.stiffness)
+        reach = float(self.body.thicknesses[-1])
+        fixed = FIXED_RADIUS.half_space / 2 * self.answer.stiffness / (self.body.base_modulus * reach)
+        return FIXED_RADIUS.rounding + 2 * fixed * (1 + self.body.layer_thickness) / reach
