@@ -71,9 +71,10 @@ class Fem:
         edge_cell: cell at the contact edge, relative to the smallest length there.
         growth: growth of cells per distance, and largest cell per thickness.
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
-        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
+            below a stack is meshed to its root, with springs for what is beyond.
         outer_distance: from contact edge to outer edge, in thicknesses, so that layers of different nu share a mesh;
-            None for what ``truncation`` asks.
+            None for what ``truncation`` asks. Stacks and graded layers do without it.
         solver: "superlu", "superlu-pivoting" or "mumps".
     """
 

@@ -100,7 +100,7 @@ CORNERS = {
     "a sheet of great modulus": stack((0.1, 1e4, 0.3), (1.0, 1.0, 0.5)),
     "hardly any modulus at the top": stack((0.1, 1e-4, 0.5), (1.0, 1.0, 0.3), support=base(1e2, 0.0)),
     "sliding on the base": stack((0.3, 1.0, 0.5), support=base(3.0, 0.4, "unbonded")),
-    "a thin top": stack((1e-3, 1.0, 0.5), (0.999, 20.0, 0.3)),
+    "a thin top": stack((0.02, 1.0, 0.5), (0.98, 20.0, 0.3)),
     "a film on a soft half-space": stack((1.0, 1e4, 0.3), support=base(1.0, 0.3)),
     "ten sublayers": stack(*((0.1, float(E), 0.45) for E in (1, 5, 2, 8, 1, 9, 3, 4, 2, 6))),
 }

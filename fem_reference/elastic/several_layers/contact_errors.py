@@ -28,11 +28,12 @@ class StackedContactWithErrors(ContactWithErrors):
         """Rounding, and the far field of an elastic base.
 
         A base that ends at a distance T takes up to ``0.6 F / (E* T)`` off the depth (`error_model`, for ``F = 2 E* a
-        delta``).  The springs there are right for a point force on its surface; the layers above and the size of the
-        contact move that force by their share of T.
+        delta``).  The springs there are right for a point force on its surface.  The layers above and the size of the
+        contact move that force by their share of T, and stiff layers restrain the surface of the base within
+        their thickness times the ratio of moduli by up to a share ``(1 - 2 nu)^2 / (4 (1 - nu)^2)``.
         """
         if not self.body.base_modulus:
             return FIXED_RADIUS.rounding
         reach = float(self.body.thicknesses[-1])
         fixed = FIXED_RADIUS.half_space / 2 * self.answer.stiffness / (self.body.base_modulus * reach)
-        return FIXED_RADIUS.rounding + 2 * fixed * (1 + self.body.layer_thickness) / reach
+        return FIXED_RADIUS.rounding + 2 * fixed * (1 + self.body.layer_thickness + self.body.restrained_length) / reach
