@@ -71,9 +71,10 @@ class Fem:
         edge_cell: cell at the contact edge, relative to the smallest length there.
         growth: growth of cells per distance, and largest cell per thickness.
         truncation: relative change of the stiffness allowed to the outer edge of the mesh.
-        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
+        half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space; an elastic base
+            below a stack is meshed to its root, with springs for what is beyond.
         outer_distance: from contact edge to outer edge, in thicknesses, so that layers of different nu share a mesh;
-            None for what ``truncation`` asks.
+            None for what ``truncation`` asks. Stacks and graded layers do without it.
         solver: "superlu", "superlu-pivoting" or "mumps".
     """
 
@@ -117,11 +118,12 @@ class Fem:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
-        if (other := other_layer("fem", scene.layer)) is not None:
-            return other
         if scene.effect(Friction) is not None:
-            return _supports_friction(scene)
+            other = other_layer("full stick by fem", scene.layer)
+            return _supports_friction(scene) if other is None else other
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
+        if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:
+            return other
         modelled = Viscoelasticity if in_time else Adhesion
         if all(isinstance(effect, modelled) for effect in scene.effects):
             return Supported()
@@ -163,8 +165,9 @@ class Fem:
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
         equilibria = self._equilibria(scene, log)
-        if not scene.effects and not isinstance(scene.indenter, FlatPunch):
-            refuse_pulled_contacts(scene, (state.contact for state in equilibria))
+        if not scene.effects and not (scene.layer.is_uniform and isinstance(scene.indenter, FlatPunch)):
+            gap = partial(self._gap, scene, log=log)
+            refuse_pulled_contacts(scene, (state.contact for state in equilibria), gap)
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
         return contact_path(scene, equilibria, asdict(self), log)
 
@@ -188,6 +191,14 @@ class Fem:
             lambda settings: rubbed_path(scene, settings, asdict(self), log),
             lambda path: {name: float(error.max()) for name, error in path.error_estimate.items()},
         )
+
+    def _gap(self, scene: Scene, contact: ContactWithErrors, log: StageLog) -> str:
+        """Where the surface lifts off below a contact that would be pulled, found without tension."""
+        if scene.layer.is_uniform:
+            return ""
+        from fem_reference.elastic.several_layers.lifting import gap_below  # noqa: PLC0415 - only stacks lift off
+
+        return gap_below(scene, contact, self.discretisation, self.solver, log)
 
     def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
         from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load

@@ -154,7 +154,7 @@ def branch_of(
     """
     high = start or _first_radius(scene)
     kinks = [k for k in scene.indenter.kinks if k < high]
-    smallest = min([high / 3, scene.layer.thickness, *kinks])
+    smallest = min([high / 3, scene.layer.surface.thickness, *kinks])
     low = 3 * smallest / span if isinstance(scene.indenter, FlatPunch) or kinks else high / span
     breaks = [low]
     for end in (*kinks, high):

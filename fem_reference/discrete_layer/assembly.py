@@ -160,7 +160,7 @@ class Space:
         return np.hstack([self.element_displacements, self.element_pressures])
 
 
-def shear_elements(space: Space, shear_modulus: float) -> FloatArray:
+def shear_elements(space: Space, shear_modulus: float | FloatArray) -> FloatArray:
     """``2 mu int dev(u) : dev(v)`` of each triangle."""
     deviator = (DEVIATOR @ space.strains) * np.sqrt(2 * shear_modulus * space.measure)[:, :, None, None]
     flat = deviator.reshape(len(deviator), -1, deviator.shape[-1])

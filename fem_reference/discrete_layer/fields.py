@@ -8,8 +8,7 @@ import numpy as np
 
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import DEVIATOR, Space
-from fem_reference.discrete_layer.material import Moduli
-from fem_reference.discrete_layer.outer_edge import decay_rate
+from fem_reference.discrete_layer.material import ElasticConstants
 from fem_reference.discrete_layer.problem import LayerProblem
 
 
@@ -24,8 +23,8 @@ class PointFields:
         gradient: ``u_i,j``, shape (m, triangle, point, 2, 2).
         hoop: ``u_r / r``, shape (m, triangle, point).
         pressure: p, shape (m, triangle, point).
-        shear_modulus: mu.
-        compressibility: 1/K.
+        shear_modulus: mu, shape (triangle, point) or ().
+        compressibility: 1/K, same shape.
     """
 
     measure: FloatArray
@@ -34,8 +33,8 @@ class PointFields:
     gradient: FloatArray
     hoop: FloatArray
     pressure: FloatArray
-    shear_modulus: float
-    compressibility: float
+    shear_modulus: FloatArray
+    compressibility: FloatArray
 
     @property
     def divergence(self) -> FloatArray:
@@ -52,7 +51,7 @@ class PointFields:
     @property
     def stress(self) -> FloatArray:
         """(rr, zz, hoop, rz), shape (m, triangle, point, 4)."""
-        stress = 2 * self.shear_modulus * self.deviator
+        stress = 2 * self.shear_modulus[..., None] * self.deviator
         stress[..., 3] *= np.sqrt(0.5)
         stress[..., :3] -= self.pressure[..., None]
         return stress
@@ -65,8 +64,9 @@ class PointFields:
         return np.asarray(2 * self.shear_modulus * deviatoric + self.compressibility * volumetric)
 
 
-def point_fields(space: Space, moduli: Moduli, solutions: FloatArray, triangles: IntArray) -> PointFields:
+def point_fields(space: Space, constants: ElasticConstants, solutions: FloatArray, triangles: IntArray) -> PointFields:
     """Fields of solutions (size, m) on the given triangles."""
+    moduli = constants.on(triangles)
     local = solutions.T[:, space.element_displacements[triangles]]
     nodal = local.reshape(*local.shape[:2], -1, 2)
     gradient = np.einsum("mtbi,tjbq->mtqij", nodal, space.gradients[triangles], optimize=True)
@@ -76,7 +76,7 @@ def point_fields(space: Space, moduli: Moduli, solutions: FloatArray, triangles:
     if space.pair.is_mixed:
         pressure = solutions.T[:, space.element_pressures[triangles]] @ space.pressure_values
     else:
-        pressure = -moduli.bulk * (gradient[..., 0, 0] + gradient[..., 1, 1] + hoop)
+        pressure = -1 / moduli.compressibility * (gradient[..., 0, 0] + gradient[..., 1, 1] + hoop)
     return PointFields(
         measure=space.measure[triangles],
         radius=radius,
@@ -105,19 +105,13 @@ class MutualEnergies:
 
 
 def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> MutualEnergies:
-    """Energies of solutions (size, m), from stresses and strains at points.
-
-    Energy densities decay like ``exp(-2 s r / h)``; hence ``beyond = strip / (exp(2 s w / h) - 1)`` for the outermost
-    strip of width w.
-    """
-    mesh, layer = problem.layer_mesh.mesh, problem.layer_mesh
-    fields = point_fields(problem.space, problem.moduli, solutions, np.arange(mesh.t.shape[1]))
+    """Energies of solutions (size, m), from stresses and strains at points; the problem knows how they decay."""
+    mesh = problem.layer_mesh.mesh
+    fields = point_fields(problem.space, problem.constants, solutions, np.arange(mesh.t.shape[1]))
     by_triangle = np.einsum("ijtq,tq->ijt", fields.energy_products, fields.measure)
-    decay = 2 * decay_rate(problem.poissons_ratio, problem.support) / layer.thickness
-    width = min(layer.thickness, layer.outer_radius / 2)
-    strip = mesh.p[0, mesh.t].mean(axis=0) > layer.outer_radius - width
-    beyond = by_triangle[:, :, strip].sum(axis=2) / np.expm1(decay * width)
+    end = problem.end
+    beyond = by_triangle[:, :, end.strip].sum(axis=2) / end.strip_over_beyond
     total = by_triangle.sum(axis=2)
-    if problem.support == "unbonded":
+    if problem.has_elastic_edge:
         total = total + solutions.T @ (problem.outer_edge_matrix @ solutions)
-    return MutualEnergies(total, beyond, decay)
+    return MutualEnergies(total, beyond, end.decay)

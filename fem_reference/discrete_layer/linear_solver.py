@@ -75,15 +75,22 @@ class CheckedSolver:
 
     A backend that breaks down, or misses that bound, is replaced by the next, safer one of its row in `BACKENDS`.
 
+    Args:
+        matrix: sparse and symmetric.
+        backend: a key of `BACKENDS`.
+        least_share: rows whose terms are smaller than this share of the largest are judged like rows of that size;
+            zero judges each row by its own terms.
+
     Attributes:
         factorisations: how many were needed.
     """
 
-    def __init__(self, matrix: sparse.csc_array, backend: str = "superlu") -> None:
+    def __init__(self, matrix: sparse.csc_array, backend: str = "superlu", least_share: float = 0.0) -> None:
         if backend not in BACKENDS:
             raise InvalidInput(f"solver must be one of {', '.join(BACKENDS)}, got {backend!r}")
         self._matrix = matrix
         self._absolute = abs(matrix)
+        self._least_share = least_share
         self._remaining = list(BACKENDS[backend])
         self.factorisations = 0
         self._factors = self._next_factors()
@@ -127,4 +134,5 @@ class CheckedSolver:
     def _backward_error(self, residual: FloatArray, solution: FloatArray, rhs: FloatArray) -> float:
         """Largest ``|r_i| / (|A| |x| + |b|)_i`` (Oettli and Prager 1964), zero rows left out."""
         scale = self._absolute @ np.abs(solution) + np.abs(rhs)
+        scale = np.maximum(scale, self._least_share * scale.max(axis=0, initial=0.0))
         return float(np.max(np.divide(np.abs(residual), scale, out=np.zeros_like(scale), where=scale != 0), initial=0))

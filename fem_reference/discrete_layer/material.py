@@ -3,8 +3,30 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
-from contact import InvalidInput, Layer
+import numpy as np
+
+from contact import ElasticLayer, InvalidInput
+from contact.records.validation import FloatArray, IntArray
+
+
+@dataclass(frozen=True)
+class PointModuli:
+    """Shear modulus and compressibility at points, or of all of them, each of a shape that fits theirs."""
+
+    shear: FloatArray
+    compressibility: FloatArray
+
+
+class ElasticConstants(Protocol):
+    """What the points of a mesh are made of."""
+
+    def on(self, triangles: IntArray) -> PointModuli:
+        """At the quadrature points of triangles, shape (triangle, point) or ()."""
+
+    def at(self, triangles: IntArray, depth: FloatArray) -> PointModuli:
+        """At one point of each of n triangles, at depths z, shape (n,) or ()."""
 
 
 @dataclass(frozen=True)
@@ -18,6 +40,14 @@ class Moduli:
 
     shear: float
     compressibility: float
+
+    def on(self, triangles: IntArray) -> PointModuli:
+        """The same at every point."""
+        return PointModuli(np.asarray(self.shear), np.asarray(self.compressibility))
+
+    def at(self, triangles: IntArray, depth: FloatArray) -> PointModuli:
+        """The same at every point."""
+        return self.on(triangles)
 
     @property
     def bulk(self) -> float:
@@ -38,11 +68,11 @@ def moduli(poissons_ratio: float) -> Moduli:
     return Moduli(mu, 3 * (1 - 2 * nu) / (2 * mu * (1 + nu)))
 
 
-def shear_modulus(layer: Layer) -> float:
-    """Lame's mu = E / (2 (1 + nu)) [Pa]."""
-    return layer.youngs_modulus / (2 * (1 + layer.poissons_ratio))
+def shear_modulus(layer: ElasticLayer) -> float:
+    """Lame's mu = E / (2 (1 + nu)) [Pa] at the surface."""
+    return layer.surface.youngs_modulus / (2 * (1 + layer.surface.poissons_ratio))
 
 
-def contact_modulus(layer: Layer) -> float:
-    """The unit of stress of finite elements [Pa]: what makes Lame's mu of `moduli` that of the layer."""
-    return shear_modulus(layer) / moduli(layer.poissons_ratio).shear
+def contact_modulus(layer: ElasticLayer) -> float:
+    """The unit of stress of finite elements [Pa]: what makes Lame's mu of `moduli` that of the surface."""
+    return shear_modulus(layer) / moduli(layer.surface.poissons_ratio).shear

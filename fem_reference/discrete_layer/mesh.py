@@ -8,6 +8,7 @@ gmsh appears in this module only.
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -20,6 +21,8 @@ from skfem import MeshTri
 
 from contact import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
+from fem_reference.discrete_layer.assembly import Space
+from fem_reference.discrete_layer.elements import ElementPair
 
 MISSING_LIBRARIES = (
     "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
@@ -88,6 +91,15 @@ class LayerMesh:
     outer_radius: float
     fingerprint: str
 
+    @property
+    def surface_thickness(self) -> float:
+        """Thickness of the part that touches the indenter."""
+        return self.thickness
+
+    def space(self, pair: ElementPair) -> Space:
+        """Unknowns and basis of an element pair on it."""
+        return Space(self.mesh, pair)
+
 
 @cache
 def _gmsh() -> Any:
@@ -127,23 +139,66 @@ def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> Layer
     Returns:
         The mesh with named boundaries.
     """
-    gmsh = _gmsh()
-    gmsh.model.add("layer")
-    try:
-        _draw_section(gmsh.model.geo, thickness, outer_radius, grading)
-        field = gmsh.model.mesh.field
-        field.add("MathEval", 1)
-        field.setString(1, "F", grading.size_expression())
-        field.setAsBackgroundMesh(1)
-        gmsh.model.mesh.generate(2)
-        points, triangles = _mesh_arrays(gmsh.model.mesh)
-    finally:
-        gmsh.model.remove()
+
+    def draw(geo: Any) -> list[int]:
+        """The section as gmsh's only surface."""
+        return [_draw_section(geo, thickness, outer_radius, grading)]
+
+    points, (triangles,) = _triangulated(draw, grading.size_expression())
     points[0] += grading.origin
     return named_layer_mesh(points, triangles)
 
 
-def _draw_section(geo: Any, thickness: float, outer_radius: float, grading: Grading) -> None:
+def triangles_between(lines: Sequence[FloatArray], size_expression: str) -> tuple[FloatArray, list[IntArray]]:
+    """Triangles of the regions between lines.
+
+    Args:
+        lines: polylines (2, n) from the first to the last x, one below the other, none touching.
+        size_expression: cell size as a function of gmsh's x and y.
+
+    Returns:
+        Points (2, n), and the triangles (3, m) of each region; neighbours share the points on their line.
+    """
+
+    def draw(geo: Any) -> list[int]:
+        """One surface between two lines each."""
+        curves = [_draw_line(geo, line) for line in lines]
+        return [_draw_region(geo, above, below) for above, below in pairwise(curves)]
+
+    return _triangulated(draw, size_expression)
+
+
+def _triangulated(draw: Callable[[Any], list[int]], size_expression: str) -> tuple[FloatArray, list[IntArray]]:
+    """Points (2, n) and the triangles of each surface drawn."""
+    gmsh = _gmsh()
+    gmsh.model.add("layer")
+    try:
+        surfaces = draw(gmsh.model.geo)
+        gmsh.model.geo.synchronize()
+        field = gmsh.model.mesh.field
+        field.add("MathEval", 1)
+        field.setString(1, "F", size_expression)
+        field.setAsBackgroundMesh(1)
+        gmsh.model.mesh.generate(2)
+        return _mesh_arrays(gmsh.model.mesh, surfaces)
+    finally:
+        gmsh.model.remove()
+
+
+def _draw_line(geo: Any, line: FloatArray) -> tuple[list[int], list[int]]:
+    """Its points and its curves."""
+    points = [geo.addPoint(x, y, 0.0) for x, y in line.T]
+    return points, [geo.addLine(a, b) for a, b in pairwise(points)]
+
+
+def _draw_region(geo: Any, above: tuple[list[int], list[int]], below: tuple[list[int], list[int]]) -> int:
+    """The surface between two lines."""
+    right, left = geo.addLine(above[0][-1], below[0][-1]), geo.addLine(below[0][0], above[0][0])
+    loop = [*above[1], right, *(-curve for curve in reversed(below[1])), left]
+    return int(geo.addPlaneSurface([geo.addCurveLoop(loop)]))
+
+
+def _draw_section(geo: Any, thickness: float, outer_radius: float, grading: Grading) -> int:
     """One rectangle whose top carries the graded radii as vertices; long sides are split, for gmsh's line meshing."""
     last = max([*(r for r, _ in grading.points), 0.0])
     ends = (r - grading.origin for r in (0.0, *_far_stations(last, outer_radius), outer_radius))
@@ -153,8 +208,7 @@ def _draw_section(geo: Any, thickness: float, outer_radius: float, grading: Grad
     corners += [geo.addPoint(x[-1], thickness, 0.0), geo.addPoint(x[0], thickness, 0.0)]
     corners += [geo.addPoint(x[0], z, 0.0) for z in depths]
     edges = [geo.addLine(a, b) for a, b in zip(corners, corners[1:] + corners[:1], strict=True)]
-    geo.addPlaneSurface([geo.addCurveLoop(edges)])
-    geo.synchronize()
+    return int(geo.addPlaneSurface([geo.addCurveLoop(edges)]))
 
 
 def _far_stations(start: float, end: float) -> list[float]:
@@ -176,14 +230,14 @@ def _split_where_fine(x: list[float], cells: dict[float, float]) -> list[float]:
     return sorted(stations)
 
 
-def _mesh_arrays(gmsh_mesh: Any) -> tuple[FloatArray, IntArray]:
-    """Points (2, n) and triangles (3, m)."""
+def _mesh_arrays(gmsh_mesh: Any, surfaces: list[int]) -> tuple[FloatArray, list[IntArray]]:
+    """Points (2, n), and triangles (3, m) of each surface."""
     tags, coordinates, _ = gmsh_mesh.getNodes()
-    _, nodes = gmsh_mesh.getElementsByType(2)
     position = np.empty(int(tags.max()) + 1, dtype=np.int64)
     position[tags] = np.arange(len(tags))
     points = np.ascontiguousarray(coordinates.reshape(-1, 3)[:, :2].T)
-    return points, np.ascontiguousarray(position[nodes].reshape(-1, 3).T)
+    found = (gmsh_mesh.getElementsByType(2, surface)[1] for surface in surfaces)
+    return points, [np.ascontiguousarray(position[nodes].reshape(-1, 3).T) for nodes in found]
 
 
 def named_layer_mesh(points: FloatArray, triangles: IntArray) -> LayerMesh:

@@ -4,22 +4,39 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 from scipy import sparse
 from skfem import ElementVector, FacetBasis
 
-from contact.records.validation import FloatArray, IntArray
+from contact import ElasticLayer, Layer
+from contact.records.validation import BoolArray, FloatArray, IntArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.assembly import Space, node_positions, stiffness_matrix
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.linear_solver import CheckedSolver
-from fem_reference.discrete_layer.material import Moduli, moduli
+from fem_reference.discrete_layer.material import ElasticConstants, Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.ordering import nested_dissection
+from fem_reference.discrete_layer.outer_edge import decay_rate
 
 Support = Literal["bonded", "unbonded"]
+
+
+@dataclass(frozen=True)
+class MeshEnd:
+    """How energies decay where the mesh ends.
+
+    Attributes:
+        strip: which triangles make up the outermost strip, shape (triangle,).
+        strip_over_beyond: its energy over that which a longer section would store beyond it.
+        decay: rate per length at which the latter falls with the outer radius.
+    """
+
+    strip: BoolArray
+    strip_over_beyond: float
+    decay: float
 
 
 @dataclass(frozen=True)
@@ -34,6 +51,9 @@ class LayerProblem:
         backend: linear solver, a key of `linear_solver.BACKENDS`.
     """
 
+    # Each row of the linear system is judged by its own terms.
+    least_share: ClassVar[float] = 0.0
+
     layer_mesh: LayerMesh
     pair: ElementPair
     poissons_ratio: float
@@ -45,21 +65,45 @@ class LayerProblem:
         """Shear modulus and compressibility at E* = 1."""
         return moduli(self.poissons_ratio)
 
+    @property
+    def constants(self) -> ElasticConstants:
+        """Moduli at the points of the mesh."""
+        return self.moduli
+
     @cached_property
     def space(self) -> Space:
         """Unknowns and basis."""
-        return Space(self.layer_mesh.mesh, self.pair)
+        return self.layer_mesh.space(self.pair)
 
     @cached_property
     def matrix(self) -> sparse.csc_array:
         """Stiffness matrix of all unknowns, the outer edge of an unbonded layer included."""
         matrix = stiffness_matrix(self.space, self.moduli)
-        return matrix + self.outer_edge_matrix if self.support == "unbonded" else matrix
+        return matrix + self.outer_edge_matrix if self.has_elastic_edge else matrix
+
+    @property
+    def uniform_matrix(self) -> sparse.csc_array:
+        """That of the surface's material everywhere, for the patch test."""
+        return self.matrix
+
+    @property
+    def has_elastic_edge(self) -> bool:
+        """Whether a spring on the outer edge carries on the membrane mode of an unbonded layer."""
+        return self.support == "unbonded"
 
     @cached_property
     def outer_edge_matrix(self) -> sparse.csc_array:
         """The elastic edge that replaces the unbonded layer beyond the mesh."""
         return outer_edge_matrix(self.space, self.moduli.shear)
+
+    @property
+    def end(self) -> MeshEnd:
+        """Energy densities decay like ``exp(-2 s r / h)``, hence ``beyond = strip / (exp(2 s w / h) - 1)``, width w."""
+        layer = self.layer_mesh
+        decay = 2 * decay_rate(self.poissons_ratio, self.support) / layer.thickness
+        width = min(layer.thickness, layer.outer_radius / 2)
+        strip = layer.mesh.p[0, layer.mesh.t].mean(axis=0) > layer.outer_radius - width
+        return MeshEnd(strip, float(np.expm1(decay * width)), decay)
 
     @cached_property
     def positions(self) -> FloatArray:
@@ -89,6 +133,21 @@ class LayerProblem:
     def solver(self, held: IntArray) -> RestrictedSolver:
         """Factorise once with these unknowns prescribed."""
         return RestrictedSolver(self, held)
+
+
+def problem_of(
+    layer: ElasticLayer,
+    mesh: LayerMesh,
+    pair: ElementPair,
+    backend: str = "superlu",
+    kind: type[LayerProblem] | None = None,
+) -> LayerProblem:
+    """The discrete layer; ``kind`` may hold a uniform one in more ways."""
+    if isinstance(layer, Layer):
+        return (kind or LayerProblem)(mesh, pair, layer.poissons_ratio, layer.support, backend)
+    from fem_reference.discrete_layer.several_layers.problem import several_layers  # noqa: PLC0415 - only they load it
+
+    return several_layers(layer, mesh, pair, backend)
 
 
 def facet_nodes(space: Space, facets: IntArray) -> IntArray:
@@ -122,7 +181,7 @@ class RestrictedSolver:
         # The transpose is the same symmetric matrix, stored by rows.
         rows = problem.matrix.T[self._free]
         self._coupling = rows[:, held]
-        self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend)
+        self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend, problem.least_share)
 
     def solve_displaced(self, values: FloatArray) -> FloatArray:
         """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""

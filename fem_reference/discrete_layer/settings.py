@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Self
 
-from contact import InvalidInput, Layer, Profile
+from contact import ElasticLayer, InvalidInput, Layer, Profile
 from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
@@ -74,23 +74,27 @@ class Discretisation:
             half_space_thickness=min(self.half_space_thickness * 4**self.order, 1e12),
         )
 
-    def beside_kinks(self, layer: Layer, indenter: ScaledIndenter) -> Self:
+    def beside_kinks(self, layer: ElasticLayer, indenter: ScaledIndenter) -> Self:
         """Settings whose cells grow slowly enough where the last kink lies close to the contact's edge."""
         ring = 1.0 - max(indenter.kinks, default=0.0)
         narrow = ring < NARROW * min(1.0, self.thickness(layer, indenter.contact_radius))
         return replace(self, growth=min(self.growth, NARROW_GROWTH)) if narrow else self
 
-    def thickness(self, layer: Layer, contact_radius: float) -> float:
-        """h / a, or its stand-in for a half-space."""
-        return self.half_space_thickness if layer.is_half_space else layer.thickness / contact_radius
+    def thickness(self, layer: ElasticLayer, contact_radius: float) -> float:
+        """h / a of what touches the indenter, or its stand-in for a half-space."""
+        return self.half_space_thickness if layer.is_half_space else layer.surface.thickness / contact_radius
 
     def distance(self, layer: Layer) -> float:
         """From contact edge to outer edge, in thicknesses."""
         return self.outer_distance or outer_distance(layer.poissons_ratio, layer.support, self.truncation)
 
 
-def contact_mesh(layer: Layer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
+def contact_mesh(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
     """The graded section, lengths by the contact radius, with vertices at the edge and at every kink and breakpoint."""
+    if not isinstance(layer, Layer):
+        from fem_reference.discrete_layer.several_layers.mesh import contact_parts_mesh  # noqa: PLC0415 - only they load it
+
+        return contact_parts_mesh(layer, indenter, settings)
     thickness = settings.thickness(layer, indenter.contact_radius)
     grading = Grading(
         points=graded_points(thickness, indenter, settings),
@@ -122,6 +126,6 @@ def graded_points(
     return tuple(sorted((cells | {1.0: edge_cell}).items()))
 
 
-def narrowest_radius(layer: Layer, profile: Profile) -> float:
+def narrowest_radius(layer: ElasticLayer, profile: Profile) -> float:
     """The smallest contact radius [m] beyond a flat end whose ring is meshed; zero for profiles without a flat end."""
-    return profile.flat_radius + NARROWEST * min(profile.flat_radius, layer.thickness)
+    return profile.flat_radius + NARROWEST * min(profile.flat_radius, layer.surface.thickness)

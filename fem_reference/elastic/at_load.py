@@ -14,7 +14,7 @@ import numpy as np
 
 from contact import IndentationDepths, NotConvergedError, Scene, StageLog
 from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.problem import problem_of
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
@@ -98,7 +98,7 @@ def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedCont
     indenter, layer = ScaledIndenter(scene.indenter, radius), scene.layer
     with log.stage("mesh"):
         mesh = contact_mesh(layer, indenter, COARSE)
-    problem = LayerProblem(mesh, COARSE.pair, layer.poissons_ratio, layer.support)
+    problem = problem_of(layer, mesh, COARSE.pair)
     return solve_prescribed_contact(problem, indenter, log)
 
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
-from contact import InvalidInput, Scene, StageLog
+from contact import FlatPunch, InvalidInput, Scene, StageLog
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from contact.records.validation import FloatArray
 from fem_reference.elastic.at_load import quick_solution
@@ -21,19 +21,28 @@ QUICK_ERROR = 2e-4
 FINE_SHARE = 0.5
 
 
-def refuse_pulled_contacts(scene: Scene, contacts: Iterable[ContactWithErrors]) -> None:
-    """Refuse smooth contacts that only tension would close, as beyond a dip of the profile.
+def refuse_pulled_contacts(
+    scene: Scene, contacts: Iterable[ContactWithErrors], gap: Callable[[ContactWithErrors], str] = lambda _: ""
+) -> None:
+    """Refuse smooth contacts, or flat punches, that only tension would close: beyond a dip, or below a stiff film.
+
+    Args:
+        scene: the scene.
+        contacts: its contacts.
+        gap: more words on a contact that is refused.
 
     Raises:
         UnsupportedSceneError: with the contact radius and the first radius where the surface would be pulled.
         InvalidInput: a convex profile presses nowhere, since its slope is not positive yet.
     """
+    cannot = scene.layer.is_uniform and scene.indenter.is_convex
     for contact in contacts:
         radius = contact.indenter.contact_radius
-        where = None if scene.indenter.is_convex else pulled_radius(contact)
+        where = None if cannot else pulled_radius(contact)
         if where is not None:
-            raise no_single_circle(radius, f"would be pulled at r = {where * radius:g} m")
-        if min(contact.answer.smooth_depth, contact.answer.smooth_force) <= 0:
+            raise no_single_circle(radius, f"would be pulled at r = {where * radius:g} m{gap(contact)}")
+        is_punch = isinstance(scene.indenter, FlatPunch)
+        if not is_punch and min(contact.answer.smooth_depth, contact.answer.smooth_force) <= 0:
             raise InvalidInput(
                 f"the profile presses nowhere at contact radius {radius:g} m: its slope is not positive there; "
                 "prescribe a radius beyond its flat end"
@@ -47,7 +56,9 @@ def pulled_radius(contact: ContactWithErrors) -> float | None:
     """
     low, high = (contact.levels[degree] for degree in sorted(contact.levels)[-2:])
     radius, weight = high.contact_trace.gauss(high.pair.degree + 1)
-    fine, coarse = (level.pressure(radius.ravel(), level.smooth_depth).reshape(radius.shape) for level in (high, low))
+    fine, coarse = (
+        level.pressure(radius.ravel(), level.smooth_depth or 1.0).reshape(radius.shape) for level in (high, low)
+    )
     pulled = np.flatnonzero(np.sum((fine + FINE_SHARE * np.abs(fine - coarse)) * weight, axis=1) < 0)
     return float(radius[pulled[0]].mean()) if pulled.size else None
 

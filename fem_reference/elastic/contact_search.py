@@ -48,6 +48,11 @@ class FoundContact:
         return int(self.state.active.sum())
 
     @property
+    def reached_vertices(self) -> int:
+        """How many vertices lie between the axis and the end of the contact; all are in contact in a disc."""
+        return int(np.flatnonzero(self.state.active)[-1]) + 1 if self.active_vertices else 0
+
+    @property
     def is_disc(self) -> bool:
         """Whether the contact is one circle around the axis."""
         return bool(self.state.active[: self.active_vertices].all())
@@ -157,7 +162,7 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
                 found.refuse_ring()
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; press less")
             radius = min(1.8 * radius, end)
-        elif found.active_vertices < STRIP_CELLS // 4:
+        elif found.reached_vertices < STRIP_CELLS // 4:
             radius *= max(1.6 * found.contact_radius, 0.05)
         else:
             found.refuse_ring()

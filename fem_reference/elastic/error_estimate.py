@@ -21,13 +21,13 @@ from itertools import pairwise
 
 import numpy as np
 
-from contact import Layer, StageLog
+from contact import ElasticLayer, Layer, StageLog
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.outer_edge import UNBONDED_DECAY
-from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, graded_points
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
 from fem_reference.error_model import AT_LOAD, FIXED_RADIUS
@@ -49,7 +49,7 @@ class ContactWithErrors:
         levels: solutions with increasing degree; the one of degree ``settings.order`` is the answer.
     """
 
-    layer: Layer
+    layer: ElasticLayer
     indenter: ScaledIndenter
     settings: Discretisation
     layer_mesh: LayerMesh
@@ -138,9 +138,18 @@ class ContactWithErrors:
 
     @property
     def _coarse_rate(self) -> float:
-        nearly_incompressible = self.layer.poissons_ratio >= 0.49
-        rate = FIXED_RADIUS.incompressible_rate if nearly_incompressible else FIXED_RADIUS.coarse_rate
+        rate = FIXED_RADIUS.incompressible_rate if self.is_nearly_incompressible else FIXED_RADIUS.coarse_rate
         return min(rate * self.settings.growth**3, 1.0)
+
+    @property
+    def is_nearly_incompressible(self) -> bool:
+        """Whether errors fall slower on coarse meshes."""
+        return self.layer.surface.poissons_ratio >= 0.49
+
+    @property
+    def has_elastic_edge(self) -> bool:
+        """Whether the membrane mode of an unbonded layer passes the outer edge."""
+        return isinstance(self.layer, Layer) and self.layer.support == "unbonded" and not self.layer.is_half_space
 
     @property
     def fastest_rate(self) -> float:
@@ -169,7 +178,7 @@ class ContactWithErrors:
 
     def outer_edge_error_of_force(self, depth: float) -> float:
         """Error of the force / (E* a^2) at a depth / a that the mesh's end makes."""
-        if self.layer.support == "unbonded" and not self.layer.is_half_space:
+        if self.has_elastic_edge:
             return self._unbonded_truncation_error * self.answer.stiffness * depth
         tail = FIXED_RADIUS.outer_edge_safety * np.abs(self.answer.tail_energies)
         return float(tail[0, 1] + abs(depth) * tail[0, 0])
@@ -177,7 +186,7 @@ class ContactWithErrors:
     @property
     def edge_shift(self) -> float:
         """By how much, relative to its radius, the contact acts like a smaller one."""
-        edge = dict(graded_points(self.layer_mesh.thickness, self.indenter, self.settings))[1.0]
+        edge = dict(graded_points(self.layer_mesh.surface_thickness, self.indenter, self.settings))[1.0]
         return FIXED_RADIUS.edge_shift[self.settings.order] * edge
 
     @property
@@ -201,7 +210,7 @@ class ContactWithErrors:
 
     @property
     def _truncation_error(self) -> Mapping[str, float]:
-        if self.layer.support == "unbonded" and not self.layer.is_half_space:
+        if self.has_elastic_edge:
             return dict.fromkeys(QUANTITIES, self._unbonded_truncation_error)
         answer, tail = self.answer, FIXED_RADIUS.outer_edge_safety * np.abs(self.answer.tail_energies)
         force_at_depth = tail[0, 1] + abs(answer.smooth_depth) * tail[0, 0]
@@ -253,7 +262,7 @@ def relative_size(error: float, value: float) -> float:
 
 
 def solve_contact_with_errors(
-    layer: Layer,
+    layer: ElasticLayer,
     indenter: ScaledIndenter,
     settings: Discretisation,
     backend: str,
@@ -275,9 +284,12 @@ def solve_contact_with_errors(
     with log.stage("mesh"):
         mesh = contact_mesh(layer, indenter, settings)
     levels = {
-        k: solve_prescribed_contact(
-            problem(mesh, taylor_hood(k), layer.poissons_ratio, layer.support, backend), indenter, log
-        )
+        k: solve_prescribed_contact(problem_of(layer, mesh, taylor_hood(k), backend, problem), indenter, log)
         for k in ESTIMATING_DEGREES[settings.order]
     }
-    return ContactWithErrors(layer=layer, indenter=indenter, settings=settings, layer_mesh=mesh, levels=levels)
+    kind = ContactWithErrors
+    if not isinstance(layer, Layer):
+        from fem_reference.elastic.several_layers.contact_errors import StackedContactWithErrors  # noqa: PLC0415
+
+        kind = StackedContactWithErrors
+    return kind(layer=layer, indenter=indenter, settings=settings, layer_mesh=mesh, levels=levels)

@@ -20,9 +20,10 @@ STRETCH = 0.1
 def patch_defect(problem: LayerProblem) -> float:
     """Largest residual of the constant-strain state over the sum of its terms' magnitudes, of all inner equations."""
     state = constant_strain(problem)
-    inner = np.setdiff1d(np.arange(problem.space.size), _boundary_unknowns(problem))
-    terms = abs(problem.matrix) @ np.abs(state)
-    return float(np.max((np.abs(problem.matrix @ state) / terms)[inner], initial=0.0))
+    matrix = problem.uniform_matrix
+    inner = np.setdiff1d(np.arange(problem.space.size), [*_boundary_unknowns(problem), *problem.supported_unknowns])
+    terms = abs(matrix) @ np.abs(state)
+    return float(np.max(np.abs(matrix @ state)[inner] / terms[inner], initial=0.0))
 
 
 def constant_strain(problem: LayerProblem) -> FloatArray:

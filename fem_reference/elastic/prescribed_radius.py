@@ -20,7 +20,7 @@ from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.fields import mutual_energies
 from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.material import Moduli
+from fem_reference.discrete_layer.material import ElasticConstants
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
@@ -53,7 +53,7 @@ class PrescribedContact:
         patch_defect: of `patch.patch_defect`.
         layer_mesh: the section.
         pair: element pair.
-        moduli: shear modulus and compressibility at E* = 1.
+        constants: moduli at the points of the mesh, at E* = 1.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
         radius: contact radius over that of the mesh: below one where the ring around a flat end is too narrow for it.
     """
@@ -72,7 +72,7 @@ class PrescribedContact:
     patch_defect: float
     layer_mesh: LayerMesh
     pair: ElementPair
-    moduli: Moduli
+    constants: ElasticConstants
     solutions: FloatArray
     radius: float = 1.0
 
@@ -191,7 +191,7 @@ def _evaluate(
         patch_defect=patch,
         layer_mesh=problem.layer_mesh,
         pair=problem.pair,
-        moduli=problem.moduli,
+        constants=problem.constants,
         solutions=solutions,
     )
 
@@ -201,7 +201,7 @@ def _shape_derivative(
 ) -> tuple[FloatArray, FloatArray]:
     """A'(u_i, u_j), and ``eta f'`` at the contact nodes: the change of the profile seen by nodes that move."""
     mesh = problem.layer_mesh.mesh
-    reach = 0.6 * min(1.0, problem.layer_mesh.thickness, 1.0 - max(indenter.kinks, default=0.0))
+    reach = 0.6 * min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
     derivative = energy_shape_derivative(problem, solutions, cut_off(mesh.p, 1.0, reach))
     vertices = TraceSpace(radii, problem.pair.degree).vertices
     eta = np.interp(radii, vertices, cut_off(np.array([vertices, np.zeros_like(vertices)]), 1.0, reach))

@@ -31,7 +31,7 @@ def energy_shape_derivative(problem: LayerProblem, solutions: FloatArray, eta: F
     """A'(u_i, u_j) for solutions (size, m) and the edge's motion ``eta`` at vertices; shape (m, m)."""
     mesh = problem.layer_mesh.mesh
     moving = np.flatnonzero((eta[mesh.t] != 0).any(axis=0))
-    fields = point_fields(problem.space, problem.moduli, solutions, moving)
+    fields = point_fields(problem.space, problem.constants, solutions, moving)
     inverse = np.linalg.inv(problem.space.jacobians[moving])
     corner = eta[mesh.t[:, moving]]
     eta_gradient = np.einsum("td,tdj->tj", np.array([corner[1] - corner[0], corner[2] - corner[0]]).T, inverse)
@@ -44,13 +44,20 @@ def _shape_form(fields: PointFields, eta: FloatArray, eta_gradient: FloatArray) 
     """The integral above; eta (triangle, point), its gradient (triangle, 2)."""
     stretch = (eta_gradient[:, :1] + eta / fields.radius) * fields.measure
     cross = np.einsum("itq,jtq,tq->ij", fields.pressure, fields.divergence, stretch)
-    squares = 2 * fields.shear_modulus * np.einsum("itqs,jtqs,tq->ij", fields.deviator, fields.deviator, stretch)
-    squares -= fields.compressibility * np.einsum("itq,jtq,tq->ij", fields.pressure, fields.pressure, stretch)
+    squares = 2 * _weighted("itqs,jtqs,tq->ij", fields.deviator, fields.shear_modulus, stretch)
+    squares -= _weighted("itq,jtq,tq->ij", fields.pressure, fields.compressibility, stretch)
     convection = np.einsum("itqn,jtqn,tq->ij", _traction(fields, eta_gradient), fields.gradient[..., 0], fields.measure)
     hoop_weight = eta / fields.radius * fields.measure
     hoop = np.einsum("itq,jtq,tq->ij", fields.stress[..., 2], fields.hoop, hoop_weight)
     mutual = cross + convection + hoop
     return np.asarray(squares - mutual - mutual.T)
+
+
+def _weighted(subscripts: str, field: FloatArray, modulus: FloatArray, weight: FloatArray) -> FloatArray:
+    """Integral of modulus times field times field; a modulus of all points stays outside."""
+    if modulus.ndim:
+        return np.asarray(np.einsum(subscripts, field, field, modulus * weight))
+    return np.asarray(modulus * np.einsum(subscripts, field, field, weight))
 
 
 def _traction(fields: PointFields, eta_gradient: FloatArray) -> FloatArray:

@@ -8,15 +8,15 @@ pressure function.  Units: lengths by the strip's radius, stresses by E*.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from contact import Layer, StageLog
+from contact import ElasticLayer, Layer, StageLog
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
-from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.trace import TraceSpace
 
@@ -65,7 +65,7 @@ NEAREST_KINK = 0.5
 
 
 def strip_mesh(
-    layer: Layer,
+    layer: ElasticLayer,
     radius: float,
     cells: int,
     kinks: tuple[float, ...],
@@ -78,18 +78,22 @@ def strip_mesh(
     Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike.  The growth of
     120 cells is ``outside``.
     """
-    thickness = settings.thickness(layer, radius)
     cell = STRIP_ORDER / STRIDE / cells
-    outer = 1 + thickness * settings.distance(layer)
     points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
     growth = outside * (STRIP_CELLS / cells) ** (1 / 3)
+    if not isinstance(layer, Layer):
+        from fem_reference.discrete_layer.several_layers.mesh import parts_mesh  # noqa: PLC0415 - only they load it
+
+        return parts_mesh(layer, radius, points, replace(settings, growth=growth), strip=1.0)
+    thickness = settings.thickness(layer, radius)
+    outer = 1 + thickness * settings.distance(layer)
     grading = Grading(points=points, strip=(1.0, cell), growth=growth, max_cell=max(cell, growth * thickness))
     return layer_mesh(thickness, outer, grading)
 
 
-def condense(layer: Layer, mesh: LayerMesh, backend: str, log: StageLog) -> SurfaceCompliance:
+def condense(layer: ElasticLayer, mesh: LayerMesh, backend: str, log: StageLog) -> SurfaceCompliance:
     """Factorise the layer once and load it by every pressure function of the strip of radius one."""
-    problem = LayerProblem(mesh, taylor_hood(STRIP_ORDER), layer.poissons_ratio, layer.support, backend)
+    problem = problem_of(layer, mesh, taylor_hood(STRIP_ORDER), backend)
     with log.stage("assemble"):
         log.hold(problem.matrix.data.nbytes)
     with log.stage("factor"):

@@ -44,7 +44,7 @@ class Section:
     @cached_property
     def space(self) -> Space:
         """Unknowns and basis."""
-        return Space(self.contact.layer_mesh.mesh, self.contact.pair)
+        return self.contact.layer_mesh.space(self.contact.pair)
 
     @property
     def node_numbers(self) -> IntArray:
@@ -81,7 +81,9 @@ class Section:
     @property
     def _at_nodes_of_triangles(self) -> FloatArray:
         """Values of each triangle by itself at its nodes, shape (triangle, basis, 9)."""
-        space, shear = self.space, self.contact.moduli.shear
+        space, numbers = self.space, self.node_numbers
+        depth = node_positions(space)[1, numbers]
+        shear = self.contact.constants.at(np.arange(len(numbers)), depth).shear
         nodal = self._unknowns[space.element_displacements].reshape(len(self.node_numbers), -1, 2)
         inverse = np.asarray(np.linalg.inv(space.jacobians), dtype=np.float64)
         basis = tabulate(self.contact.pair.displacement, self.local_nodes)
@@ -93,7 +95,7 @@ class Section:
         pressure, slope = self._pressure(inverse)
         normal = np.stack([gradient[..., 0, 0], hoop, gradient[..., 1, 1]], axis=-1) - volume[..., None] / 3
         tangential = shear * (gradient[..., 0, 1] + gradient[..., 1, 0])
-        stress = 2 * shear * normal - pressure[..., None]
+        stress = 2 * shear[..., None] * normal - pressure[..., None]
         return np.concatenate([nodal, stress, tangential[..., None], pressure[..., None], slope], axis=-1)
 
     def _pressure(self, inverse: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -1,0 +1,115 @@
+"""Stiff films on soft bases: does MDR answer where a contact has a gap? Unilateral finite elements judge.
+
+Run ``python -m benchmarks.lift_off [SCENES] [SEED]``; two seconds a scene.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from dataclasses import dataclass
+
+import numpy as np
+
+from benchmarks.stacked_scenes import stiff_on_soft
+from contact import (
+    Cone,
+    FlatPunch,
+    IndentationDepths,
+    Paraboloid,
+    Profile,
+    Scene,
+    StageLog,
+    TruncatedCone,
+    TruncatedParaboloid,
+    UnsupportedSceneError,
+)
+from fem_reference.discrete_layer.settings import Discretisation
+from fem_reference.elastic.contact_search import FoundContact, find_contact
+from fem_reference.elastic.several_layers.lifting import contact_without_tension
+from fem_reference.elastic.surface_compliance import STRIP_CELLS
+from mdr import Mdr
+
+# What the force of an active set may miss: cells of a 120th of the strip give 1e-3, at flat ends half a cell in radius.
+FORCE_AGREEMENT = 0.03
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """One scene, judged.
+
+    Attributes:
+        kind: "disc" or "gap" by finite elements, with "answered" or "refused" by MDR.
+        difference: of the forces, relative, where MDR answered and a disc was found.
+        words: what MDR said where it refused.
+    """
+
+    kind: str
+    difference: float = 0.0
+    words: str = ""
+
+
+def random_scene(rng: np.random.Generator) -> Scene:
+    """A film on a soft base of total thickness 1, touched out to 0.1 to 5 by one of five profiles, by its depth."""
+    layer = stiff_on_soft(rng)
+    a = float(np.exp(rng.uniform(np.log(0.1), np.log(5.0))))
+    flat = a * float(rng.uniform(0.3, 0.9))
+    indenter, depth = (
+        (FlatPunch(radius=a), 0.01 * a),
+        (Paraboloid(radius_of_curvature=10.0), 0.1 * a**2),
+        (Cone(slope=0.1), 0.15 * a),
+        (TruncatedCone(flat_radius=flat, slope=0.1), 0.15 * (a - flat)),
+        (TruncatedParaboloid(flat_radius=flat, radius_of_curvature=10.0), 0.1 * (a**2 - flat**2)),
+    )[int(rng.integers(5))]
+    return Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
+
+
+def unilateral(scene: Scene, depth: float) -> FoundContact | None:
+    """What touches at the depth [m]; None where `find_contact` says that it is no disc."""
+    settings, log = Discretisation(growth=0.8, edge_cell=1e-4), StageLog()
+    indenter: Profile = scene.indenter
+    if isinstance(indenter, FlatPunch):
+        return contact_without_tension(scene, indenter.radius, depth, settings, log=log)
+    try:
+        return find_contact(scene, depth, settings, "superlu", log)
+    except UnsupportedSceneError:
+        return None
+
+
+def judge(scene: Scene) -> Verdict:
+    """MDR's answer beside the unilateral contact."""
+    if not isinstance(scene.loading, IndentationDepths):
+        raise TypeError("scenes of this campaign prescribe depths")
+    depth = float(scene.loading.values[0])
+    found = unilateral(scene, depth)
+    shape = "disc" if found is not None and found.is_disc else "gap"
+    try:
+        path = Mdr().solve(scene)
+    except UnsupportedSceneError as refusal:
+        return Verdict(f"{shape}, refused", words=str(refusal))
+    if found is None or shape == "gap":
+        return Verdict("gap, answered")
+    force = found.force * found.radius**2 * scene.layer.contact_modulus
+    return Verdict("disc, answered", difference=abs(force / float(path.normal_force[0]) - 1))
+
+
+def main(scenes: int = 300, seed: int = 18) -> None:
+    """Print what is not expected, and the table of all."""
+    rng = np.random.default_rng(seed)
+    counts: Counter[str] = Counter()
+    differences = []
+    for number in range(scenes):
+        problem = random_scene(rng)
+        verdict = judge(problem)
+        counts[f"{type(problem.indenter).__name__}: {verdict.kind}"] += 1
+        counts[verdict.kind] += 1
+        differences.append(verdict.difference)
+        if verdict.kind in ("gap, answered", "disc, refused") or verdict.difference > FORCE_AGREEMENT:
+            sys.stdout.write(f"{number} {verdict} {problem}\n")
+    sys.stdout.write(f"cells of the strip: {STRIP_CELLS}; largest difference of forces: {max(differences):.2g}\n")
+    for name, count in sorted(counts.items()):
+        sys.stdout.write(f"{count:5d} {name}\n")
+
+
+if __name__ == "__main__":
+    main(*(int(argument) for argument in sys.argv[1:]))

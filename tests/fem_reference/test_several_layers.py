@@ -1,0 +1,180 @@
+"""Parts of stacks and graded layers: meshes, joined faces, moduli at points, refusals."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contact import (
+    ContactRadii,
+    ElasticBase,
+    ExponentialDepth,
+    FlatPunch,
+    Friction,
+    GradedLayer,
+    Impact,
+    IndentationDepths,
+    LayerStack,
+    LinearDepth,
+    Paraboloid,
+    Scene,
+    StageLog,
+    Sublayer,
+    TabulatedDepth,
+    TruncatedCone,
+    UnsupportedSceneError,
+)
+from fem_reference import Fem
+from fem_reference.discrete_layer.elements import taylor_hood
+from fem_reference.discrete_layer.indenter import ScaledIndenter
+from fem_reference.discrete_layer.problem import problem_of
+from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
+from fem_reference.discrete_layer.several_layers.parts import graded_lines, parts_of
+from fem_reference.elastic.patch_test import patch_defect
+from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
+
+SETTINGS = Discretisation(growth=0.8, edge_cell=1e-4)
+PARABOLOID = Paraboloid(radius_of_curvature=10.0)
+INDENTER = ScaledIndenter(PARABOLOID, 1.0)
+
+
+def stack(*layers, interfaces=None, support="bonded"):
+    """From (thickness, E, nu), top first."""
+    sublayers = tuple(Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=nu) for h, E, nu in layers)
+    return LayerStack(sublayers=sublayers, interfaces=interfaces or ("bonded",) * (len(layers) - 1), support=support)
+
+
+SLIPPING = stack(
+    (0.1, 1.0, 0.5),
+    (0.5, 4.0, 0.3),
+    interfaces=("unbonded",),
+    support=ElasticBase(youngs_modulus=2.0, poissons_ratio=0.5),
+)
+SHEET = stack((0.1, 1e4, 0.3), (1.0, 1.0, 0.5))
+
+
+@pytest.mark.parametrize("layer", [SLIPPING, SHEET, stack((0.01, 1.0, 0.5), (0.01, 2.0, 0.5), (3.0, 1.0, 0.3))])
+def test_parts_fill_the_section_once_and_meet_at_the_same_places(layer):
+    mesh = contact_mesh(layer, INDENTER, SETTINGS)
+    corners = mesh.mesh.p[:, mesh.mesh.t]
+    (r1, z1), (r2, z2) = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    areas = np.bincount(mesh.part, np.abs(r1 * z2 - r2 * z1) / 2)
+    np.testing.assert_allclose(areas, mesh.body.thicknesses * mesh.outer_radius, rtol=1e-12)
+    for face, depth in zip(mesh.faces, mesh.body.depths[1:], strict=False):
+        above, below = (mesh.mesh.p[:, mesh.mesh.facets[:, side]] for side in (face.above, face.below))
+        assert np.all(above[1] == depth)
+        np.testing.assert_array_equal(np.unique(above[0]), np.unique(below[0]))
+        assert not set(mesh.mesh.facets[:, face.above].ravel()) & set(mesh.mesh.facets[:, face.below].ravel())
+
+
+def test_a_thin_part_costs_few_triangles():
+    count = {
+        h: contact_mesh(stack((h, 1.0, 0.3), (1.0, 2.0, 0.3)), INDENTER, SETTINGS).mesh.t.shape[1] for h in (0.1, 1e-3)
+    }
+    assert count[1e-3] < 2 * count[0.1]
+
+
+def test_lines_of_graded_layers():
+    table = TabulatedDepth(depths=[0.0, 0.3, 1.0], values=[1.0, 20.0, 20.0])
+    layer = GradedLayer(thickness=1.0, youngs_modulus=table, poissons_ratio=0.3)
+    lines = graded_lines(layer)
+    assert 0.3 in lines
+    assert (lines[0], lines[-1]) == (0.0, 1.0)
+    assert np.abs(np.diff(np.log(table.at(lines, 1.0)))).max() < 1.001
+
+
+def test_moduli_at_points_are_those_of_the_depth():
+    layer = GradedLayer(
+        thickness=2.0,
+        youngs_modulus=LinearDepth(surface=3.0, base=9.0),
+        poissons_ratio=TabulatedDepth(depths=[0.0, 2.0], values=[0.3, 0.5]),
+        support=ElasticBase(youngs_modulus=5.0, poissons_ratio=0.1),
+    )
+    problem = problem_of(layer, contact_mesh(layer, INDENTER, SETTINGS), taylor_hood(2))
+    part, depth = problem.layer_mesh.part, problem.constants.quadrature
+    moduli = problem.constants.on(np.arange(len(part)))
+    inside = depth < 2.0
+    assert np.all((part < part.max())[:, None] == inside)
+    unit = 3.0 / (1 - 0.3**2)
+    modulus = np.where(inside, 3.0 + 3.0 * depth, 5.0) / unit
+    nu = np.where(inside, layer.ratio_at(np.minimum(depth, 2.0)), 0.1)
+    np.testing.assert_allclose(moduli.shear, modulus / (2 * (1 + nu)), rtol=1e-12)
+    np.testing.assert_allclose(moduli.compressibility, 3 * (1 - 2 * nu) / modulus, rtol=1e-12, atol=1e-14)
+
+
+def test_a_constant_strain_passes_through_joined_faces_and_not_through_a_cut():
+    mesh = contact_mesh(SLIPPING, INDENTER, SETTINGS)
+    problem = problem_of(SLIPPING, mesh, taylor_hood(2))
+    assert patch_defect(problem) < 1e-13
+    cut = problem_of(SLIPPING, replace(mesh, faces=mesh.faces[:1]), taylor_hood(2))
+    assert patch_defect(cut) > 0.1
+
+
+def test_bonded_faces_share_displacements_and_sliding_ones_the_normal_one():
+    mesh = contact_mesh(SLIPPING, INDENTER, SETTINGS)
+    problem = problem_of(SLIPPING, mesh, taylor_hood(3))
+    answer = solve_prescribed_contact(problem, INDENTER, StageLog())
+    corners = mesh.mesh.t
+    space = problem.space
+    values = answer.solutions[:, 0][space.element_displacements].reshape(corners.shape[1], -1, 2)[:, :3]
+    jumps = []
+    for face, depth in enumerate(mesh.body.depths[1:-1]):
+        sides = []
+        for side in (face, face + 1):
+            chosen = (mesh.part == side)[:, None] & (mesh.mesh.p[1, corners.T] == depth)
+            radius, value = mesh.mesh.p[0, corners.T][chosen], values[chosen]
+            order = np.unique(radius, return_index=True)[1]
+            sides.append(value[order])
+        jumps.append(np.abs(sides[0] - sides[1]).max(axis=0))
+    assert jumps[0][0] > 0.01
+    np.testing.assert_array_equal([jumps[0][1], *jumps[1]], 0.0)
+
+
+def test_stresses_inside_are_those_of_each_part():
+    layer = stack((0.5, 1.0, 0.3), (0.5, 10.0, 0.5))
+    path = Fem(growth=0.6, edge_cell=1e-5).solve(Scene(layer=layer, indenter=PARABOLOID, loading=ContactRadii([1.0])))
+    r = np.array([0.2, 0.6])
+    above, below = (path.inside(step=0).at(r, np.full(2, z)) for z in (0.5 - 1e-9, 0.5 + 1e-9))
+    scale = np.abs(above.axial_stress).max()
+    # Tractions are continuous, to the error of stresses at points; the hoop stress jumps with the modulus.
+    for name in ("axial_stress", "shear_stress"):
+        np.testing.assert_allclose(getattr(above, name), getattr(below, name), rtol=0, atol=5e-3 * scale)
+    assert np.abs(above.hoop_stress - below.hoop_stress).min() > 0.05 * scale
+
+
+def test_many_parts_are_refused():
+    layer = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1e-20, base=1e20), poissons_ratio=0.3)
+    with pytest.raises(UnsupportedSceneError, match=r"into 93 parts, and takes up to 60"):
+        parts_of(layer, 1.0, 1e8)
+
+
+def test_friction_and_time_are_refused():
+    scene = Scene(layer=SHEET, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.1]))
+    stick = Fem().supports(scene.replace(effects=(Friction(coefficient=float("inf")),)))
+    assert "full stick by fem models one uniform layer" in stick.reason
+    impact = Scene(layer=SHEET, indenter=PARABOLOID, loading=Impact(mass=1.0, velocity=0.1))
+    assert "contact in time by fem models one uniform layer" in Fem().supports(impact).reason
+
+
+@pytest.mark.parametrize(
+    ("indenter", "loading", "words"),
+    [
+        (
+            FlatPunch(radius=0.5),
+            IndentationDepths([0.01]),
+            r"would be pulled at r = .* lifts off from r = 0 m to 0.5 m",
+        ),
+        (TruncatedCone(flat_radius=0.3, slope=0.1), IndentationDepths([0.05]), "would not press at r = 0 m"),
+    ],
+)
+def test_a_flat_end_on_a_stiff_sheet_lifts_off(indenter, loading, words):
+    with pytest.raises(UnsupportedSceneError, match=words):
+        Fem(growth=0.8, edge_cell=1e-4).solve(Scene(layer=SHEET, indenter=indenter, loading=loading))
+
+
+def test_displacements_far_below_rounding_are_no_failure():
+    layer = stack((0.86, 9.2, 0.0), (0.14, 5.0, 0.45), interfaces=("unbonded",))
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.38), loading=IndentationDepths([0.01]))
+    assert Fem(growth=0.8, edge_cell=1e-4).solve(scene).normal_force[0] > 0
