@@ -167,7 +167,7 @@ def _errors(
         }
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = system.contact_stiffness(radius) * depth / force
-    of_force = stiffness + errors["indentation_depth"] * spread
+    of_force = stiffness + errors["indentation_depth"] * spread + system.moment_truncation(radius) * np.abs(spread - 1)
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)

@@ -62,6 +62,11 @@ class Profile(Record, ABC):
         return math.inf
 
     @property
+    def upright_end(self) -> str:
+        """What has happened where the profile is upright, in the words of a user."""
+        return "the indenter is upright there"
+
+    @property
     def is_convex(self) -> bool:
         """Whether f' never falls; then the indenter cannot touch beside its circle of contact (`one_circle`)."""
         return isinstance(self, CONVEX)
@@ -151,6 +156,10 @@ class Sphere(Pointed):
     @property
     def max_radius(self) -> float:
         return self.radius
+
+    @property
+    def upright_end(self) -> str:
+        return "the sphere has sunk to its equator"
 
 
 @record

@@ -12,7 +12,7 @@ from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
-from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, Sphere, UnsupportedSceneError
+from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
@@ -214,10 +214,7 @@ def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:
     with np.errstate(divide="ignore"):
         depth = half_space_profile(indenter, np.asarray(max_radius - indenter.flat_radius))
     if not np.isfinite(depth):
-        where = (
-            "the sphere has sunk to its equator" if isinstance(indenter, Sphere) else "the indenter is upright there"
-        )
-        raise InvalidInput(f"contact radius = {max_radius:g} m: {where}; stay a little below")
+        raise InvalidInput(f"contact radius = {max_radius:g} m: {indenter.upright_end}; stay a little below")
 
 
 def _initial_grid(

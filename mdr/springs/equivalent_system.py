@@ -158,6 +158,10 @@ class EquivalentSystem:
         """What the polynomials of g leave out at each radius, relative to it."""
         return self.profile.relative_error(self._beyond(contact_radius - self.flat_radius))
 
+    def moment_truncation(self, contact_radius: FloatArray) -> FloatArray:
+        """The same of the moment 2 int c_N g, relative to it."""
+        return self.moment.relative_error(self._beyond(contact_radius - self.flat_radius))
+
     def _flat_share(self, contact_radius: FloatArray) -> FloatArray:
         """b/a: beside the flat end, only flat-punch pressures near the edge count."""
         a = np.asarray(contact_radius, dtype=float)

@@ -171,8 +171,11 @@ class ContactFields:
 
 
 def _remainder(density: LayerShare, reach: float) -> MappedFunction:
-    """Phi(a + d) on shells that double from the first on, up to d = reach."""
+    """Phi(a + d) on shells that double from the first on, past d = reach.
+
+    A last shell that ended a rounding before r would leave out sqrt(eps) of the integral, which is singular at r.
+    """
     first = density.first_shell
-    shells = int(np.ceil(np.log2(max(reach / first, 1.0)))) + 1
+    shells = int(np.floor(np.log2(max(reach / first, 1.0)))) + 2
     grid = MappedGrid.between(first * np.concatenate([[0.0], 2.0 ** np.arange(shells)]), NODES)
     return MappedFunction(grid, density.outside(grid.nodes), 0.0)

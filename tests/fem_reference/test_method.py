@@ -25,6 +25,11 @@ THICKNESS, MODULUS, SLOPE = 1e-3, 1e6, 0.1
 QUICK = Fem(growth=1.0, edge_cell=1e-6, truncation=1e-7)
 
 
+def told(path):
+    """Notes about accuracy; thin nearly incompressible layers tell of friction as well."""
+    return tuple(note for note in path.notes if not note.startswith("frictionless: "))
+
+
 def layer(nu=0.5, support="bonded", thickness=THICKNESS):
     return Layer(thickness=thickness, youngs_modulus=MODULUS, poissons_ratio=nu, support=support)
 
@@ -78,7 +83,7 @@ def test_every_loading_is_refined_until_its_own_errors_hold(loading):
     assert max(path.error_estimate[name][0] for name in path.ARRAYS) <= 1e-4
     pressure = path.error_estimate["pressure"][0]
     assert pressure > 1e-4
-    assert path.notes == (
+    assert told(path) == (
         f"less accurate than the 0.0001 asked for, by the stated relative errors: pressure {pressure:.1e}",
     )
 
@@ -90,7 +95,7 @@ def test_an_accuracy_of_the_pressure_is_asked_by_its_own_name():
         <= 1e-3
         < Fem(accuracy=1e-2).solve(cone_scene(1)).error_estimate["pressure"][0]
     )
-    assert path.notes == ()
+    assert told(path) == ()
     with pytest.raises(InvalidInput, match="besides an accuracy"):
         Fem(pressure_accuracy=1e-3)
 

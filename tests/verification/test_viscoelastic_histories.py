@@ -261,9 +261,9 @@ def test_a_measured_profile_of_any_size(unit, model):
     assert answer.normal_force[1] == pytest.approx(expected, rel=error, abs=0.0)
 
 
-@pytest.mark.parametrize("name", ["mdr", "mdr_table"])
-def test_a_history_states_the_error_of_its_springs(name):
-    """On a coarse table 7.8e-5 off where 2.4e-8 was stated at first."""
+@pytest.mark.parametrize(("name", "least"), [("mdr", 1e-6), ("mdr_table", 1e-4)])
+def test_a_history_states_the_error_of_its_springs(name, least):
+    """On a coarse table 7.8e-5 off where 2.4e-8 was stated at first; eight nodes are 7.6e-7 off."""
     coarse = build(name, {"mdr": {"nodes": 8}, "mdr_table": {"cells": 64, "ratios": 60, "radii": 100}}[name])
     scene = Scene(
         layer=incompressible(1e-3, TOTAL),
@@ -276,7 +276,7 @@ def test_a_history_states_the_error_of_its_springs(name):
         difference = np.abs(getattr(found, quantity) - getattr(fine, quantity)).max()
         stated = float(found.error_estimate[quantity][0])
         assert difference <= stated * np.abs(getattr(fine, quantity)).max(), quantity
-        assert 1e-4 < stated < 0.05, quantity
+        assert least < stated < 0.05, quantity
 
 
 def test_a_front_just_inside_a_breakpoint():

@@ -108,6 +108,8 @@ GROUPS: Final = (
     Group(place="fem_reference.error_model:AT_LOAD", methods=("fem",), families=()),
     Group(place="fem_reference.error_model:ON_BRANCH", methods=("fem",), families=("adhesive",)),
     Group(place="fem_reference.error_model:IN_TIME", methods=("fem",), families=("impact",)),
+    # The coverage study asks for no fields inside.
+    Group(place="fem_reference.error_model:INSIDE", methods=("fem",), families=()),
 )
 
 
