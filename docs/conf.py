@@ -32,6 +32,20 @@ html_css_files = ["docs.css"]
 html_title = "contact-verification"
 html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "secondary_sidebar_items": ["page-toc"]}
 html_show_sourcelink = False
+# Pages without neighbours of their own need no list of them.
+ALONE = (
+    "accuracy",
+    "api",
+    "contributing",
+    "formulas",
+    "limits",
+    "paper",
+    "referees",
+    "shared",
+    "theory",
+    "which_method",
+)
+html_sidebars = dict.fromkeys(ALONE, [])
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 exclude_patterns = ["tutorials", "generated", "start/sg_execution_times.rst", "sg_execution_times.rst"]

@@ -26,6 +26,7 @@ def without_contact(solve: F) -> F:
 
     @functools.wraps(solve)
     def wrapped(method: Any, scene: Scene) -> Any:
+        """The method's answer with the steps that do not press filled in."""
         loading = scene.loading
         adheres = scene.effect(Adhesion) is not None
         if adheres or not isinstance(loading, IndentationDepths | NormalForces) or np.all(loading.values):
@@ -106,6 +107,7 @@ def _with_zeros(path: ContactPath, scene: Scene, presses: BoolArray) -> ContactP
     """The path with zeros at the steps that do not press."""
 
     def filled(values: FloatArray) -> FloatArray:
+        """One value a step, zero where nothing presses."""
         if np.size(values) != presses.sum():
             return values
         found = np.zeros(presses.size)

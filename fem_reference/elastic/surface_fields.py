@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from contact.records.validation import FloatArray
 from fem_reference.elastic.inside.interior import FemInterior
-from fem_reference.elastic.inside.section import Section
+from fem_reference.elastic.inside.section import MeridianSection
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
 
@@ -49,8 +49,8 @@ class FemFields:
         state = self.states[step]
         moved = state.other.smooth_depth - state.contact.smooth_depth
         return FemInterior(
-            section=Section(state.contact, state.depth),
-            other=Section(state.other, state.depth + moved),
+            section=MeridianSection(state.contact, state.depth),
+            other=MeridianSection(state.other, state.depth + moved),
             contact_radius=state.contact_radius,
             contact_modulus=state.contact_modulus,
             own_error=state.error,

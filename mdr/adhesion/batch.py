@@ -21,7 +21,7 @@ from contact import Detachment, Layer, Profile, Scene
 from contact.records.validation import FloatArray
 from mdr.adhesion.solver import balance_radius, solve_detachment, work_of_adhesion
 from mdr.springs.assembly import equivalent_system
-from mdr.springs.shared_tables import Reference, power_law, reference
+from mdr.springs.shared_tables import SharedTable, power_law, reference
 
 # Most spring tables that are kept in memory; chosen.
 _KEPT = 32
@@ -66,7 +66,7 @@ def pull_off_table(layer: Layer, indenter: Profile, radius: float, flat_punch: F
 
 
 def pull_off(
-    table: PullOffTable, scenes: Sequence[Scene], references: Sequence[Reference]
+    table: PullOffTable, scenes: Sequence[Scene], references: Sequence[SharedTable]
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Contact radius [m], depth [m] and force [N] where each scene loses contact under its control.
 
@@ -116,7 +116,7 @@ def pull_off_groups(
     scenes: Sequence[Scene], flat_punch: FlatPunchSource
 ) -> list[tuple[list[int], Callable[[list[int]], FloatArray]]]:
     """Scenes that share a table, with the function that gives their radius, depth and force, shape (3, n)."""
-    shared: dict[int, Reference] = {}
+    shared: dict[int, SharedTable] = {}
     tables: dict[int, PullOffTable] = {}
     for number, scene in enumerate(scenes):
         if power_law(scene.indenter) is not None and work_of_adhesion(scene) > 0.0:
@@ -141,5 +141,5 @@ def pull_off_groups(
     return [*found, (rest, alone)] if rest else found
 
 
-def _table_up_to(shared: Reference, radius: float, flat_punch: FlatPunchSource) -> PullOffTable:
+def _table_up_to(shared: SharedTable, radius: float, flat_punch: FlatPunchSource) -> PullOffTable:
     return pull_off_table(shared.layer, shared.indenter, radius, flat_punch)  # type: ignore[arg-type]  # frozen records

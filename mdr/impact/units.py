@@ -14,7 +14,7 @@ from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
 from mdr.impact.equations import ImpactBatch
 from mdr.springs.shared_tables import (
-    Reference,
+    SharedTable,
     contact_scale,
     coordinate_at,
     reference,
@@ -80,7 +80,7 @@ def impact_of(scene: Scene) -> Impact:
     return scene.loading
 
 
-def table_of(scene: Scene, flat_punch: FlatPunchSource, softest: float = SOFTEST[0]) -> tuple[Reference, SpringTable]:
+def table_of(scene: Scene, flat_punch: FlatPunchSource, softest: float = SOFTEST[0]) -> tuple[SharedTable, SpringTable]:
     """The shared problem of one scene and a table for its impact on a layer that gets no softer than that meanwhile."""
     impact, layer = impact_of(scene), scene.layer
     energy = 0.5 * impact.mass * impact.velocity**2
@@ -91,7 +91,7 @@ def table_of(scene: Scene, flat_punch: FlatPunchSource, softest: float = SOFTEST
     return shared, table_for_energy(shared.layer, shared.indenter, scale / shared.length, needed, flat_punch)
 
 
-def scaled(scenes: Sequence[Scene], references: Sequence[Reference], table: SpringTable) -> ScaledImpacts:
+def scaled(scenes: Sequence[Scene], references: Sequence[SharedTable], table: SpringTable) -> ScaledImpacts:
     """The dimensionless impacts of scenes that share a table and a number of Prony branches.
 
     The unit of depth is the smaller of the depths at which an elastic impact of the same energy, and a body that only

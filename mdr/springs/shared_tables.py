@@ -31,7 +31,7 @@ _UPRIGHT_SHARES = (0.2, 0.05, 0.01, 1e-3, 1e-6)
 
 
 @dataclass(frozen=True)
-class Reference:
+class SharedTable:
     """How a scene becomes a shared problem.
 
     Attributes:
@@ -49,7 +49,7 @@ class Reference:
     stiffness: float
 
 
-def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> Reference:
+def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> SharedTable:
     """The shared problem of a power law, or the scene itself in its own units.
 
     Args:
@@ -59,11 +59,11 @@ def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> Reference
     """
     law = power_law(indenter)
     if law is None:
-        return Reference(layer, indenter, 1.0, 1.0, 1.0)
+        return SharedTable(layer, indenter, 1.0, 1.0, 1.0)
     coefficient, exponent = law
     length = scale if layer.is_half_space else layer.thickness
     unit_indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
-    return Reference(
+    return SharedTable(
         layer.in_own_units(), unit_indenter, length, coefficient * length**exponent, contact_modulus(layer) * length
     )
 

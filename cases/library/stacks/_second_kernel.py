@@ -78,6 +78,7 @@ def _uniform(layer: Sublayer | ElasticBase, k: FloatArray) -> tuple[FloatArray, 
     depth = k * getattr(layer, "thickness", 0.0)
 
     def states(q: FloatArray) -> FloatArray:
+        """Displacements and tractions of the four Airy functions at depth q."""
         columns = []
         for sign, at in ((-1.0, q), (1.0, q - depth)):
             fall = np.exp(sign * at)
@@ -104,6 +105,7 @@ def _exponential(layer: GradedLayer, k: FloatArray) -> tuple[FloatArray, FloatAr
     ]
 
     def states(share: float) -> FloatArray:
+        """Displacements and tractions of the four solutions at a share of the thickness."""
         q = share * k * layer.thickness
         columns = []
         for m in roots:

@@ -12,7 +12,7 @@ from contact.records.validation import BoolArray, FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.friction.fields import Blend, RubbedFields, traction_errors
-from fem_reference.elastic.friction.growth import Growth, Point
+from fem_reference.elastic.friction.growth import GrowthRecord, Point
 from fem_reference.elastic.friction.strips import StripMaker
 
 # A strip serves contacts down to this share of its largest.
@@ -35,7 +35,7 @@ def rubbed_path(scene: Scene, settings: Discretisation, written: Mapping[str, Se
     while left.any():
         contacts = maker.fitted(float(values[left].max()))
         with log.stage("grow"):
-            growth = Growth.of(contacts)
+            growth = GrowthRecord.of(contacts)
         served = _served(scene, growth, values / (modulus if _by_force(scene) else 1.0), left)
         for step, depth in served.items():
             point = growth.at_depth(depth)
@@ -66,7 +66,7 @@ def _by_force(scene: Scene) -> bool:
     return not isinstance(scene.loading, ContactRadii | IndentationDepths)
 
 
-def _served(scene: Scene, growth: Growth, values: FloatArray, left: BoolArray) -> dict[int, float]:
+def _served(scene: Scene, growth: GrowthRecord, values: FloatArray, left: BoolArray) -> dict[int, float]:
     """The depths [m] of the steps that these strips serve: the largest, and those of more than half its radius."""
     depths = {}
     finest = growth.strips[0]

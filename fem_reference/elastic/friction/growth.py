@@ -98,13 +98,13 @@ class Point:
 
 
 @dataclass(frozen=True)
-class Growth:
+class GrowthRecord:
     """The contact on three strips, finest first."""
 
     strips: tuple[Growing, ...]
 
     @classmethod
-    def of(cls, contacts: Iterable[RubbedContact]) -> Growth:
+    def of(cls, contacts: Iterable[RubbedContact]) -> GrowthRecord:
         """Let it grow on each."""
         return cls(tuple(Growing(contact, grown(contact)) for contact in contacts))
 
@@ -131,6 +131,7 @@ class Growth:
         """The depth [m] at which radius [m] or force/E* [m^2] has a value."""
 
         def missing(log_depth: float) -> float:
+            """What a depth lacks of the value asked for, relative to it."""
             depth = float(np.exp(log_depth))
             if name == "force":
                 return self._extrapolated(_force, depth)[0] / value - 1.0

@@ -10,14 +10,14 @@ import numpy as np
 from contact import InvalidInput
 from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
-from fem_reference.elastic.inside.section import NAMES, Section
+from fem_reference.elastic.inside.section import NAMES, MeridianSection
 
 ENDINGS = (".vtu", ".xdmf")
 # Corners and middles of sides of the reference triangle, in the order of quadratic triangles in files.
 _CORNERS_AND_MIDDLES = np.array([[0, 1, 0, 0.5, 0.5, 0], [0, 0, 1, 0, 0.5, 0.5]])
 
 
-def write_section(section: Section, units: FloatArray, file: Path) -> None:
+def write_section(section: MeridianSection, units: FloatArray, file: Path) -> None:
     """Write displacement [m], stresses and what follows from them [Pa], and the pressure's gradient [Pa/m].
 
     Args:

@@ -12,7 +12,7 @@ from contact import InvalidInput
 from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
 from fem_reference.elastic.inside.places import places_of
-from fem_reference.elastic.inside.section import NAMES, Section
+from fem_reference.elastic.inside.section import NAMES, MeridianSection
 from fem_reference.error_model import INSIDE
 
 # Which errors are stated together, as columns of the fields.
@@ -37,8 +37,8 @@ class FemInterior:
         missed: share of the radius by which the mesh's contact misses that of the state.
     """
 
-    section: Section
-    other: Section
+    section: MeridianSection
+    other: MeridianSection
     contact_radius: float
     contact_modulus: float
     own_error: float

@@ -30,7 +30,7 @@ NAMES = (
 
 
 @dataclass(frozen=True)
-class Section:
+class MeridianSection:
     """Fields of one solution at one depth, lengths by the contact radius and stresses by E*, in the order of `NAMES`.
 
     Attributes:
