@@ -45,7 +45,7 @@ ALONE = (
     "theory",
     "which_method",
 )
-html_sidebars = dict.fromkeys(ALONE, [])
+html_sidebars = {page: [] for page in ALONE}
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
 exclude_patterns = ["tutorials", "generated", "start/sg_execution_times.rst", "sg_execution_times.rst"]
