@@ -83,6 +83,10 @@ class FlatPunchSolution(Protocol):
         radius b `start` is b/a.
         """
 
+    def kernel_errors(self, ratio: FloatArray) -> FloatArray:
+        """The parts of `spring_error` and `profile_error` that one wrong kernel makes, shape (2, n); 0 if not known."""
+        return np.zeros((2, *np.shape(ratio)))
+
     def error_steepness(self, ratio: FloatArray) -> FloatArray:
         """How fast relative errors change with the ratio at most, as a share of their bounds; inf where not known."""
         return np.full(np.shape(ratio), inf)

@@ -22,6 +22,9 @@ from mdr.springs.table_errors import adhesive_errors
 RADIUS = 2
 # Share of a position over which terms are differentiated: their slopes need two digits. Chosen.
 _STEP = 1e-4
+# Standard deviation over the contact of a density that falls by g from the axis to the edge, over g: between 0.27 and
+# 0.30 for powers from 0.5 to 4, sqrt(1/(2 n + 1) - 1/(n + 1)^2).
+_SPREAD = 0.3
 
 
 def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> FloatArray:
@@ -33,18 +36,30 @@ def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatA
 
 
 def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What errors of g, c_N and k_N count against in delta and F, shape (2, 3, n), and these errors, relative, (3, n).
+    """What errors of g, c_N, k_N, kernel count against in delta and F, shape (2, 4, n); these, relative, (4, n).
 
     delta = g - dl, and dl goes with c_N^(-1/2), Eq. (40). F = int k_N dg - k_N dl: the first term is the contact
-    without adhesion, and k_N is a factor of both. The three oscillate along the radius with different phases, so that
-    they add up like independent errors.
+    without adhesion, and k_N is a factor of both. They oscillate along the radius with different phases, so that they
+    add up like independent errors.
+
+    An error dK of the kernel moves the edge values of g and dl alike, and most of it cancels. It displaces the surface
+    by int dK phi dt, with the density phi of the adhering contact itself, so that it counts against the size of phi.
     """
     relative = system.relative_errors(radius)
+    of_springs, of_profile = system.kernel_errors(radius)
     stiffness, g = system.contact_stiffness(radius), system.mdr_profile(radius)
     elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - system.profile_moment(radius))
     pull = stiffness * elongation
-    terms = np.array([[g, elongation, np.zeros_like(g)], [elastic, pull, np.abs(elastic - pull)]])
-    errors = [relative["indentation_depth"], 0.5 * relative["spring_stiffness"], relative["contact_stiffness"]]
+    density = np.hypot((elastic - pull) / stiffness, _SPREAD * g)
+    terms = np.array(
+        [[g, elongation, np.zeros_like(g), density], [elastic, pull, stiffness * density, stiffness * density]]
+    )
+    errors = [
+        relative["indentation_depth"] - of_profile,
+        0.5 * (relative["spring_stiffness"] - of_springs),
+        relative["contact_stiffness"],
+        0.5 * of_springs,
+    ]
     return terms, np.array(errors)
 
 
@@ -66,11 +81,13 @@ class BranchErrors:
         return np.vstack([self._at_radius(y) + moved, self.branch.radius(y + shift) - self.branch.radius(y)])
 
     def of_point(self, y: float, shift: float) -> FloatArray:
-        """Errors of delta, F and a of one state: a fold, or else one whose y is known to a shift."""
+        """Errors of delta, F and a of one state: a fold, or else one whose y is known to a shift; a kink stays."""
         if y == 0.0:
             return np.zeros(3)
         at = np.array([y])
-        folds = [q for q in (DEPTH, FORCE) if y in self.branch.folds(q) and y not in self.branch.section_ends]
+        if y in self.branch.section_ends[:-1]:
+            return self.of_states(at, np.zeros(1))[:, 0]
+        folds = [q for q in (DEPTH, FORCE) if y in self.branch.folds(q)]
         return self.of_states(at, max([self._fold_shift(q, at) for q in folds], default=np.array([shift])))[:, 0]
 
     def shift(self, quantity: int, y: FloatArray, of_target: float = 0.0) -> FloatArray:

@@ -150,6 +150,10 @@ class EquivalentSystem:
             "spring_stiffness": springs,
         }
 
+    def kernel_errors(self, contact_radius: FloatArray) -> FloatArray:
+        """What of the relative errors of c_N and g comes from one wrong kernel, shape (2, n)."""
+        return self.flat_punch.kernel_errors(self._ratio(contact_radius))
+
     def error_steepness(self, contact_radius: FloatArray) -> FloatArray:
         """How fast relative errors of flat-punch data change with the radius at most [1/m]."""
         return self.flat_punch.error_steepness(self._ratio(contact_radius)) / self.length_unit

@@ -115,18 +115,37 @@ def test_stated_errors_of_random_scenes_cover_the_change_by_refinement(number):
 
 @pytest.mark.slow
 def test_errors_along_detachments_on_few_nodes_are_covered_and_sharp():
-    """Seen to fail: 21 and 44 in the median, 214 and 272 at 90 %, as profile and springs were taken to err alike."""
+    """Seen to fail: 21 and 44 in the median, 214 and 272 at 90 %, as profile and springs were taken to err alike.
+
+    The force at pull-off was 13 in the median, as errors of the kernel in g and dl were taken to add up, and rims moved
+    with the start.
+    """
     plan = CoveragePlan(method="mdr", settings={"nodes": 12}, family="adhesive", count=60, largest=25.0)
     rows = by_quantity(rows_of(plan, 7201))
-    for quantity in ("indentation_depth", "normal_force"):
+    for quantity in ("indentation_depth", "normal_force", "pull_off_force", "pull_off_depth"):
         ratios = sharpness(rows[quantity])
         assert covered(rows[quantity]) >= 0.95
         assert len(ratios) > 30
-        assert np.median(ratios) < LARGEST_MEDIAN
-        assert np.percentile(ratios, 90) < LARGEST_AT_90
+        assert np.median(ratios) < LARGEST_MEDIAN, quantity
+        assert np.percentile(ratios, 90) < LARGEST_AT_90, quantity
     # Folds were said to move a thousand times too far.
-    for quantity in ("pull_off_depth", "pull_off_contact_radius"):
-        assert np.percentile(sharpness(rows[quantity]), 75) < LARGEST_AT_90
+    assert np.percentile(sharpness(rows["pull_off_contact_radius"]), 75) < LARGEST_AT_90
+
+
+def test_a_detachment_at_a_rim_errs_as_the_state_there():
+    """Seen to fail: three times that, as a rim was said to move along the branch by how uncertain its start is."""
+    scene = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
+        indenter=TruncatedCone(flat_radius=0.5, slope=0.3),
+        loading=Detachment(),
+        effects=(Adhesion(work_of_adhesion=1e-3),),
+    )
+    path = build("mdr", {"nodes": 12}).solve(scene)
+    assert path.pull_off_contact_radius == 0.5
+    at_rim = build("mdr", {"nodes": 12}).solve(scene.replace(loading=ContactRadii(values=[0.500001])))
+    for quantity in ("indentation_depth", "normal_force"):
+        stated = path.error_estimate["pull_off_depth" if quantity == "indentation_depth" else "pull_off_force"][0]
+        assert stated < 1.5 * at_rim.error_estimate[quantity][0], quantity
 
 
 @pytest.mark.parametrize("growth", range(0, 24, 2))
