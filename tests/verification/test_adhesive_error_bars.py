@@ -133,7 +133,7 @@ def test_errors_along_detachments_on_few_nodes_are_covered_and_sharp():
 
 
 def test_a_detachment_at_a_rim_errs_as_the_state_there():
-    """Seen to fail: three times that, as a rim was said to move along the branch by how uncertain its start is."""
+    """Seen to fail: four times that, as a rim was said to move along the branch by how uncertain its start is."""
     scene = Scene(
         layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
         indenter=TruncatedCone(flat_radius=0.5, slope=0.3),
