@@ -152,7 +152,7 @@ def _scale(scene: Scene, forces: FloatArray) -> FloatArray:
 def _slope(respond: Respond, depths: FloatArray, at_depths: FloatArray) -> tuple[FloatArray, FloatArray]:
     """dF/d(delta) by differences of fourth order, and its error, relative.
 
-    The error is the distance to differences of sixth order, the noise of the forces, and roundings of them and of the depths.
+    The error is the distance to differences of sixth order, the noise of the forces, and what rounding does.
     """
     shifts = np.array([-3.0, -2.0, -1.0, 1.0, 2.0, 3.0]) * STEP
     around = respond((depths[:, None] * (1.0 + shifts)).ravel()).normal_force.reshape(depths.size, -1)

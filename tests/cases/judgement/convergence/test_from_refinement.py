@@ -82,6 +82,8 @@ class Quotient(Grid):
 
 def test_the_error_of_a_difference_quotient_is_added_to_that_of_the_refinement():
     answer, silent = (with_estimated_errors(method, SCENE, method.solve(SCENE)) for method in (Quotient(), Grid()))
-    assert answer.error_estimate["normal_force"] == pytest.approx(silent.error_estimate["normal_force"], rel=1e-12, abs=0)
+    assert answer.error_estimate["normal_force"] == pytest.approx(
+        silent.error_estimate["normal_force"], rel=1e-12, abs=0
+    )
     more = answer.error_estimate["contact_stiffness"] - silent.error_estimate["contact_stiffness"]
     assert more == pytest.approx([1e-3, 1e-3], rel=1e-12, abs=0.0)
