@@ -47,6 +47,14 @@ Cases = Annotated[
 Out = Annotated[Path, typer.Option(help="Folder of the run: results.json, results.h5, report.html, figures.")]
 Baselines = Annotated[Path, typer.Option(help="Folder of the accepted numbers.")]
 SchemaName = Literal["results", "scene"]
+Setting = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=VALUE",
+        help="Setting of a method of an installed package: name=value, method.name=value, or a TOML file with a table "
+        "a method (a table in it, of the name of a scene, is for that scene). Repeatable.",
+    ),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Only the verdict and errors; for logs of CI.")]
 
 
@@ -146,6 +154,7 @@ def run_suite(
             help="Compare each --method with this one on all scenes of the cases, and nothing else. Repeatable."
         ),
     ] = None,
+    setting: Setting = None,
     jobs: Annotated[int, typer.Option(help="Solutions at a time; timings always run alone.")] = 2,
     out: Out = Path("build/verification"),
     resume: Annotated[bool, typer.Option("--resume", help="Keep finished solutions of an earlier run in OUT.")] = False,
@@ -175,6 +184,7 @@ def run_suite(
         cases or [],
         methods=method or [],
         others=against or [],
+        settings=setting or [],
         options=options,
         executor=executor,
         quiet=quiet,
@@ -190,6 +200,7 @@ def cost(
     method: Annotated[
         list[str] | None, typer.Option(help="Only these methods, those of installed packages as they are. Repeatable.")
     ] = None,
+    setting: Setting = None,
     out: Annotated[Path, typer.Option(help="Folder of the run: results.json, report.html, figures.")] = Path(
         "build/cost"
     ),
@@ -200,12 +211,13 @@ def cost(
     """Measure what accuracy costs in time: every method, from coarse to fine, one solution at a time.
 
     Error against seconds with the Pareto front, shortest time to 1 %, 1e-4, 1e-6, 1e-8, price of a digit.
+    --setting cells=[4,8,16] times a registered method at each of these values.
     """
     from cases.run.runner import RunOptions  # noqa: PLC0415
     from reports.commands.cost import cost as run_command  # noqa: PLC0415
 
     options = RunOptions(out=out, suite=suite, jobs=1, resume=resume, time_limit=time_limit)
-    return run_command(cases or [], options, methods=method or [], quiet=quiet)
+    return run_command(cases or [], options, methods=method or [], settings=setting or [], quiet=quiet)
 
 
 @app.command()

@@ -82,8 +82,8 @@ class WorkOfCase(StudyOfCase, Protocol):
     def ladder(self) -> tuple[MethodUse, ...]:
         """Settings that are timed."""
 
-    def of_methods(self, methods: Collection[str], foreign: Iterable[str] = ()) -> Self:
-        """Return the study of these methods, and of ``foreign`` ones with the settings they come with."""
+    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse] = ()) -> Self:
+        """Return the study of these methods, and of ``foreign`` ones with their settings."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -10,7 +10,7 @@ from pathlib import Path
 from cases.run import stamp
 from contact import InvalidInput
 
-# The folder that holds every package: what must be committed to be accepted.
+# The folder that holds every package.
 SOURCE = Path(__file__).resolve().parents[2]
 
 

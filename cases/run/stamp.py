@@ -32,14 +32,21 @@ def stamp(started: datetime, wall_seconds: float) -> Stamp:
     )
 
 
-def revision(directory: Path = _SOURCE) -> str:
-    """Return the commit checked out in ``directory``, "unknown" outside a repository."""
-    return _git(directory, "rev-parse", "HEAD") or "unknown"
+def repository() -> Path:
+    """Return the repository that tracks this package; where it is installed, that of the working directory."""
+    tracked = _git(_SOURCE, "ls-files", "run/stamp.py")
+    directory = _SOURCE if tracked else Path.cwd()
+    return Path(_git(directory, "rev-parse", "--show-toplevel") or directory)
 
 
-def is_dirty(directory: Path = _SOURCE) -> bool:
-    """Whether tracked files differ from the commit."""
-    return bool(_git(directory, "status", "--porcelain", "--untracked-files=no"))
+def revision(directory: Path | None = None) -> str:
+    """Return the commit checked out in ``directory`` (or `repository`), "unknown" outside a repository."""
+    return _git(directory or repository(), "rev-parse", "HEAD") or "unknown"
+
+
+def is_dirty(directory: Path | None = None) -> bool:
+    """Whether tracked files in ``directory`` (or `repository`) differ from the commit."""
+    return bool(_git(directory or repository(), "status", "--porcelain", "--untracked-files=no"))
 
 
 def _git(directory: Path, *arguments: str) -> str:

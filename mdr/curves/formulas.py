@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike
 
 from contact import Cone, FlatPunch, Layer, Paraboloid, Scene, Sphere
 from contact.records.validation import FloatArray
+from mdr.curves import series
 
 
 @dataclass(frozen=True)
@@ -84,34 +85,15 @@ def _round(layer: Layer, radius: float) -> list[Formula]:
         return found
 
     def in_thickness(name: str, source: str, coefficients: Sequence[float]) -> Formula:
-        return Formula(name, source, factor, 1.5, h**2 / radius, 0.5, (1.0, *coefficients))
+        return Formula(name, source, factor, 1.5, h**2 / radius, 0.5, tuple(coefficients))
 
-    found.append(in_thickness("Dimitriadis", DIMITRIADIS, _dimitriadis(nu, bonded=layer.support == "bonded")))
-    if layer.support == "bonded" and nu == 0.5:
-        found.append(in_thickness("Garcia", GARCIA, (1.133, 1.497, 1.469, 0.755)))
-    return found
-
-
-def _dimitriadis(nu: float, *, bonded: bool) -> tuple[float, ...]:
-    """Their coefficients by alpha_0 and beta_0 of Poisson's ratio, for a layer that is bonded or not.
-
-    For a bonded layer at nu = 1/2 their general formula gives -0.0975 for the last, where they print +0.0975; the
-    printed one is in use.
-    """
+    bonded = layer.support == "bonded"
+    # Where the last coefficient is in question, the one in use is taken.
+    in_use = series.DIMITRIADIS_BONDED if bonded and nu == 0.5 else series.dimitriadis(nu, bonded=bonded)
+    found.append(in_thickness("Dimitriadis", DIMITRIADIS, in_use))
     if bonded and nu == 0.5:
-        return 1.133, 1.283, 0.769, 0.0975
-    alpha = -0.347 * (3 - 2 * nu) / (1 - nu)
-    beta = 0.056 * (5 - 2 * nu) / (1 - nu)
-    if bonded:
-        alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
-        beta = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1 - nu)
-    pi = math.pi
-    return (
-        -2 * alpha / pi,
-        4 * alpha**2 / pi**2,
-        -8 / pi**3 * (alpha**3 + 4 * pi**2 / 15 * beta),
-        16 * alpha / pi**4 * (alpha**3 + 3 * pi**2 / 5 * beta),
-    )
+        found.append(in_thickness("Garcia", GARCIA, series.GARCIA_PARABOLOID))
+    return found
 
 
 def _cone(layer: Layer, slope: float) -> list[Formula]:
@@ -119,8 +101,7 @@ def _cone(layer: Layer, slope: float) -> list[Formula]:
     factor = 2 / (math.pi * slope * (1 - layer.poissons_ratio**2))
     found = [Formula("Sneddon", SNEDDON, factor, 2.0)]
     if layer.support == "bonded" and layer.poissons_ratio == 0.5 and not layer.is_half_space:
-        coefficients = (1.0, 0.721, 0.650, 0.491, 0.225)
-        found.append(Formula("Garcia", GARCIA, factor, 2.0, layer.thickness * slope, 1.0, coefficients))
+        found.append(Formula("Garcia", GARCIA, factor, 2.0, layer.thickness * slope, 1.0, series.GARCIA_CONE))
     return found
 
 
@@ -130,6 +111,6 @@ def _punch(layer: Layer, radius: float) -> list[Formula]:
     found = [Formula("Sneddon", SNEDDON, factor, 1.0)]
     if layer.support == "bonded" and layer.poissons_ratio == 0.5 and not layer.is_half_space:
         x = radius / layer.thickness
-        series = float(np.polynomial.polynomial.polyval(x, (1.0, 1.133, 1.283, 0.598, -0.291)))
-        found.append(Formula("Garcia", GARCIA, factor * series, 1.0))
+        stiffer = float(np.polynomial.polynomial.polyval(x, series.GARCIA_PUNCH))
+        found.append(Formula("Garcia", GARCIA, factor * stiffer, 1.0))
     return found

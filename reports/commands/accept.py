@@ -12,9 +12,10 @@ from cases.gate.baseline import read_baselines
 from cases.gate.ladders import accept_ladders, ladder_claims, read_ladders
 from cases.gate.proposal import BaselineChange, Proposal, propose
 from cases.gate.spread import measured_spreads
-from cases.gate.write_permission import SOURCE, write_conditions
+from cases.gate.write_permission import write_conditions
 from cases.results.files import read_run
 from cases.results.records.run import CaseResult, RunResult
+from cases.run.stamp import repository
 from contact import InvalidInput
 from reports.tables.table import Table
 from reports.terminal.terminal import STYLES, console, show_table
@@ -70,7 +71,7 @@ def accept_cases(names: list[str], request: AcceptRequest) -> None:
 
 
 def _accept_case(case: Case, result: RunResult, request: AcceptRequest) -> None:
-    ran, now, terminal = _watched(case, result), write_conditions(SOURCE, request.baselines), console()
+    ran, now, terminal = _watched(case, result), write_conditions(repository(), request.baselines), console()
     reasons_against = refusals_beforehand(case.name, result, now)
     if reasons_against:
         raise InvalidInput(f"{case.name} is not accepted: {'; '.join(reasons_against)}")
@@ -92,7 +93,7 @@ def _accept_case(case: Case, result: RunResult, request: AcceptRequest) -> None:
 
 def _accept_ladders(study: CaseResult, result: RunResult, request: AcceptRequest) -> None:
     """Accept the ladders of a study, or say which rungs would be lost."""
-    now = write_conditions(SOURCE, request.baselines)
+    now = write_conditions(repository(), request.baselines)
     reasons_against = refusals_beforehand(study.name, result, now)
     if reasons_against:
         raise InvalidInput(f"{study.name} is not accepted: {'; '.join(reasons_against)}")

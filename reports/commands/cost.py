@@ -3,6 +3,7 @@
 from dataclasses import replace
 
 from cases.declare.case import Case
+from cases.declare.foreign.settings import Settings, ladder, read_settings
 from cases.declare.methods import check_known, registered
 from cases.declare.registry import load_cases, select
 from cases.results.status import Status
@@ -17,8 +18,10 @@ from reports.terminal.terminal import console, show_table
 FAILED = 1
 
 
-def cost(names: list[str], options: RunOptions, *, methods: list[str], quiet: bool) -> int:
+def cost(names: list[str], options: RunOptions, *, methods: list[str], settings: list[str], quiet: bool) -> int:
     """Time the work studies of cases (only these methods, if any) alone on the machine; 1 if a reference broke down.
+
+    A setting that is a list is a ladder of an installed package's method.
 
     Raises:
         InvalidInput: if no study times such a method.
@@ -26,7 +29,8 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], quiet: bo
     for method in methods:
         check_known(method)
     chosen = select(load_cases(), names=names, suite=options.suite)
-    timed = [case for case in (_of_methods(case, methods) for case in chosen) if case.work]
+    asked = read_settings(settings, methods)
+    timed = [case for case in (_of_methods(case, methods, asked) for case in chosen) if case.work]
     if methods and not timed:
         raise InvalidInput(f"{', '.join(case.name for case in chosen)}: nothing times {' or '.join(methods)} there")
     options = replace(options, methods=tuple(methods))
@@ -43,10 +47,10 @@ def cost(names: list[str], options: RunOptions, *, methods: list[str], quiet: bo
     return FAILED if missing or any(s is Status.INVALID for s in result.statuses) else 0
 
 
-def _of_methods(case: Case, methods: list[str]) -> Case:
-    """The case with the studies that time these methods, those of installed packages as they are."""
+def _of_methods(case: Case, methods: list[str], settings: Settings) -> Case:
+    """The case with the studies that time these methods, those of installed packages with the settings asked for."""
     if not methods:
         return case
-    foreign = [name for name in registered() if name in methods]
-    studies = (study.of_methods(methods, foreign) for study in case.work)
+    rungs = [rung for name in registered() if name in methods for rung in ladder(name, settings.get(name, {}))]
+    studies = (study.of_methods(methods, rungs) for study in case.work)
     return replace(case, work=tuple(study for study in studies if study.ladder))

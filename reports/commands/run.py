@@ -8,7 +8,8 @@ from pathlib import Path
 from rich.text import Text
 
 from cases.declare.against import against, beside
-from cases.declare.case import Case
+from cases.declare.case import USUAL_SUITES, Case
+from cases.declare.foreign.settings import read_settings, with_settings
 from cases.declare.foreign_methods import with_registered
 from cases.declare.methods import registered
 from cases.declare.registry import load_cases, select
@@ -39,6 +40,7 @@ def run(
     *,
     methods: list[str],
     others: list[str],
+    settings: list[str],
     options: RunOptions,
     executor: str,
     quiet: bool,
@@ -50,12 +52,14 @@ def run(
         names: of cases; all of the suite if none.
         methods: that solve them; all of the project if none.
         others: methods that these are compared with, and with nothing else.
+        settings: of methods of installed packages, in words or files.
         options: of the run.
         executor: where solutions are computed.
         quiet: whether only the verdict is shown.
         strict: whether verdicts that stay open fail.
     """
     foreign = bool(methods) and set(methods) <= set(registered())
+    asked = read_settings(settings, methods)
     if others:
         cases, solvers = _against(names, methods, others, options.suite), (*methods, *others)
     elif foreign:
@@ -64,8 +68,9 @@ def run(
     else:
         solvers = tuple(methods)
         cases = [only_methods(case, methods) for case in _chosen(methods, names, options.suite)]
+    cases = [with_settings(case, asked) for case in cases]
     options = dataclasses.replace(options, methods=tuple(dict.fromkeys(solvers)), executor=by_name(executor))
-    studied = bool(options.suite) and not names and not solvers
+    studied = options.suite in USUAL_SUITES and not names and not solvers
     with locked(options.out):
         result = _carried_out(cases, options, studied, quiet=quiet)
         write_pages(result, options.out)

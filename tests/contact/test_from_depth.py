@@ -72,3 +72,31 @@ def test_a_solver_without_radii_answers_a_curve_of_forces():
 def test_what_no_argument_gives_is_said():
     with pytest.raises(NotConvergedError, match="no argument gives 5"):
         inverted(lambda x: np.minimum(x, 2.0), np.array([5.0]), np.array([1.0]))
+
+
+@pytest.mark.parametrize("power", [1.0, 1.5, 2.0, 4.0])
+@pytest.mark.parametrize("noise", [0.0, 1e-9])
+def test_a_stiffness_by_differences_states_their_error(power, noise):
+    random, depths = np.random.default_rng(17), np.geomspace(1e-7, 1e-4, 200)
+
+    def respond(at):
+        return Response(normal_force=at**power * (1.0 + noise * random.standard_normal(at.size)))
+
+    curve = answer_from_depths(scene(IndentationDepths(values=depths)), respond, StageLog(), method="power law")
+    error = np.abs(curve.contact_stiffness - power * depths ** (power - 1.0))
+    stated = curve.uncertainty("contact_stiffness")
+    assert np.mean(error <= stated) >= 0.95
+    if noise or power % 1.0:
+        assert np.median(stated / error) <= 100.0 if noise else 10.0
+
+
+def test_the_solver_s_own_error_of_the_stiffness_is_kept():
+    depths = IndentationDepths(values=DEPTHS)
+    plain, own = (
+        answer_from_depths(
+            scene(depths), lambda d: hertz(d, radius=False), StageLog(), method="hertz", error_estimate=errors
+        )
+        for errors in ({}, {"contact_stiffness": np.full(3, 1e-3)})
+    )
+    more = own.error_estimate["contact_stiffness"] - plain.error_estimate["contact_stiffness"]
+    assert more == pytest.approx(np.full(3, 1e-3), rel=1e-12, abs=0.0)

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from contact import IndentationDepths, Method, NormalForces, Scene, Solution
+from contact.answer.from_depth import BY_DIFFERENCES
 from contact.records.validation import FloatArray
 
 # How a note begins that tells of such errors; reports mark them by it.
@@ -21,11 +22,12 @@ ROUNDINGS = 32.0
 def with_estimated_errors(method: Method, scene: Scene, answer: Solution) -> Solution:
     """Return ``answer`` with an error of each quantity that ``method`` states none of, and a note that says so.
 
-    The error is the distance to the second refinement and what that still lacks by the observed order.
+    The error is the distance to the second refinement and what that still lacks by the observed order; that of a
+    stiffness by difference quotients, which no refinement of the solver shows, is added.
     """
-    silent = [name for name in (*answer.ARRAYS, *answer.SCALARS) if name not in answer.error_estimate]
-    if not silent or answer.error_estimate:
+    if set(answer.error_estimate) - BY_DIFFERENCES:
         return answer
+    silent = (*answer.ARRAYS, *answer.SCALARS)
     start = time.perf_counter()
     try:
         finer = method.refined()
@@ -42,7 +44,8 @@ def with_estimated_errors(method: Method, scene: Scene, answer: Solution) -> Sol
     seen = ", ".join(f"{name.replace('_', ' ')} {order:.1f}" for name, order in orders.items() if order)
     note = f"{ESTIMATED}, which took {time.perf_counter() - start:.1f} s; observed orders: {seen or 'none'}"
     relative = {name: error / np.where(scale := answer.scale(name), scale, 1.0) for name, error in estimated.items()}
-    return replace(answer, error_estimate={**answer.error_estimate, **relative}, notes=(*answer.notes, note))
+    both = {name: error + answer.error_estimate.get(name, 0.0) for name, error in relative.items()}
+    return replace(answer, error_estimate={**answer.error_estimate, **both}, notes=(*answer.notes, note))
 
 
 def _values(answer: Solution, name: str) -> FloatArray:

@@ -4,8 +4,10 @@ Every function takes x, shape (n,), and Poisson's ratio, and returns F / (2/pi E
 """
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from contact.records.validation import FloatArray
+from mdr.curves import series
 
 # Constant of the bonded layer of nu = 1/2 in the formulas of Gavara, Chadwick and Managuli.
 BONDED = 1.7795
@@ -17,7 +19,7 @@ def sneddon(x: FloatArray, nu: float) -> FloatArray:
 
 
 def gavara_as_programmed(x: FloatArray, nu: float) -> FloatArray:
-    """Gavara and Chadwick 2012 as two public programs have it: bonded, nu = 1/2."""
+    """Gavara and Chadwick 2012 as three public programs have it: bonded, nu = 1/2."""
     return 1 + 2 * BONDED / np.pi**2 * x + 16 * BONDED**2 * x**2
 
 
@@ -29,7 +31,7 @@ def managuli(x: FloatArray, nu: float) -> FloatArray:
 
 def garcia(x: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return 1 + 0.721 * x + 0.650 * x**2 + 0.491 * x**3 + 0.225 * x**4
+    return np.asarray(polyval(x, series.GARCIA_CONE))
 
 
 def hermanowicz_loose(x: FloatArray, nu: float) -> FloatArray:

@@ -23,8 +23,15 @@ Written by `python -m cases.library._formulas.page`; the formulas are plain func
 Right is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and with
 finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
-A formula is judged at the Poisson's ratios that it claims. Where a formula's original was not seen, its source says
-whose numbers these are.
+A formula is judged at the Poisson's ratios that it claims.
+
+**Where the numbers come from.** No original paper was at hand. Constants of Dimitriadis, Garcia, Gavara and Chadwick,
+Managuli, Long, Hermanowicz and Hayes were compared on 2026-11-22, digit by digit, with public programs that cite these
+papers (AtomicJ; Python programs for force curves; a script for Long; an R package and a Python program for Hayes'
+table); where several have one, they agree. Constants of Clifford are those of nanite. Closed forms of the half-space
+and limits of thin layers were checked by our own solver, not against the books. From memory alone are the fit of Lin,
+Hui and Conway, all ranges under "claimed for" but that of Long, and the numbers of sections. What is said of a formula
+below holds for these numbers, and for its authors' only as far as programs copied them rightly.
 
 - **Error of the force**: formula over exact force at the same depth, minus one.
 - **Error of the modulus**: Young's modulus that least squares find in an exact force curve from zero to the depth that
@@ -104,7 +111,7 @@ def _facts() -> Iterator[str]:
         "coefficient is 0.884; the exact one is 0.743.\n"
     )
     yield (
-        "- The cone of Gavara and Chadwick as two public programs have it has a first coefficient of "
+        "- The cone of Gavara and Chadwick as three public programs have it has a first coefficient of "
         f"{2 * cone.BONDED / np.pi**2:.4f} and a second of {16 * cone.BONDED**2:.1f}; Garcia's and Managuli's are "
         f"0.721 and 0.650, twice the first, and {16 * cone.BONDED**2 / np.pi**4:.3f} is left of the second when it is "
         "divided by pi^4.\n"

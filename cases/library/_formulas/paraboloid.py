@@ -4,8 +4,10 @@ Every function takes X, shape (n,), and Poisson's ratio, and returns F / (4/3 E*
 """
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from contact.records.validation import FloatArray
+from mdr.curves import series
 
 
 def hertz(x: FloatArray, nu: float) -> FloatArray:
@@ -14,41 +16,28 @@ def hertz(x: FloatArray, nu: float) -> FloatArray:
 
 
 def dimitriadis_bonded(x: FloatArray, nu: float) -> FloatArray:
-    """Dimitriadis et al. 2002, Eq. (12): bonded, nu = 1/2."""
-    return 1 + 1.133 * x + 1.283 * x**2 + 0.769 * x**3 + 0.0975 * x**4
+    """Dimitriadis et al. 2002: bonded, nu = 1/2."""
+    return np.asarray(polyval(x, series.DIMITRIADIS_BONDED))
 
 
 def dimitriadis_not_bonded(x: FloatArray, nu: float) -> FloatArray:
-    """Dimitriadis et al. 2002, Eq. (11): not bonded, nu = 1/2."""
-    return 1 + 0.884 * x + 0.781 * x**2 + 0.386 * x**3 + 0.0048 * x**4
+    """Dimitriadis et al. 2002: not bonded, nu = 1/2."""
+    return np.asarray(polyval(x, series.DIMITRIADIS_NOT_BONDED))
 
 
 def dimitriadis_bonded_any_nu(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: bonded, any nu."""
-    alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
-    beta = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1 - nu)
-    return _dimitriadis(x, alpha, beta)
+    return np.asarray(polyval(x, series.dimitriadis(nu, bonded=True)))
 
 
 def dimitriadis_not_bonded_any_nu(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: not bonded, any nu."""
-    return _dimitriadis(x, -0.347 * (3 - 2 * nu) / (1 - nu), 0.056 * (5 - 2 * nu) / (1 - nu))
-
-
-def _dimitriadis(x: FloatArray, alpha: float, beta: float) -> FloatArray:
-    """Series of images with the two constants of the layer."""
-    return (
-        1
-        - 2 * alpha / np.pi * x
-        + 4 * alpha**2 / np.pi**2 * x**2
-        - 8 / np.pi**3 * (alpha**3 + 4 * np.pi**2 / 15 * beta) * x**3
-        + 16 * alpha / np.pi**4 * (alpha**3 + 3 * np.pi**2 / 5 * beta) * x**4
-    )
+    return np.asarray(polyval(x, series.dimitriadis(nu, bonded=False)))
 
 
 def garcia(x: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return 1 + 1.133 * x + 1.497 * x**2 + 1.469 * x**3 + 0.755 * x**4
+    return np.asarray(polyval(x, series.GARCIA_PARABOLOID))
 
 
 def long(x: FloatArray, nu: float) -> FloatArray:

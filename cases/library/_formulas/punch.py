@@ -4,16 +4,20 @@ Every function takes t, shape (n,), and Poisson's ratio, and returns k_N / (2 E*
 """
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 from scipy.interpolate import CubicSpline
 
 from contact.records.validation import FloatArray
+from mdr.curves import series
 
-# Hayes, Keer, Herrmann and Mockros, J. Biomech. 5 (1972) 541, as code that cites the table has it, nu = 1/2.
+# Hayes, Keer, Herrmann and Mockros, J. Biomech. 5 (1972) 541, nu = 1/2, as an R package that cites the table has it; a
+# Python program has the same numbers up to a/h = 2 (seen 2026-11-22). The paper itself was not at hand.
 HAYES_AT = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0])
 HAYES = np.array(
     [1, 1.281, 1.683, 2.211, 2.855, 3.609, 5.970, 9.069, 13.0, 17.86, 23.74, 30.75, 48.47, 71.75, 101.27, 137.7]
 )
-# A column in circulation under the heading nu = 0.5, at a/h = 0.2, 0.4, .. 2.0.
+# A column that stood in public scripts under the heading nu = 0.5, at a/h = 0.2, 0.4, .. 2.0; written down from an
+# earlier reading and not found again on 2026-11-22. That it belongs to nu = 0.48 is our finding.
 MISLABELLED_AT = 0.2 * np.arange(11)
 MISLABELLED = np.array([1, 1.268, 1.645, 2.129, 2.704, 3.359, 4.085, 4.878, 5.737, 6.659, 7.644])
 
@@ -35,11 +39,11 @@ def hayes_mislabelled(t: FloatArray, nu: float) -> FloatArray:
 
 def garcia(t: FloatArray, nu: float) -> FloatArray:
     """Garcia and Garcia 2018: bonded, nu = 1/2."""
-    return 1 + 1.133 * t + 1.283 * t**2 + 0.598 * t**3 - 0.291 * t**4
+    return np.asarray(polyval(t, series.GARCIA_PUNCH))
 
 
 def lin_hui_conway(t: FloatArray, nu: float) -> FloatArray:
-    """Lin, Hui and Conway 2000, Shull 2002: bonded, nu = 1/2."""
+    """Lin, Hui and Conway 2000, Shull 2002, from memory of papers that cite them: bonded, nu = 1/2."""
     return 1 + 1.33 * t + 1.33 * t**3
 
 

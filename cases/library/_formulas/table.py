@@ -38,9 +38,9 @@ class Formula:
 
 
 DIMITRIADIS = "Dimitriadis et al., Biophys. J. 82 (2002) 2798"
-GARCIA = "Garcia, Garcia, Biophys. J. 114 (2018) 2923"
+GARCIA = "Garcia, Garcia, Biophys. J. 114 (2018) 2923; numbers of"
 HERMANOWICZ = "Hermanowicz, Int. J. Mech. Sci. 193 (2021) 106138; numbers as the program AtomicJ has them"
-HAYES = "Hayes et al., J. Biomech. 5 (1972) 541; table as code that cites it has it"
+HAYES = "Hayes et al., J. Biomech. 5 (1972) 541; table of an R package that cites it"
 THICK = "layers that are thick beside the contact"
 
 PARABOLOIDS = (
@@ -59,7 +59,7 @@ PARABOLOIDS = (
         support="bonded",
         factor=paraboloid.dimitriadis_bonded,
         poissons_ratios=(0.5,),
-        source=f"{DIMITRIADIS}, Eq. (12)",
+        source=f"{DIMITRIADIS}; numbers of two Python programs, of which one cites Eq. (12)",
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
@@ -77,7 +77,7 @@ PARABOLOIDS = (
         support="unbonded",
         factor=paraboloid.dimitriadis_not_bonded,
         poissons_ratios=(0.5,),
-        source=f"{DIMITRIADIS}, Eq. (11)",
+        source=f"{DIMITRIADIS}; numbers of a Python program that cites Eq. (11)",
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
@@ -95,7 +95,7 @@ PARABOLOIDS = (
         support="bonded",
         factor=paraboloid.garcia,
         poissons_ratios=(0.5,),
-        source=GARCIA,
+        source=f"{GARCIA} two Python programs",
         claim=THICK,
     ),
     Formula(
@@ -104,7 +104,7 @@ PARABOLOIDS = (
         support="bonded",
         factor=paraboloid.long,
         poissons_ratios=(0.5,),
-        source="Long, Hall, Wu, Hui, Biophys. J. 101 (2011) 643; constants as public code has them",
+        source="Long, Hall, Wu, Hui, Biophys. J. 101 (2011) 643; constants and range of a public script",
         claim="R/h from 2 to 12.7, also large strains",
     ),
     Formula(
@@ -181,7 +181,7 @@ CONES = (
         support="bonded",
         factor=cone.gavara_as_programmed,
         poissons_ratios=(0.5,),
-        source="Gavara, Chadwick, Nature Nanotech. 7 (2012) 733; form of AtomicJ and of a Python program",
+        source="Gavara, Chadwick, Nature Nanotech. 7 (2012) 733; form of AtomicJ and of two Python programs",
         claim=THICK,
     ),
     Formula(
@@ -199,7 +199,7 @@ CONES = (
         support="bonded",
         factor=cone.garcia,
         poissons_ratios=(0.5,),
-        source=GARCIA,
+        source=f"{GARCIA} two Python programs",
         claim=THICK,
     ),
     Formula(
@@ -237,7 +237,7 @@ PUNCHES = (
         support="bonded",
         factor=punch.hayes_mislabelled,
         poissons_ratios=(0.48, 0.5),
-        source="public scripts that cite Hayes et al. (1972)",
+        source="public scripts that cite Hayes et al. (1972), by an earlier reading; not found again",
         claim="a/h up to 2, nu = 0.5",
     ),
     Formula(
@@ -246,7 +246,7 @@ PUNCHES = (
         support="bonded",
         factor=punch.garcia,
         poissons_ratios=(0.5,),
-        source=GARCIA,
+        source=f"{GARCIA} a Python program",
         claim=THICK,
     ),
     Formula(
@@ -255,7 +255,7 @@ PUNCHES = (
         support="bonded",
         factor=punch.lin_hui_conway,
         poissons_ratios=(0.5,),
-        source="cited by Webber et al., Phys. Rev. E 68 (2003) 021805; the original was not seen",
+        source="from memory of Webber et al., Phys. Rev. E 68 (2003) 021805; its abstract: fit to finite elements",
         claim="moderate confinement",
     ),
     Formula(

@@ -47,11 +47,10 @@ class WorkStudy:
         """Return the study as a suite carries it out: nightly all settings, otherwise the cheap ones."""
         return self if suite == "nightly" or not self.cheap else replace(self, ladder=self.cheap)
 
-    def of_methods(self, methods: Collection[str], foreign: Iterable[str] = ()) -> "WorkStudy":
-        """Return the study of these methods' settings, and of ``foreign`` ones with the settings they come with."""
+    def of_methods(self, methods: Collection[str], foreign: Iterable[MethodUse] = ()) -> "WorkStudy":
+        """Return the study of these methods' settings, and of those of ``foreign`` ones."""
         own = tuple(use for use in self.ladder if use.method in methods)
-        others = tuple(MethodUse(label="as it comes", method=name) for name in foreign)
-        return replace(self, ladder=(*own, *others), cheap=())
+        return replace(self, ladder=(*own, *foreign), cheap=())
 
     def left(self, solvers: Mapping[str, Set[str]]) -> "WorkStudy":
         """Return the study as it is: it solves its own settings, whatever methods a run keeps."""

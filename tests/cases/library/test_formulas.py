@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
-from cases.library._formulas import half_space, paraboloid
+from cases.library._formulas import cone, paraboloid, punch
 from cases.library._formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
 from cases.library._formulas.compact import paraboloid_factor, punch_factor
 from cases.library._formulas.fit_compact import exact
 from cases.library._formulas.page import PLACE, page
 from cases.library._formulas.table import FORMULAS
+from contact import Cone, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
+from mdr.curves import formulas_for
 
 BY_NAME = {formula.name: formula for formula in FORMULAS}
 
@@ -72,10 +74,23 @@ def test_where_a_formula_holds():
     assert holds_to(BY_NAME["thin loose layer"], 0.3, 0.2) == pytest.approx(0.71, rel=0.1, abs=0.0)
 
 
-def test_half_space_forces_are_the_closed_forms():
-    assert half_space.hertz_force(1e-5, 1e-2, 1e6) == pytest.approx(4 / 3 * 1e6 * 0.1 * 1e-5**1.5, rel=1e-14, abs=0.0)
-    assert half_space.sneddon_force(1e-5, 0.5, 1e6) == pytest.approx(4 / np.pi * 1e-4, rel=1e-14, abs=0.0)
-    assert half_space.punch_force(1e-5, 1e-3, 1e6) == pytest.approx(0.02, rel=1e-14, abs=0.0)
+@pytest.mark.parametrize(
+    ("indenter", "name", "formula", "variable"),
+    [
+        (Paraboloid(radius_of_curvature=2.0), "Dimitriadis", paraboloid.dimitriadis_bonded, np.sqrt(0.6)),
+        (Paraboloid(radius_of_curvature=2.0), "Garcia", paraboloid.garcia, np.sqrt(0.6)),
+        (Cone(slope=2.0), "Garcia", cone.garcia, 0.15),
+        (FlatPunch(radius=2.0), "Garcia", punch.garcia, 2.0),
+    ],
+)
+def test_fits_of_force_curves_use_the_formulas_that_the_page_judges(indenter, name, formula, variable):
+    layer = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
+    half_space, *others = formulas_for(
+        Scene(layer=layer, indenter=indenter, loading=IndentationDepths(values=np.array([0.3])))
+    )
+    found = next(one for one in others if one.name == name)
+    expected = float(half_space.per_modulus(0.3) * formula(np.array([variable]), 0.5)[0])
+    assert found.per_modulus(0.3) == pytest.approx(expected, rel=1e-14, abs=0.0)
 
 
 def test_the_page_is_up_to_date():

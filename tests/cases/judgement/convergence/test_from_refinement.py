@@ -71,3 +71,19 @@ def test_an_answer_stands_when_its_refinement_fails():
     answer = with_estimated_errors(method, SCENE, method.solve(SCENE))
     assert answer.error_estimate == {}
     assert "its own refinement failed: too fine" in answer.notes[-1]
+
+
+class Quotient(Grid):
+    """States the error of its stiffness by difference quotients alone."""
+
+    def solve(self, scene):
+        return replace(super().solve(scene), error_estimate={"contact_stiffness": np.full(2, 1e-3)})
+
+
+def test_the_error_of_a_difference_quotient_is_added_to_that_of_the_refinement():
+    answer, silent = (with_estimated_errors(method, SCENE, method.solve(SCENE)) for method in (Quotient(), Grid()))
+    assert answer.error_estimate["normal_force"] == pytest.approx(
+        silent.error_estimate["normal_force"], rel=1e-12, abs=0
+    )
+    more = answer.error_estimate["contact_stiffness"] - silent.error_estimate["contact_stiffness"]
+    assert more == pytest.approx([1e-3, 1e-3], rel=1e-12, abs=0.0)

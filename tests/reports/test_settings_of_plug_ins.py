@@ -1,0 +1,113 @@
+"""Settings of a method of an installed package, from the shell and from a file: `run`, `cost`."""
+
+from importlib.metadata import EntryPoint
+from pathlib import Path
+
+import pytest
+
+from cases.declare import methods
+from cases.declare.foreign.settings import read_settings, with_settings
+from cases.declare.foreign_methods import with_registered
+from cases.results.files import read_run
+from contact import InvalidInput
+from reports.command_line import run
+from tests.cases.fake_case import fake_case
+
+
+@pytest.fixture(autouse=True)
+def mine(monkeypatch, tmp_path):
+    """Two methods of installed packages, in an empty folder."""
+    value = "tests.cases.fake_method:FakeHertz"
+    entries = [EntryPoint(name=name, value=value, group=methods.ENTRY_POINT_GROUP) for name in ("mine", "my.own")]
+    monkeypatch.setattr(methods, "entry_points", lambda group: entries)
+    monkeypatch.chdir(tmp_path)
+
+
+def written(text):
+    Path("mine.toml").write_text(text, encoding="utf-8")
+    return "mine.toml"
+
+
+@pytest.mark.parametrize(
+    ("texts", "chosen", "found"),
+    [
+        (["cell=0.5"], ["mine", "mdr"], {"mine": {"cell": 0.5}}),
+        (["mine.cell=0.5", "mine.cell=0.25"], [], {"mine": {"cell": 0.25}}),
+        (["my.own.plant=die", "mine.plant='a.b=c'"], [], {"my.own": {"plant": "die"}, "mine": {"plant": "a.b=c"}}),
+        (["mine.cell=[1, 2]", "mine.plant="], [], {"mine": {"cell": [1, 2], "plant": ""}}),
+        ([], ["mine"], {}),
+    ],
+)
+def test_words_are_values_of_toml(texts, chosen, found):
+    assert read_settings(texts, chosen) == found
+
+
+def test_a_file_has_a_table_for_each_method():
+    name = written("[mine]\ncell = 0.5\n[mine.'scene a']\ncell = 0.1\n[\"my.own\"]\nerror = 2\n")
+    found = {"mine": {"cell": 0.5, "scene a": {"cell": 0.1}}, "my.own": {"error": 2}}
+    assert read_settings([name], []) == found
+    assert read_settings([name, "mine.cell=3"], [])["mine"]["cell"] == 3
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("cell=1", "name the method, as in mine.cell=1"),
+        ("fem.cell=1", "'fem' is no method of an installed package; those are .*mine"),
+        ("=1", "write name=value"),
+        ("absent.toml", "no such file of settings can be read"),
+        ("loose", "cell stands outside a table"),
+        ("broken", "can be read"),
+    ],
+)
+def test_what_is_no_setting_is_refused(text, words):
+    Path("loose").write_text("cell = 1\n", encoding="utf-8")
+    Path("broken").write_text("[mine\n", encoding="utf-8")
+    with pytest.raises(InvalidInput, match=words):
+        read_settings([text], [])
+
+
+def test_one_scene_may_have_its_own_and_others_keep_theirs():
+    case = with_registered(fake_case(), ["mine"])
+    first, *others = [scene.name for scene in case.scenes]
+    changed = with_settings(case, {"mine": {"cell": 0.5, first: {"cell": 0.1, "error": 3.0}}})
+    settings = {scene.name: changed.use(scene, "mine").settings for scene in changed.scenes}
+    assert settings == {first: {"cell": 0.1, "error": 3.0}, **{name: {"cell": 0.5} for name in others}}
+    for scene in case.scenes:
+        kept = [use for use in case.methods_of(scene) if use.label != "mine"]
+        assert [use for use in changed.methods_of(changed.scene(scene.name)) if use.label != "mine"] == kept
+    assert with_settings(case, {}) == case
+
+
+@pytest.mark.parametrize("settings", [{"cells": 3}, {"cells": "x"}])
+def test_a_setting_that_the_method_has_not_is_told_with_those_it_has(settings):
+    case = with_registered(fake_case(), ["mine"])
+    with pytest.raises(InvalidInput, match=r"'mine' does not take cells=.*; it has cell, error, order"):
+        with_settings(case, {"mine": settings})
+
+
+@pytest.mark.usefixtures("library")
+def test_a_run_is_made_with_them(capsys):
+    words = ["run", "--executor", "serial", "--quiet", "--out", "out", "--method", "mine"]
+    run([*words, "--setting", "cell=0.125"])
+    (case,) = read_run(Path("out")).cases
+    assert {row.settings["cell"] for row in case.runs if row.method == "mine" and row.settings} == {0.125}
+    assert run([*words, "--setting", "cells=1"]) == 4
+    assert "it has cell" in capsys.readouterr().err
+
+
+def test_cost_climbs_a_ladder_of_them(monkeypatch, capsys):
+    from reports.commands import cost as cost_command
+
+    case = fake_case(work=True)
+    monkeypatch.setattr(cost_command, "load_cases", lambda: {case.name: case})
+    words = ["cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "mine"]
+    assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=2"]) == 0
+    (record,) = read_run(Path("out")).cases[0].work_precision
+    assert [(point.method, point.label) for point in record.points] == [
+        ("mine", "cell=0.01, order=2"),
+        ("mine", "cell=0.001, order=2"),
+    ]
+    assert record.points[0].error > 50 * record.points[1].error
+    assert run([*words, "--setting", "cell=[0.01, 0.001]", "--setting", "order=[1, 2, 3]"]) == 4
+    assert "as many entries" in capsys.readouterr().err
