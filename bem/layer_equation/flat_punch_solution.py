@@ -90,7 +90,8 @@ class IntegralEquationSolution(FlatPunchSolution):
         """
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
-        share = self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny)
+        panels, _ = self._panels.locate(ratio)
+        share = self.factor.widths(self.factor.panels)[panels] / np.maximum(ratio, np.finfo(float).tiny)
         own, of_kernel = self._spring_truncation(ratio)
         springs = np.minimum(0.5, integrated(self.nodes) * share) * own
         springs += np.minimum(0.5, FACTOR.own_panel * share) * of_kernel
