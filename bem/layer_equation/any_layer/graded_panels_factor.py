@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from bem.layer_equation.error_model import FACTOR
-from bem.layer_equation.flat_punch_solution import EPS, IntegralEquationSolution
+from bem.layer_equation.error_model import STACK_FACTOR, FactorCoefficients
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import (
     STRIP,
@@ -155,6 +155,7 @@ class AnyLayerSolution(IntegralEquationSolution):
     """The flat punch on a layer of any kind, lengths in units of the thickness of its surface material."""
 
     factor: GradedFactor
+    shares: ClassVar[FactorCoefficients] = STACK_FACTOR
 
     def panel_ends(self, ratio: float) -> FloatArray:
         """Of the factor's panels."""
