@@ -85,12 +85,12 @@ def test_they_cover_and_are_sharp():
     assert np.mean(true <= stated + own) >= 0.95
     ratio = (stated / np.maximum(true, 1e-300))[true > 2e-14]
     assert ratio.size > 300
-    assert np.median(ratio) < 15.0
+    assert np.median(ratio) < 12.0
     assert np.quantile(ratio, 0.9) < 300.0
 
 
 def test_values_on_few_nodes_are_right_on_the_parts_of_the_first_panel():
-    """Where the kernel was interpolated to the parts, nine nodes erred by 1e-6 of k_N in the median of these stacks."""
+    """Where the kernel was interpolated to the parts, nine nodes erred by 2.7e-7 of k_N in the median here."""
     rng, errors = np.random.default_rng(31), []
     for _ in range(8):
         layer = random_stack(rng)
