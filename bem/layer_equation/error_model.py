@@ -66,4 +66,9 @@ class OneRadiusCoefficients:
 
 
 FACTOR = FactorCoefficients()
+# On stacks, whose panels are twice as wide and shrink towards the axis: 95 % of true errors are within 0.9 of the
+# kernel's share in c_bar and 0.45 of it in g, where the two edge values err alike; a sheet ten thousand times as stiff
+# as an incompressible layer needs 0.9 in g. What is told of the orders left out is five times the true in the median
+# (250 and 150 random stacks, moduli e^-4 to e^4, four profiles, 8 to 12 nodes, seed 7, 2026-11-22).
+STACK_FACTOR = FactorCoefficients(own_safety=1.0, spring_safety=1.0, profile_safety=1.0)
 ONE_RADIUS = OneRadiusCoefficients()

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.layer_equation.contact_density import ContactDensity
-from bem.layer_equation.error_model import FACTOR
+from bem.layer_equation.error_model import FACTOR, FactorCoefficients
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
@@ -30,10 +31,12 @@ class IntegralEquationSolution(FlatPunchSolution):
     Attributes:
         kernel: Kernel of the layer's equation.
         factor: Its factor.
+        shares: Coefficients that shape its stated errors.
     """
 
     kernel: FredholmKernel
     factor: VolterraFactor
+    shares: ClassVar[FactorCoefficients] = FACTOR
 
     @property
     def max_ratio(self) -> float:
@@ -90,16 +93,17 @@ class IntegralEquationSolution(FlatPunchSolution):
         """
         ratio = self._covered(ratio)
         k = self.normalized_contact_stiffness(ratio)
-        share = self.factor.panel_width / np.maximum(ratio, np.finfo(float).tiny)
+        panels, _ = self._panels.locate(ratio)
+        share = self.factor.widths(self.factor.panels)[panels] / np.maximum(ratio, np.finfo(float).tiny)
         own, of_kernel = self._spring_truncation(ratio)
         springs = np.minimum(0.5, integrated(self.nodes) * share) * own
-        springs += np.minimum(0.5, FACTOR.own_panel * share) * of_kernel
+        springs += np.minimum(0.5, self.shares.own_panel * share) * of_kernel
         truncated = self._left_out(self._stiffness_share, ratio) / k + springs
-        return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
+        return self.shares.stiffness_safety * truncated + EPS * (self.shares.rounded + self.shares.stiffness_growth * k)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Error of c_bar, relative, made likewise."""
-        return self._edge_error(self._covered(ratio), 1.0, FACTOR.spring_safety)
+        return self._edge_error(self._covered(ratio), 1.0, self.shares.spring_safety)
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
         """In g = yg/y1 the kernel errs alike in both edge values, by half of what it does in c_bar = y1^2 each.
@@ -107,7 +111,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         yg is not interpolated between the nodes of a panel, or less of it is than of y1, so that the orders that
         polynomials leave out of y1 count once.
         """
-        return self._edge_error(self._covered(ratio), 0.5, FACTOR.profile_safety)
+        return self._edge_error(self._covered(ratio), 0.5, self.shares.profile_safety)
 
     def kernel_errors(self, ratio: FloatArray) -> FloatArray:
         """The kernel errs alike in the edge values of all densities, and on the first panel so do their polynomials.
@@ -164,7 +168,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
         panels, _ = self._panels.locate(ratio)
-        rounded = 4 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
+        rounded = 4 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return self.contact_pressure_error(ratio, 2 * self.factor.truncation[panels] + EPS * rounded)
 
     def _slope_truncation(self, ratio: FloatArray) -> FloatArray:
@@ -176,7 +180,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         """
         width, m = self.factor.panel_width, self.factor.count
         steepest = np.minimum(2.0 * m, width / np.maximum(ratio, np.finfo(float).tiny))
-        return np.asarray(FACTOR.slope_safety * m * steepest * rate_of_decay(2 * STRIP / width) ** m)
+        return np.asarray(self.shares.slope_safety * m * steepest * rate_of_decay(2 * STRIP / width) ** m)
 
     def panel_error(self, ratio: float) -> float:
         """The largest `spring_error` at ends and middles of all panels up to a ratio, and there."""
@@ -186,7 +190,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def _edge_error(self, ratio: FloatArray, own_share: float, kernel_share: float) -> FloatArray:
         own, of_kernel = self._spring_truncation(ratio)
-        rounded = 2 * FACTOR.rounded + FACTOR.spring_growth * self.normalized_contact_stiffness(ratio)
+        rounded = 2 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return own_share * own + kernel_share * of_kernel + EPS * rounded
 
     def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -197,7 +201,9 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def _left_out(self, function: MappedFunction, ratio: FloatArray) -> FloatArray:
         """By its polynomials, with their safety beyond the first panel."""
-        return np.asarray(np.where(ratio <= self._panels.width[0], 1.0, FACTOR.own_safety) * function.left_out(ratio))
+        return np.asarray(
+            np.where(ratio <= self._panels.width[0], 1.0, self.shares.own_safety) * function.left_out(ratio)
+        )
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)

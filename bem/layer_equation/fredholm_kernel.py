@@ -86,6 +86,12 @@ class FredholmKernel:
         values: FloatArray = (decay @ self.weights).real
         return values
 
+    def products(self, left: FloatArray, right: FloatArray) -> FloatArray:
+        """N(left_i + right_j) of distances none of which is negative, by products of their exponentials."""
+        decay = np.exp(-np.multiply.outer(left, self.rates)) * self.weights
+        values: FloatArray = (decay @ np.exp(-np.multiply.outer(self.rates, right))).real
+        return values
+
     def panel_matrix(self, panels: int, width: float, count: int) -> FloatArray:
         """L(x, t) = [N(x - t) + N(x + t)]/2 at all Gauss nodes of equal panels [p width, (p + 1) width].
 

@@ -190,8 +190,11 @@ class MappedFunction:
 
     @cached_property
     def _beyond(self) -> FloatArray:
-        """Coefficients left out; the rate is that of the upper half, since kinks beside a piece slow it down late."""
-        half = max(0, min(self.grid.count // 2, self.grid.count - 4))
+        """Coefficients left out; the rate is that of the upper half, since kinks beside a piece slow it down late.
+
+        Of at least six: the decay over four is less than two orders' and told no rate at all on eight nodes.
+        """
+        half = max(0, min(self.grid.count // 2, self.grid.count - 6))
         return orders_beyond(self.coefficients[:, half:])
 
     @cached_property

@@ -1,21 +1,20 @@
 """The factor of any layer, on panels that shrink towards the axis, and what it says of flat punches.
 
 Under small contacts a stiff film on a soft base answers like no layer of one material: the edge value y(x) changes over
-a small share 1/|N(0)| of the film's thickness, while the kernel itself stays smooth. So the kernel is evaluated on
-equal panels and interpolated to panels that halve towards the axis.
+a small share 1/|N(0)| of the film's thickness, while the kernel itself stays smooth. So panels halve towards the axis.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from bem.layer_equation.error_model import FACTOR
-from bem.layer_equation.flat_punch_solution import EPS, IntegralEquationSolution
+from bem.layer_equation.error_model import STACK_FACTOR, FactorCoefficients
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import (
     STRIP,
@@ -35,10 +34,9 @@ from contact.records.validation import FloatArray
 
 # The first panel is at most this share of the length 1/K(0, 0) on which edge values begin to change.
 FIRST_SHARE: Final = 1.0
-# Multiplies the coefficients of K left out on the first equal panel, and gives its error at the nodes of its parts. It
-# changes sign between them. On 120 random stacks of 1 to 3 layers with 8 to 12 nodes, 0.3 covers 98 % of the errors and
-# states 15 times of them in the median, 0.15 covers 96 % at 10 times (four profiles, seed 21, 2026-11-22).
-INTERPOLATED_SHARE: Final = 0.2
+# Coefficients of N on the first equal panel below this share are left out: a rounding, and four digits for how much N
+# grows towards the ends of the strip.
+FULLY: Final = 1e-20
 # Halvings of the first panel in any case, since edge values change over a part of the thickness on every layer.
 LEAST_HALVINGS: Final = 2
 
@@ -49,11 +47,9 @@ class GradedFactor(VolterraFactor):
 
     Attributes:
         ends: Panel ends, shape (P + 1,).
-        kernel_error: What polynomials on the first equal panel leave of K at the nodes of its parts.
     """
 
     ends: FloatArray
-    kernel_error: float
 
     @classmethod
     def of_any(cls, kernel: FredholmKernel, panels: int, panel_width: float, count: int) -> GradedFactor:
@@ -66,15 +62,13 @@ class GradedFactor(VolterraFactor):
         halvings = max(LEAST_HALVINGS, int(np.ceil(np.log2(max(steepness, 1.0)))))
         first = panel_width * np.append(0.0, 2.0 ** np.arange(-halvings, 1.0))
         ends = np.append(first, panel_width * np.arange(2.0, panels + 1))
-        equal = kernel.panel_matrix(panels, panel_width, count)
-        missed = _interpolation_error(2 / np.pi * equal[:count, :count], panel_width)
-        K = _split_first(equal, first / panel_width, count)
+        K = _with_parts(kernel, kernel.panel_matrix(panels, panel_width, count), first, count)
         starts = range(0, len(K), count)
         own = 2 / np.pi * np.array([K[s : s + count, s : s + count] for s in starts])
         root = np.sqrt(np.multiply.outer(np.diff(ends), gauss_nodes(count)[1]).ravel())
         lower = equation_factor(K, root, panels * panel_width)
         schur = schur_kernels(own, lower, root)
-        return cls(panel_width, lower, schur, edge_resolvents(schur, np.diff(ends)), ends, missed)
+        return cls(panel_width, lower, schur, edge_resolvents(schur, np.diff(ends)), ends)
 
     @property
     def reach(self) -> float:
@@ -112,17 +106,12 @@ class GradedFactor(VolterraFactor):
 
     @cached_property
     def truncation(self) -> FloatArray:
-        """Error of the edge values at each panel's nodes, relative, from the orders that K~ has there.
-
-        On the parts of the first panel K itself is interpolated, and its error adds up over the contact.
-        """
+        """Error of the edge values at each panel's nodes, relative, from the orders that K~ has there."""
         to_orders, widths = chebyshev_from_nodes(self.count), np.diff(self.ends)
         orders = np.abs(to_orders @ self.schur @ to_orders.T).max(axis=1)
         rates = np.array([rate_of_decay(2 * STRIP / width) for width in widths])
         beyond = np.array([orders_beyond(row, rate) for row, rate in zip(orders, rates, strict=True)])
-        parts = self.ends[1:] <= self.panel_width
-        inherited = np.where(parts, self.kernel_error * self.ends[1:], 0.0)
-        return np.asarray(2 * widths * integrated(self.count) * beyond + inherited)
+        return np.asarray(2 * widths * integrated(self.count) * beyond)
 
     @cached_property
     def _edge_matrix(self) -> FloatArray:
@@ -133,25 +122,32 @@ class GradedFactor(VolterraFactor):
         return matrix
 
 
-def _interpolation_error(K: FloatArray, panel_width: float) -> float:
-    """What polynomials through K at the nodes of one panel leave of it between the nodes, in both variables."""
-    count = len(K)
-    to_orders = chebyshev_from_nodes(count)
-    orders = np.abs(to_orders @ K @ to_orders.T).max(axis=0)
-    return float(INTERPOLATED_SHARE * orders_beyond(orders, rate_of_decay(2 * STRIP / panel_width)))
+def _with_parts(kernel: FredholmKernel, equal: FloatArray, ends: FloatArray, count: int) -> FloatArray:
+    """K on equal panels with the first one cut at `ends`: there by sums of products of exponentials, too.
 
-
-def _split_first(K: FloatArray, ends: FloatArray, count: int) -> FloatArray:
-    """The kernel at the nodes of parts of the first panel, by its polynomials, and at the other panels' own nodes."""
-    nodes = (ends[:-1, None] + np.diff(ends)[:, None] * gauss_nodes(count)[0]).ravel()
-    E = lagrange_matrix(count, nodes)
+    Args:
+        kernel: N.
+        equal: On the equal panels.
+        ends: Of the first one's parts, from zero to its width.
+        count: Nodes of a panel and of a part.
+    """
+    tau, width = gauss_nodes(count)[0], float(ends[-1])
+    nodes = (ends[:-1, None] + np.diff(ends)[:, None] * tau).ravel()
+    further = (width * np.arange(len(equal) // count)[:, None] + width * tau).ravel()[count:]
     n = nodes.size
-    split = np.empty((n + len(K) - count, n + len(K) - count))
-    split[n:, n:] = K[count:, count:]
-    split[:n, :n] = E @ K[:count, :count] @ E.T
-    split[:n, n:] = E @ K[:count, count:]
-    split[n:, :n] = split[:n, n:].T
-    return split
+    K = np.empty((n + further.size, n + further.size))
+    K[n:, n:] = equal[count:, count:]
+    K[:n, :n] = (kernel.products(nodes, nodes) + _between(kernel, nodes, width)) / 2
+    K[:n, n:] = (kernel.products(nodes, further) + kernel.products(width - nodes, further - width)) / 2
+    K[n:, :n] = K[:n, n:].T
+    return K
+
+
+def _between(kernel: FredholmKernel, x: FloatArray, width: float) -> FloatArray:
+    """N(x_i - x_j) between points of [0, width] by one polynomial, of the degree that its decay to rounding takes."""
+    nodes = int(np.ceil(np.log(FULLY) / np.log(rate_of_decay(2 * STRIP / width))))
+    values = kernel(width * gauss_nodes(nodes)[0])
+    return np.asarray(lagrange_matrix(nodes, np.abs(x[:, None] - x) / width) @ values)
 
 
 @dataclass(frozen=True)
@@ -159,27 +155,9 @@ class AnyLayerSolution(IntegralEquationSolution):
     """The flat punch on a layer of any kind, lengths in units of the thickness of its surface material."""
 
     factor: GradedFactor
-
-    def relative_error(self, ratio: ArrayLike) -> FloatArray:
-        """Error of k_bar, relative: what the panels before leave in the integral over c_bar, and rounding."""
-        ratio = self._covered(ratio)
-        k = self.normalized_contact_stiffness(ratio)
-        length = np.maximum(ratio, np.finfo(float).tiny)
-        truncated = self._left_out(self._stiffness_share, ratio) / k + self._before(length) / (length * k)
-        return FACTOR.stiffness_safety * truncated + EPS * (FACTOR.rounded + FACTOR.stiffness_growth * k)
+    shares: ClassVar[FactorCoefficients] = STACK_FACTOR
 
     def panel_ends(self, ratio: float) -> FloatArray:
         """Of the factor's panels."""
         inner = self.factor.ends[1:-1]
         return inner[inner < ratio]
-
-    def _before(self, ratio: FloatArray) -> FloatArray:
-        """Error of int c_bar up to a ratio: of each panel before it, and of its own up to there."""
-        ends = self.factor.ends
-        middles = (ends[1:] + ends[:-1]) / 2
-        density = np.add(*self._spring_truncation(middles)) * self.normalized_spring_stiffness(middles)
-        each = FACTOR.own_panel * density * np.diff(ends)
-        panel, _ = self._panels.locate(ratio)
-        earlier = np.append(0.0, np.cumsum(each))[panel]
-        own = np.minimum(each[panel], density[panel] * ratio)
-        return np.asarray(earlier + own)
