@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from bem.layer_equation.inside.density import Density
 from bem.layer_equation.inside.fields import SURFACE
+from bem.layer_equation.inside.half_space_part import Points
+from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
 
 _EPS = float(np.finfo(float).eps)
@@ -25,6 +28,7 @@ _GRADIENT = 3.0
 # away from rims, and 195 points of 39 contacts are covered, 22 times in the median (seeds 5 and 779, against rules of
 # 40 nodes in extended precision, 2026-11-22).
 _CANCELLED = 0.05
+_ROUNDINGS = 10.0
 
 
 class Magnitudes(NamedTuple):
@@ -34,40 +38,45 @@ class Magnitudes(NamedTuple):
         stress: Largest of the stresses at each point, shape (n,).
         gradient: Of the pressure's gradient, shape (n,).
         length: The smaller of contact radius and thickness.
+        depth: delta.
     """
 
     stress: FloatArray
     gradient: FloatArray
     length: float
+    depth: float
 
 
 def stated_errors(
-    density: Density, points: FloatArray, found: Magnitudes, pressure_error: float
+    density: Density, points: Points, found: Magnitudes, known: KnownContact
 ) -> Mapping[str, float]:
     """Relative errors of each kind of field, as `InsideFields` has it.
 
     Args:
         density: Of the contact's pressure.
-        points: r and z in the density's length unit, shape (2, n).
+        points: In the density's length unit.
         found: How large the fields are.
-        pressure_error: Relative error of the contact's pressure.
+        known: Errors of the contact.
     """
-    stress, gradient, length = found
-    a, (r, z) = density.radius, points
+    stress, gradient, length, depth = found
+    a, z = density.radius, points.z
     largest = max(float(stress.max(initial=0.0)), float(np.finfo(float).tiny))
     # Integrals err by a share of the mean pressure, which counts for more where stresses are small.
-    own = _PRESSURE_SHARE * pressure_error + _QUADRATURE
+    own = _PRESSURE_SHARE * known.pressure_error + _QUADRATURE
     base = own * max(1.0, density.mean_pressure / largest)
     lowest = np.maximum(z, SURFACE * a)
-    rims = np.array([a, *(piece.start for piece in density.pieces if piece.start > 0.0 and piece.power > 1.0)])
-    away = np.hypot(r[:, None] - rims, lowest[:, None]).min(axis=1, initial=np.inf)
-    # A stress that grows like a root towards a rim changes by half of what the distance to it does.
-    moved = 0.5 * _EPS * a / away + (lowest - z) * (1.0 / away + _GRADIENT / length)
+    rims = [*(piece.start > 0.0 and piece.power > 1.0 for piece in density.pieces), True]
+    away = np.hypot(points.ends[rims], lowest).min(axis=0)
+    # A stress that grows like a root towards the edge changes by half of what the distance to it does.
+    moved = 0.5 * known.radius_error * a / np.hypot(points.ends[-1], lowest)
+    moved += (lowest - z) * (1.0 / away + _GRADIENT / length)
+    # A thin layer yields far less than a half-space would under the same force, and is computed as a difference.
+    condition = math.pi * a * density.mean_pressure / abs(depth)
     steepest = max(float(gradient.max(initial=0.0)), largest / length)
     stresses = base + float((moved * stress).max(initial=0.0)) / largest
     lost = _GRADIENT * moved * gradient + _CANCELLED * _EPS * stress / lowest
     return {
-        "displacement": own + float((lowest - z).max(initial=0.0)) / length,
+        "displacement": own + _EPS * _ROUNDINGS * condition + float((lowest - z).max(initial=0.0)) / length,
         "stress": stresses,
         "hydrostatic_pressure": stresses,
         "pressure_gradient": _GRADIENT * base + float(lost.max(initial=0.0)) / steepest,
