@@ -116,7 +116,9 @@ class PathFields:
     def inside(self, step: int, known: KnownContact) -> ContactInterior:
         """The body under one step."""
         contact = self.contact(step)
-        return ContactInterior(self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known)
+        return ContactInterior(
+            self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known
+        )
 
     def contact(self, step: int) -> ContactFields:
         """One step's contact."""

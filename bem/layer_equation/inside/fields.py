@@ -10,8 +10,8 @@ import numpy as np
 from bem.kernels.inside import Place, place_of, sheet_of
 from bem.kernels.stack import StackKernel
 from bem.layer_equation.inside.density import Density
-from bem.layer_equation.inside.half_space_part import fields as half_space_fields
 from bem.layer_equation.inside.half_space_part import Points, integrals
+from bem.layer_equation.inside.half_space_part import fields as half_space_fields
 from bem.layer_equation.inside.layer_part import NAMES, layer_fields
 from contact.records.validation import FloatArray
 
