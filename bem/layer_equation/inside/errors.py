@@ -15,8 +15,8 @@ from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
 
 _EPS = float(np.finfo(float).eps)
-# What quadrature leaves of stresses and displacements, over the largest: 7e-15 at worst, three times that is stated (250
-# points of 50 contacts, a/h 0.1 to 10, seven kinds of profile, seed 912, against rules of 40 nodes in extended
+# What quadrature leaves of stresses and displacements, over the largest: 7e-15 at worst, three times that is stated
+# (250 points of 50 contacts, a/h 0.1 to 10, seven kinds of profile, seed 912, against rules of 40 nodes in extended
 # precision, 2026-11-22).
 _QUADRATURE = 2e-14
 # Roundings of integrals over the contact, which count against the mean pressure where stresses are small, and against

@@ -102,8 +102,8 @@ def random_inside(draw: Draw) -> tuple[Scene, InsideReferee]:
     indenter = _indenter(draw, a, min(layer.thickness, 1e3 * a))
     if isinstance(indenter, FlatPunch):
         depth = 0.01 * a
-        scene = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
-        return scene, InsideReferee(layer, indenter, a, depth=depth)
+        pressed = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
+        return pressed, InsideReferee(layer, indenter, a, depth=depth)
     scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]))
     if draw.random() < 0.15:
         tough = 1e-5 * a

@@ -95,7 +95,8 @@ class InsideReferee:
 
     @cached_property
     def _amplitudes(self) -> FloatArray:
-        return self.density.amplitudes @ np.array([self.indentation_depth / self.density.unit, -1.0])
+        amplitudes: FloatArray = self.density.amplitudes @ np.array([self.indentation_depth / self.density.unit, -1.0])
+        return amplitudes
 
     @cached_property
     def _edge_value(self) -> float:
@@ -168,10 +169,10 @@ class InsideReferee:
         """Transfer functions, wavenumbers, and weights times k p^."""
         a = self.contact_radius / self.density.unit
         width = min(1.5, 4.0 * math.pi / (3.0 * a))
-        k, weight = _panel_nodes(np.longdouble(_LARGEST), [(np.longdouble(0.0), np.longdouble(0.02))], width)
-        k = k.astype(float)
+        nodes, weight = _panel_nodes(np.longdouble(_LARGEST), [(np.longdouble(0.0), np.longdouble(0.02))], width)
+        k = nodes.astype(np.float64)
         beyond, weighted = self._nodes(np.longdouble(0.0), 1.0, min(_LONGEST, 4.0 * math.pi / _LARGEST))
-        load = self._edge_value * np.sin(k * a) - np.sin(np.multiply.outer(k, beyond.astype(float))) @ weighted
+        load = self._edge_value * np.sin(k * a) - np.sin(np.multiply.outer(k, beyond.astype(np.float64))) @ weighted
         return LayerWaves(self.layer, k), k, weight * load
 
     def _layer(self, r: float, z: np.longdouble) -> dict[str, np.longdouble]:
