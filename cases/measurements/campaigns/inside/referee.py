@@ -133,7 +133,7 @@ class InsideReferee:
             away, length = (np.longdouble(start) - radius) / unit, (np.longdouble(stop) - np.longdouble(start)) / unit
             room = (self.indenter.max_radius - stop) / self.density.unit
             centres = [(np.longdouble(0.0), _FIRST * length), (-away, np.longdouble(nearest))]
-            if math.isfinite(room) and stop == self.contact_radius:
+            if 0.0 < room < math.inf and stop == self.contact_radius:
                 centres.append((length, np.longdouble(room / 4.0)))
             offset, weight = _panel_nodes(length, centres, longest)
             within = np.minimum((offset * unit).astype(float), stop - start)
