@@ -12,6 +12,7 @@ from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
 from contact.answer.friction import told_of_friction
+from contact.answer.inside import KnownContact
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
@@ -112,10 +113,12 @@ class PathFields:
         density = self.contact(step).density
         return self.scene.indenter.is_convex and density is not None and density.falls
 
-    def inside(self, step: int, pressure_error: float) -> ContactInterior:
-        """The body under one step, whose pressure has this relative error."""
+    def inside(self, step: int, known: KnownContact) -> ContactInterior:
+        """The body under one step."""
         contact = self.contact(step)
-        return ContactInterior(self.scene.layer, density_of(contact), contact.unit, pressure_error)
+        return ContactInterior(
+            self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known
+        )
 
     def contact(self, step: int) -> ContactFields:
         """One step's contact."""

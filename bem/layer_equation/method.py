@@ -34,6 +34,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.inside import KnownContact
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
@@ -203,11 +204,11 @@ class DirectFields:
         w[~inside] = unit * contact.density.displacement_outside(radius[~inside] / unit, contact.depth)
         return w
 
-    def inside(self, step: int, pressure_error: float) -> ContactInterior:
-        """The body under one step, whose pressure has this relative error."""
+    def inside(self, step: int, known: KnownContact) -> ContactInterior:
+        """The body under one step."""
         contact = self.contacts[step]
         density = contact.density.inside(contact.depth, singular_edge=contact.singular_edge)
-        return ContactInterior(self.scene.layer, density, contact.density.unit, pressure_error)
+        return ContactInterior(self.scene, density, contact.density.unit, contact.depth, known)
 
 
 @dataclass(frozen=True)

@@ -101,7 +101,7 @@ class DirectDensity:
         pieces = graded_pieces(indenter, excess, unit, width, nodes)
         load = MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes) / unit, 0.0)
         grid = MappedGrid.equal(a / unit, int(np.ceil(a / unit / width)), nodes)
-        k, weight = _wavenumbers(layer, 2 * a / unit)
+        k, weight = layer_waves(layer, 2 * a / unit)
         moments = _moments(load, flat / unit, a / unit, k)
         psi = _solve(grid, k, weight, moments)
         amplitudes = 2 / np.pi * weight[:, None] * (moments + _transform(grid, psi, k))
@@ -235,7 +235,7 @@ class DirectDensity:
         """w at radii r > a in length units: (2/pi) [int phi/sqrt(r^2 - t^2) dt - int (1 - chi) phi^ J0(kr) dk]."""
         if not radius.size:
             return np.zeros(0)
-        k, weight = _wavenumbers(self.layer, self.contact_radius + float(radius.max()))
+        k, weight = layer_waves(self.layer, self.contact_radius + float(radius.max()))
         transform = _moments(self.load, self.flat, self.contact_radius, k) + _transform(self.grid, self.psi, k)
         layer = j0(np.multiply.outer(radius, k)) @ (weight * (transform @ under(depth)))
         outside: FloatArray = 2 / np.pi * (self._half_space_displacement(radius, depth) - layer)
@@ -386,7 +386,7 @@ def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatA
     return solution
 
 
-def _wavenumbers(layer: ElasticLayer, distance: float) -> tuple[FloatArray, FloatArray]:
+def layer_waves(layer: ElasticLayer, distance: float) -> tuple[FloatArray, FloatArray]:
     """Gauss nodes k and weights times 1 - chi(k), fine enough for cos(k distance); none on the half-space."""
     if layer.is_half_space:
         return np.zeros(0), np.zeros(0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Literal, Protocol, TypeAlias
+from typing import Literal, NamedTuple, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -74,6 +74,20 @@ class InsideFields:
         """Half the difference of the largest and the smallest principal stress [Pa]."""
         principal = self.principal_stresses
         return np.asarray((principal[0] - principal[-1]) / 2.0)
+
+
+class KnownContact(NamedTuple):
+    """What a path knows of one equilibrium.
+
+    Attributes:
+        radius: a [m], with all digits of what was prescribed.
+        radius_error: Its relative error.
+        pressure_error: Relative error of the pressure.
+    """
+
+    radius: float
+    radius_error: float
+    pressure_error: float
 
 
 class InteriorFields(Protocol):

@@ -9,7 +9,7 @@ from typing import Any, TypeVar, cast
 
 import numpy as np
 
-from contact.answer.inside import InteriorFields
+from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.solution import ContactPath, Fields
 from contact.answer.stages import StageLog
 from contact.records.errors import InvalidInput
@@ -74,7 +74,7 @@ class _PressedFields:
         known = self.number[step]
         return np.zeros_like(radius) if known < 0 else np.asarray(getattr(self.fields, name)(radius, known))
 
-    def inside(self, step: int, pressure_error: float) -> InteriorFields:
+    def inside(self, step: int, known: KnownContact) -> InteriorFields:
         """The body under one step that presses.
 
         Raises:
@@ -83,7 +83,7 @@ class _PressedFields:
         of_method = getattr(self.fields, "inside", None)
         if self.number[step] < 0 or of_method is None:
             raise InvalidInput(f"step = {step}: nothing is known inside the body; ask mdr for a step that presses")
-        found: InteriorFields = of_method(self.number[step], pressure_error)
+        found: InteriorFields = of_method(self.number[step], known)
         return found
 
 

@@ -9,7 +9,7 @@ from typing import ClassVar, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contact.answer.inside import Inside
+from contact.answer.inside import Inside, KnownContact
 from contact.answer.one_thread import one_thread
 from contact.answer.stages import Cost, StageRecord
 from contact.answer.summary import quantity_line, scene_line
@@ -207,9 +207,11 @@ class ContactPath(Solution):
             raise InvalidInput(
                 f"{self.method} states no error of this pressure, and so none of the fields it makes inside"
             )
-        stated = np.broadcast_to(self.error_estimate["pressure"], len(self))
-        fields = inside(step % len(self), float(stated[step]))
-        return Inside(fields=fields, scene=self.scene, contact_radius=float(self.contact_radius[step]))
+        radius = float(self.contact_radius[step])
+        names = ("contact_radius", "pressure")
+        errors = (np.broadcast_to(self.error_estimate.get(name, 0.0), len(self))[step] for name in names)
+        fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))
+        return Inside(fields=fields, scene=self.scene, contact_radius=radius)
 
     @one_thread
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:

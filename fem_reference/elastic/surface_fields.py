@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
 from fem_reference.elastic.inside.interior import FemInterior
 from fem_reference.elastic.inside.section import MeridianSection
@@ -44,7 +45,7 @@ class FemFields:
         state = self.states[step]
         return state.contact_modulus * state.contact.pressure(radius / state.contact_radius, state.depth)
 
-    def inside(self, step: int, pressure_error: float) -> FemInterior:
+    def inside(self, step: int, known: KnownContact) -> FemInterior:
         """The layer under one step; the error of the pressure is measured anew inside."""
         state = self.states[step]
         moved = state.other.smooth_depth - state.contact.smooth_depth

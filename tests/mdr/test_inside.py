@@ -11,6 +11,7 @@ from scipy.special import j1
 from bem.kernels.inside import place_of
 from bem.kernels.stack import Sheet, StackKernel
 from bem.layer_equation.inside.layer_part import layer_fields
+from cases.declare.methods import build
 from contact import (
     Adhesion,
     Cone,
@@ -321,6 +322,18 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
     # Beside the contact stresses are small, and integrals err by a share of the mean pressure all the same.
     far = path.inside().at(3.0 * radius, 0.3)
     assert far.error_estimate["stress"] > 3.0 * deep.error_estimate["stress"]
-    # What is below the surface by 1e-6 a and beside the edge by 1e-9 a, with a that is no binary fraction.
-    beside = path.inside().at(radius * (1.0 + 1e-9), 1e-10 * radius)
-    assert beside.error_estimate["stress"] > 1e-8
+
+
+@pytest.mark.parametrize("nodes", [8, 12])
+def test_a_radius_that_was_found_moves_what_is_beside_the_edge(nodes):
+    """A stress that vanishes like a root at the edge moves by half the radius's error over its distance."""
+    prescribed = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=10.0), 1.3)
+    scene = prescribed.scene.replace(loading=NormalForces([float(prescribed.normal_force[0])]))
+    path = build("mdr", {"nodes": nodes}).solve(scene)
+    a = float(path.contact_radius[0])
+    beside, exact = path.inside().at(1.3 * (1.0 - 1e-6), 1e-8), prescribed.inside().at(1.3 * (1.0 - 1e-6), 1e-8)
+    error = abs(float(beside.axial_stress - exact.axial_stress)) / abs(float(exact.axial_stress))
+    assert error <= beside.error_estimate["stress"] + exact.error_estimate["stress"]
+    moved = 0.5 * float(np.max(path.error_estimate["contact_radius"])) * a / 1.3e-6
+    assert beside.error_estimate["stress"] > 0.9 * moved
+    assert beside.error_estimate["stress"] < 1e3 * moved

@@ -10,8 +10,8 @@ import numpy as np
 from bem.kernels.inside import Place, place_of, sheet_of
 from bem.kernels.stack import StackKernel
 from bem.layer_equation.inside.density import Density
+from bem.layer_equation.inside.half_space_part import Points, integrals
 from bem.layer_equation.inside.half_space_part import fields as half_space_fields
-from bem.layer_equation.inside.half_space_part import integrals
 from bem.layer_equation.inside.layer_part import NAMES, layer_fields
 from contact.records.validation import FloatArray
 
@@ -33,26 +33,30 @@ class Body:
     poissons_ratio: float
     density: Density
 
-    def at(self, r: FloatArray, z: FloatArray) -> dict[str, FloatArray]:
+    def at(self, points: Points) -> dict[str, FloatArray]:
         """2 G u_r/r, 2 G u_z, stresses, pressure and gradient in E*, and G over the surface's, each of shape (n,)."""
-        z = np.maximum(z, SURFACE * self.density.radius)
+        r, depth, ends = points
+        z = np.maximum(depth, SURFACE * self.density.radius)
         if self.kernel is None:
-            parts = half_space_fields(integrals(self.density, r, z), r, z, self.poissons_ratio)
+            parts = self._of_half_space(Points(r, z, ends))
             return {name: part / math.pi for name, part in parts.items()} | {"modulus": np.ones_like(r)}
         found = {name: np.empty_like(r) for name in (*NAMES, "modulus")}
         sheets = np.array([place_of(self.kernel, float(depth)).sheet for depth in z])
         for sheet in np.unique(sheets):
             some = sheets == sheet
-            for name, values in self._of_sheet(r[some], z[some], top=sheet == 0).items():
+            for name, values in self._of_sheet(Points(r[some], z[some], ends[:, some]), top=sheet == 0).items():
                 found[name][some] = values / math.pi
             found["modulus"][some] = sheet_of(self.kernel, Place(int(sheet), 0.0)).shear_modulus
         return found
 
-    def _of_sheet(self, r: FloatArray, z: FloatArray, *, top: bool) -> dict[str, FloatArray]:
+    def _of_half_space(self, points: Points) -> dict[str, FloatArray]:
+        return half_space_fields(integrals(self.density, points), points.r, points.z, self.poissons_ratio)
+
+    def _of_sheet(self, points: Points, *, top: bool) -> dict[str, FloatArray]:
         assert self.kernel is not None
         load, a = self.density.transform, self.density.radius
-        parts = layer_fields(self.kernel, load, r, z, beyond_half_space=top, radius=a)
+        parts = layer_fields(self.kernel, load, points.r, points.z, beyond_half_space=top, radius=a)
         if not top:
             return parts
-        upper = half_space_fields(integrals(self.density, r, z), r, z, self.poissons_ratio)
+        upper = self._of_half_space(points)
         return {name: part + upper[name] for name, part in parts.items()}

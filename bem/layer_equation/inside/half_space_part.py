@@ -35,21 +35,36 @@ class Integrals(NamedTuple):
     i21: FloatArray
 
 
-def integrals(density: Density, r: FloatArray, z: FloatArray) -> Integrals:
-    """At points of shape (n,), z > 0."""
+class Points(NamedTuple):
+    """Points inside, their distances from where the density's pieces end known with all digits.
+
+    Attributes:
+        r: Radii, shape (n,).
+        z: Depths, z > 0, shape (n,).
+        ends: Ends of the pieces minus r, the first beginning first, shape (pieces + 1, n).
+    """
+
+    r: FloatArray
+    z: FloatArray
+    ends: FloatArray
+
+
+def integrals(density: Density, points: Points) -> Integrals:
+    """At points of shape (n,)."""
+    r, z, ends = points
     total = np.zeros((6, r.size))
     if density.edge_value:
         edge = np.full(r.shape, density.radius)
-        total -= density.edge_value * _kernels(r, z, edge, density.radius - r)
-    for piece in density.pieces:
-        total += _over_piece(density, piece, r, z)
+        total -= density.edge_value * _kernels(r, z, edge, ends[-1])
+    for piece, start, stop in zip(density.pieces, ends[:-1], ends[1:], strict=True):
+        total += _over_piece(density, piece, Points(r, z, np.array([start, stop])))
     return Integrals(*total)
 
 
-def _over_piece(density: Density, piece: Piece, r: FloatArray, z: FloatArray) -> FloatArray:
+def _over_piece(density: Density, piece: Piece, points: Points) -> FloatArray:
+    r, z, ends = points
     total = np.zeros((6, r.size))
-    first = np.arcsinh((piece.start - r) / z)
-    last = np.arcsinh((piece.start + piece.length - r) / z)
+    first, last = np.arcsinh(ends / z)
     panels = np.ceil((last - first) / _LENGTH).astype(int)
     # Points that need the same number of panels are taken together.
     for count in np.unique(panels):

@@ -13,9 +13,14 @@ from bem.kernels.of_layer import stack_of
 from bem.layer_equation.inside.density import Density
 from bem.layer_equation.inside.errors import Magnitudes, stated_errors
 from bem.layer_equation.inside.fields import Body
-from contact import ElasticLayer
-from contact.answer.inside import InsideFields
+from bem.layer_equation.inside.half_space_part import Points
+from contact import Scene
+from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
+
+# Relative distance within which an end of a piece is a rounded rim: the rim was divided by the unit, subtracted from
+# another one and multiplied again, which is four roundings.
+_ROUNDED = 4.0 * float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,23 +28,28 @@ class ContactInterior:
     """Fields inside the body under one contact.
 
     Attributes:
-        layer: Layer, stack or half-space.
+        scene: What was solved.
         density: Of the contact's pressure, lengths by `unit`.
         unit: Length unit [m].
-        pressure_error: Relative error of the contact's pressure.
+        depth: delta by `unit`.
+        known: Of the contact.
     """
 
-    layer: ElasticLayer
+    scene: Scene
     density: Density
     unit: float
-    pressure_error: float
+    depth: float
+    known: KnownContact
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
-        unit, modulus = self.unit, contact_modulus(self.layer)
-        points = np.array([radius, np.minimum(depth, self.layer.thickness)]) / unit
-        found = self._body.at(*points)
-        shear = found["modulus"] * self.layer.shear_modulus
+        layer, unit = self.scene.layer, self.unit
+        modulus = contact_modulus(layer)
+        # Beside a rim a difference of two radii in metres is exact; of two rounded ratios it is not.
+        distances = (self._ends[:, None] - radius) / unit
+        points = Points(radius / unit, np.minimum(depth, layer.thickness) / unit, distances)
+        found = self._body.at(points)
+        shear = found["modulus"] * layer.shear_modulus
         stresses = {
             "radial_stress": found["s1"] - found["hoop_strain"],
             "hoop_stress": found["s2"] + found["hoop_strain"],
@@ -47,21 +57,31 @@ class ContactInterior:
             "shear_stress": found["shear_stress"],
         }
         slopes = {name: found[name] for name in ("pressure_gradient_radial", "pressure_gradient_axial")}
-        length = min(self.density.radius, self.layer.thickness / unit)
-        sizes = Magnitudes(_largest(stresses), _largest(slopes), length)
+        length = min(self.density.radius, layer.thickness / unit)
+        sizes = Magnitudes(_largest(stresses), _largest(slopes), length, self.depth)
         return InsideFields(
             radial_displacement=modulus * found["hoop_strain"] * radius / (2.0 * shear),
             axial_displacement=modulus * found["axial"] * unit / (2.0 * shear),
             **{name: modulus * values for name, values in stresses.items()},
             hydrostatic_pressure=modulus * found["hydrostatic_pressure"],
             **{name: modulus * values / unit for name, values in slopes.items()},
-            error_estimate=stated_errors(self.density, points, sizes, self.pressure_error),
+            error_estimate=stated_errors(self.density, points, sizes, self.known),
         )
 
     @cached_property
     def _body(self) -> Body:
-        kernel = None if self.layer.is_half_space else stack_of(self.layer)
-        return Body(kernel, self.layer.surface.poissons_ratio, self.density)
+        layer = self.scene.layer
+        kernel = None if layer.is_half_space else stack_of(layer)
+        return Body(kernel, layer.surface.poissons_ratio, self.density)
+
+    @cached_property
+    def _ends(self) -> FloatArray:
+        """Where pieces of the density end [m]: at rims and at the edge the radii that were given, unrounded."""
+        indenter = self.scene.indenter
+        given = np.array([indenter.flat_radius, *indenter.breakpoints, self.known.radius])
+        ends = self.unit * np.array([*(piece.start for piece in self.density.pieces), self.density.radius])
+        nearest = given[np.argmin(np.abs(np.subtract.outer(ends, given)), axis=1)]
+        return np.where(np.abs(nearest - ends) <= _ROUNDED * ends, nearest, ends)
 
 
 def _largest(parts: Mapping[str, FloatArray]) -> FloatArray:

@@ -1,0 +1,60 @@
+"""Fields inside against a referee of their own, point by point: nothing beyond what is stated, and not far below it."""
+
+import numpy as np
+import pytest
+
+from bem.layer_equation.inside.smooth_slope import smooth_slope
+from bem.layer_equation.one_radius import DirectDensity
+from cases.declare.methods import build
+from cases.measurements.campaigns.inside.campaign import inside_campaign
+from cases.measurements.campaigns.inside.referee import InsideReferee
+from contact import ContactRadii, Layer, Paraboloid, Scene, TruncatedCone
+from mdr import Mdr
+
+
+def beyond(rows):
+    return [(row.scene, row.quantity, row.error, row.stated) for row in rows if row.error > row.stated]
+
+
+@pytest.mark.parametrize("nodes", [10, 24])
+def test_points_of_random_contacts_lie_within_their_stated_errors(nodes):
+    rows = inside_campaign(build("mdr", {"nodes": nodes}), seed=8, count=3)
+    assert beyond(rows) == []
+    assert [row.reason for row in rows if row.reason] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("nodes", [8, 12, 24])
+def test_points_of_many_random_contacts_lie_within_their_stated_errors(nodes):
+    rows = inside_campaign(build("mdr", {"nodes": nodes}), seed=9, count=100)
+    assert beyond(rows) == []
+
+
+def test_distances_from_rims_keep_their_digits():
+    """Radii divided by the thickness left 1e-8 of the stress at 1e-9 a beside the edge, and beside the kink."""
+    layer = Layer(thickness=0.37, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
+    indenter, a = TruncatedCone(flat_radius=0.11, slope=0.1), 0.3
+    inside = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]))).inside()
+    referee = InsideReferee(layer, indenter, a)
+    for rim in (0.11, a):
+        r, z = rim * (1.0 + 1e-9), 1e-10 * a
+        found, exact = inside.at(r, z), referee.at(r, z)
+        names = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress")
+        largest = max(abs(exact[name]) for name in names)
+        for name in names:
+            value = layer.contact_modulus * exact[name]
+            assert float(getattr(found, name)) == pytest.approx(value, rel=0, abs=1e-12 * largest), (rim, name)
+
+
+def test_the_slope_of_wide_contacts_keeps_its_digits():
+    """Differences of psi left 6e-12 of the largest slope, and displacements beyond what was stated."""
+    layer = Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5)
+    indenter, a = Paraboloid(radius_of_curvature=200.0), 9.7
+    path = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([a])))
+    found = smooth_slope(layer, path.fields.contact(0).density)
+    direct = DirectDensity.solve(layer, indenter, a, 0.5, 24)
+    t = np.array([1e-6, 0.02, 0.1, 1.0, 3.0, 9.5])
+    k = direct.wavenumbers
+    waves = k**2 * np.sinc(np.multiply.outer(t, k) / np.pi)
+    exact = -waves @ direct.amplitudes @ np.array([direct.depth, -1.0])
+    assert found(t) == pytest.approx(exact, rel=0, abs=2e-13 * np.abs(exact).max())
