@@ -27,6 +27,9 @@ FAR_SHARE = 1e-5
 PRESSURE_ORDER = 3.0
 # Errors over what is wanted that count where an attempt did not converge: cells become half as large.
 UNSETTLED = {"normal_force": 1e3}
+# Finer meshes that leave this share of the error, so many in a row, will not take it away: it is refused at once,
+# before a mesh fills the memory. Halved cells leave (1/2)^7 of it; irregular ones have left half. Chosen between.
+LEFT, IN_VAIN = 0.8, 2
 # Refinements that are tried before an accuracy counts as out of reach.
 ATTEMPTS = 6
 
@@ -58,9 +61,10 @@ def solve_to_accuracy(
         wanted: relative accuracy of each quantity that is asked for; that of the pressure may be another.
 
     Raises:
-        NotConvergedError: `ATTEMPTS` did not suffice.
+        NotConvergedError: `ATTEMPTS` did not suffice, or finer meshes do not lessen the error.
     """
     settings = settings_for(min(error for name, error in wanted.items() if name != "pressure"))
+    before, in_vain = np.inf, 0
     for left in reversed(range(ATTEMPTS)):
         try:
             answer = attempt(settings)
@@ -74,9 +78,13 @@ def solve_to_accuracy(
         worst = max(excess, key=lambda name: excess[name])
         if excess[worst] <= 1:
             return answer
-        settings = _finer(settings, excess)
+        in_vain = in_vain + 1 if excess[worst] > LEFT * before else 0
+        if in_vain == IN_VAIN:
+            break
+        before, settings = excess[worst], _finer(settings, excess)
+    why = "; finer meshes do not lessen its error" if in_vain == IN_VAIN else ""
     raise NotConvergedError(
-        f"accuracy {wanted[worst]:g} of the {worst.replace('_', ' ')} was not reached",
+        f"accuracy {wanted[worst]:g} of the {worst.replace('_', ' ')} was not reached{why}",
         {"estimated_error": excess[worst] * wanted[worst]},
     )
 
