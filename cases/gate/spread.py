@@ -18,7 +18,7 @@ from cases.judgement.rules.tolerance import relative_spread
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.run.executors import process_pool
 from cases.run.solve_task import solve
-from contact import ContactRadii, IndentationDepths, InvalidInput, NormalForces, Scene
+from contact import ContactRadii, ElasticLayer, IndentationDepths, InvalidInput, Layer, NormalForces, Scene
 
 PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice
 
@@ -68,17 +68,22 @@ def nudged_scene(scene: Scene, towards: float) -> Scene:
 
     Where that is no scene (a radius beyond the end of a table) the loading stays as it is.
     """
-    layer, loading = scene.layer, scene.loading
-    layer = layer.replace(youngs_modulus=math.nextafter(layer.youngs_modulus, towards))
-    if not layer.is_half_space:
-        layer = layer.replace(thickness=math.nextafter(layer.thickness, towards))
-    nudged = scene.replace(layer=layer)
+    loading = scene.loading
+    nudged = scene.replace(layer=_nudged_layer(scene.layer, towards))
     if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
         return nudged
     try:
         return nudged.replace(loading=loading.replace(values=np.nextafter(loading.values, towards)))
     except InvalidInput:
         return nudged
+
+
+def _nudged_layer(layer: ElasticLayer, towards: float) -> ElasticLayer:
+    """Modulus and thickness one unit in the last place away; of stacks and graded layers all depths."""
+    if not isinstance(layer, Layer):
+        return layer.stretched(math.nextafter(1.0, towards))
+    layer = layer.replace(youngs_modulus=math.nextafter(layer.youngs_modulus, towards))
+    return layer if layer.is_half_space else layer.replace(thickness=math.nextafter(layer.thickness, towards))
 
 
 def _spread(place: tuple[str, str, str], repeated: list[Quantity]) -> float:

@@ -121,6 +121,11 @@ def _facts() -> Iterator[str]:
         "- A column of Hayes' table in circulation under nu = 0.5 belongs to nu = 0.48: at a/h = 1 it is "
         f"{wrong} off for the one and {right} for the other.\n"
     )
+    yield from _facts_of_limits()
+
+
+def _facts_of_limits() -> Iterator[str]:
+    """Where formulas end, and how slowly limits are approached."""
     negative = float(RATIOS[np.flatnonzero(punch.garcia(RATIOS, 0.5) < 0)[0]])
     yield f"- Garcia's punch ends in -0.291 t^4: its force turns negative near a/h = {negative:.2g}.\n"
     yield (

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cases.declare import methods
+from cases.declare.registry import load_cases
 from cases.gate import spread
 from cases.gate.spread import measured_spreads, nudged_scene
 from cases.run.solve_task import solve
@@ -92,3 +93,9 @@ def test_different_numbers_of_steps_are_refused():
     shorter = replace(quantity, values=quantity.values[:1], uncertainty=())
     with pytest.raises(InvalidInput, match="steps"):
         spread._spread(("fast", "scene", "q"), [quantity, shorter])
+
+
+def test_every_scene_of_the_library_can_be_nudged():
+    for case in load_cases().values():
+        for scene in case.scenes:
+            assert nudged_scene(scene.scene, np.inf).layer != scene.scene.layer, (case.name, scene.name)
