@@ -14,8 +14,8 @@ FOLDER = "figures"
 # Bytes of SVG on one page; what comes later lies in the folder only, and the page says so.
 ROOM = 3_000_000
 EMPTY = Markup("")
-# So many pictures are drawn sooner than a second process has started: twelve took 1.7 s alone and 2.3 s with it
-# (2026-11-22).
+# So many pictures are drawn by one process: nine took 1.7 s alone and 2.3 s with a second one, which has to start
+# first (2026-11-22). Where the two are level was not measured.
 FEW = 16
 
 

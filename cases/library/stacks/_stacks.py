@@ -1,13 +1,14 @@
 """What the cases of layered bodies share: stacks from numbers, indenters, scenes, and claims that all of them make."""
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from cases.declare.case import CaseScene
 from cases.declare.task import Sampling
+from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.declared import DeclaredClaim
 from cases.library._claims import agreements
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS, edges
@@ -134,4 +135,29 @@ def pressed_shape(
         reason=WHY["shape test"],
         compliance=compliance,
         radial_waves=radial_waves,
+    )
+
+
+def stiffness_limit(
+    name: str,
+    scenes: Iterable[CaseScene],
+    parameter: Callable[[AnyScene], float],
+    limit: Callable[[AnyScene], float],
+    *,
+    largest: float,
+    reason: str,
+) -> Approach:
+    """The stiffness of both fast methods approaches a limit with first order in a parameter, in the suite nightly."""
+    return Approach(
+        name=name,
+        quantity="contact_stiffness",
+        scenes=tuple(scene.name for scene in scenes),
+        parameter=parameter,
+        limit=limit,
+        formal_order=1.0,
+        largest=largest,
+        tolerance=0.2,
+        methods=("mdr", "integral_equation"),
+        nightly=True,
+        reason=WHY[reason],
     )

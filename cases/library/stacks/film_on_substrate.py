@@ -13,7 +13,6 @@ import math
 import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.approach import Approach
 from cases.library._claims import exact
 from cases.library._layers import THICKNESS, YOUNGS_MODULUS
 from cases.library.stacks._stacks import (
@@ -26,6 +25,7 @@ from cases.library.stacks._stacks import (
     pressed,
     pressed_shape,
     stack,
+    stiffness_limit,
     two_methods,
 )
 from cases.measurements.cost.settings import elastic_costs
@@ -155,31 +155,11 @@ CASE = Case(
             tolerance=1e-11,
             tolerances={"fem": 1e-5, "bem": 1e-3},
         ),
-        Approach(
-            name="a thin film answers like its substrate",
-            quantity="contact_stiffness",
-            scenes=tuple(s.name for s in WIDE),
-            parameter=thinness,
-            limit=thin_film,
-            formal_order=1.0,
-            largest=0.05,
-            tolerance=0.2,
-            methods=("mdr", "integral_equation"),
-            nightly=True,
-            reason=WHY["thin film"],
+        stiffness_limit(
+            "a thin film answers like its substrate", WIDE, thinness, thin_film, largest=0.05, reason="thin film"
         ),
-        Approach(
-            name="a slipping stiff film bends like a plate",
-            quantity="contact_stiffness",
-            scenes=tuple(s.name for s in PLATES),
-            parameter=narrowness,
-            limit=bent_plate,
-            formal_order=1.0,
-            largest=0.05,
-            tolerance=0.2,
-            methods=("mdr", "integral_equation"),
-            nightly=True,
-            reason=WHY["plate"],
+        stiffness_limit(
+            "a slipping stiff film bends like a plate", PLATES, narrowness, bent_plate, largest=0.05, reason="plate"
         ),
     ),
     work=elastic_costs(film(10.0, 1.0).name),

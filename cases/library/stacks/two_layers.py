@@ -12,7 +12,6 @@ here.
 import math
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.approach import Approach
 from cases.library._claims import exact, scaling_law
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, studies
 from cases.library._layers import THICKNESS
@@ -25,6 +24,7 @@ from cases.library.stacks._stacks import (
     pressed,
     pressed_shape,
     stack,
+    stiffness_limit,
     two_methods,
 )
 from cases.measurements.cost.settings import elastic_costs
@@ -155,19 +155,7 @@ CASE = Case(
             tolerance=1e-11,
             tolerances={"fem": 1e-5, "bem": 1e-3},
         ),
-        Approach(
-            name="incompressible layers flow",
-            quantity="contact_stiffness",
-            scenes=tuple(s.name for s in THIN),
-            parameter=thinness,
-            limit=flowing,
-            formal_order=1.0,
-            largest=0.1,
-            tolerance=0.2,
-            methods=("mdr", "integral_equation"),
-            nightly=True,
-            reason=WHY["flow"],
-        ),
+        stiffness_limit("incompressible layers flow", THIN, thinness, flowing, largest=0.1, reason="flow"),
         *studies((FIRST_SCENE,), EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
     ),
     work=elastic_costs(FIRST_SCENE.name),
