@@ -109,6 +109,8 @@ class Bem(Record):
         if self.boundary == "periodic" and (scene.layer.is_half_space or scene.effects):
             what = "adhesion" if scene.effects else "a half-space"
             return Unsupported(reason=f'{what} has no periodic answer; use boundary="free"')
+        if self.adhesion == "cells" and isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine":
+            return Unsupported(reason='single cells are withdrawn by a rigid machine; use adhesion="discs", mdr or fem')
         if self.adhesion == "cells" and scene.effects and not isinstance(scene.loading, Detachment | IndentationDepths):
             return Unsupported(reason='single cells let go at given depths or in a detachment; use adhesion="discs"')
         return Supported()
@@ -183,7 +185,7 @@ class Bem(Record):
         kind = AdheringCells if self.adhesion == "cells" else AdheringDiscs
         adhering = kind(scene, self.points, self.threads, self._settings(), log)
         if isinstance(scene.loading, Detachment):
-            return adhering.detachment(scene.loading.control)
+            return adhering.detachment(scene.loading.controlled)
         return adhering.equilibria()
 
     def _press(self, scene: Scene, log: StageLog) -> ContactPath:

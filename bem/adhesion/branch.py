@@ -17,7 +17,7 @@ from bem.adhesion.disc import AdheringDisc
 from bem.grid.quadrant import COARSE_CELLS
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
-from contact import Adhesion, FlatPunch, Profile, Scene
+from contact import Adhesion, Detachment, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
 
@@ -36,7 +36,8 @@ GROWTH: Final = 1.6
 # The first trial radius is the half-space's, but at most this times the thickness, where it is no guide any more.
 FIRST_RATIO: Final = 4.0
 
-Quantity = Literal["indentation_depth", "normal_force"]
+# Depth, force, and the displacement of a machine that gives way.
+Quantity = Literal["indentation_depth", "normal_force", "machine"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -197,8 +198,18 @@ class DiscBranch:
         return np.asarray(contact_modulus(self.scene.layer) * (stiffness * delta - moment))
 
     def value(self, quantity: Quantity, radius: FloatArray) -> FloatArray:
-        """Depth or force."""
-        return self.depth(radius) if quantity == "indentation_depth" else self.force(radius)
+        """Depth [m], force [N], or the machine's displacement delta + F/K [m]."""
+        if quantity == "normal_force":
+            return self.force(radius)
+        depth = self.depth(radius)
+        return depth if quantity == "indentation_depth" else depth + self.compliance * self.force(radius, depth)
+
+    @property
+    def compliance(self) -> float:
+        """1/K [m/N] of the machine that withdraws the indenter; zero if it is rigid."""
+        loading = self.scene.loading
+        stiffness = loading.machine_stiffness if isinstance(loading, Detachment) else None
+        return 1.0 / stiffness if stiffness else 0.0
 
     def samples(self) -> FloatArray:
         """Radii along the branch, increasing, the ends of its pieces among them."""

@@ -14,7 +14,7 @@ from bem.adhesion.disc import FARTHEST
 from bem.adhesion.energy_balance import edge_errors
 from bem.adhesion.fields import AdheringFields, pressure_change
 from bem.adhesion.sequence import FollowedState, at_radii, followed
-from bem.adhesion.withdrawal import QUANTITIES, Control, Withdrawal, stable, strength
+from bem.adhesion.withdrawal import QUANTITIES, Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
 from bem.grid.error_model import DISCS
 from bem.grid.quadrant import refuse_thin_layer
@@ -33,6 +33,7 @@ from contact import (
 )
 from contact.answer.solution import Setting
 from contact.records.validation import BoolArray, FloatArray
+from contact.scene.loading import Controlled
 
 # Least thickness of the layer in cells: with it the ring of the coarse grid begins within half the layer's thickness.
 LEAST_LAYER: Final = 12.0
@@ -97,7 +98,7 @@ class AdheringDiscs:
             contact_stiffness=values["contact_stiffness"],
         )
 
-    def detachment(self, control: Control) -> DetachmentPath:
+    def detachment(self, control: Controlled) -> DetachmentPath:
         """The whole equilibrium branch of a withdrawal, in order of decreasing radius.
 
         Raises:
@@ -129,9 +130,10 @@ class AdheringDiscs:
             pull_off_force=pull_off["pull_off_force"],
             pull_off_depth=pull_off["pull_off_depth"],
             pull_off_contact_radius=pull_off["pull_off_contact_radius"],
+            force_at_loss=pull_off["force_at_loss"],
         )
 
-    def _pull_off_errors(self, way: Withdrawal, coarse: DiscBranch, control: Control) -> dict[str, FloatArray]:
+    def _pull_off_errors(self, way: Withdrawal, coarse: DiscBranch, control: Controlled) -> dict[str, FloatArray]:
         """Relative errors of the scalars: of depth and force the lesser of two estimates, as along the branch."""
         branch, pull_off, other = way.branch, way.pull_off(control), way.compared(coarse, control)
         cut = Withdrawal(branch.cut(), way.start).pull_off(control)
@@ -142,13 +144,18 @@ class AdheringDiscs:
         )
         by_grids = {name: DISCS.difference * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
         by_grids["pull_off_contact_radius"] += DISCS.radius_floor
-        places = np.array([way.loss(control), way.strongest(control)])
-        for row, name in enumerate(("pull_off_depth", "pull_off_force")):
-            value, by_energy = pull_off[name], edge_errors(branch, coarse, places[row : row + 1])[row, 0]
+        lost, strongest = way.loss(control), way.strongest(control)
+        for row, name, place in (
+            (0, "pull_off_depth", lost),
+            (1, "pull_off_force", strongest),
+            (1, "force_at_loss", lost),
+        ):
+            value, here = pull_off[name], np.array([place])
+            by_energy = edge_errors(branch, coarse, here)[row, 0]
             quantity = QUANTITIES["displacement" if row == 0 else "force"]
-            moved = places[row] * (1.0 + by_grids["pull_off_contact_radius"] * np.array([-1.0, 1.0]))
+            moved = place * (1.0 + by_grids["pull_off_contact_radius"] * np.array([-1.0, 1.0]))
             by_place = np.max(np.abs(branch.value(quantity, np.minimum(moved, branch.largest_radius)) - value))
-            solved = self._solved(branch, places[row : row + 1])[row]
+            solved = self._solved(branch, here)[row]
             by_grids[name] = min(by_grids[name], float((by_energy + by_place + solved) / abs(value)))
         return {name: np.array([error]) for name, error in by_grids.items()}
 
@@ -207,9 +214,15 @@ class AdheringDiscs:
         terms = (depth + fine.elongation(lost_at)) / depth
         return {
             "pull_off_force": float(solved + by_edge),
+            "force_at_loss": float((solved + by_edge) * self._force_terms(fine, lost_at)),
             "pull_off_depth": float((solved + by_edge) * terms),
             "pull_off_contact_radius": float(np.where(self._at_rim(lost_at), 0.0, solved + by_edge)),
         }
+
+    def _force_terms(self, fine: DiscBranch, lost_at: FloatArray) -> FloatArray:
+        """The terms whose difference the force is at a radius [m], over it."""
+        displaced = np.abs(fine.depth(lost_at)) + fine.elongation(lost_at)
+        return np.asarray(fine.stiffness(lost_at) * displaced / np.abs(fine.force(lost_at)))
 
     def _at_rim(self, radius: FloatArray) -> BoolArray:
         """Whether radii [m] are that of the flat end, where the edge is held."""

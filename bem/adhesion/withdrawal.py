@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 
 from bem.adhesion.branch import RIM, DiscBranch, Quantity
 from contact import CriticalPoint, FlatPunch
 from contact.records.validation import BoolArray, FloatArray
+from contact.scene.loading import Controlled
 
-Control = Literal["displacement", "force"]
-QUANTITIES: Final[dict[Control, Quantity]] = {"displacement": "indentation_depth", "force": "normal_force"}
+QUANTITIES: Final[dict[Controlled, Quantity]] = {
+    "displacement": "indentation_depth",
+    "force": "normal_force",
+    "machine": "machine",
+}
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,7 @@ class Withdrawal:
     branch: DiscBranch
     start: float
 
-    def loss(self, control: Control) -> float:
+    def loss(self, control: Controlled) -> float:
         """The radius [m] at which contact is lost: where the controlled quantity is least on the whole branch.
 
         A contact that jumps at a least value comes to rest where the branch passes that value again, if it goes lower.
@@ -36,7 +40,7 @@ class Withdrawal:
         ends = [a for a, least in self.branch.turning_points(quantity) if least and a < self.start]
         return min([self.start, *ends], key=lambda a: float(self.branch.value(quantity, np.array([a]))[0]))
 
-    def strongest(self, control: Control) -> float:
+    def strongest(self, control: Controlled) -> float:
         """The radius [m] of the least force among the states that the withdrawal visits: each the lowest so far."""
         radii = self.branch.samples()
         radii = np.concatenate([[self.start], radii[(radii < self.start) & (radii > self.loss(control))][::-1]])
@@ -45,11 +49,11 @@ class Withdrawal:
         visited = radii[controlled <= np.minimum.accumulate(controlled)]
         return float(visited[np.argmin(self.branch.force(visited))])
 
-    def pull_off(self, control: Control) -> dict[str, float]:
+    def pull_off(self, control: Controlled) -> dict[str, float]:
         """The scalars of a detachment path."""
         return _scalars(self.branch, self.loss(control), self.strongest(control))
 
-    def compared(self, other: DiscBranch, control: Control) -> dict[str, float]:
+    def compared(self, other: DiscBranch, control: Controlled) -> dict[str, float]:
         """The same scalars of another grid's branch; lost at the rim of a flat end, where both are, at the same radii.
 
         Just beyond a rim a coarse grid may not see yet that the profile rises, and make up states of its own.
@@ -61,17 +65,29 @@ class Withdrawal:
         return _scalars(other, rim, rim if abs(strongest / rim - 1.0) < RIM else strongest)
 
     def critical_points(self) -> tuple[CriticalPoint, ...]:
-        """Every change of stability inside the start, under either control; and a punch's own edge."""
+        """Every change of stability inside the start, under any control; first touch; and a punch's own edge."""
         points = []
         for control, quantity in QUANTITIES.items():
+            if control == "machine" and not self.branch.compliance:
+                continue
             if isinstance(self.branch.scene.indenter, FlatPunch):
                 points.append(self._point(control, "start", self.start))
             for a, least in self.branch.turning_points(quantity):
                 if a < self.start:
                     points.append(self._point(control, "pull-off" if least else "snap-in", a))
+            points += self._landing(control)
         return tuple(points)
 
-    def _point(self, control: Control, kind: str, radius: float) -> CriticalPoint:
+    def _landing(self, control: Controlled) -> list[CriticalPoint]:
+        """First touch: the smallest stable contact at zero depth, force or displacement of the machine."""
+        if isinstance(self.branch.scene.indenter, FlatPunch):
+            return []
+        found = self.branch.crossing(
+            QUANTITIES[control], 0.0, (float(self.branch.samples()[0]), self.start), inmost=True
+        )
+        return [] if found is None else [self._point(control, "snap-in", found)]
+
+    def _point(self, control: Controlled, kind: str, radius: float) -> CriticalPoint:
         a = np.array([radius])
         depth, force = float(self.branch.depth(a)[0]), float(self.branch.force(a)[0])
         return CriticalPoint(
@@ -80,11 +96,12 @@ class Withdrawal:
 
 
 def _scalars(branch: DiscBranch, lost: float, strongest: float) -> dict[str, float]:
-    """Force at one radius [m], depth at another, and that."""
+    """Force at one radius [m], depth at another, that, and the force there."""
     return {
         "pull_off_force": float(branch.force(np.array([strongest]))[0]),
         "pull_off_depth": float(branch.depth(np.array([lost]))[0]),
         "pull_off_contact_radius": lost,
+        "force_at_loss": float(branch.force(np.array([lost]))[0]),
     }
 
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import Final, TypeAlias
 
 from cases.gate.baseline import AcceptedQuantity, Baseline
-from contact import UNITS
+from contact import UNITS, DetachmentPath
 
 Accepted: TypeAlias = Mapping[tuple[str, str], AcceptedQuantity]
 
@@ -85,7 +85,7 @@ def _by_place(baseline: Baseline) -> Accepted:
 
 def _same_states(record: AcceptedQuantity, other: AcceptedQuantity, others: Accepted) -> bool:
     """Each method chooses its own states along a detachment, so only the pull-off is compared there."""
-    chosen = (record.scene, "pull_off_force") in others and not record.quantity.startswith("pull_off")
+    chosen = (record.scene, "pull_off_force") in others and record.quantity not in DetachmentPath.SCALARS
     return not chosen and len(record.values) == len(other.values)
 
 

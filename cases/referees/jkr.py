@@ -40,7 +40,7 @@ class Jkr:
             "it models half-spaces": not scene.layer.is_half_space,
             "adhesion alone, no other effect": len(scene.effects) != 1 or scene.effect(Adhesion) is None,
             "it has closed forms for paraboloids": not isinstance(scene.indenter, Paraboloid),
-            "it takes a detachment": not isinstance(scene.loading, Detachment),
+            "it takes a detachment by a rigid machine or a force": not _is_plain(scene),
         }
         reason = next((why for why, lacks_it in lacking.items() if lacks_it), "") or lacks(PACKAGE)
         return Unsupported(reason) if reason else Supported()
@@ -66,6 +66,7 @@ class Jkr:
             pull_off_force=float(found["normal_force"].min() if not by_force else found["normal_force"][-1]),
             pull_off_depth=float(found["indentation_depth"][-1]),
             pull_off_contact_radius=float(radius[-1]),
+            force_at_loss=float(found["normal_force"][-1]),
             error_estimate={},
             cost=log.cost(unknowns=1),
             stages=log.records,
@@ -74,6 +75,10 @@ class Jkr:
     def refined(self) -> Self:
         """A copy with twice the states."""
         return replace(self, states=2 * self.states)
+
+
+def _is_plain(scene: Scene) -> bool:
+    return isinstance(scene.loading, Detachment) and scene.loading.controlled != "machine"
 
 
 def _numbers(scene: Scene, adhesion: Adhesion) -> dict[str, float]:

@@ -22,7 +22,7 @@ from contact import (
 from contact.records.validation import FloatArray
 
 _SCALES = {"energy_residual": 1.0}  # already over the initial energy: its own size is rounding
-_ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth"}
+_ON_BRANCH = {"pull_off_force": "normal_force", "pull_off_depth": "indentation_depth", "force_at_loss": "normal_force"}
 
 
 def quantities(solution: Solution, sampling: Sampling) -> tuple[Quantity, ...]:

@@ -41,6 +41,7 @@ UNITS: Mapping[str, str] = {
     "pull_off_force": "N",
     "pull_off_depth": "m",
     "pull_off_contact_radius": "m",
+    "force_at_loss": "N",
 }
 
 
@@ -253,7 +254,7 @@ class CriticalPoint:
     """A state where the equilibrium branch gains or loses stability.
 
     Attributes:
-        control: "displacement" or "force".
+        control: "displacement", "force" or "machine" (the displacement of one that gives way).
         kind: "pull-off", "snap-in" or "start" (detachment begins at a punch's edge).
         contact_radius: a [m].
         indentation_depth: delta [m].
@@ -280,11 +281,17 @@ class DetachmentPath(Solution):
         pull_off_force: Largest tensile force on the way, as a (negative) F_N [N], under the scene's control.
         pull_off_depth: delta [m] where contact is lost under the scene's control.
         pull_off_contact_radius: a [m] where contact is lost.
-        critical_points: All changes of stability under either control.
+        force_at_loss: F_N [N] just before contact is lost, often a smaller tension than the largest on the way.
+        critical_points: All changes of stability under either control, and under that of a machine that gives way.
     """
 
     ARRAYS: ClassVar[tuple[str, ...]] = ("contact_radius", "indentation_depth", "normal_force")
-    SCALARS: ClassVar[tuple[str, ...]] = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
+    SCALARS: ClassVar[tuple[str, ...]] = (
+        "pull_off_force",
+        "pull_off_depth",
+        "pull_off_contact_radius",
+        "force_at_loss",
+    )
     OFFERS: ClassVar[tuple[str, ...]] = ("critical_points", "stable_displacement_control", "stable_force_control")
     ASKED: ClassVar[tuple[str, ...]] = (*ARRAYS, *SCALARS)
 
@@ -296,6 +303,7 @@ class DetachmentPath(Solution):
     pull_off_force: float
     pull_off_depth: float
     pull_off_contact_radius: float
+    force_at_loss: float
     critical_points: tuple[CriticalPoint, ...] = ()
 
 

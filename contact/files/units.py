@@ -43,6 +43,7 @@ UNIT_OF_FIELD: Final = {
     "mass": "kg",
     "velocity": "m/s",
     "work_of_adhesion": "J/m^2",
+    "machine_stiffness": "N/m",
 }
 # The field `values` means what its record says.
 UNIT_OF_VALUES: Final = {"ContactRadii": "m", "IndentationDepths": "m", "NormalForces": "N", "TabulatedDepth": "Pa"}
@@ -57,6 +58,7 @@ KIND_OF_UNIT: Final = {
     "kg": "a mass",
     "m/s": "a velocity",
     "J/m^2": "an energy per area",
+    "N/m": "a stiffness",
     "rad": "an angle",
 }
 EXAMPLE_OF_UNIT: Final = {
@@ -68,6 +70,7 @@ EXAMPLE_OF_UNIT: Final = {
     "kg": "4 mg",
     "m/s": "1 mm/s",
     "J/m^2": "50 mJ/m^2",
+    "N/m": "0.05 N/m",
     "rad": "30 deg",
 }
 # A number, then letters with one-digit powers: nothing that takes long to evaluate.

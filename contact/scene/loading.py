@@ -9,6 +9,9 @@ from pydantic import Field, model_validator
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, PositiveLength, Vector, finite_vector, increasing_vector, positive
 
+Controlled: TypeAlias = Literal["displacement", "force", "machine"]
+"""What a detachment prescribes: depth, force, or the displacement of a machine that gives way."""
+
 
 class Loading(Record):
     """Base of every loading."""
@@ -57,14 +60,33 @@ class NormalForces(Loading):
 class Detachment(Loading):
     """Slow separation of an adhering indenter.
 
+    A real machine, or the cantilever of a force microscope, gives way by F/K: with its stiffness K, what it prescribes
+    is the displacement delta + F/K of its far end, and contact is lost where that has its least value.
+
     Attributes:
         control: What the testing machine prescribes: "displacement" (stiff) or "force" (soft).
+        machine_stiffness: K [N/m] of what holds the indenter, under displacement control; None if it is rigid.
         initial_contact_radius: a [m] where the separation starts; a flat punch starts at its own radius, and other
             profiles, when it is omitted, at a radius from which the whole unloading branch is seen.
     """
 
     control: Literal["displacement", "force"] = "displacement"
+    machine_stiffness: Annotated[float, *positive("give the machine's stiffness in newtons per metre")] | None = None
     initial_contact_radius: PositiveLength | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Detachment:
+        if self.control == "force" and self.machine_stiffness is not None:
+            raise ValueError(
+                f"machine_stiffness = {self.machine_stiffness:g}: a prescribed force is the same whatever holds the "
+                'indenter; leave it out, or take control = "displacement"'
+            )
+        return self
+
+    @property
+    def controlled(self) -> Controlled:
+        """What is prescribed: the depth, the force, or the displacement of a machine that gives way."""
+        return "machine" if self.machine_stiffness is not None else self.control
 
 
 @record

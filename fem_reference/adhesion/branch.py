@@ -20,6 +20,7 @@ from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 
 from contact.records.validation import FloatArray
+from contact.scene.loading import Controlled
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.error_model import FIXED_RADIUS, ON_BRANCH
 
@@ -129,11 +130,18 @@ class InterpolatedBranch:
         pieces: between kinks, in increasing radius.
         work: dgamma / E* [m].
         is_shifted: whether every contact acts like a smaller one, as its edge cell makes it.
+        machine: E*/K [1/m] of a machine of stiffness K; zero if it is rigid.
     """
 
     pieces: Sequence[BranchPiece]
     work: float
     is_shifted: bool = False
+    machine: float = 0.0
+
+    @property
+    def loads(self) -> dict[Controlled, Callable[[FloatArray], FloatArray]]:
+        """What each control prescribes, over radii [m]."""
+        return {"displacement": self.depth, "force": self.force, "machine": self.displacement}
 
     def at_degree(self, degree: int) -> InterpolatedBranch:
         """The branch as elements of another degree have it."""
@@ -164,6 +172,10 @@ class InterpolatedBranch:
     def force(self, radius: FloatArray) -> FloatArray:
         """F / E* [m^2]."""
         return self.stiffness(radius) * self.depth(radius) + self._evaluate("profile_force", radius)
+
+    def displacement(self, radius: FloatArray) -> FloatArray:
+        """delta + F/K [m] of the machine."""
+        return self.depth(radius) + self.machine * self.force(radius)
 
     def slope(self, function: Callable[[FloatArray], FloatArray], radius: FloatArray) -> FloatArray:
         """d function / d a by central differences inside the piece of each radius (the interpolants are smooth)."""

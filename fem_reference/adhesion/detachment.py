@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Literal
+from dataclasses import replace
 
 import numpy as np
 from scipy.optimize import brentq
@@ -19,6 +19,7 @@ from contact import (
     StageLog,
 )
 from contact.records.validation import FloatArray
+from contact.scene.loading import Controlled
 from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.adhesion.equilibria import (
@@ -33,8 +34,6 @@ from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_contacts
 from fem_reference.elastic.path import ContactSolver
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-Control = Literal["displacement", "force"]
 
 CAVITATION = (
     "the pressure under a flat punch of radius {radius:g} m has a second maximum in the centre: detachment may lose "
@@ -65,15 +64,19 @@ def detachment_path(
     loading = scene.loading
     if not isinstance(loading, Detachment):
         raise InvalidInput(f"loading = {type(loading).__name__}: this path needs a Detachment")
-    branch = _branch_to_pull_off(scene, loading, solve, accuracy)
+    branch = replace(_branch_to_pull_off(scene, loading, solve, accuracy), machine=_compliance(scene, loading))
     work = work_of_adhesion(scene)
     refuse_touching_contacts(scene, ((c, adhesive_equilibrium(c, work).depth) for c in branch.contacts))
     radius = branch_samples(branch)[::-1]
     depth, force = branch.depth(radius), branch.force(radius)
-    critical = [*_start(scene, branch), *_turning_points(branch, radius)]
-    pull_off = _pull_off(branch, radius, loading.control, critical)
+    critical = [
+        *_start(scene, branch, loading),
+        *_turning_points(branch, radius, loading),
+        *_landings(scene, branch, radius, loading),
+    ]
+    pull_off = _pull_off(branch, radius, loading.controlled, critical)
     modulus = contact_modulus(scene.layer)
-    strongest = _strongest_pull(branch, radius, loading.control, pull_off, critical)
+    strongest = _strongest_pull(branch, radius, loading.controlled, pull_off, critical)
     depth_error, force_error = errors_along(branch, radius)
     error = {
         "contact_radius": np.zeros_like(radius),
@@ -100,6 +103,7 @@ def detachment_path(
         pull_off_force=modulus * strongest.normal_force,
         pull_off_depth=pull_off.indentation_depth,
         pull_off_contact_radius=pull_off.contact_radius,
+        force_at_loss=modulus * pull_off.normal_force,
         critical_points=tuple(_in_newtons(point, modulus) for point in critical),
     )
 
@@ -120,7 +124,8 @@ def _branch_to_pull_off(
     """A branch long enough to become unstable, or the longest."""
     for span in SPANS:
         branch = branch_of(scene, loading.initial_contact_radius, solve, accuracy, span)
-        load = branch.depth if loading.control == "displacement" else branch.force
+        # Under a machine that gives way, contact is lost before it would be at a prescribed depth.
+        load = branch.force if loading.control == "force" else branch.depth
         if np.any(branch.slope(load, branch_samples(branch)) <= 0):
             break
     return branch
@@ -139,21 +144,44 @@ def _point(branch: InterpolatedBranch, radius: float, control: str, kind: str) -
     return CriticalPoint(control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force)
 
 
-def _start(scene: Scene, branch: InterpolatedBranch) -> list[CriticalPoint]:
+def _compliance(scene: Scene, loading: Detachment) -> float:
+    """E*/K [1/m] of a machine; zero if it is rigid."""
+    return contact_modulus(scene.layer) / loading.machine_stiffness if loading.machine_stiffness else 0.0
+
+
+def _controls(loading: Detachment) -> tuple[Controlled, ...]:
+    """All under which stability is told."""
+    return ("displacement", "force", "machine") if loading.controlled == "machine" else ("displacement", "force")
+
+
+def _start(scene: Scene, branch: InterpolatedBranch, loading: Detachment) -> list[CriticalPoint]:
     """A flat punch holds its radius until detachment begins at its rim."""
     if not isinstance(scene.indenter, FlatPunch):
         return []
-    return [_point(branch, scene.indenter.radius, control, "start") for control in ("displacement", "force")]
+    return [_point(branch, scene.indenter.radius, control, "start") for control in _controls(loading)]
 
 
-def _turning_points(branch: InterpolatedBranch, radius: FloatArray) -> list[CriticalPoint]:
-    """Every change of sign of d(depth)/da and dF/da, in the order of decreasing radius."""
+def _turning_points(branch: InterpolatedBranch, radius: FloatArray, loading: Detachment) -> list[CriticalPoint]:
+    """Every change of sign of the slope of what is controlled, in the order of decreasing radius."""
     points = []
-    for control, load in (("displacement", branch.depth), ("force", branch.force)):
+    for control in _controls(loading):
+        load = branch.loads[control]
         slope = branch.slope(load, radius)
         for i in np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1])):
             kind = "pull-off" if slope[i] > 0 else "snap-in"
             points.append(_point(branch, slope_root(branch, load, radius[i + 1], radius[i]), control, kind))
+    return points
+
+
+def _landings(scene: Scene, branch: InterpolatedBranch, radius: FloatArray, loading: Detachment) -> list[CriticalPoint]:
+    """Where first touch lands: the smallest stable contact at zero depth, force or displacement of the machine."""
+    points: list[CriticalPoint] = []
+    for control in _controls(loading) if not isinstance(scene.indenter, FlatPunch) else ():
+        load = branch.loads[control]
+        values = load(radius)
+        for i in np.flatnonzero((values[:-1] > 0.0) & (values[1:] <= 0.0))[-1:]:
+            found = brentq(lambda a, load=load: load(np.array([a]))[0], radius[i + 1], radius[i], xtol=ROOT * radius[i])
+            points.append(_point(branch, float(found), control, "snap-in"))
     return points
 
 
@@ -170,13 +198,13 @@ def slope_root(branch: InterpolatedBranch, load: Callable[[FloatArray], FloatArr
 
 
 def _pull_off(
-    branch: InterpolatedBranch, radius: FloatArray, control: Control, critical: list[CriticalPoint]
+    branch: InterpolatedBranch, radius: FloatArray, control: Controlled, critical: list[CriticalPoint]
 ) -> CriticalPoint:
     """Where contact is lost for good: at the lowest of the first state, if that is unstable, and the turning points.
 
     A contact that jumps from a higher one comes to rest on the stable part of the branch before the lowest.
     """
-    load = branch.depth if control == "displacement" else branch.force
+    load = branch.loads[control]
     lost = [p for p in critical if p.control == control and p.kind == "pull-off"]
     if branch.slope(load, radius[:1])[0] <= 0:
         lost.insert(0, _point(branch, float(radius[0]), control, "pull-off"))
@@ -186,7 +214,7 @@ def _pull_off(
             "no smaller radii were solved; prescribe a smaller initial_contact_radius",
             {"radius_over_first": radius[-1] / radius[0]},
         )
-    return min(lost, key=lambda p: p.indentation_depth if control == "displacement" else p.normal_force)
+    return min(lost, key=lambda p: float(load(np.array([p.contact_radius]))[0]))
 
 
 def _in_newtons(point: CriticalPoint, modulus: float) -> CriticalPoint:

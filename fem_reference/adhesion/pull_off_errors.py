@@ -24,6 +24,11 @@ Load = Callable[[InterpolatedBranch, FloatArray], FloatArray]
 BEND = 1e-2
 # Relative tolerance of the search for an extremum; also stated as an error of its place.
 ROOT = 1e-12
+_LOADS: dict[str, Load] = {
+    "displacement": InterpolatedBranch.depth,
+    "force": InterpolatedBranch.force,
+    "machine": InterpolatedBranch.displacement,
+}
 
 
 @dataclass(frozen=True)
@@ -95,36 +100,37 @@ class Extremum:
 def pull_off_errors(
     branch: InterpolatedBranch, pull_off: CriticalPoint, strongest: CriticalPoint
 ) -> dict[str, FloatArray]:
-    """Relative errors of force, depth and place."""
+    """Relative errors of force, depth and place, and of the force at that place."""
     here, there = np.array([pull_off.contact_radius]), np.array([strongest.contact_radius])
-    by_depth = pull_off.control == "displacement"
-    extremum = Extremum(
-        branch, InterpolatedBranch.depth if by_depth else InterpolatedBranch.force, pull_off.contact_radius
-    )
+    extremum = Extremum(branch, _LOADS[pull_off.control], pull_off.contact_radius)
     depth_slope = extremum.slope(branch, InterpolatedBranch.depth)
+    lost_slope = extremum.slope(branch, InterpolatedBranch.force)
     # The strongest point is the pull-off itself or an extremum of the force.
-    force_slope = extremum.slope(branch, InterpolatedBranch.force) if here[0] == there[0] else 0.0
+    force_slope = lost_slope if here[0] == there[0] else 0.0
 
     def numbers(other: InterpolatedBranch) -> FloatArray:
-        """Depth, force and ln a of the extremum."""
+        """Depth, largest tension, ln a and force of the extremum."""
         shift = extremum.shift(other)
-        return np.array(
-            [other.depth(here)[0] + shift * depth_slope, other.force(there)[0] + shift * force_slope, shift]
-        )
+        depth = other.depth(here)[0] + shift * depth_slope
+        strongest, lost = other.force(there)[0] + shift * force_slope, other.force(here)[0] + shift * lost_slope
+        return np.array([depth, strongest, shift, lost])
 
     between = branch.errors_between(here)[:, 0]
-    shift = extremum.shift_between(between[0 if by_depth else 1])
-    moved = extremum.shift_by_scatter * np.array([abs(depth_slope), abs(force_slope), 1.0])
+    of_load = {"displacement": between[0], "force": between[1], "machine": between[0] + branch.machine * between[1]}
+    shift = extremum.shift_between(of_load[pull_off.control])
+    moved = extremum.shift_by_scatter * np.array([abs(depth_slope), abs(force_slope), 1.0, abs(lost_slope)])
     by_degree = degree_error(branch, numbers)
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
     # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
-    depth, force, place = np.hypot(by_degree, moved) + edge_error(branch, numbers)
+    depth, force, place, lost = np.hypot(by_degree, moved) + edge_error(branch, numbers)
     depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
     force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
+    lost += branch.errors_far(here)[1, 0] + between[1] + shift * abs(lost_slope)
     is_at_rim = pull_off.contact_radius == branch.pieces[-1].high
     return {
         "pull_off_depth": np.array([depth / abs(pull_off.indentation_depth)]),
         "pull_off_force": np.array([force / abs(strongest.normal_force)]),
         "pull_off_contact_radius": np.array([0.0 if is_at_rim else place + shift + ROOT]),
+        "force_at_loss": np.array([lost / abs(pull_off.normal_force)]),
     }

@@ -119,7 +119,7 @@ def pull_off_groups(
     shared: dict[int, SharedTable] = {}
     tables: dict[int, PullOffTable] = {}
     for number, scene in enumerate(scenes):
-        if power_law(scene.indenter) is not None and work_of_adhesion(scene) > 0.0:
+        if power_law(scene.indenter) is not None and work_of_adhesion(scene) > 0.0 and not _through_machine(scene):
             balance = balance_radius(scene)
             shared[number] = reference(scene.layer, scene.indenter, balance)
             radius = 2.0 ** np.ceil(np.log2(_FIRST_WAY * balance / shared[number].length))
@@ -139,6 +139,11 @@ def pull_off_groups(
     rest = [number for number in range(len(scenes)) if number not in shared]
     found: list[tuple[list[int], Callable[[list[int]], FloatArray]]] = [(m, together) for m in groups.values()]
     return [*found, (rest, alone)] if rest else found
+
+
+def _through_machine(scene: Scene) -> bool:
+    """Whether a machine holds the indenter that gives way: such scenes are solved one by one."""
+    return isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine"
 
 
 def _table_up_to(shared: SharedTable, radius: float, flat_punch: FlatPunchSource) -> PullOffTable:

@@ -8,7 +8,7 @@ are found; nothing is stepped.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Protocol
 
@@ -92,6 +92,16 @@ class MdrAdhesiveBranch:
     def truncation(self, y: FloatArray) -> FloatArray:
         """What the polynomials leave out of delta [m] and F [N] at y, and roundings of y, shape (2, n)."""
         return np.asarray(self.tails[:, self.functions.panel(y)] + self.rounding[:, None])
+
+    def through_machine(self, compliance: float) -> MdrAdhesiveBranch:
+        """The branch with the displacement delta + F/K of a machine in place of the depth; its compliance is 1/K."""
+        powers, coefficients, tails = self.functions.powers.copy(), self.coefficients.copy(), self.tails.copy()
+        powers[:, 0::2] += compliance * powers[:, 1::2]
+        coefficients[:, DEPTH] += compliance * coefficients[:, FORCE]
+        tails[DEPTH] += compliance * tails[FORCE]
+        rounding = np.array([self.rounding[DEPTH] + compliance * self.rounding[FORCE], self.rounding[FORCE]])
+        functions = replace(self.functions, powers=powers)
+        return replace(self, functions=functions, coefficients=coefficients, tails=tails, rounding=rounding)
 
     def _section(self, y: FloatArray) -> NDArray[np.intp]:
         return np.clip(np.searchsorted(self.section_ends, y, side="right") - 1, 0, self.section_ends.size - 2)

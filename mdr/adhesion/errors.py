@@ -90,6 +90,13 @@ class BranchErrors:
         folds = [q for q in (DEPTH, FORCE) if y in self.branch.folds(q)]
         return self.of_states(at, max([self._fold_shift(q, at) for q in folds], default=np.array([shift])))[:, 0]
 
+    def of_machine_fold(self, y: float, compliance: float) -> FloatArray:
+        """Errors of delta, F and a where the displacement delta + F/K of a machine is least; compliance is 1/K."""
+        at = np.array([y])
+        error = self._slope_error(DEPTH, at) + compliance * self._slope_error(FORCE, at)
+        by_depth, by_force = self.branch.curvatures(at)
+        return self.of_states(at, error / np.abs(by_depth + compliance * by_force))[:, 0]
+
     def shift(self, quantity: int, y: FloatArray, of_target: float = 0.0) -> FloatArray:
         """How far a state moves that is looked for by its depth or force, on either side of a fold."""
         error = self._at_radius(y)[quantity] + of_target

@@ -31,7 +31,7 @@ from contact.scene.extent import radius_of_elongation
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.pressure_errors import pressure_errors
-from mdr.adhesion.withdrawal import CONTROLS, Route
+from mdr.adhesion.withdrawal import CONTROLS, MACHINE, Route
 from mdr.elastic import PathFields, solve_elastic
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_beside
@@ -72,10 +72,10 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         system = bounds.system
         radius, values, errors, stable = _states(route, bounds, uncertain)
         refuse_touching_beside(scene, system, radius, values[DEPTH])
-        control = CONTROLS.index(loading.control)
+        control = CONTROLS.index(loading.controlled)
         loss, tension = route.loss(control), route.largest_tension(control)
-        lost_radius, lost_depth, _ = route.state(loss)
-        lost, torn = (bounds.of_point(y, uncertain) for y in (loss, tension))
+        lost_radius, lost_depth, lost_force = route.state(loss)
+        lost, torn = (_point_errors(route, bounds, uncertain, y) for y in (loss, tension))
         force = route.state(tension)[2]
     depth_scale, force_scale = np.abs(values).max(axis=1)
     return DetachmentPath(
@@ -89,6 +89,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
             "pull_off_force": _relative(torn[FORCE], force),
             "pull_off_depth": _relative(lost[DEPTH], lost_depth),
             "pull_off_contact_radius": _relative(lost[RADIUS], lost_radius),
+            "force_at_loss": _relative(lost[FORCE], lost_force),
         },
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
@@ -101,6 +102,7 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         pull_off_force=force,
         pull_off_depth=lost_depth,
         pull_off_contact_radius=lost_radius,
+        force_at_loss=lost_force,
         critical_points=route.critical_points(),
     )
 
@@ -156,21 +158,33 @@ def _relative(errors: FloatArray | float, values: FloatArray | float) -> FloatAr
     return np.atleast_1d(errors) / (largest if largest > 0.0 else 1.0)
 
 
+def _point_errors(route: Route, bounds: BranchErrors, uncertain: float, y: float) -> FloatArray:
+    """Errors of depth, force and radius where contact is lost, or where it pulls most."""
+    if MACHINE in route.controls and y in route.folds(MACHINE) and y not in route.branch.section_ends:
+        return bounds.of_machine_fold(y, route.compliance)
+    return bounds.of_point(y, uncertain)
+
+
 def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) -> tuple[Route, BranchErrors, float]:
     """The way from the first contact radius inwards, errors along it, and how uncertain its start is in y."""
     is_punch = isinstance(scene.indenter, FlatPunch)
+    compliance = 1.0 / (loading.machine_stiffness or np.inf)
     if is_punch or loading.initial_contact_radius is not None:
         system, branch = _branch(scene, loading.initial_contact_radius or scene.indenter.max_radius, flat_punch)
-        return Route(branch, float(branch.section_ends[-1]), pinned=is_punch), BranchErrors(system, branch), 0.0
+        return (
+            Route(branch, float(branch.section_ends[-1]), pinned=is_punch, compliance=compliance),
+            BranchErrors(system, branch),
+            0.0,
+        )
     if work_of_adhesion(scene) == 0.0:
         raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
     system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= _strength(b))
     bounds, start = BranchErrors(system, branch), branch.solutions(FORCE, np.array([_strength(branch)]))
     if np.isnan(start[0]):
-        return Route(branch, float(branch.section_ends[-1]), pinned=False), bounds, 0.0
+        return Route(branch, float(branch.section_ends[-1]), pinned=False, compliance=compliance), bounds, 0.0
     strongest = max(float(bounds.of_point(y, 0.0)[FORCE]) for y in branch.folds(FORCE))
     uncertain = float(bounds.shift(FORCE, start, strongest)[0])
-    return Route(branch, float(start[0]), pinned=False), bounds, uncertain
+    return Route(branch, float(start[0]), pinned=False, compliance=compliance), bounds, uncertain
 
 
 def _strength(branch: MdrAdhesiveBranch) -> float:

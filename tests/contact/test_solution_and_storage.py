@@ -80,6 +80,7 @@ def solutions():
             pull_off_force=-1 / 3,
             pull_off_depth=-0.1,
             pull_off_contact_radius=0.2,
+            force_at_loss=-0.3,
             critical_points=(point,),
         ),
         HistoryPath(**common(), **three("time", "indentation_depth", "normal_force", "contact_radius")),

@@ -187,6 +187,8 @@ def branch_errors(fine: CellBranch, coarse: CellBranch, control: str) -> dict[st
         values, reached = getattr(fine, name), getattr(coarse, name)[j]
         spread = _spread(values, fine.normal_force, force_error) if control == "force" else FOLD
         errors[PULL_OFF[name]] = abs(reached / values[i] - 1.0) + CELLS.lag * cell[i] + spread
+    lost, other_lost = fine.normal_force[i], coarse.normal_force[j]
+    errors["force_at_loss"] = abs(other_lost / lost - 1.0) + CELLS.lag * cell[i] + (FOLD if control != "force" else 0.0)
     return errors
 
 

@@ -14,12 +14,12 @@ from bem.adhesion.cell_by_cell.path import (
     stable_under_force,
     start_radius,
 )
-from bem.adhesion.withdrawal import Control
 from bem.grid.flat_punch import contact_stiffness
 from bem.grid.quadrant import COARSE_CELLS
 from contact import ContactPath, DetachmentPath, IndentationDepths, Scene, StageLog, UnsupportedSceneError
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
+from contact.scene.loading import Controlled
 
 
 @dataclass(frozen=True)
@@ -70,7 +70,7 @@ class AdheringCells:
             contact_stiffness=np.array([contact_stiffness(layer, a, COARSE_CELLS) if a > 0.0 else 0.0 for a in radii]),
         )
 
-    def detachment(self, control: Control) -> DetachmentPath:
+    def detachment(self, control: Controlled) -> DetachmentPath:
         """The branch that is stable under displacement control, from a contact radius to pull-off."""
         with self.log.stage("first_guess"):
             start = start_radius(self.scene, self.threads)
@@ -98,6 +98,7 @@ class AdheringCells:
             pull_off_force=float(fine.normal_force[fine.least_force]),
             pull_off_depth=float(fine.indentation_depth[end]),
             pull_off_contact_radius=float(fine.contact_radius[end]),
+            force_at_loss=float(fine.normal_force[end]),
             critical_points=fine.critical_points(),
         )
 

@@ -9,9 +9,9 @@ from cases.declare.task import Answers, Task
 from cases.measurements.advice.ablation import NOTHING_PULLS, STATIC, parts_of, without
 from cases.results.records.cost import EffectEntry
 from cases.results.records.scene_run import SceneRun
-from contact import Adhesion, Detachment
+from contact import Adhesion, Detachment, DetachmentPath
 
-_COMPARED = (*IMPACT_NUMBERS, "pull_off_force", "pull_off_depth", "pull_off_contact_radius", *STATIC)
+_COMPARED = (*IMPACT_NUMBERS, *DetachmentPath.SCALARS, *STATIC)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -63,6 +63,8 @@ DIMENSIONS: dict[str, tuple[int, int, int]] = {
     "pull_off_force": _FORCE,
     "pull_off_depth": _LENGTH,
     "pull_off_contact_radius": _LENGTH,
+    "force_at_loss": _FORCE,
+    "machine_stiffness": (1, 1, 0),
 }
 
 
