@@ -109,11 +109,7 @@ class Bem(Record):
         if self.boundary == "periodic" and (scene.layer.is_half_space or scene.effects):
             what = "adhesion" if scene.effects else "a half-space"
             return Unsupported(reason=f'{what} has no periodic answer; use boundary="free"')
-        if self.adhesion == "cells" and isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine":
-            return Unsupported(reason='single cells are withdrawn by a rigid machine; use adhesion="discs", mdr or fem')
-        if self.adhesion == "cells" and scene.effects and not isinstance(scene.loading, Detachment | IndentationDepths):
-            return Unsupported(reason='single cells let go at given depths or in a detachment; use adhesion="discs"')
-        return Supported()
+        return _supported_by_cells(scene) if self.adhesion == "cells" and scene.effects else Supported()
 
     def refined(self) -> Self:
         """A copy with half the cell size, or the accuracy of half the cell size."""
@@ -299,3 +295,12 @@ def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterField
     r: FloatArray = state.contact_radius * (np.arange(200) + 0.5) / 200
     p, q = fine.pressure(r), coarse.pressure(r)
     return float(np.sqrt(np.sum(r * (p - q) ** 2) / np.sum(r * p**2)))
+
+
+def _supported_by_cells(scene: Scene) -> Supported | Unsupported:
+    """Whether single cells can follow an adhesive scene."""
+    if not isinstance(scene.loading, Detachment | IndentationDepths):
+        return Unsupported(reason='single cells let go at given depths or in a detachment; use adhesion="discs"')
+    if isinstance(scene.loading, Detachment) and scene.loading.controlled == "machine":
+        return Unsupported(reason='single cells are withdrawn by a rigid machine; use adhesion="discs", mdr or fem')
+    return Supported()

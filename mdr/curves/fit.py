@@ -124,7 +124,8 @@ def fit_curve(
     d, f = _checked(depth, force, parameters)
     if "work_of_adhesion" in parameters and scene.effect(Adhesion) is None:
         raise InvalidInput("work_of_adhesion: list Adhesion among the effects of the scene, with a first guess")
-    deepest = float(np.ptp(d)) + max(float(d.max()), 0.0)
+    # The contact point may be looked for half a curve before the first depth, and a step of differences beyond.
+    deepest = float(np.ptp(d)) + max(float(d.max()), (0.5 + 2 * _STEP) * float(np.ptp(d)))
     model = _Model(_elastic(scene, deepest), scene, d, tuple(parameters))
     found = model.solved(f)
     bare = [name for name in parameters if name in ("youngs_modulus", "contact_point", "baseline")]

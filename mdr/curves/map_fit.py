@@ -83,7 +83,9 @@ def fit_map(
         InvalidInput: For arrays that are no curves, or a scene with effects.
     """
     d, f = _checked(depth, force, 2 + baseline)
-    deepest = float(np.ptp(d, axis=-1).max()) + max(float(d.max()), 0.0)
+    # The contact point may be looked for half a curve before the first depth.
+    longest = float(np.ptp(d, axis=-1).max())
+    deepest = longest + max(float(d.max()), 0.5 * longest)
     curve = ForceCurve(scene.replace(loading=IndentationDepths([deepest])))
     parts: list[_Fitted] = []
     for start in range(0, len(f), _CHUNK):

@@ -15,14 +15,16 @@ from reports.terminal.terminal import console, show_facts, show_table
 from reports.words.numbers import small
 
 
-def fit_file(file: Path, scene_file: Path, also: Sequence[str], *, confidence: float, outputs: Sequence[Path]) -> None:
+def fit_file(
+    file: Path, scene_file: Path, also: Sequence[str], *, number: int, confidence: float, outputs: Sequence[Path]
+) -> None:
     """Fit one curve, print what was found, and write the files.
 
     Raises:
         InvalidInput: For a wrong scene, curve, parameter or file.
     """
     _check_outputs(outputs)
-    scene, (depth, force) = load_scene(scene_file), read_curve(file)
+    scene, (depth, force) = load_scene(scene_file), read_curve(file, number)
     # Names that are no parameters are refused by the fit itself.
     parameters: Any = ("youngs_modulus", *also)
     found = fit_curve(scene, depth, force, parameters=parameters, confidence=confidence)

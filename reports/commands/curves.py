@@ -17,13 +17,19 @@ Written = Annotated[list[Path] | None, typer.Option("--write", "-w", help="FILE.
 
 
 def fit(
-    curve: Annotated[Path, typer.Argument(help="CSV with columns of depth and force; units in the heads, or SI.")],
+    curve: Annotated[
+        Path,
+        typer.Argument(
+            help="CSV with columns of depth and force, units in the heads or SI; or .jpk-force, .h5, .tab, .ibw."
+        ),
+    ],
     scene: SceneFile,
     *,
     also: Annotated[
         str, typer.Option("--with", help="Fitted beside E: contact_point, baseline, thickness, work_of_adhesion.")
     ] = "contact_point",
     curves: Annotated[bool, typer.Option("--map", help="One force curve in each column after the depths.")] = False,
+    number: Annotated[int, typer.Option("--curve", help="Which curve of a microscope's file, from 0.")] = 0,
     confidence: Annotated[float, typer.Option(help="Of intervals and bands.")] = 0.95,
     write: Written = None,
 ) -> None:
@@ -38,7 +44,7 @@ def fit(
         if curves:
             fit_map_file(curve, scene, names, confidence=confidence, outputs=write or [], progress=progress)
         else:
-            fit_file(curve, scene, names, confidence=confidence, outputs=write or [])
+            fit_file(curve, scene, names, number=number, confidence=confidence, outputs=write or [])
 
 
 def sweep(
