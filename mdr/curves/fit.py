@@ -69,6 +69,8 @@ class CurveFit:
         band: Half width [N] of the band in which the curve lies with that confidence, shape (n,).
         numerical_error: Relative error of E by the computation itself; no part of `standard_error`.
         warnings: What a reader should know before relying on the numbers.
+        input_error: Standard uncertainty of each parameter by uncertain numbers of the scene, where they were asked
+            for (`cases.measurements.uncertain_fit`).
         formulas: The same curve fitted by formulas in use.
     """
 
@@ -85,6 +87,7 @@ class CurveFit:
     numerical_error: float
     warnings: tuple[str, ...] = ()
     formulas: tuple[FormulaFit, ...] = field(default=())
+    input_error: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def youngs_modulus(self) -> float:
@@ -92,8 +95,8 @@ class CurveFit:
         return self.values["youngs_modulus"]
 
     def interval(self, parameter: str) -> tuple[float, float]:
-        """In which the parameter lies with `confidence`; that of E includes the numerical error."""
-        half = self.quantile * self.standard_error[parameter]
+        """In which the parameter lies with `confidence`; with uncertain inputs, and of E with the numerical error."""
+        half = self.quantile * float(np.hypot(self.standard_error[parameter], self.input_error.get(parameter, 0.0)))
         if parameter == "youngs_modulus":
             half += self.numerical_error * self.youngs_modulus
         return self.values[parameter] - half, self.values[parameter] + half

@@ -6,17 +6,25 @@ from typing import Any
 
 from cases.declare.guarded_method import build_guarded
 from cases.measurements.sweep import read_range, sweep
+from cases.measurements.uncertain_fit import fit_uncertain
 from cases.results.files import write_whole
 from contact import InvalidInput, load_scene
 from contact.files.scene_file import scene_notes
 from mdr.curves import fit_curve, fit_map, read_curve, read_map
-from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, sweep_table
+from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table, sweep_table
 from reports.terminal.terminal import console, show_facts, show_table
 from reports.words.numbers import small
 
 
 def fit_file(
-    file: Path, scene_file: Path, also: Sequence[str], *, number: int, confidence: float, outputs: Sequence[Path]
+    file: Path,
+    scene_file: Path,
+    also: Sequence[str],
+    *,
+    uncertain: str,
+    number: int,
+    confidence: float,
+    outputs: Sequence[Path],
 ) -> None:
     """Fit one curve, print what was found, and write the files.
 
@@ -27,9 +35,15 @@ def fit_file(
     scene, (depth, force) = load_scene(scene_file), read_curve(file, number)
     # Names that are no parameters are refused by the fit itself.
     parameters: Any = ("youngs_modulus", *also)
-    found = fit_curve(scene, depth, force, parameters=parameters, confidence=confidence)
     terminal = console()
-    show_table(fit_table(found), on=terminal)
+    if uncertain:
+        carried = fit_uncertain(scene, depth, force, uncertain, parameters=parameters, confidence=confidence)
+        found = carried.fit
+        show_table(fit_table(found), on=terminal)
+        show_table(shares_table(carried), on=terminal)
+    else:
+        found = fit_curve(scene, depth, force, parameters=parameters, confidence=confidence)
+        show_table(fit_table(found), on=terminal)
     show_table(formula_table(found), on=terminal)
     facts = [("numerical error", f"{small(found.numerical_error)} of E, in its interval")]
     facts += [("warning", line) for line in found.warnings] + [("note", line) for line in scene_notes(scene_file)]

@@ -29,6 +29,9 @@ def fit(
         str, typer.Option("--with", help="Fitted beside E: contact_point, baseline, thickness, work_of_adhesion.")
     ] = "contact_point",
     curves: Annotated[bool, typer.Option("--map", help="One force curve in each column after the depths.")] = False,
+    uncertain: Annotated[
+        str, typer.Option(help='What is known to a tolerance, "radius=5%, thickness=4e-6..6e-6"; joins the intervals.')
+    ] = "",
     number: Annotated[int, typer.Option("--curve", help="Which curve of a microscope's file, from 0.")] = 0,
     confidence: Annotated[float, typer.Option(help="Of intervals and bands.")] = 0.95,
     write: Written = None,
@@ -41,10 +44,14 @@ def fit(
 
     names = [name.strip() for name in also.split(",") if name.strip()]
     with _bar("curves") as progress:
+        if curves and uncertain:
+            raise typer.BadParameter("--uncertain is for single curves: all curves of a map share the tolerance")
         if curves:
             fit_map_file(curve, scene, names, confidence=confidence, outputs=write or [], progress=progress)
         else:
-            fit_file(curve, scene, names, number=number, confidence=confidence, outputs=write or [])
+            fit_file(
+                curve, scene, names, uncertain=uncertain, number=number, confidence=confidence, outputs=write or []
+            )
 
 
 def sweep(

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from cases.measurements.sweep import Sweep
+from cases.measurements.uncertain_fit import UncertainFit
 from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.fit import UNIT_OF_PARAMETER
@@ -26,6 +27,23 @@ def fit_table(found: CurveFit) -> Table:
         title=f"Fit of {found.depth.size} points",
         note="Digits in brackets: standard error from the scatter of the curve.",
         heads=("parameter", "value", f"{100 * found.confidence:g} % interval", "unit"),
+        rows=tuple(rows),
+    )
+
+
+def shares_table(found: UncertainFit) -> Table:
+    """What each uncertain input does to each parameter, by one standard deviation."""
+    rows = []
+    for name, changes in found.changes.items():
+        factor, unit = scaled_unit(found.fit.values[name], UNIT_OF_PARAMETER[name])
+        scatter, inputs = found.fit.standard_error[name], found.fit.input_error[name]
+        numbers = [f"{number / factor:+.3g}" for number in changes.values()]
+        rows.append((name.replace("_", " "), f"{scatter / factor:.3g}", *numbers, f"{inputs / factor:.3g}", unit))
+    heads = [f"{one.name} ({one.in_words()})" for one in found.inputs.inputs]
+    return Table(
+        title="Standard uncertainty, one deviation each",
+        note="The interval holds scatter and inputs as the root of their squares, times Student's quantile.",
+        heads=("parameter", "scatter", *heads, "all inputs", "unit"),
         rows=tuple(rows),
     )
 
