@@ -4,8 +4,34 @@ Enters: a scene. Leaves: its answer, with stated errors. Read `method` first, th
 `elastic`; coefficients of stated errors stand in `springs.error_model`.
 """
 
-from mdr.method import Mdr
-from mdr.springs.assembly import SeveralContacts, equivalent_system
-from mdr.springs.equivalent_system import EquivalentSystem
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mdr.method import Mdr
+    from mdr.springs.assembly import SeveralContacts, equivalent_system
+    from mdr.springs.equivalent_system import EquivalentSystem
 
 __all__ = ["EquivalentSystem", "Mdr", "SeveralContacts", "equivalent_system"]
+
+_HOME = {
+    "EquivalentSystem": "mdr.springs.equivalent_system",
+    "Mdr": "mdr.method",
+    "SeveralContacts": "mdr.springs.assembly",
+    "equivalent_system": "mdr.springs.assembly",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Load a public name when it is first asked for: the package itself is imported in hundredths of a second."""
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
@@ -19,12 +19,14 @@ from mdr.springs.assembly import contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
-from mdr.springs.inside import density_of
 from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors
 from mdr.springs.table_pressure import pressure_errors
+
+if TYPE_CHECKING:
+    from bem.layer_equation.inside.interior import ContactInterior
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -115,6 +117,10 @@ class PathFields:
 
     def inside(self, step: int, known: KnownContact) -> ContactInterior:
         """The body under one step."""
+        # Half of what an answer would import otherwise, for those who look inside.
+        from bem.layer_equation.inside.interior import ContactInterior  # noqa: PLC0415
+        from mdr.springs.inside import density_of  # noqa: PLC0415
+
         contact = self.contact(step)
         return ContactInterior(
             self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
-from scipy.ndimage import maximum_filter1d
 
 from bem.kernels.of_layer import UniformKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
@@ -236,7 +236,8 @@ class LargeRatioSolution(FlatPunchSolution):
         last, before = self.log_stiffness - shorter, shorter - self._fitted(DEGREE - 2 * LAST_TERMS)
         share = min(1.0, FALL_SAFETY * float(np.max(np.abs(last(log_ratio))) / np.max(np.abs(before(log_ratio)))))
         value, slope = (
-            share * maximum_filter1d(np.abs(error(log_ratio)), 2 * NEARBY + 1, mode="nearest")
+            share
+            * sliding_window_view(np.pad(np.abs(error(log_ratio)), NEARBY, mode="edge"), 2 * NEARBY + 1).max(axis=1)
             for error in (last, last.deriv())
         )
         return log_ratio, value, slope

@@ -8,7 +8,7 @@ from math import ceil, log
 from typing import Final, Self
 
 import numpy as np
-from scipy.ndimage import maximum_filter1d
+from numpy.lib.stride_tricks import sliding_window_view
 
 from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
 from bem.grid.error_model import TABLES
@@ -194,7 +194,8 @@ def _every_other(table: FlatPunchTable) -> FlatPunchTable:
 def _largest_nearby(difference: FloatArray, ratios: FloatArray) -> FloatArray:
     """The largest value over each row's neighbourhood, along axis 0."""
     rows = ceil(log(TABLES.nearby) / log(ratios[1] / ratios[0]))
-    return np.asarray(maximum_filter1d(difference, 2 * rows + 1, axis=0, mode="nearest"))
+    padded = np.pad(difference, ((rows, rows), *[(0, 0)] * (difference.ndim - 1)), mode="edge")
+    return np.asarray(sliding_window_view(padded, 2 * rows + 1, axis=0).max(axis=-1))
 
 
 def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> dict[str, str | int | float]:

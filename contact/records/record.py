@@ -13,7 +13,8 @@ import pydantic.dataclasses
 from contact.records.errors import InvalidInput
 from contact.records.plain_text import printable
 
-_CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True)
+# Validators are built when the first record of a class is made: scenes use few of the classes.
+_CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
 # An error shows so many characters of an offending value: about one line of a terminal.
 _SHOWN = 80
 # One error tells so many problems: as many as a user mends before trying again.
@@ -56,6 +57,7 @@ def record(cls: type[R]) -> type[R]:
     @functools.wraps(unchecked)
     def checked(self: R, *args: Any, **kwargs: Any) -> None:
         """Construct; what pydantic complains of becomes one `InvalidInput`."""
+        complete(made)
         try:
             unchecked(self, *args, **kwargs)
         except pydantic.ValidationError as error:
@@ -64,6 +66,14 @@ def record(cls: type[R]) -> type[R]:
     made.__init__ = checked
     # pydantic returns the class that it was given.
     return made  # type: ignore[no-any-return]
+
+
+def complete(cls: type[Record]) -> None:
+    """Build the validator of a record's class if that has not happened yet; pydantic replaces its constructor then."""
+    if not cls.__pydantic_complete__:  # type: ignore[attr-defined]  # every record is a pydantic dataclass
+        constructor = cls.__init__
+        pydantic.dataclasses.rebuild_dataclass(cls)  # type: ignore[arg-type]  # as above
+        cls.__init__ = constructor  # type: ignore[method-assign]  # as above
 
 
 def describe(error: pydantic.ValidationError, cls: type[Any]) -> str:
