@@ -424,6 +424,7 @@ def run(arguments: list[str]) -> int:
 
 def _ended_by(error: Exception) -> int:
     from contact import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError  # noqa: PLC0415
+    from contact.records.extras import missing_extra  # noqa: PLC0415
 
     if isinstance(error, InvalidInput | UnsupportedSceneError):
         return _complain(str(error), USAGE)
@@ -431,6 +432,8 @@ def _ended_by(error: Exception) -> int:
         return _complain(f"no answer: {error}", 1)
     if isinstance(error, ContactError):
         return _complain(str(error), INTERNAL_ERROR)
+    if lacking := missing_extra(error):
+        return _complain(lacking, USAGE)
     if isinstance(error, OSError) and error.strerror:
         return _complain(f"{error.filename or 'a file'}: {error.strerror}; name another place, or make room", USAGE)
     typer.echo(_plain(traceback.format_exc()), err=True)

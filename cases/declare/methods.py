@@ -13,6 +13,7 @@ from typing import Any, Final
 
 from cases.declare.shared import used_by
 from contact import InvalidInput, Method
+from contact.records.extras import missing_extra
 from contact.records.record import shown
 
 ENTRY_POINT_GROUP = "contact_verification.methods"
@@ -159,4 +160,6 @@ def load(name: str) -> Any:
         return getattr(importlib.import_module(module), attribute)
     except Exception as error:
         # A package may raise anything when it is imported.
+        if lacking := missing_extra(error):
+            raise InvalidInput(f"method {name!r}: {lacking}") from None
         raise InvalidInput(f"method {name!r} cannot be imported from {module}: {error}; install it again") from error

@@ -7,9 +7,8 @@ from cases.results.files import read_run, require_run, write_whole
 from cases.results.records.run import RunResult
 from cases.results.status import ExitCode
 from cases.run.lock import locked
-from reports.pages.comparison import claim_table, headline, number_table, write_comparison
+from contact.records.extras import missing_extra
 from reports.pages.junit import junit_text
-from reports.pages.report import write_report
 from reports.pages.summary import summary_text
 from reports.terminal.terminal import STYLES, console, show_table
 from reports.words import outcomes
@@ -36,10 +35,26 @@ DRAWERS = 2
 
 
 def write_pages(run: RunResult, directory: Path, *, single_file: bool = False) -> None:
-    """report.html with a page for each case and figures, summary.md and junit.xml."""
-    write_report(run, directory, jobs=DRAWERS, single_file=single_file)
+    """report.html with a page for each case and figures, summary.md and junit.xml.
+
+    Where the packages of pages are not installed, the numbers, summary and junit.xml stand without them.
+    """
+    try:
+        from reports.pages.report import write_report  # noqa: PLC0415 - an extra brings what it draws with
+    except ModuleNotFoundError as error:
+        if not missing_extra(error):
+            raise
+        console(stderr=True).print(f"no pages: {missing_extra(error)}, then contact-verify report {directory}")
+    else:
+        write_report(run, directory, jobs=DRAWERS, single_file=single_file)
     write_whole(directory / "summary.md", summary_text(run))
     write_whole(directory / "junit.xml", junit_text(run))
+
+
+def page_of(directory: Path) -> Path:
+    """Where a reader begins: the report, or the summary where no pages could be drawn."""
+    report = directory / "report.html"
+    return report if report.is_file() else directory / "summary.md"
 
 
 # The terminal shows so many of the numbers that moved; the page shows more.
@@ -48,6 +63,8 @@ ROWS_IN_TERMINAL = 20
 
 def compare_runs(first: Path, second: Path) -> int:
     """Compare the run in `second` with that in `first`; the page lands beside the second; 5 if nothing ran in one."""
+    from reports.pages.comparison import claim_table, headline, number_table, write_comparison  # noqa: PLC0415 - as above
+
     runs = read_run(first), read_run(second)
     comparison = compare(*runs)
     page = second / "comparison.html"

@@ -20,7 +20,7 @@ from cases.results.status import ExitCode, exit_code
 from cases.run.executors import by_name
 from cases.run.lock import locked
 from cases.run.runner import RunOptions, run_cases
-from reports.commands.report import write_pages
+from reports.commands.report import page_of, write_pages
 from reports.pages.annotations import annotation_lines
 from reports.pages.matrix import run_matrix
 from reports.tables.table import Table
@@ -115,7 +115,7 @@ def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
         terminal.print(Text.assemble((row.word, STYLES["bad"]), f" {row.case}: {row.place} ({row.who}): {row.message}"))
     words, tone = headline(result, rows)
     terminal.print(words, style=STYLES[tone])
-    terminal.print(f"report: {out / 'report.html'}")
+    terminal.print(f"report: {page_of(out)}")
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in annotation_lines(result):
             terminal.print(line, soft_wrap=True)

@@ -5,6 +5,8 @@ Each is declared here once, with its options; what it needs is imported when it 
 
 from __future__ import annotations
 
+import itertools
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, cast
@@ -46,7 +48,7 @@ def ladders(names: Words = None, method: Methods = None, out: Report = None) -> 
     from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     plans, climbers = chosen(LADDERS, names or []), {name: CLIMBERS.get(name, {}) for name in method or ["mdr"]}
-    return published(lambda: ladder_case(plans, climbers, progress=_say), out)
+    return published(lambda: ladder_case(plans, climbers, progress=_counted(out, len(plans) * len(climbers))), out)
 
 
 def coverage(
@@ -71,7 +73,7 @@ def coverage(
 
     def study() -> CaseResult:
         """Measure, then show the coefficients."""
-        case = coverage_case(plans, SEED if seed is None else seed, progress=_say)
+        case = coverage_case(plans, SEED if seed is None else seed, progress=_counted(out))
         if table := error_coefficients(case):
             show_table(table, on=console())
         return case
@@ -96,9 +98,9 @@ def accuracy(
 
 def scaling(out: Report = Path("build/scaling")) -> int:
     """Measure how the time grows with a/h, radii, Prony terms, pieces of a history, grid cells, against theory."""
-    from cases.measurements.cost.scaling import scaling_case  # noqa: PLC0415
+    from cases.measurements.cost.scaling import PLANS, scaling_case  # noqa: PLC0415
 
-    return published(lambda: scaling_case(progress=_say), out)
+    return published(lambda: scaling_case(progress=_counted(out, len(PLANS))), out)
 
 
 def maps(names: Words = None, method: Methods = None, out: Report = Path("build/maps")) -> int:
@@ -108,8 +110,8 @@ def maps(names: Words = None, method: Methods = None, out: Report = Path("build/
     """
     from cases.measurements.advice.error_maps import map_case, plans_of  # noqa: PLC0415
 
-    plans = plans_of(names or [], method or [])
-    return published(lambda: map_case(plans, progress=_say), out)
+    plans = list(plans_of(names or [], method or []))
+    return published(lambda: map_case(plans, progress=_counted(out, len(plans))), out)
 
 
 def calibrate(
@@ -178,6 +180,28 @@ def published(study: Callable[[], CaseResult], out: Path | None) -> int:
         write_pages(run, out)
     _say(f"report: {out / 'report.html'}")
     return FAILED if any(status.is_failure for status in run.statuses) else 0
+
+
+PARTIAL = "partial.txt"
+
+
+def _counted(out: Path | None, total: int | None = None) -> Callable[[str], None]:
+    """Says each result when it is there, with its number and the time; with a folder it is kept there at once.
+
+    What a study has found before it is interrupted stands in `PARTIAL`.
+    """
+    start, number = time.monotonic(), itertools.count(1)
+
+    def say(line: str) -> None:
+        """One result, of one or more lines."""
+        count = next(number)
+        _say(f"[{count}{f' of {total}' if total else ''}, {time.monotonic() - start:.0f} s] {line}")
+        if out is not None:
+            out.mkdir(parents=True, exist_ok=True)
+            with (out / PARTIAL).open("w" if count == 1 else "a", encoding="utf-8") as file:
+                file.write(f"{line}\n")
+
+    return say
 
 
 def _say(line: str) -> None:

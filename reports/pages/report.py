@@ -10,10 +10,9 @@ import jinja2
 from markupsafe import Markup
 
 from cases.results.files import write_whole
-from cases.results.records.claim import Kind
 from cases.results.records.run import Acceptance, CaseResult, RunResult
-from cases.results.status import Status
-from reports.figures.figure_files import ROOM, FigureFolder
+from reports.charts import history
+from reports.figures.figure_files import ROOM, FigureFolder, PlacedFigure
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.front import Answer, pairs_table, three_answers_of
@@ -22,7 +21,7 @@ from reports.tables import convergence_table, cost_tables
 from reports.tables.sharing_tables import shared_things
 from reports.tables.table import Table, tabulated
 from reports.words.file_names import file_name
-from reports.words.moves import moves
+from reports.words.moves import baseline_sentence
 from reports.words.numbers import duration, small
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 
@@ -50,6 +49,7 @@ def write_report(run: RunResult, directory: Path, jobs: int = 1, *, single_file:
     out = shlex.quote(str(directory))
     answers = three_answers_of(run, folder, f"contact-verify report {out}")
     cases = [case_view(case, folder, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
+    moved = folder.place(history.figures(run.acceptances), f"contact-verify report {out}")
     folder.draw(jobs)
     (directory / CASES).mkdir(exist_ok=True)
     for stale in (directory / CASES).glob("*.html"):
@@ -57,7 +57,7 @@ def write_report(run: RunResult, directory: Path, jobs: int = 1, *, single_file:
     for case in () if single_file else cases:
         write_whole(directory / CASES / _page_name(case["result"].name), case_page(case, run))
     page = directory / "report.html"
-    write_whole(page, render(run, directory, cases, answers, single_file=single_file))
+    write_whole(page, render(run, directory, cases, answers, moved, single_file=single_file))
     return page
 
 
@@ -95,7 +95,13 @@ def _subcommand(case: CaseResult) -> str:
 
 
 def render(
-    run: RunResult, directory: Path, cases: Sequence[CaseView], answers: Sequence[Answer], *, single_file: bool
+    run: RunResult,
+    directory: Path,
+    cases: Sequence[CaseView],
+    answers: Sequence[Answer],
+    moved: Sequence[PlacedFigure],
+    *,
+    single_file: bool,
 ) -> str:
     """The front page as text."""
 
@@ -128,6 +134,7 @@ def render(
         orders=convergence_table.orders(run),
         cases=cases,
         notable=notable,
+        moved=moved,
         tolerances=tolerance_history(run.acceptances),
         stamp=stamp_lines(run),
         directory=shlex.quote(str(directory)),
@@ -139,16 +146,6 @@ def render(
 def without_optional_end_tags(page: str) -> str:
     """The page without the end tags of rows and cells, which HTML lets out: a tenth of a report with many tables."""
     return page.replace("</td>", "").replace("</tr>", "").replace("</th>", "")
-
-
-def baseline_sentence(run: RunResult) -> str:
-    """How far this run is from the accepted one."""
-    compared = [claim for case in run.cases for claim in case.claims if claim.kind is Kind.REGRESSION]
-    if not compared:
-        return "Not compared with a baseline."
-    changed = sum(claim.status is not Status.PASS for claim in compared)
-    groups = "; ".join(moves(run))
-    return f"Since the baseline: {changed} of {len(compared)} numbers changed{groups and ': '}{groups}."
 
 
 def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:

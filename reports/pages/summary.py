@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from cases.results.records.run import RunResult
 from contact.records.plain_text import printable
 from reports.pages.matrix import Cell, run_matrix
-from reports.pages.report import baseline_sentence
+from reports.words.moves import baseline_sentence
 from reports.words.numbers import duration
 from reports.words.outcomes import CheckOutcome, counts, headline, outcomes
 

@@ -56,3 +56,13 @@ def _size(changes: Sequence[float]) -> str:
     least, most = f"{min(changes):+.1e}", f"{max(changes):+.1e}"
     near = max(changes) - min(changes) <= 2 * ALIKE * abs(median(changes))
     return f"{median(changes):+.1e}" if near else f"{least} to {most}"
+
+
+def baseline_sentence(run: RunResult) -> str:
+    """How far this run is from the accepted one."""
+    compared = [claim for case in run.cases for claim in case.claims if claim.kind is Kind.REGRESSION]
+    if not compared:
+        return "Not compared with a baseline."
+    changed = sum(claim.status is not Status.PASS for claim in compared)
+    groups = "; ".join(moves(run))
+    return f"Since the baseline: {changed} of {len(compared)} numbers changed{groups and ': '}{groups}."

@@ -1,0 +1,25 @@
+"""Which extra of this distribution installs a package that is missing."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Final
+
+EXTRA_OF: Final[Mapping[str, str]] = {
+    "skfem": "fem",
+    "gmsh": "fem",
+    "meshio": "fem",
+    "matplotlib": "report",
+    "jinja2": "report",
+    "markupsafe": "report",
+    "afmformats": "fit",
+    "distributed": "cluster",
+    "dask": "cluster",
+}
+
+
+def missing_extra(error: BaseException) -> str:
+    """What to install where an import failed for want of an extra; empty for any other error."""
+    package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
+    extra = EXTRA_OF.get(package)
+    return f"{package} is not installed: pip install 'contact-verification[{extra}]'" if extra else ""

@@ -1,0 +1,58 @@
+"""The history of accepted numbers as a chart of the report, and what long studies say while they run."""
+
+import datetime
+
+import pytest
+
+from cases.results.records.run import Acceptance
+from reports.charts.history import accepted_steps, figures
+from reports.commands.studies import PARTIAL, _counted
+from reports.figures.figure import write_figure
+
+
+def entry(revision, method, old, new):
+    return Acceptance(
+        date=str(datetime.date(2026, 11, 20)),
+        case="cone",
+        method=method,
+        quantity="force",
+        old=old,
+        new=new,
+        old_tolerance=1e-12,
+        new_tolerance=1e-12,
+        reason="finer",
+        revision=revision * 8,
+    )
+
+
+HISTORY = (
+    entry("a", "mdr", None, None),
+    entry("b", "mdr", 2.0, 2.2),
+    entry("b", "mdr", 1.0, 1.3),
+    entry("b", "fem", 1.0, 1.0),
+    entry("c", "fem", -4.0, -5.0),
+)
+
+
+def test_each_accepted_run_that_changed_numbers_is_a_step():
+    steps = accepted_steps(HISTORY)
+    assert [(step.run, step.method, len(step.changes)) for step in steps] == [(0, "mdr", 2), (1, "fem", 1)]
+    assert steps[0].changes == pytest.approx((0.1, 0.3), rel=1e-12, abs=0.0)
+    assert steps[1].changes == pytest.approx((0.25,), rel=1e-12, abs=0.0)
+
+
+def test_the_chart_is_drawn_with_its_data_and_left_out_where_nothing_changed(tmp_path):
+    (figure,) = figures(HISTORY)
+    assert "MDR" in write_figure(figure, tmp_path)
+    assert (tmp_path / "accepted-runs.csv").read_text().splitlines()[1].startswith("2026-11-20,bbbbbbb,mdr,2,0.2")
+    assert figures(HISTORY[:1]) == []
+
+
+def test_a_study_tells_how_far_it_is_and_keeps_what_it_has_found(tmp_path, capsys):
+    say = _counted(tmp_path / "maps", 3)
+    say("Hertz: 1 %")
+    say("Dimitriadis: 5 %")
+    assert capsys.readouterr().out.splitlines() == ["[1 of 3, 0 s] Hertz: 1 %", "[2 of 3, 0 s] Dimitriadis: 5 %"]
+    assert (tmp_path / "maps" / PARTIAL).read_text() == "Hertz: 1 %\nDimitriadis: 5 %\n"
+    _counted(tmp_path / "maps")("again")
+    assert (tmp_path / "maps" / PARTIAL).read_text() == "again\n"
