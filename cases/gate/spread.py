@@ -32,7 +32,9 @@ def measured_spreads(case: Case, runs: Mapping[tuple[str, str], SceneRun], *, jo
     Raises:
         InvalidInput: if a repetition breaks down or gives another number of steps: such an answer cannot be accepted.
     """
-    tasks = [case.task(scene, use) for scene in case.scenes for use in case.methods_of(scene)]
+    # Only methods of the run are built: others may not be installed.
+    uses = ((scene, use) for scene in case.scenes for use in case.methods_of(scene) if (scene.name, use.label) in runs)
+    tasks = [case.task(scene, use) for scene, use in uses]
     solved = [task for task in tasks if (task.scene, task.method) in runs and runs[task.scene, task.method].solved]
     answers = {task.identity: [runs[task.scene, task.method]] for task in solved}
     repeated = _repeated(solved, math.inf, jobs)
