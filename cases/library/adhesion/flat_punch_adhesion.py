@@ -216,12 +216,17 @@ CLAIMS = (
     ),
 )
 
-FURTHER = agreements(
-    (*UNDER_LOAD, *ON_THE_WAY),
-    {"fem": 1e-3, "bem": 8e-3},
-    ("pull_off_force", "pull_off_depth"),
-    derived_from="a requirement: a thousandth of the pull-off by finite elements, 8e-3 by a grid",
-    suffix=", Figs. 8 and 9",
+# At a*/h = 4 the grid states 1.1e-2, and is not compared.
+FURTHER = tuple(
+    claim
+    for label, tolerance, scenes in (("fem", 1e-3, ON_THE_WAY), ("bem", 8e-3, ON_THE_WAY[:2]))
+    for claim in agreements(
+        (*UNDER_LOAD, *scenes),
+        {label: tolerance},
+        ("pull_off_force", "pull_off_depth"),
+        derived_from="a requirement: a thousandth of the pull-off by finite elements, 8e-3 by a grid",
+        suffix=", Figs. 8 and 9",
+    )
 )
 
 PULLED = BEYOND_MAXIMUM[:1]
