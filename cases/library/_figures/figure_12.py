@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Literal
 
 import numpy as np
 
@@ -66,7 +67,7 @@ def figure() -> Figure:
 def _histories(thickness: float, kind: float | str) -> tuple[Series, Series, Series]:
     """Force over depth, a/h over time, velocity over time; dotted where elastic."""
     run, elastic, name = hit(thickness, kind), elastic_half_space(), _name(thickness)
-    style = "dotted" if kind == ELASTIC else "by method"
+    style: Literal["by method", "dotted"] = "dotted" if kind == ELASTIC else "by method"
     error = float(run.error_estimate["normal_force"][0])
     time = run.time / elastic.contact_time
     return (
