@@ -10,6 +10,9 @@ from enum import StrEnum
 FAST = ("mdr", "mdr_table")
 EQUATIONS = ("mdr", "integral_equation")
 GRIDS = ("bem", "mdr_table")
+# Those that solve layered bodies, finite elements left out.
+ON_STACKS = ("mdr", "integral_equation", "bem")
+STACKS = ("two_layers", "film_on_substrate", "three_zone_cartilage")
 # All but finite elements.
 ON_THE_KERNEL = ("mdr", "mdr_table", "bem", "integral_equation")
 EVERY = (*ON_THE_KERNEL, "fem")
@@ -60,6 +63,38 @@ SHARED: tuple[Shared, ...] = (
         place="bem.kernels.layer",
         methods=ON_THE_KERNEL,
         guard="agreement with finite elements; values of the kernel in extended precision",
+    ),
+    Shared(
+        name="kernel of stacks",
+        kind=Sharing.CODE,
+        place="bem.kernels.stack",
+        methods=ON_STACKS,
+        guard="agreement with finite elements; pressures put back on the body by a second kernel",
+        cases=STACKS,
+    ),
+    Shared(
+        name="kernel of graded layers",
+        kind=Sharing.CODE,
+        place="bem.kernels.graded",
+        methods=ON_STACKS,
+        guard="agreement with finite elements; pressures put back on the body by a second kernel",
+        cases=("graded_layer",),
+    ),
+    Shared(
+        name="moduli over depth",
+        kind=Sharing.CODE,
+        place="contact.scene.depth_functions",
+        methods=ON_STACKS,
+        guard="agreement with finite elements, which write them down themselves",
+        cases=("graded_layer",),
+    ),
+    Shared(
+        name="fields inside from the contact's density",
+        kind=Sharing.CODE,
+        place="bem.layer_equation.inside",
+        methods=EQUATIONS,
+        guard="agreement with finite elements; laws of elastic bodies",
+        cases=("inside_half_space", "inside_layer"),
     ),
     Shared(
         name="contact modulus",
@@ -118,7 +153,7 @@ SHARED: tuple[Shared, ...] = (
         place="contact.scene.effects",
         methods=FAST,
         guard="agreement with finite elements, which write them down themselves",
-        cases=("flat_punch_impact", "sphere_impact"),
+        cases=("flat_punch_impact", "sphere_impact", "held_indentation"),
     ),
     Shared(
         name="restitution and duration of an impact",
@@ -127,6 +162,15 @@ SHARED: tuple[Shared, ...] = (
         methods=EVERY,
         guard="closed forms of the flat punch's impact",
         quantities=("coefficient_of_restitution", "contact_time"),
+    ),
+    Shared(
+        name="von Mises stress",
+        kind=Sharing.CODE,
+        place="contact.answer.inside",
+        methods=EVERY,
+        guard="its largest value under a paraboloid on the half-space",
+        quantities=("von_mises_inside",),
+        cases=("inside_half_space", "inside_layer"),
     ),
     Shared(
         name="reduction of two coated bodies, Eqs. (23)-(25)",
@@ -157,6 +201,14 @@ SHARED: tuple[Shared, ...] = (
         methods=EVERY,
         guard="the sampled pressure carries the force",
         quantities=("pressure",),
+    ),
+    Shared(
+        name="laws and points of fields inside",
+        kind=Sharing.RECORD,
+        place="cases.run.inside",
+        methods=EVERY,
+        guard="closed forms of Huber and Sneddon; each law fails for a wrong field",
+        cases=("inside_half_space", "inside_layer"),
     ),
 )
 BY_NAME = {one.name: one for one in SHARED}

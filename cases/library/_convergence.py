@@ -214,6 +214,18 @@ FEW_ROWS = Refinement(
 MANY_ROWS = MethodUse(
     label="mdr_table, 1921 rows", method="mdr_table", settings={"ratios": 1921, "cells": 64, "radii": 100}
 )
+COLUMNS = Refinement(
+    name="columns doubled, eight tables a refinement",
+    method="mdr_table",
+    ladder=neighbours("radii", ([n * m for m in EIGHT] for n in (3, 6, 12)), cells=64, ratios=61),
+    reason=WHY["columns"],
+    digits=0.9,
+    floor=1e-12,
+)
+# The same table with so many columns that reading between them costs nothing.
+MANY_COLUMNS = MethodUse(
+    label="mdr_table, 1200 columns", method="mdr_table", settings={"radii": 1200, "cells": 64, "ratios": 61}
+)
 TABLE_CELLS = Refinement(
     name="cells, eight grids a refinement",
     method="mdr_table",

@@ -66,9 +66,9 @@ def quick_coverage() -> CaseResult:
 
 def quick_maps() -> CaseResult:
     """Where closed forms are good, and where friction does not matter."""
-    from cases.measurements.advice.error_maps import FEW_RATIOS, FEW_ROWS, FORMULAS, FRICTION, map_case  # noqa: PLC0415
+    from cases.measurements.advice.error_maps import FORMULAS, FRICTION, USUAL_RATIOS, map_case  # noqa: PLC0415
 
-    return map_case(replace(plan, ratios=FEW_RATIOS, rows=FEW_ROWS) for plan in (*FORMULAS, *FRICTION))
+    return map_case((*(replace(plan, ratios=USUAL_RATIOS) for plan in FORMULAS), *FRICTION))
 
 
 def code_verification() -> CaseResult:

@@ -103,16 +103,20 @@ def _(profile: PowerLaw, radius: FloatArray) -> Shape:
 
 @shape.register
 def _(profile: Tabulated, radius: FloatArray) -> Shape:
-    r, f = profile.radii, profile.heights
-    i = np.clip(np.searchsorted(r, radius, side="right") - 1, 0, len(r) - 2)
-    width, slopes = np.diff(r)[i], pchip_slopes(r, f)
-    secant, start = (f[i + 1] - f[i]) / width, slopes[i]
+    height, slope = cubics(profile.radii, profile.heights, radius)
+    within = radius <= profile.radii[-1]
+    return Shape(np.where(within, height, np.inf), np.where(within, slope, np.inf))
+
+
+def cubics(x: FloatArray, y: FloatArray, at: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Values and slopes of the shape-preserving cubics through points, at places within them."""
+    i = np.clip(np.searchsorted(x, at, side="right") - 1, 0, len(x) - 2)
+    width, slopes = np.diff(x)[i], pchip_slopes(x, y)
+    secant, start = (y[i + 1] - y[i]) / width, slopes[i]
     bend = (start + slopes[i + 1] - 2.0 * secant) / width**2
     tilt = (secant - start) / width - bend * width
-    s = radius - r[i]
-    height = f[i] + s * (start + s * (tilt + s * bend))
-    slope = start + s * (2.0 * tilt + 3.0 * s * bend)
-    return Shape(np.where(radius <= r[-1], height, np.inf), np.where(radius <= r[-1], slope, np.inf))
+    s = at - x[i]
+    return y[i] + s * (start + s * (tilt + s * bend)), start + s * (2.0 * tilt + 3.0 * s * bend)
 
 
 def pchip_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -124,6 +128,8 @@ def pchip_slopes(x: FloatArray, y: FloatArray) -> FloatArray:
     """
     width = np.diff(x)
     secant = np.diff(y) / width
+    if len(x) == 2:
+        return np.repeat(secant, 2)
     left, right = secant[:-1], secant[1:]
     same = left * right > 0.0
     weights = 2.0 * width[1:] + width[:-1], width[1:] + 2.0 * width[:-1]

@@ -1,5 +1,6 @@
 """Signed errors over a/h and Poisson's ratio, with the region that is good to one percent framed."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -25,8 +26,8 @@ LARGEST, SMALLEST = 1.0, 1e-6
 PANELS_A_FIGURE = 4
 COLUMNS = ("map", "quantity", "poissons_ratio", "a_over_h", "relative_error")
 CAPTION = (
-    "Colour: signed relative error of the force of a paraboloid at a prescribed contact radius, blue too small, red "
-    "too large, white within 1e-6. Framed: good to 1 %. Grey: refused by name."
+    "Colour: signed relative error of a paraboloid's force at a given depth, or of its depth at a given force; blue "
+    "too small, red too large, white within 1e-6; a/h is that of the exact answer. Framed: within 1 %. Grey: no answer."
 )
 
 
@@ -35,7 +36,7 @@ def figures(case: CaseResult) -> list[ReportFigure]:
     return [
         replace(
             CHART,
-            title=", ".join(found.title.partition(",")[0] for found in maps),
+            title=", ".join(dict.fromkeys(re.split("[,:]", found.title)[0] for found in maps)),
             caption=f"{CAPTION} Reference: {maps[0].reference}.",
         ).figure(file_name(case.name, f"{number}"), maps)
         for number, maps in numbered_parts(case.maps, PANELS_A_FIGURE)
@@ -52,7 +53,7 @@ def _rows(found: ErrorMap) -> list[tuple[str | float | None, ...]]:
 
 def _add_bar(drawing: Drawing, all_axes: list[Axes], meshes: list[QuadMesh]) -> None:
     """One bar of colours for all maps."""
-    bar = drawing.colorbar(meshes[-1], ax=all_axes, shrink=0.8, label="relative error of the force")
+    bar = drawing.colorbar(meshes[-1], ax=all_axes, shrink=0.8, label="relative error")
     ticks = [-1.0, -1e-2, -1e-4, 0.0, 1e-4, 1e-2, 1.0]
     bar.set_ticks(ticks, labels=["0" if t == 0 else f"{'−' if t < 0 else ''}{power_of_ten(abs(t))}" for t in ticks])
     bar.minorticks_off()

@@ -114,8 +114,7 @@ def good_ranges(case: CaseResult) -> Table | None:
         dict.fromkeys(row for found in case.maps for row in found.rows),
         {"layer": _layer} | columns,
         title="Range of a/h that is good to 1 %",
-        note="Smallest and largest a/h of the map with an error of at most 1 %, or what its head says; "
-        "between them a hole may lie.",
+        note="First and last a/h of each run of neighbours with errors of at most 1 %, or what its head says.",
     )
 
 
@@ -124,7 +123,7 @@ def _layer(row: str) -> str:
 
 
 def _range(found: ErrorMap, row: str, limit: float = 1e-2) -> str:
-    good = found.good_range(row, limit) if row in found.rows else None
-    if good is None:
-        return "nowhere" if row in found.rows else ""
-    return f"{good[0]:.2g} .. {good[1]:.2g}"
+    if row not in found.rows:
+        return ""
+    good = found.good_ranges(row, limit)
+    return "; ".join(f"{low:.2g} .. {high:.2g}" if low < high else f"{low:.2g}" for low, high in good) or "nowhere"

@@ -6,26 +6,35 @@ import pytest
 from contact import (
     Cone,
     ContactRadii,
+    DepthFunction,
+    ExponentialDepth,
     FlatPunch,
+    GradedLayer,
     Impact,
     IndentationDepths,
     KelvinVoigt,
     Layer,
+    LinearDepth,
     Paraboloid,
     PowerLaw,
+    PowerLawDepth,
     PronySeries,
     Scene,
     Sphere,
     Spheroconical,
     StandardSolid,
     Tabulated,
+    TabulatedDepth,
     TruncatedCone,
     TruncatedParaboloid,
+    UnsupportedSceneError,
 )
+from contact.scene.depth_functions import DEPTH_FUNCTIONS
 from contact.scene.effects import EFFECTS, Viscoelasticity
 from contact.scene.profiles import PROFILES
 from fem_reference import Fem
 from fem_reference.discrete_layer.indenter import shape
+from fem_reference.discrete_layer.several_layers.gradings import at_depths
 from fem_reference.in_time.relaxation import relaxation_of
 
 RADII = np.linspace(0.0, 3.0, 241)
@@ -80,6 +89,38 @@ def test_relaxation_is_that_which_other_methods_use(effect):
     np.testing.assert_array_equal(own.moduli, other.moduli)
     np.testing.assert_array_equal(own.times, other.times)
     assert own.at_once == other.instantaneous_modulus
+
+
+GRADINGS = (
+    ExponentialDepth(surface=2.0, base=7.0),
+    LinearDepth(surface=2.0, base=0.5),
+    PowerLawDepth(surface=2.0, reference_depth=0.4, exponent=-1.7),
+    TabulatedDepth(depths=STEPS, values=1.0 + ROUGH.heights - ROUGH.heights.min()),
+    TabulatedDepth(depths=[0.0, 1.5], values=[1.0, 3.0]),
+)
+
+
+@pytest.mark.parametrize("function", GRADINGS, ids=lambda f: type(f).__name__)
+def test_moduli_over_depth_are_those_that_other_methods_use(function):
+    depth = np.linspace(0.0, 1.5, 301)
+    np.testing.assert_allclose(at_depths(function, depth, 1.5), function.at(depth, 1.5), rtol=1e-13, atol=0.0)
+
+
+def test_every_function_of_depth_is_written_down():
+    assert {type(function) for function in GRADINGS} == set(DEPTH_FUNCTIONS)
+    with pytest.raises(UnsupportedSceneError, match="finite elements know no DepthFunction"):
+        at_depths(DepthFunction(), np.zeros(1), 1.0)
+
+
+def test_functions_of_depth_reach_no_answer(monkeypatch):
+    graded = GradedLayer(thickness=1.0, youngs_modulus=GRADINGS[0], poissons_ratio=0.3)
+    scene = Scene(layer=graded, indenter=Paraboloid(radius_of_curvature=5.0), loading=ContactRadii([0.5]))
+    before = COARSE.solve(scene)
+    right = ExponentialDepth.at
+    monkeypatch.setattr(ExponentialDepth, "at", lambda self, depth, thickness: 1.01 * right(self, depth, thickness))
+    after = COARSE.solve(scene)
+    np.testing.assert_allclose(after.normal_force, before.normal_force, rtol=1e-10, atol=0.0)
+    np.testing.assert_allclose(after.indentation_depth, before.indentation_depth, rtol=1e-10, atol=0.0)
 
 
 LAYER = Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=0.5)

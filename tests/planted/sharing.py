@@ -60,6 +60,11 @@ PROBES = {
     "pair": Probe("coated_pair", ("equal bodies, bonded a/h=0.5",)),
     "punch impact": Probe("flat_punch_impact", ("bonded a/h=1 D_HS=0.3",), ("mdr", "fem")),
     "sphere impact": Probe("sphere_impact", ("bonded h=2 mm",), ("mdr", "fem")),
+    "stack": Probe("two_layers", ("soft on stiff, paraboloid, a/H=1",)),
+    "graded": Probe("graded_layer", ("E=4^z, paraboloid, a/H=1",)),
+    "inside": Probe("inside_layer", ("paraboloid, bonded nu=0.5 a/h=1",)),
+    "inside half-space": Probe("inside_half_space", ("paraboloid nu=0.3",), ("mdr", "integral_equation")),
+    "held": Probe("held_indentation", ("relaxing half-space",), ("mdr", "fem")),
     "pull-off": Probe("flat_punch_adhesion", ("half-space, force",), ("mdr", "bem")),
 }
 ELASTIC = ("half-space", "cone", "paraboloid")
@@ -83,6 +88,11 @@ def heavier(original):
         return nodes, WRONG * weights
 
     return wrong
+
+
+def all_larger(original):
+    """Every array of a mapping one per cent too large."""
+    return lambda *arguments: {name: WRONG * values for name, values in original(*arguments).items()}
 
 
 def too_large(*, of):
@@ -165,6 +175,16 @@ def shrunk_rings(original):
     return wrong
 
 
+def shrunk_points(original):
+    """Fields inside, found one per cent closer to the surface and to the axis."""
+
+    def wrong(path, sampling):
+        points = tuple((r / WRONG, z / WRONG) for r, z in sampling.inside)
+        return original(path, dataclasses.replace(sampling, inside=points))
+
+    return wrong
+
+
 LAYER, PROFILES, LOADING = "contact.scene.layer:Layer", "contact.scene.profiles", "contact.scene.loading"
 NUMBERS = {
     "Young's modulus": (f"{LAYER}.youngs_modulus", ("half-space", "cone")),
@@ -179,6 +199,12 @@ NUMBERS = {
     "mass": (f"{LOADING}:Impact.mass", ("punch impact",)),
     "velocity": (f"{LOADING}:Impact.velocity", ("punch impact", "sphere impact")),
     "viscosity": ("contact.scene.effects:KelvinVoigt.viscosity", ("punch impact",)),
+    "modulus of sublayers": ("contact.scene.layer_stack:Sublayer.youngs_modulus", ("stack",)),
+    "Poisson's ratio of sublayers": ("contact.scene.layer_stack:Sublayer.poissons_ratio", ("stack",)),
+    "thickness of sublayers": ("contact.scene.layer_stack:Sublayer.thickness", ("stack",)),
+    "modulus at the surface": ("contact.scene.depth_functions:ExponentialDepth.surface", ("graded",)),
+    "modulus at the base": ("contact.scene.depth_functions:ExponentialDepth.base", ("graded",)),
+    "history of the depth": (f"{LOADING}:DepthHistory.depth", ("held",)),
     "work of adhesion": ("contact.scene.effects:Adhesion.work_of_adhesion", ("pull-off",)),
 }
 HEIGHTS = both(
@@ -190,6 +216,45 @@ HEIGHTS = both(
 
 FAULTS = (
     SharedFault("layer kernel", "1 - chi", swap("bem.kernels.layer:one_minus_kernel", times), ("cone", "paraboloid")),
+    SharedFault(
+        "kernel of stacks", "1 - chi", wrong_method("bem.kernels.stack:StackKernel", "one_minus_chi"), ("stack",)
+    ),
+    SharedFault(
+        "kernel of graded layers",
+        "1 - chi",
+        wrong_method("bem.kernels.graded:GradedKernel", "one_minus_chi"),
+        ("graded",),
+    ),
+    SharedFault(
+        "moduli over depth",
+        "E(z)",
+        wrong_method("contact.scene.depth_functions:ExponentialDepth", "at"),
+        ("graded",),
+    ),
+    SharedFault(
+        "fields inside from the contact's density",
+        "fields of the half-space's part",
+        swap("bem.layer_equation.inside.half_space_part:fields", all_larger),
+        ("inside", "inside half-space"),
+    ),
+    SharedFault(
+        "von Mises stress",
+        "the stress",
+        wrong_property("contact.answer.inside:InsideFields", "von_mises"),
+        ("inside half-space",),
+    ),
+    SharedFault(
+        "laws and points of fields inside",
+        "points",
+        swap("cases.run.inside.points:_found", shrunk_points),
+        ("inside half-space",),
+    ),
+    SharedFault(
+        "laws and points of fields inside",
+        "weights of the laws",
+        swap("cases.run.inside.laws:_disc", heavier),
+        ("inside half-space",),
+    ),
     SharedFault(
         "contact modulus", "E* of boundary elements and MDR", swap("bem.kernels.moduli:contact_modulus", times), ELASTIC
     ),

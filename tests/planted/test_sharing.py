@@ -15,7 +15,7 @@ from tests.planted.sharing_table import BOTH, USERS, noticed
 
 DOCS = Path(__file__).resolve().parents[2] / "docs" / "shared.md"
 # One probe in which MDR and finite elements, or the methods that share the thing and one that does not, are compared.
-COMPARED_IN = ("cone", "table", "punch impact", "sphere impact", "grids")
+COMPARED_IN = ("cone", "table", "punch impact", "sphere impact", "grids", "stack", "graded", "inside")
 
 
 @pytest.fixture(autouse=True)
@@ -25,11 +25,19 @@ def _no_leftovers():
     forget_computed()
 
 
+# These take seconds of processor time each.
+LONG = {"graded", "inside"}
+
+
 def named(fault):
     return f"{fault.shared}: {fault.what}"
 
 
-@pytest.mark.parametrize("fault", [f for f in (*FAULTS, OWN) if not shared_by_all(f)], ids=named)
+def marked(faults):
+    return [pytest.param(f, marks=pytest.mark.slow if LONG & {*f.probes} else (), id=named(f)) for f in faults]
+
+
+@pytest.mark.parametrize("fault", marked(f for f in (*FAULTS, OWN) if not shared_by_all(f)))
 def test_what_some_methods_share_parts_them_from_others(fault, monkeypatch):
     probe = next(name for name in COMPARED_IN if name in fault.probes)
     seen = noticed(fault, monkeypatch, probes=(probe,), kinds=(Kind.AGREEMENT,))
@@ -38,7 +46,7 @@ def test_what_some_methods_share_parts_them_from_others(fault, monkeypatch):
     assert pair if seen.of(methods=BOTH) else apart
 
 
-@pytest.mark.parametrize("fault", [f for f in FAULTS if shared_by_all(f)], ids=named)
+@pytest.mark.parametrize("fault", marked(f for f in FAULTS if shared_by_all(f)))
 def test_what_all_methods_share_is_noticed_by_a_closed_form_or_a_value(fault, monkeypatch):
     assert noticed(fault, monkeypatch, methods=("mdr",), kinds=(Kind.EXACT, Kind.INVARIANT)).failing()
 

@@ -31,6 +31,10 @@ def test_there_are_sixty_statements_and_no_two_alike():
         ("bonded nu=0.5: for a/h < 0.1", 0.126, StatementVerdict.LOOSER),
         ("bonded nu=0.5: for a/h > 50", -0.109, StatementVerdict.LOOSER),
         ("second maximum in the centre", 0.7885, StatementVerdict.LOOSER),
+        ("Eq. (53)", 2.65, StatementVerdict.HOLDS),
+        ("wherever they differ most", 0.0138, StatementVerdict.LOOSER),
+        ("nu = 0.5, a/h = 5: coatings", 0.0055, StatementVerdict.HOLDS),
+        ("bonded nu=0.5, r = 1.2 a: displacements", 0.0, StatementVerdict.HOLDS),
         ("nu = 0.5: the elongation has its maximum", 0.4619, StatementVerdict.HOLDS),
     ],
 )

@@ -27,22 +27,27 @@ def series(
     return Series(label=label, method=method, group=group, x=x, y=y, half_width=half_width, style=style)
 
 
-def pressure_symbols(case: Case, answers: Answers, scenes: Mapping[float, str], every: int = 1) -> Iterator[Series]:
-    """Pressure over its mean, over r/a, of every method but MDR.
+# Of so many samples one method shows one: finite elements, boundary elements and the integral equation in turn.
+METHODS_IN_TURN = 3
+
+
+def pressure_symbols(case: Case, answers: Answers, scenes: Mapping[float, str]) -> Iterator[Series]:
+    """Pressure over its mean, over r/a, of every method but MDR, each at other radii, so that none hides another.
 
     Args:
         case: the case.
         answers: its finished tasks.
         scenes: names by a/h.
-        every: of so many samples one is shown.
     """
     for ratio, name in scenes.items():
         scene = case.scene(name)
-        for use in case.methods_of(scene):
+        others = [use for use in case.methods_of(scene) if not use.label.startswith("mdr")]
+        for number, use in enumerate(others):
             run = answers.of(case.task(scene, use))
-            if run.solved and run.curves and not use.label.startswith("mdr"):
+            if run.solved and run.curves:
+                shown = slice(number % METHODS_IN_TURN, None, METHODS_IN_TURN)
                 a = ratio * THICKNESS
                 mean = run.quantity("normal_force").values[-1] / (np.pi * a**2)
                 curve, group = run.curve("pressure"), f"a/h={ratio:g}"
-                x, y = np.array(curve.x[::every]) / a, np.array(curve.y[::every]) / mean
+                x, y = np.array(curve.x[shown]) / a, np.array(curve.y[shown]) / mean
                 yield series(f"{use.label} {group}", use.label, group, x, y)

@@ -36,7 +36,9 @@ def figure() -> Figure:
         ),
     )
     caption = (
-        "Lines: MDR with the integral equation. m tends to 0 (half-space), 1 (thin compressible or unbonded) and 3 "
-        f"(thin incompressible); the last slowly: m = {float(exponent(layer(0.5), RATIOS)[0][-1]):.3f} at a/h = 100."
+        "Lines: MDR with the integral equation. Symbols in A: depths of paraboloids by other methods, Eq. (34); in B: "
+        "their stiffness, and that of Hayes et al. (1972), over (a/h)^m with our m. m tends to 0 "
+        "(half-space), 1 (thin compressible or unbonded) and 3 (thin incompressible); the last slowly: "
+        f"m = {float(exponent(layer(0.5), RATIOS)[0][-1]):.3f} at a/h = 100."
     )
     return Figure(name="fig_5", title="Fig. 5: exponent and factor of the stiffness", caption=caption, panels=panels)

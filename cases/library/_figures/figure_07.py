@@ -80,7 +80,8 @@ def _pressures(one: Layer) -> Panel:
 def _caption() -> str:
     two = [depth_over_height(one, 2.0) for one in (layer(0.5), layer(0.45))]
     return (
-        "Lines: MDR with the integral equation. Dashed: thin layer, dotted: half-space. The paper finds g(a)/f(a) < 1 "
+        "Lines: MDR with the integral equation. Dashed: thin layer, dotted: half-space. Symbols: the methods, each at "
+        "radii of its own. The paper finds g(a)/f(a) < 1 "
         "for high Poisson's ratios and a/h >= 2; "
         f"at a/h = 2 it is {two[0]:.3f} for nu = 0.5 but {two[1]:.3f} for nu = 0.45."
     )

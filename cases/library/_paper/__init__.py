@@ -2,6 +2,7 @@
 
 - ``statement``: what a statement is, and its verdict
 - ``flat_punch``, ``profiles``, ``detachment``, ``impacts``, ``slips``: the statements by section of the paper
+- ``equations``: single equations that these leave out
 """
 
 from collections.abc import Iterator
@@ -12,7 +13,7 @@ from cases.library._paper.statement import Statement
 def statements() -> Iterator[Statement]:
     """Every statement in the order of the paper."""
     # These imports load MDR, so they wait until the page is written.
-    from cases.library._paper import detachment, flat_punch, impacts, profiles, slips  # noqa: PLC0415
+    from cases.library._paper import detachment, equations, flat_punch, impacts, profiles, slips  # noqa: PLC0415
 
-    for section in (slips, flat_punch, profiles, detachment, impacts):
+    for section in (slips, flat_punch, profiles, detachment, impacts, equations):
         yield from section.statements()

@@ -34,6 +34,11 @@ from cases.library._layers import THICKNESS, contact_modulus, edges, layer_of, s
 from cases.library._methods import BEM, EVERY, FEM, MDR
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
+from cases.library.elastic._hayes import COMMON as HAYES
+from cases.library.elastic._hayes import RATIOS as HAYES_RATIOS
+from cases.library.elastic._hayes import TABLE as HAYES_TABLE
+from cases.library.elastic._hayes import column, hayes_symbols
+from cases.library.elastic._stiffness_exponent import EXPONENT_CLAIMS, EXPONENT_SCENES, exponent_symbols
 from cases.measurements.cost.settings import elastic_costs
 from cases.results.records.figure import Figure, Series
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
@@ -56,12 +61,6 @@ STIFFNESS = {
     for label in LAYERS
 }
 
-HAYES_RATIOS = (0.2, 0.4, 0.6, 0.8, 1.0, 2.0)
-HAYES: dict[str, tuple[float, ...]] = {
-    "bonded nu=0.3": (1.207, 1.472, 1.784, 2.124, 2.480, 4.336),
-    "bonded nu=0.45": (1.252, 1.599, 2.031, 2.532, 3.085, 6.380),
-    "bonded nu=0.5": (1.281, 1.683, 2.211, 2.855, 3.609, 9.069),
-}
 HERMANOWICZ_RATIOS = tuple(float(r) for r in np.geomspace(0.1, 30, 25))
 PRESSURE_AT = (0.0, 0.2, 0.4, 0.6, 0.8, 0.9, 0.95)
 # p / p_mean at the radii PRESSURE_AT on a bonded layer with nu = 0.5, by a/h.
@@ -183,9 +182,9 @@ def figure_3(case: Case, answers: Answers) -> Iterator[Figure]:
 
 
 def figure_5(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 5: exponent m and factor kappa of Eqs. (33) and (34)."""
-    del case, answers
-    yield paper_figure(5)
+    """Fig. 5: exponent m and factor kappa of Eqs. (33) and (34), also by finite elements and Hayes."""
+    powers, factors = exponent_symbols(case, answers)
+    yield paper_figure(5, powers, factors)
 
 
 def figure_4(case: Case, answers: Answers) -> Iterator[Figure]:
@@ -206,7 +205,7 @@ def _punch_symbols(case: Case, answers: Answers) -> Iterator[Series]:
 
 
 def _hayes_symbols() -> Iterator[Series]:
-    return (_symbols(label, HAYES_RATIOS, row, "literature") for label, row in HAYES.items())
+    return (hayes_symbols(label, *column(label)) for label in HAYES_TABLE)
 
 
 def _symbols(group: str, x: Sequence[float], y: Sequence[float], method: str) -> Series:
@@ -232,9 +231,9 @@ CASE = Case(
     question="Is the one input of MDR right, for every layer and ratio, to ten digits?",
     equations=("Eq. (10)", "Eq. (29)", "Eq. (31)", "Eq. (33)", "Eq. (34)", "Figs. 3-5"),
     text=text_of(__doc__),
-    scenes=(*PUNCHES, *HAYES_WALKS, *HERMANOWICZ_WALKS),
+    scenes=(*PUNCHES, *HAYES_WALKS, *HERMANOWICZ_WALKS, *EXPONENT_SCENES),
     methods=EVERY,
-    claims=(*CLAIMS, *ORDERS),
+    claims=(*CLAIMS, *EXPONENT_CLAIMS, *ORDERS),
     work=elastic_costs("bonded nu=0.5 a/h=2", ("contact_stiffness",)),
     figures=(figure_3, figure_4, figure_5),
 )

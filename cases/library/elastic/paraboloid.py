@@ -22,9 +22,11 @@ from cases.library._claims import (
     same_in_millimetres,
 )
 from cases.library._convergence import (
+    COLUMNS,
     EDGE_CELL,
     EQUATION_NODES,
     FINEST_MDR,
+    MANY_COLUMNS,
     MANY_ROWS,
     NODES,
     OUTER_RADIUS,
@@ -191,6 +193,14 @@ ORDERS = (
         {"normal_force": 4.0, "indentation_depth": 4.0},
         against=MANY_ROWS,
         uncertainty=1e-10,
+        nightly=True,
+    ),
+    *studies(
+        AT_ONE,
+        COLUMNS,
+        ("normal_force", "indentation_depth"),
+        against=MANY_COLUMNS,
+        uncertainty=1e-12,
         nightly=True,
     ),
 )

@@ -39,6 +39,7 @@ RADIUS_OF_CURVATURE = 1e-2  # m
 # Velocity [m/s]; only R v0 matters.
 VELOCITY = 1.27479e-3 / RADIUS_OF_CURVATURE
 THICKNESSES = (1e-3, 2e-3, 3e-3)  # m
+IMPACT_NUMBER = 2.65  # chi_HS of these data, Eq. (53)
 
 FEM = MethodUse(label="fem")
 
@@ -99,21 +100,27 @@ def twice_the_radius_at_half_the_speed(scene: Scene) -> Scene:
 def figure_12(case: Case, answers: Answers) -> Iterator[Figure]:
     """Fig. 12: force over depth, a/h over time, velocity over time; in units of the elastic half-space."""
     # This import loads MDR, so it waits until the figure is drawn.
-    from cases.library._figures.figure_12 import elastic_half_space  # noqa: PLC0415
+    from cases.library._figures.figure_12 import elastic_half_space, kind_name  # noqa: PLC0415
 
     unit = elastic_half_space()
     loops: list[Series] = []
     ratios: list[Series] = []
     speeds: list[Series] = []
+    summed_up: list[list[Series]] = [[], [], []]
+    units = {"contact_time": unit.contact_time, "peak_contact_radius": unit.peak_contact_radius}
     for scene in ON_LAYERS:
         run = answers.of(case.task(scene, FEM))
         if run.solved:
+            place = [1e3 * scene.scene.layer.thickness]
+            for found, name in zip(summed_up, (*units, "coefficient_of_restitution"), strict=True):
+                value = run.quantity(name).values[0] / units.get(name, 1.0)
+                found.append(series(f"fem {scene.name}", "fem", kind_name(IMPACT_NUMBER), place, [value]))
             time, depth = _samples(run, "indentation_depth")
             loops.append(_symbols(scene, depth / unit.peak_depth, _samples(run, "normal_force")[1] / unit.peak_force))
             radius, velocity = _samples(run, "contact_radius")[1], _samples(run, "velocity")[1]
             ratios.append(_symbols(scene, time / unit.contact_time, radius / scene.scene.layer.thickness))
             speeds.append(_symbols(scene, time / unit.contact_time, velocity / VELOCITY))
-    yield paper_figure(12, loops, ratios, speeds)
+    yield paper_figure(12, loops, ratios, speeds, *summed_up)
 
 
 def _symbols(scene: CaseScene, x: FloatArray, y: FloatArray) -> Series:

@@ -1,11 +1,12 @@
 """Signed errors over (a/h, nu): where each closed form for thin and thick layers is good, and what each method leaves.
 
-The quantity is the force of a paraboloid at a prescribed contact radius, relative to the fast method's.
+Two quantities, as users prescribe them: the force of a paraboloid at a given depth, and its depth at a given force,
+relative to the fast method's. The a/h of a map is that of the exact answer.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 
@@ -15,39 +16,61 @@ from cases.declare.methods import check_known
 from cases.measurements.study import Say, silent, study_case, told
 from cases.results.records.reliability import UNBONDED, ErrorMap
 from cases.results.records.run import CaseResult
-from contact import ContactError, ContactPath, ContactRadii, InvalidInput, Layer, Method, Paraboloid, Scene
+from contact import (
+    ContactError,
+    ContactPath,
+    ContactRadii,
+    ForcePath,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Loading,
+    Method,
+    NormalForces,
+    Paraboloid,
+    Scene,
+)
 from contact.records.validation import FloatArray
 
 NAME: Final = "error_maps"
 RATIOS: Final = tuple(np.geomspace(1e-3, 1e3, 37).tolist())
 ROWS: Final = (UNBONDED, "0", "0.2", "0.3", "0.4", "0.45", "0.48", "0.49", "0.499", "0.5")
+# Up to a/h = 15, as closed forms are mapped in the suites.
+USUAL_RATIOS: Final = RATIOS[:26]
 FEW_RATIOS: Final = tuple(np.geomspace(1e-2, 20.0, 12).tolist())
 FEW_ROWS: Final = (UNBONDED, "0", "0.3", "0.45", "0.499", "0.5")
 _NODES: Final = 32  # Gauss nodes: the thin-layer forms are polynomials
 _CURVATURE: Final = 1e3  # radius of curvature over thickness
 
+Given: TypeAlias = Literal["depth", "force"]
+# What is sought where depth or force is given.
+SOUGHT: Final[Mapping[Given, str]] = {"depth": "normal_force", "force": "indentation_depth"}
+WORDS: Final[Mapping[Given, str]] = {"depth": "force at given depth", "force": "depth at given force"}
+
 TEXT: Final = """
-A paraboloid touches a layer up to a prescribed radius a. Each map shows the signed relative error of the force over a/h
-and Poisson's ratio; the unbonded layer, which does not see it, is a row of its own. Closed forms: the half-space
-(Hertz) and the thin layer, a bed of springs, Eqs. (17) and (22), or the incompressible film, Eq. (20). Methods: at
-coarse settings, so that their errors are seen. Friction: how much larger than the frictionless force, at most, that
-with dry friction of a coefficient is at the same depth and radius, F_0/(1 - mu max |u_r1|) by reciprocity; no number
-where that says nothing.
+A paraboloid presses a layer. Each map shows the signed relative error of the force at a given depth, or of the depth at
+a given force, over a/h of the exact answer and Poisson's ratio; the unbonded layer, which does not see it, is a row of
+its own. Closed forms: the half-space (Hertz) and the thin layer, a bed of springs, Eqs. (17) and (22), or the
+incompressible film, Eq. (20). Methods: at coarse settings, so that their errors are seen. Friction: how much larger
+than the frictionless force, at most, that with dry friction of a coefficient is at the same depth,
+F_0/(1 - mu max |u_r1|) by reciprocity; no number where that says nothing. `advise` tells the same of one scene.
 """
 
-Answer = Callable[[Layer, FloatArray], FloatArray]
+# Forces at depths, or depths at forces, as the second argument says; NaN where there is no answer.
+Answer = Callable[[Layer, Given, FloatArray], FloatArray]
 
 
 @dataclass(frozen=True, kw_only=True)
 class MapPlan:
-    """One map.
+    """The maps of one formula or method.
 
     Attributes:
         name: of the formula or method.
         title: for readers.
-        answer: forces at contact radii on a layer; NaN where there is none.
+        answer: forces at depths, or depths at forces, on a layer; NaN where there is none.
         ratios: a/h.
         rows: Poisson's ratios as words, or "unbonded".
+        given: what is prescribed, one map each.
     """
 
     name: str
@@ -55,46 +78,57 @@ class MapPlan:
     answer: Answer
     ratios: tuple[float, ...] = RATIOS
     rows: tuple[str, ...] = ROWS
+    given: tuple[Given, ...] = ("depth", "force")
 
 
-def half_space_force(layer: Layer, radii: FloatArray) -> FloatArray:
-    """F = 4 E* a^3 / (3 R), Hertz."""
-    force: FloatArray = 4 * layer.contact_modulus * radii**3 / (3 * _CURVATURE * layer.thickness)
-    return force
+def half_space(layer: Layer, given: Given, values: FloatArray) -> FloatArray:
+    """F = (4/3) E* sqrt(R) delta^(3/2), Hertz, or its inverse."""
+    stiffness = 4 / 3 * layer.contact_modulus * np.sqrt(_CURVATURE * layer.thickness)
+    return np.asarray(stiffness * values**1.5 if given == "depth" else (values / stiffness) ** (2 / 3))
 
 
-def thin_layer_force(layer: Layer, radii: FloatArray) -> FloatArray:
-    """F = 2 int_0^a c_N (g(a) - g) dx with the thin layer's springs and profile, Eq. (4)."""
+def thin_layer(layer: Layer, given: Given, values: FloatArray) -> FloatArray:
+    """Depth and force of the thin layer are powers of the contact radius, so that each is a power of the other."""
+    radii = layer.thickness * np.array([1.0, 2.0])
+    depth, force = _thin_depth_and_force(layer, radii)
+    known, sought = (depth, force) if given == "depth" else (force, depth)
+    power = np.log(sought[1] / sought[0]) / np.log(known[1] / known[0])
+    return np.asarray(sought[0] * (values / known[0]) ** power)
+
+
+def _thin_depth_and_force(layer: Layer, radii: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """delta = g(a) and F = 2 int_0^a c_N (g(a) - g) dx with the thin layer's springs and profile, Eq. (4)."""
     from mdr.closed_forms.asymptotic import thin_profile, thin_spring_stiffness  # noqa: PLC0415 - a method is imported when used
 
     nodes, weights = legendre_rule(_NODES)
     x = radii[:, None] * (1 + nodes) / 2
-    rise = thin_profile(layer, _indenter(layer), radii)[:, None] - thin_profile(layer, _indenter(layer), x)
-    force: FloatArray = radii * ((thin_spring_stiffness(layer, x) * rise) @ weights)
-    return force
+    depth = thin_profile(layer, _indenter(layer), radii)
+    rise = depth[:, None] - thin_profile(layer, _indenter(layer), x)
+    return depth, radii * ((thin_spring_stiffness(layer, x) * rise) @ weights)
 
 
 @dataclass(frozen=True)
 class Solved:
-    """Forces by a method of the table."""
+    """Forces or depths by a method of the table."""
 
     method: str
     settings: Mapping[str, Any] = field(default_factory=dict)
 
-    def __call__(self, layer: Layer, radii: FloatArray) -> FloatArray:
-        """Solve radius by radius, so that one refusal costs one number."""
+    def __call__(self, layer: Layer, given: Given, values: FloatArray) -> FloatArray:
+        """Solve one by one, so that one refusal costs one number."""
         method = build_guarded(self.method, dict(self.settings))
-        return np.array([_force(method, layer, a) for a in radii])
+        return np.array([_solved(method, layer, given, value) for value in values])
 
 
-def _force(method: Method, layer: Layer, radius: float) -> float:
+def _solved(method: Method, layer: Layer, given: Given, value: float) -> float:
+    loading = IndentationDepths([value]) if given == "depth" else NormalForces([value])
     try:
-        path = method.solve(_scene(layer, [radius]))
+        path = method.solve(_scene(layer, loading))
     except BrokenMethodError:
         raise
     except ContactError:
         return float("nan")
-    return float(path.normal_force[-1]) if isinstance(path, ContactPath) else float("nan")
+    return float(getattr(path, SOUGHT[given])[-1]) if isinstance(path, ContactPath | ForcePath) else float("nan")
 
 
 @dataclass(frozen=True)
@@ -103,15 +137,15 @@ class MostFriction:
 
     coefficient: float
 
-    def __call__(self, layer: Layer, radii: FloatArray) -> FloatArray:
-        """F_0/(1 - mu max |u_r1|); NaN where the bound is infinite."""
+    def __call__(self, layer: Layer, given: Given, values: FloatArray) -> FloatArray:
+        """F_0/(1 - mu max |u_r1|) at depths; NaN where the bound is infinite."""
         from bem.layer_equation.stick.frictionless_slip import frictionless_punch  # noqa: PLC0415 - used here only
 
-        ratios = radii / layer.thickness
+        path = _exact(layer, IndentationDepths(values))
+        ratios = path.contact_radius / layer.thickness
         punches = [frictionless_punch(float(x), layer.support, layer.poissons_ratio) for x in ratios]
         slip = self.coefficient * np.array([punch.largest() for punch in punches])
-        expected = np.asarray(build_guarded("mdr", {}).solve(_scene(layer, radii)).normal_force)  # type: ignore[attr-defined]
-        return np.asarray(np.divide(expected, 1.0 - slip, out=np.full_like(slip, np.nan), where=slip < 1.0))
+        return np.asarray(np.divide(path.normal_force, 1.0 - slip, out=np.full_like(slip, np.nan), where=slip < 1.0))
 
 
 FRICTION: Final = tuple(
@@ -119,14 +153,15 @@ FRICTION: Final = tuple(
         name=f"friction {mu:g}",
         title=f"Friction of {mu:g} left out: at most",
         answer=MostFriction(mu),
+        given=("depth",),
         ratios=FEW_RATIOS,
         rows=FEW_ROWS,
     )
     for mu in (0.1, 0.3)
 )
 FORMULAS: Final = (
-    MapPlan(name="half-space", title="Half-space (Hertz)", answer=half_space_force),
-    MapPlan(name="thin layer", title="Thin layer: bed, at nu = 0.5 film", answer=thin_layer_force),
+    MapPlan(name="half-space", title="Half-space (Hertz)", answer=half_space),
+    MapPlan(name="thin layer", title="Thin layer: bed, at nu = 0.5 film", answer=thin_layer),
 )
 METHODS: Final = tuple(
     MapPlan(
@@ -174,34 +209,43 @@ def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *FRICTION, *METHODS), progre
         "Over which a/h and Poisson's ratios is each formula right to one percent, and what do methods leave?",
         TEXT,
         equations=("Eq. (17)", "Eq. (20)", "Eq. (22)"),
-        maps=tuple(told(map(_map, plans), summary, progress)),
+        maps=tuple(told((_map(plan, given) for plan in plans for given in plan.given), summary, progress)),
     )
 
 
-def _map(plan: MapPlan) -> ErrorMap:
+def _map(plan: MapPlan, given: Given) -> ErrorMap:
     return ErrorMap(
-        name=plan.name,
-        title=plan.title,
-        quantity="normal_force",
+        name=f"{plan.name}, {WORDS[given]}",
+        title=f"{plan.title}: {WORDS[given]}",
+        quantity=SOUGHT[given],
         reference="the fast method (24 nodes)",
         ratios=plan.ratios,
         rows=plan.rows,
-        errors=tuple(_row(plan, row) for row in plan.rows),
+        errors=tuple(errors_of(plan.answer, given, _layer(row), plan.ratios) for row in plan.rows),
     )
 
 
-def _row(plan: MapPlan, row: str) -> tuple[float | None, ...]:
-    layer, radii = _layer(row), np.array(plan.ratios)
-    expected = np.asarray(build_guarded("mdr", {}).solve(_scene(layer, radii)).normal_force)  # type: ignore[attr-defined]
-    errors = plan.answer(layer, radii) / expected - 1.0
+def errors_of(answer: Answer, given: Given, layer: Layer, ratios: Sequence[float]) -> tuple[float | None, ...]:
+    """Signed relative errors at the exact answers with these a/h; None where there is no answer."""
+    path = _exact(layer, ContactRadii(values=np.array(ratios) * layer.thickness))
+    known, expected = path.indentation_depth, path.normal_force
+    if given == "force":
+        known, expected = expected, known
+    errors = answer(layer, given, known) / expected - 1.0
     return tuple(float(error) if np.isfinite(error) else None for error in errors)
 
 
+def _exact(layer: Layer, loading: Loading) -> ContactPath:
+    path = build_guarded("mdr", {}).solve(_scene(layer, loading))
+    assert isinstance(path, ContactPath)
+    return path
+
+
 def summary(found: ErrorMap) -> str:
-    """One line: the largest error, and the range that is good to one percent for the incompressible bonded layer."""
+    """One line: the largest error, and the ranges that are good to one percent for the incompressible bonded layer."""
     known = [abs(error) for row in found.errors for error in row if error is not None]
-    good = found.good_range("0.5")
-    words = "nowhere good to 1 %" if good is None else f"good to 1 % for a/h in [{good[0]:.3g}, {good[1]:.3g}]"
+    good = " and ".join(f"[{low:.3g}, {high:.3g}]" for low, high in found.good_ranges("0.5"))
+    words = f"good to 1 % for a/h in {good}" if good else "nowhere good to 1 %"
     return f"{found.title}: errors up to {max(known, default=0.0):.1e}; bonded nu = 0.5 {words}"
 
 
@@ -215,5 +259,5 @@ def _indenter(layer: Layer) -> Paraboloid:
     return Paraboloid(radius_of_curvature=_CURVATURE * layer.thickness)
 
 
-def _scene(layer: Layer, radii: Sequence[float] | FloatArray) -> Scene:
-    return Scene(layer=layer, indenter=_indenter(layer), loading=ContactRadii(values=np.asarray(radii)))
+def _scene(layer: Layer, loading: Loading) -> Scene:
+    return Scene(layer=layer, indenter=_indenter(layer), loading=loading)

@@ -1,6 +1,7 @@
 """Where methods break and how well they state their errors: ladders, coverage, maps of errors."""
 
 from dataclasses import field
+from itertools import groupby
 from typing import Self
 
 from pydantic import model_validator
@@ -143,11 +144,12 @@ class ErrorMap:
     rows: tuple[str, ...]
     errors: tuple[tuple[Finite | None, ...], ...]
 
-    def good_range(self, row: str, limit: float = 1e-2) -> tuple[float, float] | None:
-        """Smallest and largest a/h of a row with errors within the limit; None where there is no such."""
+    def good_ranges(self, row: str, limit: float = 1e-2) -> tuple[tuple[float, float], ...]:
+        """Smallest and largest a/h of each run of neighbours of a row with errors within the limit."""
         errors = zip(self.ratios, self.errors[self.rows.index(row)], strict=True)
-        good = [ratio for ratio, error in errors if error is not None and abs(error) <= limit]
-        return (min(good), max(good)) if good else None
+        runs = groupby(errors, key=lambda place: place[1] is not None and abs(place[1]) <= limit)
+        found = [[ratio for ratio, _ in run] for good, run in runs if good]
+        return tuple((run[0], run[-1]) for run in found)
 
     @model_validator(mode="after")
     def _full(self) -> Self:

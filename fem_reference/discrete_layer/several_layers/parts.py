@@ -12,6 +12,7 @@ import numpy as np
 from contact import ElasticBase, ElasticLayer, GradedLayer, LayerStack, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import PointModuli, contact_modulus
+from fem_reference.discrete_layer.several_layers.gradings import at_depths
 
 # Change of ln E between two mesh lines of a graded layer, at most. Chosen: on one cell the fourth degree follows such a
 # modulus to 1e-4 already, and cells grow from there.
@@ -156,11 +157,12 @@ def _graded_parts(layer: GradedLayer, contact_radius: float, unit: float) -> lis
     def modulus(depth: FloatArray) -> FloatArray:
         """E / E* at depths / a."""
         within = np.minimum(depth * contact_radius, layer.thickness)
-        return np.asarray(layer.youngs_modulus.at(within, layer.thickness) / unit)
+        return at_depths(layer.youngs_modulus, within, layer.thickness) / unit
 
     def ratio(depth: FloatArray) -> FloatArray:
         """nu at depths / a."""
-        return np.clip(layer.ratio_at(np.minimum(depth * contact_radius, layer.thickness)), 0.0, 0.5)
+        within = np.minimum(depth * contact_radius, layer.thickness)
+        return np.clip(at_depths(layer.poissons_ratio, within, layer.thickness), 0.0, 0.5)
 
     lines = graded_lines(layer) / contact_radius
     return [Part(float(z), float(d), modulus, ratio) for z, d in zip(lines[:-1], np.diff(lines), strict=True)]
@@ -173,7 +175,7 @@ def graded_lines(layer: GradedLayer) -> FloatArray:
     for start, end in pairwise(ends):
         # Samples denser towards the surface resolve moduli that rise steeply there.
         depth = start + (end - start) * np.linspace(0.0, 1.0, SAMPLES) ** 4
-        change = np.abs(np.diff(np.log(layer.youngs_modulus.at(depth, layer.thickness))))
+        change = np.abs(np.diff(np.log(at_depths(layer.youngs_modulus, depth, layer.thickness))))
         total = np.concatenate([[0.0], np.cumsum(change)])
         count = max(1, int(np.ceil(total[-1] / LARGEST_CHANGE)))
         inner = np.interp(total[-1] * np.arange(1, count) / count, total, depth) if count > 1 else []

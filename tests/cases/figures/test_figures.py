@@ -21,7 +21,7 @@ MADE = {n: paper_figure(n) for n in NUMBERS}
 
 
 def series(number, group, method="mdr", panel=0):
-    lines = MADE[number].panels[panel].series
+    lines = [s for s in MADE[number].panels[panel].series if s.style == "by method"]
     (found,) = (s for s in lines if s.group == group and s.method.partition(",")[0] == method)
     return np.array(found.x), np.array(found.y)
 
@@ -118,6 +118,12 @@ def test_figure_12_values_and_loop():
     assert "0.45457" in MADE[12].caption
     for number in ("0.52344", "0.55924", "0.64341", "1.099", "2.241"):  # independent integration, REFERENCES section 7
         assert number in MADE[12].caption
+    time, _ = series(12, figure_12.kind_name("elastic"), panel=3)
+    thickness, usual = series(12, figure_12.kind_name(2.65), panel=5)
+    _, other = series(12, figure_12.kind_name(0.1), panel=5)
+    assert time.size == thickness.size == other.size
+    assert np.all(np.diff(usual) < 0.0)
+    assert np.all(np.diff(other) > 0.0)  # the opposite trend
     depth, force = series(12, "h = 1 mm")
     assert abs(depth[0]) + abs(force[0]) < 1e-14
     assert np.sum(0.5 * (force[1:] + force[:-1]) * np.diff(depth)) > 0.0  # the loop takes energy
@@ -128,6 +134,8 @@ def test_captions_give_the_numbers_behind_loose_statements():
     assert "12.6 %" in MADE[3].caption
     assert "8.0 %" in MADE[3].caption
     assert "-10.9 %" in MADE[3].caption
+    for drift in ("-0.3 % at a/h = 1,", "-0.9 % at a/h = 2,", "-5.9 % at a/h = 8."):
+        assert drift in MADE[3].caption
     assert "0.881" in MADE[7].caption
     assert "1.005" in MADE[7].caption
     assert figure_03.thin_layer_stiffness(layer(0.3), np.array(1.0)) == pytest.approx(
