@@ -6,8 +6,8 @@ Its layer takes Young's modulus and its half-space takes E*; `workers.contact_me
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from cases.referees.grid import box, refusal
-from cases.referees.process import ask, lacks, shape_of, version
+from cases.referees.grid import box, refusal, surface
+from cases.referees.process import ask, lacks, version
 from contact import (
     ContactPath,
     ForcePath,
@@ -59,13 +59,13 @@ class ContactMechanics:
 
         def respond(depths: FloatArray) -> Response:
             """What the grid answers at depths."""
+            size = box(scene, float(depths.max()))
             with log.stage("grid"):
                 answer = ask(
                     "contact_mechanics_grid",
                     {
-                        **shape_of(scene),
-                        "points": self.points,
-                        "size": box(scene, float(depths.max())),
+                        "heights": surface(scene, self.points, size),
+                        "size": size,
                         "young": layer.youngs_modulus,
                         "poisson": layer.poissons_ratio,
                         "thickness": None if layer.is_half_space else layer.thickness,

@@ -232,7 +232,8 @@ def _converged(meshes: list[Mesh], scene: Scene, exponents: Exponents) -> Conver
         "radius": 0.0 if "radius" in fixed else radius_error,
         "depth": depth_error,
         "force": 0.0 if given == "force" else force_error + stiffness * depth_error,
-        "stiffness": stiffness_error + (0.0 if "radius" in fixed else exponents.stiffness * stiffness * radius_error / radius),
+        "stiffness": stiffness_error
+        + (0.0 if "radius" in fixed else exponents.stiffness * stiffness * radius_error / radius),
     }
     order = observed_order(*(mesh.stiffness for mesh in meshes))
     return Converged(values=(radius, depth, force, stiffness), errors=tuple(errors.values()), order=order)
