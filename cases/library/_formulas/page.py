@@ -136,7 +136,8 @@ def _facts() -> Iterator[str]:
     yield (
         "- The quadratics fitted to Hayes' table for spheres end at 0.629 (nu = 0.3) and 0.688 (nu = 1/2) where a "
         f"half-space has 2/3: at a/h = 0.05 the force is {low} and {high} off. A Poisson's ratio that is none of the "
-        f"five tabulated ones falls through to the numbers of nu = 1/2: nu = 0.49 is {astray} off at a/h = 2, nu = 1/2 {own}.\n"
+        f"five tabulated ones falls through to the numbers of nu = 1/2: nu = 0.49 is {astray} off at a/h = 2, nu = 1/2 "
+        f"{own}.\n"
     )
     yield from _facts_of_limits()
 
