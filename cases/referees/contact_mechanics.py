@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from cases.referees.grid import box, refusal, surface
-from cases.referees.process import ask, lacks, version
+from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
     ContactPath,
     ForcePath,
@@ -17,7 +17,6 @@ from contact import (
     StageLog,
     Supported,
     Unsupported,
-    UnsupportedSceneError,
 )
 from contact.answer.from_depth import Response, answer_from_depths
 from contact.answer.solution import Setting
@@ -48,13 +47,11 @@ class ContactMechanics:
         if not reason and not layer.is_half_space and (layer.support != "bonded" or layer.is_incompressible):
             reason = "it models half-spaces, and bonded layers of nu < 1/2"
         reason = reason or lacks(PACKAGE)
-        return Unsupported(reason) if reason else Supported()
+        return support(reason)
 
     def solve(self, scene: Scene) -> ContactPath | ForcePath:
         """The equilibria; it states no errors."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log, layer = StageLog(), scene.layer
 
         def respond(depths: FloatArray) -> Response:

@@ -4,8 +4,8 @@ from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 from cases.referees import detachment
-from cases.referees.process import ask, lacks, version
-from contact import Detachment, DetachmentPath, Scene, StageLog, Supported, Unsupported, UnsupportedSceneError
+from cases.referees.process import ask, insist, lacks, support, version
+from contact import Detachment, DetachmentPath, Scene, StageLog, Supported, Unsupported
 
 PACKAGE = "Adhesion"
 
@@ -26,13 +26,11 @@ class Jkr:
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether the package is installed and has closed forms for the scene."""
         reason = detachment.refused(scene) or lacks(PACKAGE)
-        return Unsupported(reason) if reason else Supported()
+        return support(reason)
 
     def solve(self, scene: Scene) -> DetachmentPath:
         """The branch down to the loss of contact; closed forms state no errors."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log = StageLog()
         by_force = isinstance(scene.loading, Detachment) and scene.loading.control == "force"
         with log.stage("closed forms"):

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from contact import NotConvergedError
+from contact import Method, NotConvergedError, Scene, Supported, Unsupported, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
 WORKERS = Path(__file__).with_name("workers")
@@ -61,6 +61,22 @@ def lacks(package: str) -> str:
     if version(package):
         return ""
     return f"{package} is not installed: pip install 'contact-verification[referees]'"
+
+
+def support(reason: str) -> Supported | Unsupported:
+    """What a method answers that refuses a scene for a reason, if there is one."""
+    return Unsupported(reason) if reason else Supported()
+
+
+def insist(method: Method, scene: Scene) -> None:
+    """Refuse what a method does not support.
+
+    Raises:
+        UnsupportedSceneError: with its reason.
+    """
+    answer = method.supports(scene)
+    if isinstance(answer, Unsupported):
+        raise UnsupportedSceneError(answer.reason)
 
 
 def interpreter() -> str:

@@ -12,7 +12,7 @@ import numpy as np
 
 from cases.referees import detachment
 from cases.referees.grid import box, refusal, surface
-from cases.referees.process import ask, lacks, version
+from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
     Adhesion,
     ContactPath,
@@ -60,16 +60,14 @@ class Tamaas:
             by_depth = isinstance(scene.loading, Detachment) and scene.loading.control != "force"
             reason = detachment.refused(scene) or ("with adhesion it is driven by forces" if by_depth else "")
             reason = reason or lacks(PACKAGE)
-            return Unsupported(reason) if reason else Supported()
+            return support(reason)
         reason = refusal(scene, PACKAGE, (IndentationDepths, NormalForces))
         reason = reason or ("" if scene.layer.is_half_space else "it models half-spaces") or lacks(PACKAGE)
-        return Unsupported(reason) if reason else Supported()
+        return support(reason)
 
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria; it states no errors."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log = StageLog()
         if scene.effects:
             return self._pulled_off(scene, log)

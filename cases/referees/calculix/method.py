@@ -14,6 +14,7 @@ from cases.referees.calculix.deck import deck
 from cases.referees.calculix.extrapolation import at_zero, extrapolated, last_change, observed_order
 from cases.referees.calculix.mesh import section
 from cases.referees.calculix.program import program, reactions, version
+from cases.referees.process import insist, support
 from contact import (
     ContactPath,
     ContactRadii,
@@ -26,7 +27,6 @@ from contact import (
     StageLog,
     Supported,
     Unsupported,
-    UnsupportedSceneError,
     other_layer,
 )
 from contact.answer.from_depth import QUANTITIES
@@ -99,13 +99,11 @@ class CalculiX:
             "contact radii or depths only": not isinstance(scene.loading, _loadings(scene)),
         }
         other = other_layer("CalculiX", scene.layer)
-        return other or next((Unsupported(reason) for reason, lacks in lacking.items() if lacks), Supported())
+        return other or support(next((reason for reason, lacks in lacking.items() if lacks), ""))
 
     def solve(self, scene: Scene) -> ContactPath:
         """The equilibria, each on three meshes."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log = StageLog()
         rows = [self._state(scene, float(value), log) for value in scene.loading.values]  # type: ignore[attr-defined]
         values, errors = (np.array([getattr(row, which) for row in rows]).T for which in ("values", "errors"))
