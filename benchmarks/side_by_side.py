@@ -62,7 +62,7 @@ def error(scene: CaseScene, use: MethodUse) -> float:
     """Largest relative error of the forces."""
     answer = use.build().solve(scene.scene)
     if scene is suite.PULLED:
-        return abs(answer.pull_off_force / suite.jkr_force(scene.scene)[0] - 1)  # type: ignore[attr-defined]
+        return float(abs(answer.pull_off_force / suite.jkr_force(scene.scene)[0] - 1))  # type: ignore[attr-defined]
     expected = suite.EXPECTED["normal_force"].get(scene.name) or suite.hertz_force(scene.scene)
     return float(np.max(np.abs(answer.normal_force / np.array(expected) - 1)))  # type: ignore[attr-defined]
 

@@ -6,6 +6,7 @@ from typing import ClassVar, Self
 from cases.referees import detachment
 from cases.referees.process import ask, insist, lacks, support, version
 from contact import Detachment, DetachmentPath, Scene, StageLog, Supported, Unsupported
+from contact.answer.solution import Setting
 
 PACKAGE = "Adhesion"
 
@@ -35,7 +36,7 @@ class Jkr:
         by_force = isinstance(scene.loading, Detachment) and scene.loading.control == "force"
         with log.stage("closed forms"):
             found = ask("adhesion_jkr", {**detachment.numbers(scene), "by_force": by_force, "states": self.states})
-        settings = {"states": self.states, "package": f"{PACKAGE} {version(PACKAGE)}"}
+        settings: dict[str, Setting] = {"states": self.states, "package": f"{PACKAGE} {version(PACKAGE)}"}
         return detachment.answered(scene, found, log, method=self.name, settings=settings)
 
     def refined(self) -> Self:

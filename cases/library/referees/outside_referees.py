@@ -14,6 +14,7 @@ has 200 depths; CalculiX, which searches the radius of each depth, is left out o
 for each depth on ever finer grids, does not end within 300 s: it answers a curve of ten depths.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -21,7 +22,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.methods import MethodUse
 from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.declared import PerMethod
+from cases.judgement.claims.exact import Exact
 from cases.library._claims import exact
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer, scene_name
 from cases.library._methods import BEM, DETACHING_FEM, EQUATION, FEM, MDR
@@ -169,7 +170,7 @@ COMPARED = (
 )
 
 
-def exactly(quantity: str, *, at_a_half: bool) -> tuple[PerMethod, ...]:
+def exactly(quantity: str, *, at_a_half: bool) -> Iterator[Exact]:
     """Return the claim on a quantity, on incompressible layers or on all others."""
     expected = {
         scene.name: EXPECTED[quantity][scene.name]
