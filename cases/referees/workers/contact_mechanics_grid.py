@@ -12,8 +12,8 @@ from SurfaceTopography import Topography
 # Higher than any depth: such cells never touch.
 HIGH = 1e3
 # Its iteration stands still at 15 of 200 depths of a paraboloid on 16 points, at 7 on 32; where it ends it takes at
-# most a tenth of these steps (2026-11-22). It starts again from the displacements of a contact deeper by a twentieth.
-MOST_STEPS, DEEPER = 500, 1.05
+# most a tenth of these steps (2026-11-22). It starts again from the displacements of one deeper contact after another.
+MOST_STEPS, DEEPER = 500, (1.05, 1.1, 1.2, 1.5, 2.0)
 
 
 def substrate(question: dict[str, Any]) -> Any:
@@ -36,9 +36,10 @@ def solved(question: dict[str, Any], surface: np.ndarray, depth: float) -> tuple
     size, tolerance = question["size"], question["tolerance"]
     system = make_system(substrate=substrate(question), surface=Topography(surface, (size, size)))
     result = minimised(system, depth, tolerance)
-    if not result.success:
-        deeper = minimised(system, DEEPER * depth, tolerance)
-        result = minimised(system, depth, tolerance, deeper.x) if deeper.success else result
+    for factor in DEEPER:
+        if not result.success:
+            deeper = minimised(system, factor * depth, tolerance)
+            result = minimised(system, depth, tolerance, deeper.x) if deeper.success else result
     if not result.success:
         sys.exit(f"not converged at depth {depth}: {result.message}")
     n = len(surface)
