@@ -6,8 +6,8 @@ Its layer takes Young's modulus and its half-space takes E*; `workers.contact_me
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from cases.referees.grid import box, refusal
-from cases.referees.process import ask, lacks, shape_of, version
+from cases.referees.grid import box, refusal, surface
+from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
     ContactPath,
     ForcePath,
@@ -17,7 +17,6 @@ from contact import (
     StageLog,
     Supported,
     Unsupported,
-    UnsupportedSceneError,
 )
 from contact.answer.from_depth import Response, answer_from_depths
 from contact.answer.solution import Setting
@@ -48,24 +47,22 @@ class ContactMechanics:
         if not reason and not layer.is_half_space and (layer.support != "bonded" or layer.is_incompressible):
             reason = "it models half-spaces, and bonded layers of nu < 1/2"
         reason = reason or lacks(PACKAGE)
-        return Unsupported(reason) if reason else Supported()
+        return support(reason)
 
     def solve(self, scene: Scene) -> ContactPath | ForcePath:
         """The equilibria; it states no errors."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log, layer = StageLog(), scene.layer
 
         def respond(depths: FloatArray) -> Response:
             """What the grid answers at depths."""
+            size = box(scene, float(depths.max()))
             with log.stage("grid"):
                 answer = ask(
                     "contact_mechanics_grid",
                     {
-                        **shape_of(scene),
-                        "points": self.points,
-                        "size": box(scene, float(depths.max())),
+                        "heights": surface(scene, self.points, size),
+                        "size": size,
                         "young": layer.youngs_modulus,
                         "poisson": layer.poissons_ratio,
                         "thickness": None if layer.is_half_space else layer.thickness,

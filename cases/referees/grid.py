@@ -1,13 +1,16 @@
-"""What grid codes of others need to know of a scene: whether its shape is one of theirs, and how large the grid is."""
+"""What grid codes of others need to know of a scene: how large the grid is, and how high the indenter stands there."""
 
-from contact import Cone, FlatPunch, Loading, Paraboloid, Scene, TruncatedCone, TruncatedParaboloid, other_layer
+import numpy as np
 
-SHAPES = (FlatPunch, Paraboloid, Cone, TruncatedCone, TruncatedParaboloid)
+from contact import FlatPunch, Loading, Scene, other_layer
+
 # A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
 # falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
 BESIDE = 4.0
 # The rest of the grid around the contact of a half-space, which is not repeated: a rim of free cells.
 RIM = 1.1
+# What stands higher than so many sides of the grid never touches: all beyond a rim.
+FAR = 1e3
 
 
 def refusal(scene: Scene, code: str, loadings: tuple[type[Loading], ...]) -> str:
@@ -16,7 +19,6 @@ def refusal(scene: Scene, code: str, loadings: tuple[type[Loading], ...]) -> str
     reasons = {
         other.reason if other else "": other is not None,
         "elastic contact only": bool(scene.effects),
-        f"no {type(scene.indenter).__name__} is written down for it": not isinstance(scene.indenter, SHAPES),
         f"takes {' and '.join(kind.__name__ for kind in loadings)} only": not isinstance(scene.loading, loadings),
     }
     return next((reason for reason, there in reasons.items() if there), "")
@@ -33,6 +35,13 @@ def box(scene: Scene, depth: float) -> float:
     else:
         reach = _where_high(scene, depth if scene.layer.is_half_space else 2.0 * depth)
     return 2.0 * (RIM * reach if scene.layer.is_half_space else reach + BESIDE * scene.layer.thickness)
+
+
+def surface(scene: Scene, points: int, size: float) -> list[list[float]]:
+    """Heights of the indenter [m] at the points of a square grid, downwards from its apex in the middle."""
+    x = (np.arange(points) - points / 2 + 0.5) * size / points
+    heights = -np.minimum(scene.indenter.height(np.hypot(x[:, None], x[None, :])), FAR * size)
+    return heights.tolist()  # type: ignore[no-any-return]
 
 
 def _where_high(scene: Scene, height: float) -> float:

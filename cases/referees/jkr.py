@@ -3,20 +3,10 @@
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-import numpy as np
-
-from cases.referees.process import ask, lacks, version
-from contact import (
-    Adhesion,
-    Detachment,
-    DetachmentPath,
-    Paraboloid,
-    Scene,
-    StageLog,
-    Supported,
-    Unsupported,
-    UnsupportedSceneError,
-)
+from cases.referees import detachment
+from cases.referees.process import ask, insist, lacks, support, version
+from contact import Detachment, DetachmentPath, Scene, StageLog, Supported, Unsupported
+from contact.answer.solution import Setting
 
 PACKAGE = "Adhesion"
 
@@ -36,6 +26,7 @@ class Jkr:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether the package is installed and has closed forms for the scene."""
+<<<<<<< HEAD
         lacking = {
             "it models half-spaces": not scene.layer.is_half_space,
             "adhesion alone, no other effect": len(scene.effects) != 1 or scene.effect(Adhesion) is None,
@@ -44,14 +35,18 @@ class Jkr:
         }
         reason = next((why for why, lacks_it in lacking.items() if lacks_it), "") or lacks(PACKAGE)
         return Unsupported(reason) if reason else Supported()
+=======
+        reason = detachment.refused(scene) or lacks(PACKAGE)
+        return support(reason)
+>>>>>>> b17
 
     def solve(self, scene: Scene) -> DetachmentPath:
         """The branch down to the loss of contact; closed forms state no errors."""
-        support, adhesion = self.supports(scene), scene.effect(Adhesion)
-        if isinstance(support, Unsupported) or adhesion is None or not isinstance(scene.loading, Detachment):
-            raise UnsupportedSceneError(getattr(support, "reason", "a detachment only"))
-        log, by_force = StageLog(), scene.loading.control == "force"
+        insist(self, scene)
+        log = StageLog()
+        by_force = isinstance(scene.loading, Detachment) and scene.loading.control == "force"
         with log.stage("closed forms"):
+<<<<<<< HEAD
             found = ask("adhesion_jkr", {**_numbers(scene, adhesion), "by_force": by_force, "states": self.states})
         radius, lost = found["contact_radius"], found["force_control"][0]
         return DetachmentPath(
@@ -71,10 +66,16 @@ class Jkr:
             cost=log.cost(unknowns=1),
             stages=log.records,
         )
+=======
+            found = ask("adhesion_jkr", {**detachment.numbers(scene), "by_force": by_force, "states": self.states})
+        settings: dict[str, Setting] = {"states": self.states, "package": f"{PACKAGE} {version(PACKAGE)}"}
+        return detachment.answered(scene, found, log, method=self.name, settings=settings)
+>>>>>>> b17
 
     def refined(self) -> Self:
         """A copy with twice the states."""
         return replace(self, states=2 * self.states)
+<<<<<<< HEAD
 
 
 def _is_plain(scene: Scene) -> bool:
@@ -90,3 +91,5 @@ def _numbers(scene: Scene, adhesion: Adhesion) -> dict[str, float]:
         "contact_modulus": scene.layer.youngs_modulus / (1.0 - scene.layer.poissons_ratio**2),
         "work_of_adhesion": adhesion.work_of_adhesion,
     }
+=======
+>>>>>>> b17

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
-from cases.referees.process import ask, lacks, version
+from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
     Cone,
     ContactPath,
@@ -40,13 +40,11 @@ class Nanite:
             "it takes depths and forces": not isinstance(scene.loading, IndentationDepths | NormalForces),
         }
         reason = next((why for why, lacks_it in lacking.items() if lacks_it), "") or lacks(PACKAGE)
-        return Unsupported(reason) if reason else Supported()
+        return support(reason)
 
     def solve(self, scene: Scene) -> ContactPath | ForcePath:
         """The equilibria; a formula states no errors."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log, shape = StageLog(), _shape(scene)
 
         def respond(depths: FloatArray) -> Response:

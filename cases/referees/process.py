@@ -15,13 +15,11 @@ from typing import Any
 
 import numpy as np
 
-from contact import FlatPunch, NotConvergedError, Scene
+from contact import Method, NotConvergedError, Scene, Supported, Unsupported, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
 WORKERS = Path(__file__).with_name("workers")
 INTERPRETER = "CONTACT_REFEREES_PYTHON"
-# A rim higher than this many contact radii never touches.
-FAR = 1e3
 
 
 def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
@@ -35,7 +33,7 @@ def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
         NotConvergedError: if the process fails or answers no arrays; with its last words.
     """
     done = subprocess.run(
-        [_interpreter(), str(WORKERS / f"{worker}.py")],
+        [interpreter(), str(WORKERS / f"{worker}.py")],
         input=json.dumps(dict(question)),
         capture_output=True,
         text=True,
@@ -54,7 +52,7 @@ def ask(worker: str, question: Mapping[str, Any]) -> dict[str, FloatArray]:
 def version(package: str) -> str:
     """The version of an installed package, empty where it is not installed."""
     script = f"import importlib.metadata as m; print(m.version({package!r}))"
-    done = subprocess.run([_interpreter(), "-c", script], capture_output=True, text=True, check=False)
+    done = subprocess.run([interpreter(), "-c", script], capture_output=True, text=True, check=False)
     return done.stdout.strip() if done.returncode == 0 else ""
 
 
@@ -65,17 +63,22 @@ def lacks(package: str) -> str:
     return f"{package} is not installed: pip install 'contact-verification[referees]'"
 
 
-def shape_of(scene: Scene) -> dict[str, float]:
-    """A profile of the usual shapes as numbers: height(r) = slope (r - b) + curvature (r^2 - b^2)/2 beyond b."""
-    indenter = scene.indenter
-    radius = getattr(indenter, "radius_of_curvature", 0.0)
-    return {
-        "flat_radius": indenter.flat_radius,
-        "slope": float(getattr(indenter, "slope", 0.0)) if not isinstance(indenter, FlatPunch) else 0.0,
-        "curvature": 1.0 / radius if radius else 0.0,
-        "beyond": FAR * indenter.flat_radius if isinstance(indenter, FlatPunch) else 0.0,
-    }
+def support(reason: str) -> Supported | Unsupported:
+    """What a method answers that refuses a scene for a reason, if there is one."""
+    return Unsupported(reason) if reason else Supported()
 
 
-def _interpreter() -> str:
+def insist(method: Method, scene: Scene) -> None:
+    """Refuse what a method does not support.
+
+    Raises:
+        UnsupportedSceneError: with its reason.
+    """
+    answer = method.supports(scene)
+    if isinstance(answer, Unsupported):
+        raise UnsupportedSceneError(answer.reason)
+
+
+def interpreter() -> str:
+    """The Python in which packages of others are installed."""
     return os.environ.get(INTERPRETER) or sys.executable

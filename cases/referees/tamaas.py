@@ -1,14 +1,23 @@
-"""Tamaas, a grid code with fast transforms: half-spaces, through its operator of a grid that is not repeated."""
+"""Tamaas, a grid code with fast transforms: half-spaces, through its operator of a grid that is not repeated.
+
+Adhesion it has on repeated grids only, as a potential of the gap with a range of its own, and driven by forces.  Its
+solver of Maxwell's solids (`MaxwellViscoelastic`) is not asked: in 2.9.0, driven by a constant force, its displacements
+creep and its pressures do not (docs/referees.md).
+"""
 
 from dataclasses import dataclass, replace
 from typing import ClassVar, Self
 
 import numpy as np
 
-from cases.referees.grid import box, refusal
-from cases.referees.process import ask, lacks, shape_of, version
+from cases.referees import detachment
+from cases.referees.grid import box, refusal, surface
+from cases.referees.process import ask, insist, lacks, support, version
 from contact import (
+    Adhesion,
     ContactPath,
+    Detachment,
+    DetachmentPath,
     FlatPunch,
     IndentationDepths,
     NormalForces,
@@ -19,11 +28,15 @@ from contact import (
     UnsupportedSceneError,
 )
 from contact.answer.from_depth import inverted
+from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 
 PACKAGE = "tamaas"
 # Forces of the difference quotient of the stiffness, relative; of second order, 2e-5 of it for a power law.
 STEP = 1e-2
+# Range of adhesion in distances of points: the larger, the farther from JKR on one grid. Chosen: at this one its solver
+# still ends on 64 to 256 points, down to pull-off (2026-11-22).
+RANGE = 1 / 6
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,16 +56,21 @@ class Tamaas:
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether the package is installed and models the scene."""
+        if scene.effect(Adhesion):
+            by_depth = isinstance(scene.loading, Detachment) and scene.loading.control != "force"
+            reason = detachment.refused(scene) or ("with adhesion it is driven by forces" if by_depth else "")
+            reason = reason or lacks(PACKAGE)
+            return support(reason)
         reason = refusal(scene, PACKAGE, (IndentationDepths, NormalForces))
         reason = reason or ("" if scene.layer.is_half_space else "it models half-spaces") or lacks(PACKAGE)
-        return Unsupported(reason) if reason else Supported()
+        return support(reason)
 
-    def solve(self, scene: Scene) -> ContactPath:
+    def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria; it states no errors."""
-        support = self.supports(scene)
-        if isinstance(support, Unsupported):
-            raise UnsupportedSceneError(support.reason)
+        insist(self, scene)
         log = StageLog()
+        if scene.effects:
+            return self._pulled_off(scene, log)
         with log.stage("grid"):
             forces = self._forces(scene)
             answer = self._asked(scene, np.multiply.outer(forces, 1.0 + STEP * np.array([-1.0, 0.0, 1.0])).ravel())
@@ -60,7 +78,7 @@ class Tamaas:
         return ContactPath(
             scene=scene,
             method=self.name,
-            settings={"points": self.points, "tolerance": self.tolerance, "package": f"{PACKAGE} {version(PACKAGE)}"},
+            settings=self._settings(),
             contact_radius=radius[:, 1],
             indentation_depth=depth[:, 1],
             normal_force=forces,
@@ -73,6 +91,20 @@ class Tamaas:
     def refined(self) -> Self:
         """A copy with half the distance of points."""
         return replace(self, points=2 * self.points)
+
+    def _settings(self) -> dict[str, Setting]:
+        return {"points": self.points, "tolerance": self.tolerance, "package": f"{PACKAGE} {version(PACKAGE)}"}
+
+    def _pulled_off(self, scene: Scene, log: StageLog) -> DetachmentPath:
+        """Adhesion over a range that shrinks with the distance of points, so that refinement leads to JKR."""
+        asked = detachment.numbers(scene)
+        with log.stage("grid"):
+            found = ask("tamaas_adhesion", {**asked, "points": self.points, "range_in_cells": RANGE})
+        note = f"adhesion of a range of {RANGE:.3g} cells, which is finite: JKR is its limit under refinement"
+        unknowns = self.points**2
+        return detachment.answered(
+            scene, found, log, method=self.name, settings=self._settings(), unknowns=unknowns, notes=(note,)
+        )
 
     def _forces(self, scene: Scene) -> FloatArray:
         """The forces [N] prescribed, or those at which the prescribed depths are reached: it is driven by forces."""
@@ -93,12 +125,12 @@ class Tamaas:
         else:
             length = scene.indenter.radius if isinstance(scene.indenter, FlatPunch) else _radius(scene, forces)
             depth = float(forces.max()) / (layer.contact_modulus * length)
+        size = box(scene, depth)
         return ask(
             "tamaas_grid",
             {
-                **shape_of(scene),
-                "points": self.points,
-                "size": box(scene, depth),
+                "heights": surface(scene, self.points, size),
+                "size": size,
                 "young": layer.youngs_modulus,
                 "poisson": layer.poissons_ratio,
                 "tolerance": self.tolerance,

@@ -27,6 +27,7 @@ from reports.tables.table import Table
 from reports.terminal.progress import RunDisplay
 from reports.terminal.terminal import STYLES, console, show_table
 from reports.words.moves import moves
+from reports.words.one_factor import one_factor
 from reports.words.outcomes import headline, outcomes
 
 # What methods of installed packages are compared with when no other method is named.
@@ -113,6 +114,8 @@ def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
     failed = [row for row in rows if row.tone == "bad"][:WORST_SHOWN]
     for row in failed:
         terminal.print(Text.assemble((row.word, STYLES["bad"]), f" {row.case}: {row.place} ({row.who}): {row.message}"))
+    for sentence in one_factor(result):
+        terminal.print(sentence)
     words, tone = headline(result, rows)
     terminal.print(words, style=STYLES[tone])
     terminal.print(f"report: {page_of(out)}")

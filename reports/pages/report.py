@@ -23,6 +23,7 @@ from reports.tables.table import Table, tabulated
 from reports.words.file_names import file_name
 from reports.words.moves import baseline_sentence
 from reports.words.numbers import duration, small
+from reports.words.one_factor import one_factor
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
 
 # The folder of the pages of single cases.
@@ -125,6 +126,7 @@ def render(
         counts=counts(rows),
         explanations=EXPLANATIONS,
         wide=sum(is_wide(claim) for case in run.cases for claim in case.claims),
+        factors=one_factor(run),
         worst=worst,
         more_failures=sum(row.tone != "skip" for row in notable) - len(worst),
         matrix=run_matrix(run) if rows else None,

@@ -9,6 +9,7 @@ from contact.records.plain_text import printable
 from reports.pages.matrix import Cell, run_matrix
 from reports.words.moves import baseline_sentence
 from reports.words.numbers import duration
+from reports.words.one_factor import one_factor
 from reports.words.outcomes import CheckOutcome, counts, headline, outcomes
 
 # Bytes: what a reader scrolls through. GitHub refuses a job summary above 1 MiB.
@@ -31,6 +32,7 @@ def summary_text(run: RunResult, *, largest: int = LARGEST) -> str:
     suite = f"Suite {run.suite}" if run.suite else "Chosen cases"
     taken = f"{suite}, revision {run.stamp.revision[:12]}, {duration(run.stamp.wall_seconds)}."
     top = f"# {_escaped(words)}\n\n{tally}. {_escaped(taken)} {_escaped(baseline_sentence(run))}\n\n"
+    top += "".join(f"{_escaped(sentence)}\n\n" for sentence in one_factor(run))
     notable = [row for row in rows if row.tone != "good"]
     matrix = _matrix(run) if rows else ""
     if 2 * len(matrix.encode()) > largest:

@@ -31,7 +31,13 @@ def registered(monkeypatch):
 @pytest.mark.usefixtures("registered")
 def test_the_mistake_is_caught_and_the_report_shows_where(tmp_path, capsys):
     assert run([*ARGUMENTS, "--out", str(tmp_path)]) == 1
-    assert "FAIL truncated_cone" in capsys.readouterr().out
+    told = " ".join(capsys.readouterr().out.split())
+    assert "FAIL truncated_cone" in told
+    sentence = "normal force is -9 % off in all"
+    pages = [(tmp_path / name).read_text(encoding="utf-8") for name in ("report.html", "summary.md")]
+    for text in (told, *pages):
+        assert text.count(sentence) == 1
+        assert "indentation depth pass: one factor 0.91, such as a modulus" in text[text.index(sentence) :][:160]
     (case,) = read_run(tmp_path).cases
     force, depth = ([c for c in case.claims if c.name == f"half-space {what}"] for what in ("force", "depth"))
     assert {claim.status for claim in depth} == {Status.PASS}

@@ -9,6 +9,17 @@ from numpy.polynomial.polynomial import polyval
 from contact.records.validation import FloatArray
 from mdr.curves import series
 
+# Hayes et al. 1972, spheres: quadratics in t = a/h that were fitted to their tables, as two Python programs have them
+# (one by a maker of instruments; seen 2026-11-22). a^2/(R delta) = A1 t^2 + B1 t + C1, F = 4 G delta a kappa/(1 - nu)
+# with kappa = A2 t^2 + B2 t + C2. On a half-space C1 is 1 and C2 is 2/3.
+HAYES_SPHERE = {
+    0.3: ((-0.1263, 0.6325, 1.015), (0.0841, 0.5911, 0.6293)),
+    0.35: ((-0.1342, 0.668, 1.0154), (0.1046, 0.6235, 0.6259)),
+    0.4: ((-0.1439, 0.7203, 1.0144), (0.1471, 0.6547, 0.6233)),
+    0.45: ((-0.1537, 0.7974, 1.0113), (0.2483, 0.6539, 0.6258)),
+    0.5: ((-0.1462, 0.9008, 1.0067), (0.5737, 0.4156, 0.6875)),
+}
+
 
 def hertz(x: FloatArray, nu: float) -> FloatArray:
     """One: the layer is taken for a half-space."""
@@ -33,6 +44,15 @@ def dimitriadis_bonded_any_nu(x: FloatArray, nu: float) -> FloatArray:
 def dimitriadis_not_bonded_any_nu(x: FloatArray, nu: float) -> FloatArray:
     """Dimitriadis et al. 2002: not bonded, any nu."""
     return np.asarray(polyval(x, series.dimitriadis(nu, bonded=False)))
+
+
+def hayes_quadratics(x: FloatArray, nu: float) -> FloatArray:
+    """Hayes et al. 1972 by quadratics: bonded; any other nu than the five of the table gets those of nu = 1/2."""
+    (a1, b1, c1), kappa = HAYES_SPHERE.get(nu, HAYES_SPHERE[0.5])
+    # t^2/x^2 = A1 t^2 + B1 t + C1, and A1 is negative: one root is positive.
+    square = 1 / x**2 - a1
+    t = (b1 + np.sqrt(b1**2 + 4 * square * c1)) / (2 * square)
+    return np.asarray(1.5 * polyval(t, kappa[::-1]) * t / x)
 
 
 def garcia(x: FloatArray, nu: float) -> FloatArray:

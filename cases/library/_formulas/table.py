@@ -90,6 +90,15 @@ PARABOLOIDS = (
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
+        name="Hayes 1972, quadratics",
+        shape="paraboloid",
+        support="bonded",
+        factor=paraboloid.hayes_quadratics,
+        poissons_ratios=(0.3, 0.45, 0.49, 0.5),
+        source="Hayes et al., J. Biomech. 5 (1972) 541; quadratics of two Python programs that cite its data",
+        claim="a/h up to 2, nu = 0.3 to 0.5 as tabulated",
+    ),
+    Formula(
         name="Garcia 2018, paraboloid",
         shape="paraboloid",
         support="bonded",

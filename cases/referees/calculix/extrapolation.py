@@ -1,6 +1,10 @@
-"""Three nested meshes become one number with an error: Richardson's extrapolation with the observed order."""
+"""Three nested meshes, or layers ever less compressible, become one number with an error (Richardson)."""
 
 import math
+
+import numpy as np
+
+from contact.records.validation import FloatArray
 
 # Safety factor of three grids whose observed order is none that the mesh could have (VERIFICATION, Roache).
 SAFETY = 3.0
@@ -32,3 +36,25 @@ def observed_order(coarse: float, middle: float, fine: float) -> float:
     """Of meshes of half the cell each time; zero where changes do not shrink."""
     change, before = fine - middle, middle - coarse
     return math.log2(before / change) if change and before / change > 1.0 else 0.0
+
+
+def at_zero(places: FloatArray, values: FloatArray, errors: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Return the polynomial through values at its zero, with an error.
+
+    Args:
+        places: where the values belong to, falling towards zero, shape (n,).
+        values: shape (n, m).
+        errors: of the values, shape (n, m).
+
+    Returns:
+        Values and errors, shape (m,): the distance to the polynomial without the first place, and what the errors of
+        the values make of it.
+    """
+    weights = _weights_at_zero(places)
+    shorter = np.concatenate([[0.0], _weights_at_zero(places[1:])])
+    return weights @ values, np.abs((weights - shorter) @ values) + np.abs(weights) @ errors
+
+
+def _weights_at_zero(places: FloatArray) -> FloatArray:
+    """Of the polynomial through values at places (Lagrange)."""
+    return np.array([np.prod([x / (x - own) for x in places if x != own]) for own in places])

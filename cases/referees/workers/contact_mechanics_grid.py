@@ -11,42 +11,46 @@ from SurfaceTopography import Topography
 
 # Higher than any depth: such cells never touch.
 HIGH = 1e3
+# Its iteration stands still at 15 of 200 depths of a paraboloid on 16 points, at 7 on 32; where it ends it takes at
+# most a tenth of these steps (2026-11-22). It starts again from the displacements of one deeper contact after another.
+MOST_STEPS, DEEPER = 500, (1.05, 1.1, 1.2, 1.5, 2.0)
 
 
 def substrate(question: dict[str, Any]) -> Any:
     """The half-space, where E stands for E*, or the bonded layer, where E is Young's modulus."""
-    grid, size = (question["points"],) * 2, (question["size"],) * 2
+    grid, size = (len(question["heights"]),) * 2, (question["size"],) * 2
     young, poisson, thickness = question["young"], question["poisson"], question["thickness"]
     if thickness is None:
         return FreeFFTElasticHalfSpace(grid, young / (1 - poisson**2), size)
     return PeriodicFFTElasticHalfSpace(grid, young, size, thickness=thickness, poisson=poisson)
 
 
-def heights(question: dict[str, Any]) -> np.ndarray:
-    """Of the indenter at the points of the grid, downwards from its apex."""
-    n, size = question["points"], question["size"]
-    x = (np.arange(n) - n / 2 + 0.5) * size / n
-    r, b = np.hypot(x[:, None], x[None, :]), question["flat_radius"]
-    above = question["slope"] * np.maximum(r - b, 0) + question["curvature"] * np.maximum(r**2 - b**2, 0) / 2
-    return np.asarray(-above - np.where(r > b, question["beyond"], 0.0))
+def minimised(system: Any, depth: float, tolerance: float, start: Any = None) -> Any:
+    """The result of its iteration, successful or not."""
+    given = {} if start is None else {"initial_displacements": start}
+    return system.minimize_proxy(offset=depth, pentol=tolerance * depth, maxiter=MOST_STEPS, **given)
 
 
 def solved(question: dict[str, Any], surface: np.ndarray, depth: float) -> tuple[float, np.ndarray]:
     """Force at a depth, and which points touch."""
-    size = question["size"]
+    size, tolerance = question["size"], question["tolerance"]
     system = make_system(substrate=substrate(question), surface=Topography(surface, (size, size)))
-    result = system.minimize_proxy(offset=depth, pentol=question["tolerance"] * depth)
+    result = minimised(system, depth, tolerance)
+    for factor in DEEPER:
+        if not result.success:
+            deeper = minimised(system, factor * depth, tolerance)
+            result = minimised(system, depth, tolerance, deeper.x) if deeper.success else result
     if not result.success:
         sys.exit(f"not converged at depth {depth}: {result.message}")
-    n = question["points"]
+    n = len(surface)
     return float(system.compute_normal_force()), np.asarray(system.force[:n, :n]) > 0
 
 
 def main() -> None:
     """Answer one question."""
     question = json.load(sys.stdin)
-    surface, cell = heights(question), (question["size"] / question["points"]) ** 2
-    rows = []
+    surface = np.array(question["heights"])
+    cell, rows = (question["size"] / len(surface)) ** 2, []
     for depth in question["depths"]:
         force, touching = solved(question, surface, depth)
         # The stiffness at this contact is that of a flat punch of its shape.

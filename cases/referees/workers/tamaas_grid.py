@@ -10,20 +10,11 @@ import tamaas
 
 def half_space(question: dict[str, Any]) -> Any:
     """The elastic half-space with the operator of a single, not repeated, grid."""
-    n, size = question["points"], question["size"]
+    n, size = len(question["heights"]), question["size"]
     model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, [size, size], [n, n])
     model.E, model.nu = question["young"], question["poisson"]
     tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
     return model
-
-
-def heights(question: dict[str, Any]) -> np.ndarray:
-    """Of the indenter at the points of the grid, downwards from its apex."""
-    n, size = question["points"], question["size"]
-    x = (np.arange(n) - n / 2 + 0.5) * size / n
-    r, b = np.hypot(x[:, None], x[None, :]), question["flat_radius"]
-    above = question["slope"] * np.maximum(r - b, 0) + question["curvature"] * np.maximum(r**2 - b**2, 0) / 2
-    return np.asarray(-above - np.where(r > b, question["beyond"], 0.0))
 
 
 def solved(question: dict[str, Any], surface: np.ndarray, force: float) -> tuple[float, float]:
@@ -37,14 +28,14 @@ def solved(question: dict[str, Any], surface: np.ndarray, force: float) -> tuple
     pressure, shift = np.array(model.traction), np.zeros_like(model.displacement)
     model.operators["dcfft"].apply(np.ascontiguousarray(pressure), shift)
     touching = pressure > 0
-    radius = np.sqrt(touching.sum() * (size / question["points"]) ** 2 / np.pi)
+    radius = np.sqrt(touching.sum() * (size / len(surface)) ** 2 / np.pi)
     return float(np.average((shift - surface)[touching], weights=pressure[touching])), float(radius)
 
 
 def main() -> None:
     """Answer one question."""
     question = json.load(sys.stdin)
-    surface = heights(question)
+    surface = np.array(question["heights"])
     rows = [solved(question, surface, force) for force in question["forces"]]
     names = ("indentation_depth", "contact_radius")
     sys.stdout.write("\n" + json.dumps(dict(zip(names, zip(*rows, strict=True), strict=True))) + "\n")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from cases.referees.calculix.deck import deck
-from cases.referees.calculix.extrapolation import extrapolated, observed_order
+from cases.referees.calculix.extrapolation import at_zero, extrapolated, observed_order
 from cases.referees.calculix.mesh import section
-from cases.referees.calculix.method import CalculiX
+from cases.referees.calculix.method import CalculiX, _place
 from cases.referees.calculix.program import _read, program
 from contact import (
     ContactRadii,
@@ -62,6 +62,21 @@ def test_changes_that_do_not_shrink_are_not_extrapolated():
     assert (value, error) == (1.05, pytest.approx(0.15, rel=1e-4, abs=0.0))
 
 
+def test_a_polynomial_at_its_zero_covers_what_it_lacks():
+    places = np.array([0.08, 0.04, 0.02, 0.01, 0.005])
+    values = np.column_stack([1.0 + places + places**4, np.exp(3.0 * places)])
+    found, errors = at_zero(places, values, np.full(values.shape, 1e-12))
+    assert found == pytest.approx([1.0, 1.0], rel=2e-8, abs=0.0)
+    assert np.all(errors >= np.abs(found - 1.0))
+    assert np.all(errors < 1e-5)
+
+
+def test_elements_that_do_not_lock_where_nu_is_large():
+    mesh = section(1.0, 1.0, 2)
+    kinds = [deck(mesh, LAYER.replace(poissons_ratio=nu), 1.0, mesh.radius) for nu in (0.3, 0.49)]
+    assert ["TYPE=CAX8," in kinds[0], "TYPE=CAX8R," in kinds[1]] == [True, True]
+
+
 def test_a_base_that_does_not_carry_the_load_is_refused():
     line = "  1.000000E-09 {} 0.000000E+00\n"
     printed = "".join(line.format(force) for force in ("-1.0E+00", "9.0E-01", "-1.0E-03") * 2)
@@ -79,8 +94,9 @@ def test_an_inverted_element_is_an_error_of_its_name():
         reactions(broken)
 
 
-def scene(indenter, loading, support="bonded"):
-    return Scene(layer=LAYER.replace(support=support), indenter=indenter, loading=loading)
+def scene(indenter, loading, support="bonded", poissons_ratio=0.3):
+    layer = LAYER.replace(support=support, poissons_ratio=poissons_ratio)
+    return Scene(layer=layer, indenter=indenter, loading=loading)
 
 
 SCENES = {
@@ -88,6 +104,9 @@ SCENES = {
     "paraboloid": scene(Paraboloid(radius_of_curvature=1e-2), ContactRadii(values=np.array([1e-3]))),
     "unbonded": scene(Paraboloid(radius_of_curvature=1e-2), ContactRadii(values=np.array([1e-3])), "unbonded"),
     "cone": scene(TruncatedCone(flat_radius=5e-4, slope=0.1), ContactRadii(values=np.array([1e-3]))),
+    "at depth, nu = 1/2": scene(
+        Paraboloid(radius_of_curvature=1e-2), IndentationDepths(values=np.array([6e-5])), poissons_ratio=0.5
+    ),
     "at depth": scene(Paraboloid(radius_of_curvature=1e-2), IndentationDepths(values=np.array([6e-5]))),
 }
 
@@ -109,9 +128,21 @@ def test_coarse_meshes_cover_what_they_miss(name, cells):
 
 
 @installed
+def test_exponents_of_depth_and_stiffness_are_those_of_the_contact():
+    """The stiffness was said to grow like the fourth power of the radius, which made its bar wider than it need be."""
+    radius, exponents = _place(SCENES["at depth"], 6e-5, 6)
+    near = scene(Paraboloid(radius_of_curvature=1e-2), ContactRadii(values=radius * np.array([0.99, 1.01])))
+    right = Mdr().solve(near)
+    for name in ("depth", "stiffness"):
+        values = right.indentation_depth if name == "depth" else right.contact_stiffness
+        expected = np.log(values[1] / values[0]) / np.log(1.01 / 0.99)
+        assert getattr(exponents, name) == pytest.approx(expected, rel=2e-2, abs=0.0)
+
+
+@installed
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SCENES)
 def test_its_own_error_covers_and_is_five_digits(name):
     for error, stated in compared(name, 16):
         assert error <= stated + 1e-12
-        assert error < 5e-6
+        assert error < (2e-5 if "1/2" in name else 5e-6)
