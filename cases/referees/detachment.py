@@ -15,9 +15,13 @@ def refused(scene: Scene) -> str:
         "it models half-spaces": not scene.layer.is_half_space,
         "adhesion alone, no other effect": len(scene.effects) != 1 or scene.effect(Adhesion) is None,
         "it has adhesion of paraboloids": not isinstance(scene.indenter, Paraboloid),
-        "it takes a detachment": not isinstance(scene.loading, Detachment),
+        "it takes a detachment by a rigid machine or a force": not _is_plain(scene),
     }
     return next((reason for reason, there in reasons.items() if there), "")
+
+
+def _is_plain(scene: Scene) -> bool:
+    return isinstance(scene.loading, Detachment) and scene.loading.controlled != "machine"
 
 
 def numbers(scene: Scene) -> dict[str, float]:
@@ -72,6 +76,7 @@ def answered(
         pull_off_force=float(force[-1] if by_force else force.min()),
         pull_off_depth=float(found["indentation_depth"][-1]),
         pull_off_contact_radius=float(radius[-1]),
+        force_at_loss=float(force[-1]),
         error_estimate={},
         cost=log.cost(unknowns=unknowns),
         stages=log.records,
