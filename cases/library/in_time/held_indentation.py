@@ -54,8 +54,10 @@ def case_scene(
         loading=loading,
         effects=effects,
     )
-    # Finite elements search the depth of every force: they creep in the suite nightly.
-    return CaseScene(name=name, parameters={"layer": name}, scene=scene, nightly=("fem",) if loading is LOADED else ())
+    # The depth of every force is searched, which takes seconds: such histories are in the suite nightly.
+    return CaseScene(
+        name=name, parameters={"layer": name}, scene=scene, nightly=("mdr", "fem") if loading is LOADED else ()
+    )
 
 
 BONDED = Layer.incompressible(thickness=THICKNESS, shear_modulus=INSTANTANEOUS)
