@@ -54,8 +54,10 @@ def case_scene(
         loading=loading,
         effects=effects,
     )
-    # Finite elements search the depth of every force: they creep in the suite nightly.
-    return CaseScene(name=name, parameters={"layer": name}, scene=scene, nightly=("fem",) if loading is LOADED else ())
+    # The depth of every force is searched, which takes seconds: such histories are in the suite nightly.
+    return CaseScene(
+        name=name, parameters={"layer": name}, scene=scene, nightly=("mdr", "fem") if loading is LOADED else ()
+    )
 
 
 BONDED = Layer.incompressible(thickness=THICKNESS, shear_modulus=INSTANTANEOUS)
@@ -89,7 +91,9 @@ def creep(scene: Scene) -> list[float]:
 
 
 ORDERS = (
-    *studies((CREEPING_HALF_SPACE, CREEPING), HISTORY_ACCURACY, ("indentation_depth",), against=FINEST_MDR),
+    *studies(
+        (CREEPING_HALF_SPACE, CREEPING), HISTORY_ACCURACY, ("indentation_depth",), against=FINEST_MDR, nightly=True
+    ),
     *studies((HALF_SPACE, RELAXING), HISTORY_ACCURACY, ("normal_force",), against=FINEST_MDR),
     *studies((ELASTIC,), CELLS_AND_STEPS, {"normal_force": 2.0}, against=FINEST_MDR),
 )
