@@ -10,7 +10,7 @@ from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.layer_equation.thin_layers import LargeRatioSolution
 from contact import Scene
-from contact.answer.one_circle import Circle, refuse_touching, touching_radius
+from contact.answer.one_circle import Circle, never_touches_beside, refuse_touching, touching_radius
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields, equivalent_system
 from mdr.springs.equivalent_system import EquivalentSystem
@@ -28,14 +28,14 @@ def refuse_touching_beside(scene: Scene, system: EquivalentSystem, radius: Float
     Raises:
         UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
     """
-    if scene.indenter.is_convex:
+    if never_touches_beside(scene):
         return
     # A radius that a search found may lie a rounding beyond the last one that is covered.
     radius = np.minimum(radius, system.max_radius)
     widest = float(radius.max())
-    if touching_radius(scene, _circle(scene, system, widest, float(system.mdr_profile(widest)))) is not None:
+    if touching_radius(scene, circle_of(scene, system, widest, float(system.mdr_profile(widest)))) is not None:
         states = zip(radius.tolist(), depth.tolist(), strict=True)
-        refuse_touching(scene, (_circle(scene, system, *state) for state in states))
+        refuse_touching(scene, (circle_of(scene, system, *state) for state in states))
 
 
 def refuse_touching_at(scene: Scene, flat_punch: FlatPunchSource, radius: float) -> None:
@@ -44,15 +44,15 @@ def refuse_touching_at(scene: Scene, flat_punch: FlatPunchSource, radius: float)
     Raises:
         UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
     """
-    if scene.indenter.is_convex or radius <= scene.indenter.flat_radius:
+    if never_touches_beside(scene) or radius <= scene.indenter.flat_radius:
         return
     system = equivalent_system(scene.layer, scene.indenter, radius, flat_punch)
     only = np.array([radius])
     refuse_touching_beside(scene, system, only, system.mdr_profile(only))
 
 
-def _circle(scene: Scene, system: EquivalentSystem, radius: float, depth: float) -> Circle:
-    """Tables hold no displacement outside the contact: there the integral equation gives it."""
+def circle_of(scene: Scene, system: EquivalentSystem, radius: float, depth: float) -> Circle:
+    """One contact. Tables hold no displacement outside the contact: there the integral equation gives it."""
     flat_punch = system.flat_punch
     if not isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution | LargeRatioSolution):
         flat_punch = IntegralEquation().solution(scene.layer, system.max_radius / system.length_unit)

@@ -104,10 +104,10 @@ def refuse_pulling_at(scene: Scene, flat_punch: FlatPunchSource, radius: float) 
         contact = contact_fields(
             scene.layer, scene.indenter, system.flat_punch, excess=excess, depth=float(depth[0]), edge=is_punch
         )
-        refuse_pulling(scene, _OneStep(contact.pressure), a, np.asarray(system.force(a, depth)), LEAST_TENSION)
+        refuse_pulling(scene, OneStep(contact.pressure), a, np.asarray(system.force(a, depth)), LEAST_TENSION)
 
 
-class _OneStep:
+class OneStep:
     """The pressure of one contact as fields of a path of one step."""
 
     def __init__(self, pressure: Callable[[FloatArray], FloatArray]) -> None:

@@ -30,6 +30,7 @@ from contact import (
     Tabulated,
     TabulatedDepth,
     TruncatedCone,
+    TruncatedParaboloid,
     UnsupportedSceneError,
 )
 from mdr import Mdr
@@ -78,12 +79,17 @@ def test_the_answer_does_not_depend_on_the_split(monkeypatch):
     assert other.depth == pytest.approx(whole.depth, rel=1e-13, abs=0.0)
 
 
+MEASURED = Tabulated(radii=[0.0, 0.2, 0.5, 1.5], heights=[0.0, 0.01, 0.07, 0.71])
 CONTACTS = {
     "paraboloid": (PARABOLOID, ContactRadii([0.1, 1.0, 5.0])),
     "paraboloid, force": (PARABOLOID, NormalForces([0.5])),
     "cone, depth": (Cone(slope=0.1), IndentationDepths([0.05])),
     "cone, small": (Cone(slope=0.1), ContactRadii([0.2, 0.5])),
     "flat punch": (FlatPunch(radius=1.0), NormalForces([1.0])),
+    "truncated cone": (CONE, ContactRadii([0.8])),
+    "truncated, from beside the rim to wide": (CONE, ContactRadii([0.51, 1.03, 3.0])),
+    "small flat end": (TruncatedParaboloid(flat_radius=0.05, radius_of_curvature=1.0), ContactRadii([0.06, 0.4])),
+    "bends": (MEASURED, ContactRadii([0.3, 0.8, 1.2])),
 }
 
 
@@ -106,7 +112,7 @@ def compared(layer, indenter, loading, tolerance=1e-8):
     )
 
 
-@pytest.mark.parametrize("contact", ["cone, small", "flat punch"])
+@pytest.mark.parametrize("contact", ["cone, small", "flat punch", "truncated cone"])
 def test_mdr_agrees(contact):
     compared(LAYERS["softer below, elastic base"], *CONTACTS[contact])
 
@@ -120,9 +126,6 @@ def test_mdr_agrees_on_every_layer(name, contact):
 
 def solved(layer, indenter, loading, **settings):
     return IntegralEquationMethod(**settings).solve(Scene(layer=layer, indenter=indenter, loading=loading))
-
-
-MEASURED = Tabulated(radii=[0.0, 0.2, 0.5, 1.5], heights=[0.0, 0.01, 0.07, 0.71])
 
 
 @pytest.mark.parametrize("indenter", [CONE, pytest.param(MEASURED, marks=pytest.mark.slow)], ids=["cone", "measured"])

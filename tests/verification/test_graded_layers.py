@@ -30,8 +30,6 @@ from contact import (
     Scene,
     Sublayer,
     TabulatedDepth,
-    TruncatedCone,
-    UnsupportedSceneError,
 )
 from mdr import Mdr
 
@@ -155,7 +153,5 @@ def test_adhesion_obeys_griffith():
 
 
 def test_what_is_not_modelled_is_refused_by_name():
-    with pytest.raises(UnsupportedSceneError, match=r"TruncatedCone on a graded layer: .* cut the layer into"):
-        solve(EXPONENTIAL, TruncatedCone(flat_radius=0.3, slope=0.1), ContactRadii([0.8]))
     with pytest.raises(InvalidInput, match=r"more than 16 times the thickness 1 m of the material at the surface"):
         solve(EXPONENTIAL, PARABOLOID, ContactRadii([20.0]))
