@@ -13,17 +13,20 @@ from contact import (
     DepthHistory,
     ElasticBase,
     FlatPunch,
+    GradedLayer,
     Impact,
     IndentationDepths,
     InvalidInput,
     Layer,
     LayerStack,
+    LinearDepth,
     NormalForces,
     Paraboloid,
     Scene,
     StandardSolid,
     Sublayer,
     Tabulated,
+    TabulatedDepth,
     TruncatedCone,
     UnsupportedSceneError,
 )
@@ -242,11 +245,33 @@ def test_layers_that_relax_alike_are_modelled():
             assert cut.coefficient_of_restitution == pytest.approx(one.coefficient_of_restitution, rel=1e-8, abs=0.0)
 
 
+def test_different_moduli_with_one_relaxation_function_relax_as_it_does():
+    """By correspondence the force at rest is the elastic one times G(t)/G(0), whatever the moduli's ratios are."""
+    layer = stack((0.4, 3.0, 0.5), (0.3, 0.3, 0.5), (0.3, 30.0, 0.5))
+    elastic = solve(layer, PARABOLOID, IndentationDepths([0.1]))
+    # The ramp takes 1e-6 of the relaxation time, 2/3 s.
+    history = DepthHistory(time=[0.0, 1e-6, 1.0], depth=[0.0, 0.1, 0.1])
+    force = solve(layer, PARABOLOID, history, effects=SOLID).normal_force
+    relaxed = 0.25 + 0.75 * np.exp(-1.0 / (0.5 / 0.75))
+    assert force[-1] == pytest.approx(float(elastic.normal_force[0]) * relaxed, rel=3e-6, abs=0.0)
+
+
 @pytest.mark.parametrize(
     ("layer", "reason"),
     [
         (stack((0.4, 3.0, 0.5), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.5)), "elastic base does not"),
-        (stack((0.4, 3.0, 0.5), (0.6, 3.0, 0.3)), "incompressible"),
+        (
+            stack((0.4, 3.0, 0.5), (0.3, 3.0, 0.3), (0.3, 3.0, 0.2)),
+            r"incompressible layers only, and layer.sublayers\[1\].poissons_ratio = 0.3, layer.sublayers\[2\]",
+        ),
+        (
+            GradedLayer(
+                thickness=1.0,
+                youngs_modulus=LinearDepth(surface=3.0, base=1.0),
+                poissons_ratio=TabulatedDepth(depths=[0.0, 1.0], values=[0.5, 0.3]),
+            ),
+            "below 0.5 at some depths",
+        ),
     ],
 )
 def test_layers_that_do_not_relax_alike_are_refused(layer, reason):
