@@ -75,7 +75,7 @@ def unilateral(scene: Scene, depth: float, cells: int = STRIP_CELLS) -> FoundCon
     if isinstance(indenter, FlatPunch):
         return contact_without_tension(scene, indenter.radius, depth, settings, log=log)
     try:
-        return find_contact(scene, depth, settings, "superlu", log, cells)
+        return find_contact(scene, depth, settings, "superlu", log, cells=cells)
     except UnsupportedSceneError:
         return None
 

@@ -1,4 +1,4 @@
-"""Contacts beyond radii over which the MDR profile falls: of those with the wanted depth or force, the one that presses.
+"""Contacts beyond a fall of the MDR profile: of those with the wanted depth or force, the one that presses.
 
 A stiff film on a soft base carries a small contact by bending, and g falls where the base begins to carry. Several
 radii then have one depth. The contact problem without tension has one solution only, so the circle that presses

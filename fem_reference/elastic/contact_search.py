@@ -112,6 +112,7 @@ class ContactSearch:
         settings: Discretisation,
         backend: str,
         log: StageLog,
+        *,
         cells: int = STRIP_CELLS,
     ) -> None:
         kinks = scene.indenter.kinks
@@ -152,7 +153,7 @@ class ContactSearch:
 
 
 def find_contact(
-    scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog, cells: int = STRIP_CELLS
+    scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog, *, cells: int = STRIP_CELLS
 ) -> FoundContact:
     """Contact at a depth [m] or force / E* [m^2] (as the scene's loading says) on a strip of cells that fits it.
 
@@ -165,7 +166,7 @@ def find_contact(
     end = scene.indenter.max_radius
     radius = _first_radius(scene.indenter, target, by_depth)
     for _ in range(12):
-        search = ContactSearch(scene, radius, settings, backend, log, cells)
+        search = ContactSearch(scene, radius, settings, backend, log, cells=cells)
         found = search.at_depth(target) if by_depth else search.at_force(target)
         if found.reaches_end:
             if radius >= end:
