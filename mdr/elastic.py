@@ -20,7 +20,7 @@ from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
 from mdr.springs.pulling import refuse_pulling
-from mdr.springs.reach import covering_system
+from mdr.springs.reach import beyond_falls, covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors
 from mdr.springs.table_pressure import pressure_errors
@@ -148,9 +148,6 @@ def _system(scene: Scene, source: LoggedSource) -> tuple[EquivalentSystem, Float
     try:
         return covering_system(scene, source), None
     except SeveralContacts as ring:
-        # Few scenes need this module.
-        from mdr.beyond_falls import beyond_falls  # noqa: PLC0415
-
         return beyond_falls(scene, source, ring)
 
 
