@@ -63,7 +63,7 @@ def test_digits_of_another_discretisation():
 def reference(kernel, x, panels):
     """k_bar, depth and force/E* of the unit paraboloid, by one dense solution on other panels."""
     systems = EdgeSystems(kernel, panels.count)
-    M = systems.matrix(x)
+    M = systems.matrix(x, panels)
     load = (x * panels.nodes) ** 2
     densities = np.linalg.solve(np.eye(len(load)) - M[:-1], np.column_stack([np.ones_like(load), load]))
     edge = np.array([1.0, x**2]) + M[-1] @ densities

@@ -163,8 +163,8 @@ class GradedSolution(FlatPunchSolution):
         bends = tuple(k for k in indenter.breakpoints if k > 0)
         if indenter.flat_radius or bends:
             flat = indenter.flat_radius / unit
-            share = [self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()]
-            edge = load.node_values + np.reshape(share, load.node_values.shape)
+            shares = [self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()]
+            edge = load.node_values + np.reshape(shares, load.node_values.shape)
             return MappedFunction(load.grid, edge / np.sqrt(springs), load.lead), 0.0
         share = self._smooth_share(load)(load.grid.nodes)
         values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)
