@@ -1,6 +1,7 @@
 """Stiff films on soft bases: does MDR answer where a contact has a gap? Unilateral finite elements judge.
 
-Run ``python -m benchmarks.lift_off [SCENES] [SEED]``; two seconds a scene.
+Run ``python -m benchmarks.lift_off [SCENES] [SEED] [FIRST]``; two seconds a scene. Scenes before the FIRST are drawn
+and passed over, so that a campaign may go on where another ended.
 """
 
 from __future__ import annotations
@@ -32,6 +33,9 @@ from mdr import Mdr
 
 # What the force of an active set may miss: cells of a 120th of the strip give 1e-3, at flat ends half a cell in radius.
 FORCE_AGREEMENT = 0.03
+# Times as many cells where they see a gap and MDR answers; chosen: scene 190 of seed 18 touches a film a third as thick
+# as a cell, and a disc is found with 480 cells (2026-11-22).
+FINER = 4
 
 
 @dataclass(frozen=True)
@@ -64,14 +68,14 @@ def random_scene(rng: np.random.Generator) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
 
 
-def unilateral(scene: Scene, depth: float) -> FoundContact | None:
+def unilateral(scene: Scene, depth: float, cells: int = STRIP_CELLS) -> FoundContact | None:
     """What touches at the depth [m]; None where `find_contact` says that it is no disc."""
     settings, log = Discretisation(growth=0.8, edge_cell=1e-4), StageLog()
     indenter: Profile = scene.indenter
     if isinstance(indenter, FlatPunch):
         return contact_without_tension(scene, indenter.radius, depth, settings, log=log)
     try:
-        return find_contact(scene, depth, settings, "superlu", log)
+        return find_contact(scene, depth, settings, "superlu", log, cells=cells)
     except UnsupportedSceneError:
         return None
 
@@ -87,25 +91,32 @@ def judge(scene: Scene) -> Verdict:
         path = Mdr().solve(scene)
     except UnsupportedSceneError as refusal:
         return Verdict(f"{shape}, refused", words=str(refusal))
+    if found is None and not isinstance(scene.indenter, FlatPunch):
+        # Cells wider than a thin film may see a gap where the pressure dips.
+        found = unilateral(scene, depth, FINER * STRIP_CELLS)
+        shape = "disc" if found is not None and found.is_disc else "gap"
     if found is None or shape == "gap":
         return Verdict("gap, answered")
     force = found.force * found.radius**2 * scene.layer.contact_modulus
     return Verdict("disc, answered", difference=abs(force / float(path.normal_force[0]) - 1))
 
 
-def main(scenes: int = 300, seed: int = 18) -> None:
+def main(scenes: int = 300, seed: int = 18, first: int = 0) -> None:
     """Print what is not expected, and the table of all."""
     rng = np.random.default_rng(seed)
     counts: Counter[str] = Counter()
     differences = []
     for number in range(scenes):
         problem = random_scene(rng)
+        if number < first:
+            continue
         verdict = judge(problem)
         counts[f"{type(problem.indenter).__name__}: {verdict.kind}"] += 1
         counts[verdict.kind] += 1
         differences.append(verdict.difference)
         if verdict.kind in ("gap, answered", "disc, refused") or verdict.difference > FORCE_AGREEMENT:
             sys.stdout.write(f"{number} {verdict} {problem}\n")
+            sys.stdout.flush()
     sys.stdout.write(f"cells of the strip: {STRIP_CELLS}; largest difference of forces: {max(differences):.2g}\n")
     for name, count in sorted(counts.items()):
         sys.stdout.write(f"{count:5d} {name}\n")

@@ -15,8 +15,10 @@ from contact import (
     ElasticLayer,
     ForceHistory,
     Friction,
+    GradedLayer,
     Impact,
     IndentationDepths,
+    LayerStack,
     Loading,
     NormalForces,
     Scene,
@@ -79,9 +81,19 @@ def _not_relaxing(layer: ElasticLayer, model: str) -> str:
     if layer.is_incompressible:
         return ""
     return (
-        f"mdr models {model} in incompressible layers only, and layer.poissons_ratio = "
-        f"{layer.surface.poissons_ratio:g}; use Layer.incompressible, or a method that models compressible ones"
+        f"mdr models {model} in incompressible layers only, and {_compressible_part(layer)}; "
+        "use Layer.incompressible, or a method that models compressible ones"
     )
+
+
+def _compressible_part(layer: ElasticLayer) -> str:
+    """The parts that relax in volume differently than in shape, by name and Poisson's ratio."""
+    if isinstance(layer, LayerStack):
+        ratios = [(n, one.poissons_ratio) for n, one in enumerate(layer.sublayers) if one.poissons_ratio != 0.5]
+        return ", ".join(f"layer.sublayers[{n}].poissons_ratio = {nu:g}" for n, nu in ratios)
+    if isinstance(layer, GradedLayer) and layer.surface.poissons_ratio == 0.5:
+        return "layer.poissons_ratio is below 0.5 at some depths"
+    return f"layer.poissons_ratio = {layer.surface.poissons_ratio:g}"
 
 
 def solver_of(scene: Scene) -> Solver | Unsupported:

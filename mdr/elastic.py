@@ -15,12 +15,12 @@ from contact.answer.friction import told_of_friction
 from contact.answer.inside import KnownContact
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import contact_fields
+from mdr.springs.assembly import SeveralContacts, contact_fields
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
 from mdr.springs.pulling import refuse_pulling
-from mdr.springs.reach import covering_system
+from mdr.springs.reach import beyond_falls, covering_system
 from mdr.springs.surface_fields import ContactFields
 from mdr.springs.table_errors import elastic_errors
 from mdr.springs.table_pressure import pressure_errors
@@ -38,16 +38,18 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         UnsupportedSceneError: If the indenter would touch beside it.
     """
     log = StageLog()
+    source = LoggedSource(flat_punch, log)
     with log.stage("mdr_profile"):
-        system = covering_system(scene, LoggedSource(flat_punch, log))
+        system, chosen = _system(scene, source)
     with log.stage("force"):
-        excess, depth = _excess_and_depth(system, scene)
+        excess, depth = _excess_and_depth(system, scene, chosen)
         radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
-    refuse_touching_beside(scene, system, radius, depth)
-    errors = _errors(system, scene, radius, depth, force)
     fields = PathFields(scene, system.flat_punch, excess, depth)
+    if chosen is None:
+        refuse_touching_beside(scene, system, radius, depth, fields.contact)
+    errors = _errors(system, scene, radius, depth, force)
     refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
@@ -141,9 +143,22 @@ class PathFields:
         return self._contacts[step]
 
 
-def _excess_and_depth(system: EquivalentSystem, scene: Scene) -> tuple[FloatArray, FloatArray]:
+def _system(scene: Scene, source: LoggedSource) -> tuple[EquivalentSystem, FloatArray | None]:
+    """The equivalent system, and a - b where a profile that falls on the way leaves a choice."""
+    try:
+        return covering_system(scene, source), None
+    except SeveralContacts as ring:
+        return beyond_falls(scene, source, ring)
+
+
+def _excess_and_depth(
+    system: EquivalentSystem, scene: Scene, chosen: FloatArray | None
+) -> tuple[FloatArray, FloatArray]:
     """a - b and the depth, Eq. (3); a flat punch keeps its radius."""
     values = getattr(scene.loading, "values", np.empty(0))
+    if chosen is not None:
+        by_depth = isinstance(scene.loading, IndentationDepths)
+        return chosen, values if by_depth else system.profile_beyond(chosen)
     excess = np.zeros_like(values)
     if isinstance(scene.loading, ContactRadii):
         excess = values - system.flat_radius

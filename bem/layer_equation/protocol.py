@@ -98,6 +98,11 @@ class FlatPunchSolution(Protocol):
     def panel_ends(self, ratio: float) -> FloatArray:
         """Ratios below the given one at which these data change their polynomials: a profile's pieces end there."""
 
+    @property
+    def bend_steps(self) -> FloatArray:
+        """Distances beyond a flat end or a bend at which a profile's pieces end: where its singularity is no power."""
+        return np.empty(0)
+
     def profile_of(
         self, indenter: Profile, unit: float, load: MappedFunction, springs: FloatArray
     ) -> tuple[MappedFunction, float]:

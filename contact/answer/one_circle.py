@@ -1,6 +1,6 @@
 """Whether an indenter touches the surface beside its circle of contact, where its answer would be silently wrong.
 
-An indenter whose slope never falls (`Profile.is_convex`) cannot. Contact grows by flat punches,
+An indenter whose slope never falls (`Profile.is_convex`) cannot on one uniform layer. Contact grows by flat punches,
 
     gap(r; a) = int_a^r [1 - U(r; x)] g'(x) dx,    U: displacement of the surface beside a unit punch of radius x,
 
@@ -8,6 +8,7 @@ and U < 1, also where the surface bulges up and U < 0. So the gap is positive wh
 profile is a sum of truncated cones, gaps at one contact radius add up, and g of every truncated cone rises: on the
 half-space because r f' does not fall, on thin incompressible layers because f exceeds its mean within r, and in between
 as computed (`tests/verification/test_one_circle.py`). A profile that is only monotone can touch: a step on its flank.
+Any profile can where layers differ: g falls over a stretch of radii under a stiff film on a soft base.
 The same integral says that, where g rises within the largest contact, the largest contact has the smallest gaps.
 """
 
@@ -55,13 +56,18 @@ class Circle:
     tolerance: float
 
 
+def never_touches_beside(scene: Scene) -> bool:
+    """Whether no circle of contact of this scene can be touched beside: a convex indenter on one uniform layer."""
+    return scene.indenter.is_convex and scene.layer.is_uniform
+
+
 def refuse_touching(scene: Scene, circles: Iterable[Circle]) -> None:
     """Refuse circles beside which the indenter would touch.
 
     Raises:
         UnsupportedSceneError: With the contact radius and the radius of the deepest overlap.
     """
-    if scene.indenter.is_convex:
+    if never_touches_beside(scene):
         return
     for circle in circles:
         where = touching_radius(scene, circle)
@@ -93,7 +99,7 @@ def _circle(path: ContactPath, step: int) -> Circle:
 def touching_radius(scene: Scene, circle: Circle) -> float | None:
     """Radius [m] of the deepest overlap beside a contact, or None."""
     a, profile = circle.contact_radius, scene.indenter
-    if profile.is_convex or not 0.0 < a < profile.max_radius:
+    if never_touches_beside(scene) or not 0.0 < a < profile.max_radius:
         return None
     r = np.concatenate([[a], _radii(profile, a)])
     clear = profile.height(r) - circle.indentation_depth

@@ -105,9 +105,18 @@ def edge_radius(radii: FloatArray, pressure: FloatArray) -> float:
 class ContactSearch:
     """Contacts of one scene on one strip; the factorisation is made once."""
 
-    def __init__(self, scene: Scene, radius: float, settings: Discretisation, backend: str, log: StageLog) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        radius: float,
+        settings: Discretisation,
+        backend: str,
+        log: StageLog,
+        *,
+        cells: int = STRIP_CELLS,
+    ) -> None:
         kinks = scene.indenter.kinks
-        mesh = strip_mesh(scene.layer, radius, STRIP_CELLS, kinks, settings)
+        mesh = strip_mesh(scene.layer, radius, cells, kinks, settings)
         self._log = log
         self.radius = radius
         self.strip = condense(scene.layer, mesh, backend, log)
@@ -143,8 +152,10 @@ class ContactSearch:
         return float(w @ np.linalg.solve(block, w))
 
 
-def find_contact(scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog) -> FoundContact:
-    """Contact at a depth [m] or force / E* [m^2] (as the scene's loading says) on a strip that fits it.
+def find_contact(
+    scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog, *, cells: int = STRIP_CELLS
+) -> FoundContact:
+    """Contact at a depth [m] or force / E* [m^2] (as the scene's loading says) on a strip of cells that fits it.
 
     Raises:
         InvalidInput: contact would reach the end of the profile, or nothing touches.
@@ -155,14 +166,14 @@ def find_contact(scene: Scene, target: float, settings: Discretisation, backend:
     end = scene.indenter.max_radius
     radius = _first_radius(scene.indenter, target, by_depth)
     for _ in range(12):
-        search = ContactSearch(scene, radius, settings, backend, log)
+        search = ContactSearch(scene, radius, settings, backend, log, cells=cells)
         found = search.at_depth(target) if by_depth else search.at_force(target)
         if found.reaches_end:
             if radius >= end:
                 found.refuse_ring()
                 raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; press less")
             radius = min(1.8 * radius, end)
-        elif found.reached_vertices < STRIP_CELLS // 4:
+        elif found.reached_vertices < cells // 4:
             radius *= max(1.6 * found.contact_radius, 0.05)
         else:
             found.refuse_ring()

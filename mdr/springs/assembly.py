@@ -34,7 +34,12 @@ _CLOSE = (1e-9, 1e-4, 1e-1)
 
 
 def equivalent_system(
-    layer: ElasticLayer, indenter: Profile, max_radius: float, flat_punch: FlatPunchSource
+    layer: ElasticLayer,
+    indenter: Profile,
+    max_radius: float,
+    flat_punch: FlatPunchSource,
+    *,
+    may_fall: bool = False,
 ) -> EquivalentSystem:
     """Springs and profile for contact radii up to max_radius; a few milliseconds once the flat-punch data exist.
 
@@ -43,6 +48,7 @@ def equivalent_system(
         indenter: Profile of revolution.
         max_radius: Largest contact radius [m], above the indenter's flat radius, or equal to a flat punch's own.
         flat_punch: Where k_bar, c_bar and the profile transform come from.
+        may_fall: Whether g may fall on the way, so that some contacts of the system are none.
 
     Raises:
         InvalidInput: If the flat-punch data do not cover max_radius/h.
@@ -55,7 +61,8 @@ def equivalent_system(
         solution, max_radius = _for_profile(solution, indenter, unit, max_radius)
     g_hs = _half_space_function(solution, indenter, unit, max_radius - indenter.flat_radius)
     profile, moment, own_error = _curves(solution, indenter, unit, g_hs)
-    _refuse_rings(profile, indenter, unit, solution.noise(max_radius / unit))
+    if not may_fall:
+        _refuse_rings(profile, indenter, unit, solution.noise(max_radius / unit))
     system = EquivalentSystem(
         contact_modulus=contact_modulus(layer),
         length_unit=unit,
@@ -223,8 +230,8 @@ def _initial_grid(
     """Pieces between panel ends and breakpoints, and the exponent of u with which g_hs begins in the first."""
     flat, end = indenter.flat_radius / unit, excess / unit
     breakpoints = np.array([k - indenter.flat_radius for k in indenter.breakpoints]) / unit
-    panels = solution.panel_ends(flat + end) - flat
     inner = _separate(breakpoints, end)
+    panels = np.append(solution.panel_ends(flat + end) - flat, _beyond_bends(solution.bend_steps, inner, flat, end))
     left = np.concatenate([[0.0], inner, apart(_separate(panels, end), inner)])
     power = np.concatenate([[1.0], np.full(inner.size, 2.0), np.ones(left.size - inner.size - 1)])
     order = np.argsort(left)
@@ -232,6 +239,13 @@ def _initial_grid(
     exponent = _leading_exponent(indenter, unit * min(left[1] if left.size > 1 else end, flat or np.inf))
     power[0] = 1 if exponent % 1 == 0 else 2 if exponent % 0.5 == 0 else 4
     return MappedGrid(left, np.diff(left, append=end), power, count), exponent * power[0]
+
+
+def _beyond_bends(steps: FloatArray, bends: FloatArray, flat: float, end: float) -> FloatArray:
+    """Piece ends so many steps beyond the flat end and each bend, short of the next one."""
+    starts = np.append(0.0, bends) if flat else bends
+    gaps = np.diff(np.append(starts, end))
+    return np.concatenate([np.empty(0), *(start + steps[steps < gap] for start, gap in zip(starts, gaps, strict=True))])
 
 
 def _separate(points: FloatArray, end: float) -> FloatArray:

@@ -22,6 +22,8 @@ RADII = 40
 # Distances from the edge and from the profile's breakpoints, over the thickness of the surface material, where the
 # pressure is looked at as well.
 DISTANCES = np.geomspace(0.02, 30.0, 14)
+# Parts into which the way to both neighbours of a minimum is cut, where a dip may be deeper; chosen.
+CLOSER = 6
 # A contact pulls where its pressure falls below minus this share of the mean, and below its stated error. The largest
 # roundings seen in the centre are 1e-9 of it.
 LEAST_TENSION = 1e-7
@@ -79,9 +81,9 @@ def refuse_pulling(
     for step, (a, load) in enumerate(zip(contact_radius.tolist(), force.tolist(), strict=True)):
         if fields.falls(step):
             continue
-        radius = _radii(scene, a)
-        pressure = fields.pressure(radius, step)
-        mean, lowest = load / (np.pi * a**2), int(pressure.argmin())
+        mean = load / (np.pi * a**2)
+        radius, pressure = _with_minima(fields, step, _radii(scene, a), mean)
+        lowest = int(pressure.argmin())
         if pressure[lowest] < -LEAST_TENSION * mean - error * float(np.abs(pressure).max()):
             raise PullingContact(a, float(radius[lowest]), -float(pressure[lowest]), mean)
 
@@ -104,10 +106,10 @@ def refuse_pulling_at(scene: Scene, flat_punch: FlatPunchSource, radius: float) 
         contact = contact_fields(
             scene.layer, scene.indenter, system.flat_punch, excess=excess, depth=float(depth[0]), edge=is_punch
         )
-        refuse_pulling(scene, _OneStep(contact.pressure), a, np.asarray(system.force(a, depth)), LEAST_TENSION)
+        refuse_pulling(scene, OneStep(contact.pressure), a, np.asarray(system.force(a, depth)), LEAST_TENSION)
 
 
-class _OneStep:
+class OneStep:
     """The pressure of one contact as fields of a path of one step."""
 
     def __init__(self, pressure: Callable[[FloatArray], FloatArray]) -> None:
@@ -120,6 +122,19 @@ class _OneStep:
     def falls(self, step: int) -> bool:
         """Not asked for."""
         return False
+
+
+def _with_minima(fields: Pressures, step: int, radius: FloatArray, mean: float) -> tuple[FloatArray, FloatArray]:
+    """Radii and pressures, with closer ones about every minimum below the mean: dips are narrow beside a rim."""
+    pressure = fields.pressure(radius, step)
+    inner = pressure[1:-1]
+    low = 1 + np.flatnonzero((inner <= pressure[:-2]) & (inner <= pressure[2:]) & (inner < mean))
+    if not low.size:
+        return radius, pressure
+    share = np.arange(1.0, CLOSER) / CLOSER
+    closer = [np.outer(radius[low + side] - radius[low], share).ravel() for side in (-1, 1)]
+    close = np.concatenate([np.repeat(radius[low], share.size) + part for part in closer])
+    return np.append(radius, close), np.append(pressure, fields.pressure(close, step))
 
 
 def _radii(scene: Scene, contact_radius: float) -> FloatArray:

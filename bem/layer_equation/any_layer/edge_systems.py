@@ -18,6 +18,10 @@ from contact.records.validation import FloatArray
 WIDEST = 1.0
 # Widest of the relative panels before they are cut.
 MIDDLE = 0.375
+# Step and reach of the rule on the logistic variable: exp(-2 pi^2/step) and exp(-reach) are left out. On lengths beyond
+# two thicknesses the step shrinks with them.
+LOGISTIC_STEP = 0.7
+LOGISTIC_REACH = 29.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,9 +56,8 @@ class EdgeSystems:
         """The panels for an edge."""
         return relative_panels(self.count, max(1, int(np.ceil(MIDDLE * x / WIDEST))))
 
-    def matrix(self, x: float) -> FloatArray:
+    def matrix(self, x: float, panels: RelativePanels) -> FloatArray:
         """M, and kappa as its last row, shape (n + 1, n)."""
-        panels = self.panels(x)
         nodes, targets = panels.nodes, panels.targets
         distance = self.kernel(x * np.abs(targets[:, None] - nodes))
         difference = panels.matrix(distance, self.kernel(x * panels.near[0]))
@@ -64,15 +67,33 @@ class EdgeSystems:
     def at(self, x: float) -> EdgeState:
         """The state of one edge."""
         if x not in self.known:
-            M, panels = self.matrix(x), self.panels(x)
+            panels = self.panels(x)
+            M = self.matrix(x, panels)
             system = np.eye(len(panels.nodes)) - M[:-1]
             row = np.linalg.solve(system.T, M[-1])
             phi = np.linalg.solve(system, np.ones(len(panels.nodes)))
             self.known[x] = EdgeState(row, 1 + float(row.sum()), float(panels.weights @ phi))
         return self.known[x]
 
-    def density(self, x: float, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def density(self, x: float, panels: RelativePanels, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """phi at the nodes, and the layer's share M phi at nodes and edge, of a load at the nodes."""
-        M = self.matrix(x)
+        M = self.matrix(x, panels)
         phi = np.asarray(np.linalg.solve(np.eye(len(load)) - M[:-1], load), dtype=np.float64)
         return phi, np.asarray(M @ phi)
+
+    def rest_of_resolvent(self, x: float, panels: RelativePanels) -> FloatArray:
+        """rho = R(x, .) - K(x, .) at the nodes: rho = K rho + int K(t, s) K(s, x) ds, shape (n,)."""
+        M = self.matrix(x, panels)[:-1]
+        return np.asarray(np.linalg.solve(np.eye(len(M)) - M, self._iterated(x, x * panels.nodes)))
+
+    def _iterated(self, x: float, t: FloatArray) -> FloatArray:
+        """int_0^x K(t, s) K(s, x) ds: logarithms at s = t and x, which s = (length)/(1 + exp(-v)) moves to infinity."""
+        step = LOGISTIC_STEP / max(1.0, x / 2)
+        v = step * np.arange(-np.ceil(LOGISTIC_REACH / step), np.ceil(LOGISTIC_REACH / step) + 1)
+        low, high = 1 / (1 + np.exp(-v)), 1 / (1 + np.exp(v))
+        weight = step * low * high
+        N, t = self.kernel, t[:, None]
+        before = (N(t * high) + N(t * (1 + low))) * (N((x - t) + t * high) + N(x + t * low))
+        beyond = (N((x - t) * low) + N(2 * t + (x - t) * low)) * (N((x - t) * high) + N(x + t + (x - t) * low))
+        values: FloatArray = (t * before + (x - t) * beyond) @ weight / np.pi**2
+        return values

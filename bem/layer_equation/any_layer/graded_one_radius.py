@@ -7,7 +7,6 @@ a root. So its panels shrink towards all these points, where `one_radius` takes 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 from typing import Final, Self
 
 import numpy as np
@@ -16,7 +15,7 @@ from bem.kernels.graded import TOLERANCE, GradedKernel
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.any_layer.graded_density import PanelSlopes
 from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
-from bem.layer_equation.any_layer.relative_panels import RelativePanels
+from bem.layer_equation.any_layer.relative_panels import EDGE_LEVELS, RATIO, RelativePanels, panels_with_bends
 from bem.layer_equation.any_layer.split_kernel import SplitKernel, split_kernel
 from bem.layer_equation.one_radius import DirectDensity, graded_pieces, half_space_load, under
 from bem.polynomials.abel_integral import arc_integral
@@ -26,12 +25,6 @@ from contact.records.validation import FloatArray
 
 # B, in thicknesses; the answer does not depend on it.
 SPLIT_LENGTH: Final = 1.0
-# Panels shrink by this ratio, so many times, towards the axis (where sums x + t are small), both sides of rims and
-# bends, and the edge: psi times its width is below 1e-13 on the last.
-RATIO: Final = 0.25
-AXIS_LEVELS: Final = 6
-BEND_LEVELS: Final = 11
-EDGE_LEVELS: Final = 9
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +55,8 @@ class GradedDirectDensity(DirectDensity):
         a = (flat + excess) / unit
         pieces = graded_pieces(indenter, excess, unit, width, nodes)
         load = MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes) / unit, 0.0)
-        panels = RelativePanels(_panel_ends(indenter, a * unit, width / a), nodes)
+        marks = tuple(mark / (a * unit) for mark in (flat, *indenter.breakpoints))
+        panels = panels_with_bends(marks, width / a, nodes)
         kernel = split_kernel(surface, SPLIT_LENGTH)
         M = _matrix(kernel, panels, a)
         W = np.column_stack([np.ones(len(panels.nodes)), _loads(indenter, panels.nodes * a * unit - flat) / unit])
@@ -127,23 +121,6 @@ def _loads(indenter: Profile, offset: FloatArray) -> FloatArray:
     if risen.any():
         load[risen] = half_space_load(indenter, offset[risen])
     return load
-
-
-def _panel_ends(indenter: Profile, contact_radius: float, widest: float) -> FloatArray:
-    """Ends of the panels on [0, 1], shrinking towards axis, rims, bends and edge."""
-    marks = np.array([indenter.flat_radius, *indenter.breakpoints]) / contact_radius
-    points = np.unique(np.concatenate([[0.0], marks[(marks > 0) & (marks < 1)], [1.0]]))
-    parts = []
-    for start, stop in pairwise(points):
-        half = (stop - start) / 2
-        before = AXIS_LEVELS if start == 0 else BEND_LEVELS
-        after = EDGE_LEVELS if stop == 1 else BEND_LEVELS
-        parts += [[start], start + half * RATIO ** np.arange(before, -1, -1.0)]
-        parts += [stop - half * RATIO ** np.arange(1.0, after + 1)]
-    coarse = np.append(np.concatenate(parts), 1.0)
-    cuts = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)
-    fine = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(coarse[:-1], coarse[1:], cuts, strict=True)]
-    return np.concatenate([coarse[:1], *fine])
 
 
 def _matrix(kernel: SplitKernel, panels: RelativePanels, a: float) -> FloatArray:

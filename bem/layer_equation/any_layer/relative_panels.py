@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -18,6 +19,11 @@ from contact.records.validation import FloatArray
 # Panels shrink by this ratio towards both ends, so many times: the last is 8e-6 of the whole.
 RATIO: Final = 0.25
 LEVELS: Final = 8
+# How many times under loads with rims and bends: towards the axis, where sums x + t are small, both sides of rims and
+# bends, and the edge. psi times its width is below 1e-13 on the last.
+AXIS_LEVELS: Final = 6
+BEND_LEVELS: Final = 11
+EDGE_LEVELS: Final = 9
 # Nodes and power of the rule s = v^power from a logarithm's singularity, and from a panel's end close to one.
 SINGULAR_NODES: Final = 20
 SINGULAR_POWER: Final = 6
@@ -130,3 +136,20 @@ def relative_panels(count: int, splits: int) -> RelativePanels:
         [np.linspace(a, b, splits + 1)[:-1] if b - a > 0.1 else [a] for a, b in zip(left, half, strict=False)]
     )
     return RelativePanels(np.concatenate([cut, [0.5], 1 - cut[::-1]]), count)
+
+
+@lru_cache(maxsize=8)
+def panels_with_bends(marks: tuple[float, ...], widest: float, count: int) -> RelativePanels:
+    """Panels that shrink towards axis, rims, bends and edge as well; marks are where rims and bends are on [0, 1]."""
+    points = [0.0, *sorted({mark for mark in marks if 0 < mark < 1}), 1.0]
+    parts = []
+    for start, stop in pairwise(points):
+        half = (stop - start) / 2
+        before = AXIS_LEVELS if start == 0 else BEND_LEVELS
+        after = EDGE_LEVELS if stop == 1 else BEND_LEVELS
+        parts += [[start], start + half * RATIO ** np.arange(before, -1, -1.0)]
+        parts += [stop - half * RATIO ** np.arange(1.0, after + 1)]
+    coarse = np.append(np.concatenate(parts), 1.0)
+    cuts = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)
+    fine = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(coarse[:-1], coarse[1:], cuts, strict=True)]
+    return RelativePanels(np.concatenate([coarse[:1], *fine]), count)

@@ -1,0 +1,114 @@
+"""Edge values on a graded layer under loads with flat ends and kinks.
+
+The edge value at x is ``yg(x) = W(x) + int_0^x [K(x, t) + rho(x, t)] W(t) dt``. The kernel K has a logarithm at t = x
+and is integrated by rules that shrink towards it. The rest rho of the resolvent knows nothing of the load: it is smooth
+but for both ends, and is tabulated over t/x and ln x once for all loads.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Final
+
+import numpy as np
+
+from bem.layer_equation.any_layer.edge_systems import EdgeSystems
+from bem.layer_equation.any_layer.relative_panels import RelativePanels
+from bem.polynomials.chebyshev import piecewise_sum
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
+from bem.polynomials.mapped import MappedFunction
+from contact.records.validation import FloatArray
+
+# Panels towards the logarithm shrink by this ratio, so many times: the last one holds 1e-12 of the integral.
+RATIO: Final = 0.25
+LEVELS: Final = 20
+# Gauss nodes on each of them: the logarithm at a third of a panel's width from its end leaves 3^-24.
+RULE_NODES: Final = 12
+# A piece of the load is integrated by its own nodes where it ends so many of its widths before the edge.
+FAR: Final = 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class ResolventTable:
+    """The smooth rest rho of the resolvent.
+
+    Attributes:
+        edges: Solutions at single edges.
+        ends: Of the pieces in ln x, shape (P + 1,).
+        coefficients: Of each piece, by the order in ln x, the panel of t/x and the order on it, (P, m, panels, count).
+        panels: Of each piece, shape (P,).
+    """
+
+    edges: EdgeSystems
+    ends: FloatArray
+    coefficients: tuple[FloatArray, ...]
+    panels: tuple[RelativePanels, ...]
+
+    @classmethod
+    def of_edges(cls, edges: EdgeSystems, ends: FloatArray, x: FloatArray) -> ResolventTable:
+        """From edges x at the nodes of all pieces, shape (P, m)."""
+        tables, panels = [], []
+        for row in x:
+            common = edges.panels(float(row[-1]))
+            values = np.array([edges.rest_of_resolvent(float(one), common) for one in row])
+            by_order = chebyshev_from_nodes(len(row)) @ values
+            shaped = by_order.reshape(len(row), -1, edges.count)
+            tables.append(shaped @ chebyshev_from_nodes(edges.count).T)
+            panels.append(common)
+        return cls(edges, ends, tuple(tables), tuple(panels))
+
+    def rest(self, x: float) -> tuple[FloatArray, FloatArray]:
+        """Coefficients of rho(x, t) on panels of t/x, and the panels' ends."""
+        u = float(np.clip(np.log(x), self.ends[0], self.ends[-1]))
+        piece = int(np.clip(np.searchsorted(self.ends, u) - 1, 0, len(self.panels) - 1))
+        s = 2 * (u - self.ends[piece]) / (self.ends[piece + 1] - self.ends[piece]) - 1
+        table = self.coefficients[piece]
+        orders = np.polynomial.chebyshev.chebvander(np.array([s]), len(table) - 1)[0]
+        return np.einsum("m,mpc->pc", orders, table), self.panels[piece].ends
+
+    def layer_share(self, load: MappedFunction, flat: float, excess: float) -> float:
+        """yg - W at one edge.
+
+        Args:
+            load: W over the excess t - b, zero within the flat radius.
+            flat: b, in thicknesses as all lengths.
+            excess: x - b.
+        """
+        points, weighted, distance = _rule(load, excess)
+        x, N = flat + excess, self.edges.kernel
+        coefficients, ends = self.rest(x)
+        share = np.minimum((flat + points) / x, 1.0)
+        panel = np.clip(np.searchsorted(ends, share) - 1, 0, len(coefficients) - 1)
+        rho = piecewise_sum(coefficients, panel, 2 * (share - ends[panel]) / np.diff(ends)[panel] - 1)
+        return float(((N(distance) + N(x + flat + points)) / np.pi + rho) @ weighted)
+
+
+def _rule(load: MappedFunction, excess: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Points t - b of [0, x - b], weights times the load there, and distances x - t."""
+    grid = load.grid
+    far = grid.left + (1 + FAR) * grid.width <= excess
+    points = [grid.nodes[far].ravel()]
+    weighted = [(grid.weights * load.node_values)[far].ravel()]
+    distance = [excess - points[0]]
+    away, weights = _towards_one()
+    for piece in np.flatnonzero(~far & (grid.left < excess)):
+        left, width, power = grid.left[piece], grid.width[piece], grid.power[piece]
+        last = min((excess - left) / width, 1.0) ** (1 / power)
+        u = last * (1 - away)
+        # (1 - away)^power - 1 without cancellation.
+        back = -width * last**power * np.expm1(power * np.log1p(-away))
+        points.append(left + width * u**power)
+        jacobian = width * power * u ** (power - 1) * last * weights
+        weighted.append(jacobian * load.at(np.full(u.shape, piece), u))
+        distance.append(max(excess - left - width, 0.0) + back)
+    return np.concatenate(points), np.concatenate(weighted), np.concatenate(distance)
+
+
+@lru_cache(maxsize=1)
+def _towards_one() -> tuple[FloatArray, FloatArray]:
+    """Distances 1 - u and weights of a rule on [0, 1] that shrinks towards u = 1."""
+    ends = np.append(0.0, RATIO ** np.arange(LEVELS, -1, -1.0))
+    tau, omega = gauss_nodes(RULE_NODES)
+    widths = np.diff(ends)[:, None]
+    return (ends[:-1, None] + widths * tau).ravel(), (widths * omega).ravel()
