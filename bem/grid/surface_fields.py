@@ -72,7 +72,7 @@ class FieldSequence:
             raise InvalidInput("this solver gives no fields inside the body; ask mdr or fem")
         adhesion = self.scene.effect(Adhesion)
         singular = (
-            isinstance(self.scene.indenter, FlatPunch) or adhesion is not None and adhesion.work_of_adhesion > 0.0
+            isinstance(self.scene.indenter, FlatPunch) or (adhesion is not None and adhesion.work_of_adhesion > 0.0)
         )
         density, unit = density_of_pressure(
             self.scene.layer,
