@@ -21,7 +21,7 @@ from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.inside.from_pressure import density_of_pressure
 from bem.layer_equation.inside.interior import ContactInterior
-from contact import Adhesion, ElasticLayer, FlatPunch, InvalidInput, Layer, Profile, Scene
+from contact import Adhesion, ElasticLayer, FlatPunch, Layer, Profile, Scene
 from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
 
@@ -50,13 +50,13 @@ class FieldSequence:
 
     Attributes:
         steps: Of each step.
-        scene: What was solved; the fields inside need it.
+        scene: What was solved.
         depth: delta [m] of each step.
     """
 
     steps: tuple[AxisymmetricFields, ...]
-    scene: Scene | None = None
-    depth: tuple[float, ...] = ()
+    scene: Scene
+    depth: tuple[float, ...]
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
         """p(r) [Pa] of one step."""
@@ -68,11 +68,9 @@ class FieldSequence:
 
     def inside(self, step: int, known: KnownContact) -> ContactInterior:
         """The body under one step, from its pressure."""
-        if self.scene is None:
-            raise InvalidInput("this solver gives no fields inside the body; ask mdr or fem")
         adhesion = self.scene.effect(Adhesion)
-        singular = (
-            isinstance(self.scene.indenter, FlatPunch) or (adhesion is not None and adhesion.work_of_adhesion > 0.0)
+        singular = isinstance(self.scene.indenter, FlatPunch) or (
+            adhesion is not None and adhesion.work_of_adhesion > 0.0
         )
         density, unit = density_of_pressure(
             self.scene.layer,

@@ -25,14 +25,18 @@ _ROUNDINGS = 5.0
 # A derivative along r or z errs by so many times the error over the smaller of contact radius and thickness; chosen,
 # 2.4 is needed (300 contacts, seeds 9 and 41, with 8, 12 and 24 nodes, campaign of the fields inside, 2026-11-22).
 _DERIVATIVE = 3.0
-# Share of the density's error that makes gradients and displacements where the fields themselves have hardly any: 0.024
-# at worst, where the gradient is 0.019 of the stress over that length (the same contacts); doubled.
+# Displacements err by so many times the share of the density: 1.3 is needed beside wide contacts (the same contacts).
+_MOVED = 2.0
+# Share of the density's error that makes gradients where the fields themselves have hardly any: 0.024 at worst, where
+# the gradient is 0.019 of the stress over that length (the same contacts); doubled.
 _UNLIKE = 0.05
 # An adhering contact is one that presses less a punch that pulls, and both err: 1.6 is needed (the same contacts).
 _TWO_PARTS = 2.0
-# Roundings of a sum of terms, times the root of the sum of their squares: 7.2 at worst beside rims and near the
-# surface (the same contacts).
-_TERM = 10.0
+# What quadrature leaves of gradients, over themselves: 2e-13 at worst, at an edge (the contacts of `_TERM`); doubled.
+_STEEP = 4e-13
+# Roundings of a sum of terms, times the root of the sum of their squares: 31 at worst within 1e-6 of the surface,
+# where positions of a panel are rounded alike; doubled (150 contacts, seeds 9701 and 9702, 24 nodes, 2026-11-22).
+_TERM = 60.0
 
 
 class Magnitudes(NamedTuple):
@@ -92,17 +96,18 @@ def stated_errors(
     felt = edge * _left_by(found.thickness, points)
     stress = (share + shifted) * found.stress + felt * found.edge_stress + rounding * mean
     gradient = _DERIVATIVE * (share + shifted) * found.gradient + felt * found.edge_gradient
-    gradient += _DERIVATIVE * rounding * mean / found.length
+    gradient += _STEEP * found.gradient + _DERIVATIVE * rounding * mean / found.length
     gradient += (_UNLIKE * share + _DERIVATIVE * _QUADRATURE) * found.stress / found.length
     gradient += _TERM * _EPS * found.gradient_terms
-    # A thin layer yields far less than a half-space would under the same force, and is computed as a difference.
+    # A thin layer yields far less than a half-space would under the same force, and is computed as a difference of two
+    # integrals, each of them rounded.
     condition = math.pi * a * mean / abs(found.depth)
-    moved = _UNLIKE * share + (share * found.displacement + felt * found.edge_displacement) / abs(found.depth)
+    moved = (_MOVED * share * found.displacement + felt * found.edge_displacement) / abs(found.depth)
     surface = float((lowest - z).max(initial=0.0)) / found.length
     steepest = max(float(found.gradient.max(initial=0.0)), largest / found.length)
     stresses = float(stress.max(initial=0.0)) / largest
     return {
-        "displacement": float(moved.max(initial=0.0)) + _QUADRATURE + rounding * condition + surface,
+        "displacement": float(moved.max(initial=0.0)) + _QUADRATURE + 2.0 * rounding * condition + surface,
         "stress": stresses,
         "hydrostatic_pressure": stresses,
         "pressure_gradient": float(gradient.max(initial=0.0)) / steepest,

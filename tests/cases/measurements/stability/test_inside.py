@@ -33,7 +33,7 @@ def test_points_of_many_random_contacts_lie_within_their_stated_errors(nodes):
 def test_stated_errors_are_sharp_on_few_nodes():
     """A share of the mean pressure was stated where stresses are small: 97 times the true error in the median."""
     rows = inside_campaign(build("mdr", {"nodes": 12}), seed=41, count=8)
-    for quantity, median in (("stress", 25.0), ("displacement", 25.0), ("pressure_gradient", 60.0)):
+    for quantity, median in (("stress", 25.0), ("displacement", 100.0), ("pressure_gradient", 60.0)):
         told = [row.sharpness for row in rows if row.quantity == quantity and row.sharpness is not None]
         assert len(told) > 20
         assert np.median(told) < median, quantity
