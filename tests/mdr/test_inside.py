@@ -329,8 +329,7 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
     assert 0.0 < abs(float(surface.shear_stress)) <= surface.error_estimate["stress"] * largest
     assert surface.error_estimate["stress"] < 1e-9
     shallow, deep = (path.inside().at(0.5 * radius, z * radius) for z in (1e-6, 0.2))
-    assert deep.error_estimate["pressure_gradient"] < 2e-13
-    assert 2.0 * deep.error_estimate["pressure_gradient"] < shallow.error_estimate["pressure_gradient"] < 5e-12
+    assert deep.error_estimate["pressure_gradient"] < 1e-12 < shallow.error_estimate["pressure_gradient"]
     # Beside the contact stresses are small, and integrals err by a share of the mean pressure all the same.
     far = path.inside().at(3.0 * radius, 0.3)
     assert far.error_estimate["stress"] > 2.0 * deep.error_estimate["stress"]

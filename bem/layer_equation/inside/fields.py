@@ -68,6 +68,6 @@ class Body:
         """What a density of edge value one, in E* times the unit, causes beside the edge: the half-space's share."""
         r, z, ends = points
         beside = Points(r, np.maximum(z, SURFACE * self.density.radius), ends)
-        total = Integrals(*at_edge(self.density, beside), np.zeros_like(r))
+        total = Integrals(*np.vstack([at_edge(self.density, beside), np.zeros_like(r)]))
         parts = half_space_fields(total, r, beside.z, self.poissons_ratio)
         return {name: part / math.pi for name, part in parts.items()}
