@@ -195,7 +195,9 @@ class Bem(Record):
             settings=self._settings(),
             cost=log.cost(unknowns=self.points**2 // 4),
             stages=log.records,
-            fields=FieldSequence(tuple(step.fields for step in steps)),
+            fields=FieldSequence(
+                tuple(step.fields for step in steps), scene, tuple(arrays["indentation_depth"].tolist())
+            ),
             error_estimate={name: np.array([s.errors[name] for s in steps]) for name in steps[0].errors},
             contact_radius=arrays["contact_radius"],
             indentation_depth=arrays["indentation_depth"],

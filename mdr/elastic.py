@@ -46,10 +46,16 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
+<<<<<<< HEAD
     fields = PathFields(scene, system.flat_punch, excess, depth)
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
     errors = _errors(system, scene, radius, depth, force)
+=======
+    refuse_touching_beside(scene, system, radius, depth)
+    errors = _errors(system, scene, radius, depth, force)
+    fields = PathFields(scene, system.flat_punch, excess, depth, density_errors(system, scene, radius))
+>>>>>>> b19
     refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
@@ -94,6 +100,9 @@ class PathFields:
         flat_punch: The solution the path was made of.
         excess: a - b [m] over the radius of the flat end, shape (n,).
         indentation_depth: delta [m], shape (n,).
+        density_error: What the fields inside lose in solving for the density, relative, shape (n,); if unknown the
+            pressure's error.
+        edge_error: Error of the density's value at the edge [m], shape (n,).
         singular_edge: Whether the pressure may be singular at the edge; by default only under a flat punch.
     """
 
@@ -101,6 +110,8 @@ class PathFields:
     flat_punch: FlatPunchSolution
     excess: FloatArray
     indentation_depth: FloatArray
+    density_error: FloatArray | None = None
+    edge_error: FloatArray | None = None
     singular_edge: bool | None = None
     _contacts: dict[int, ContactFields] = field(default_factory=dict)
 
@@ -124,6 +135,10 @@ class PathFields:
         from mdr.springs.inside import density_of  # noqa: PLC0415
 
         contact = self.contact(step)
+        if self.density_error is not None:
+            known = known._replace(density_error=float(self.density_error[step]))
+        if self.edge_error is not None:
+            known = known._replace(edge_error=float(self.edge_error[step]))
         return ContactInterior(
             self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known
         )
@@ -205,6 +220,18 @@ def _errors(
         "contact_stiffness": stiffness + growth * moved,
         "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"]) + moved + rounding,
     }
+
+
+def density_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray) -> FloatArray | None:
+    """Of the density whose slope the fields inside make by an integral; tables have none."""
+    if system.variants:
+        return None
+    ratio = radius / system.length_unit
+    if isinstance(scene.indenter, FlatPunch):
+        return PRESSURE_ROUNDING + system.flat_punch.spring_error(ratio)
+    depth_error = system.relative_errors(radius)["indentation_depth"]
+    rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
+    return rounding + system.position_rounding(radius) + system.flat_punch.contact_density_error(ratio, depth_error)
 
 
 def _table_errors(

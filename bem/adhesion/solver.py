@@ -91,7 +91,7 @@ class AdheringDiscs:
             stages=self.log.records,
             notes=("values are followed in their order, from out of contact",),
             error_estimate=errors,
-            fields=FieldSequence(fields),
+            fields=FieldSequence(fields, self.scene, tuple(values["indentation_depth"].tolist())),
             contact_radius=values["contact_radius"],
             indentation_depth=values["indentation_depth"],
             normal_force=values["normal_force"],

@@ -163,7 +163,12 @@ class IntegralEquationSolution(FlatPunchSolution):
         nodes are not even, so what they leave of the slope is not as small.
         """
         share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return np.asarray(share * (ratio**2 / (1 + ratio**2) * depth_error + self._slope_truncation(ratio)))
+        return self.contact_density_error(ratio, depth_error) + share * self._slope_truncation(ratio)
+
+    def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+        """The same without what polynomials lose of the slope."""
+        share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
+        return np.asarray(share * ratio**2 / (1 + ratio**2) * depth_error)
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""

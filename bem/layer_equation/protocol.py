@@ -132,6 +132,10 @@ class FlatPunchSolution(Protocol):
         """Relative error of a contact's pressure whose depth has the given relative error."""
         return FITTED_SHARE * np.asarray(depth_error)
 
+    def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+        """The same where slopes of densities are integrals: without what slopes of polynomials lose."""
+        return self.contact_pressure_error(ratio, depth_error)
+
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Relative error of a flat punch's pressure at a given depth."""
         return self.contact_pressure_error(ratio, self.relative_error(ratio))

@@ -82,12 +82,14 @@ class KnownContact(NamedTuple):
     Attributes:
         radius: a [m], with all digits of what was prescribed.
         radius_error: Its relative error.
-        pressure_error: Relative error of the pressure.
+        density_error: Relative error of the Abel density of its pressure, by default of the pressure itself.
+        edge_error: Error of that density's value at the edge, over E* [m].
     """
 
     radius: float
     radius_error: float
-    pressure_error: float
+    density_error: float
+    edge_error: float = 0.0
 
 
 class InteriorFields(Protocol):

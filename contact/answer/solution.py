@@ -120,6 +120,17 @@ class Solution:
         stated = self.uncertainty(name) if name in self.error_estimate else None
         return quantity_line(name, values, UNITS.get(name, ""), stated)
 
+    def inside(self, step: int = 0) -> Inside:
+        """The body under one step, where the answer is a path of equilibria.
+
+        Raises:
+            InvalidInput: Here always.
+        """
+        raise InvalidInput(
+            f"{type(self).__name__}: fields inside are those of equilibria; prescribe radii, depths or forces without "
+            "relaxation, with the modulus of that instant"
+        )
+
     def scale(self, quantity: str) -> FloatArray:
         """What a relative error of this quantity refers to; along a path that crosses zero, its largest magnitude.
 

@@ -32,7 +32,7 @@ from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.pressure_errors import pressure_errors
 from mdr.adhesion.withdrawal import CONTROLS, MACHINE, Route
-from mdr.elastic import PathFields, solve_elastic
+from mdr.elastic import PathFields, density_errors, solve_elastic
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
@@ -128,7 +128,11 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
             force = scene.loading.values
         stiffness = np.asarray(system.contact_stiffness(radius))
         springs = 2.0 * system.spring_stiffness(radius)
-        fields = PathFields(scene, system.flat_punch, found.excess, depth, singular_edge=True)
+        # An elongation that is off by so much [m] moves the density's value at the edge by y1 = sqrt(c_bar) of it.
+        at_edge = found.edge * np.sqrt(system.flat_punch.normalized_spring_stiffness(radius / system.length_unit))
+        fields = PathFields(
+            scene, system.flat_punch, found.excess, depth, density_errors(system, scene, radius), at_edge, True
+        )
         pressure = pressure_errors(system, fields, radius, edge=found.edge, moved=errors[RADIUS])
     relative = system.relative_errors(radius)["contact_stiffness"]
     return ContactPath(

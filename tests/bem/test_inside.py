@@ -1,12 +1,14 @@
-"""Fields inside by the direct integral equation, which shares no density with MDR."""
+"""Fields inside by the direct integral equation, which shares no density with MDR, and by boundary elements."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
+from bem import Bem
 from bem.layer_equation.method import IntegralEquationMethod
 from contact import (
+    Adhesion,
     Cone,
     ContactRadii,
     FlatPunch,
@@ -76,3 +78,35 @@ def test_the_same_refusals():
     assert [worst.radius, worst.depth, worst.value] == pytest.approx(
         [same.radius, same.depth, same.value], rel=1e-6, abs=1e-7
     )
+
+
+GRID_CONTACTS = {
+    "bonded": (Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3), Paraboloid(radius_of_curvature=10.0), 0.0),
+    "incompressible": (Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.5), Cone(slope=0.1), 0.0),
+    "kink": (Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3), INDENTERS[0], 0.0),
+    "half-space": (LAYERS[2], Paraboloid(radius_of_curvature=10.0), 0.0),
+    "punch": (Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5), FlatPunch(radius=1.0), 0.0),
+    "adhering": (
+        Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
+        Paraboloid(radius_of_curvature=10.0),
+        1e-4,
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", GRID_CONTACTS)
+def test_boundary_elements_have_an_inside(kind):
+    """Their fields are those of MDR within the stated errors, which are not far above."""
+    layer, indenter, tough = GRID_CONTACTS[kind]
+    loading = IndentationDepths([1e-3]) if isinstance(indenter, FlatPunch) else ContactRadii([1.0])
+    effects = (Adhesion(work_of_adhesion=tough),) if tough else ()
+    scene = Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
+    grid, mdr = Bem(points=128).solve(scene).inside(), Mdr().solve(scene).inside()
+    draw = np.random.default_rng(4)
+    r, z = draw.uniform(0.0, 1.5, 20), min(layer.thickness, 1.0) * draw.uniform(0.02, 1.0, 20)
+    found, exact = grid.at(r, z), mdr.at(r, z)
+    largest = max(float(np.abs(getattr(exact, name)).max()) for name in NAMES)
+    stated = found.error_estimate["stress"] * largest
+    worst = max(float(np.abs(getattr(found, name) - getattr(exact, name)).max()) for name in NAMES)
+    assert worst <= stated
+    assert worst < 2e-2 * largest

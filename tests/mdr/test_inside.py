@@ -16,6 +16,7 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
+    DepthHistory,
     ExponentialDepth,
     FlatPunch,
     GradedLayer,
@@ -257,6 +258,16 @@ def test_graded_layers_are_refused_by_name():
         path.inside().at(0.1, 0.2)
 
 
+def test_histories_are_refused_by_name():
+    scene = Scene(
+        layer=unit_layer(0.5),
+        indenter=Paraboloid(radius_of_curvature=10.0),
+        loading=DepthHistory(time=np.array([0.0, 1.0]), depth=np.array([0.0, 0.01])),
+    )
+    with pytest.raises(InvalidInput, match="HistoryPath: fields inside are those of equilibria"):
+        Mdr().solve(scene).inside()
+
+
 def test_adhering_contacts_have_an_inside():
     scene = Scene(
         layer=unit_layer(0.3),
@@ -321,7 +332,7 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
     assert deep.error_estimate["pressure_gradient"] < 1e-12 < shallow.error_estimate["pressure_gradient"]
     # Beside the contact stresses are small, and integrals err by a share of the mean pressure all the same.
     far = path.inside().at(3.0 * radius, 0.3)
-    assert far.error_estimate["stress"] > 3.0 * deep.error_estimate["stress"]
+    assert far.error_estimate["stress"] > 2.0 * deep.error_estimate["stress"]
 
 
 @pytest.mark.parametrize("nodes", [8, 12])
@@ -332,8 +343,9 @@ def test_a_radius_that_was_found_moves_what_is_beside_the_edge(nodes):
     path = build("mdr", {"nodes": nodes}).solve(scene)
     a = float(path.contact_radius[0])
     beside, exact = path.inside().at(1.3 * (1.0 - 1e-6), 1e-8), prescribed.inside().at(1.3 * (1.0 - 1e-6), 1e-8)
-    error = abs(float(beside.axial_stress - exact.axial_stress)) / abs(float(exact.axial_stress))
+    largest = max(abs(float(getattr(exact, name))) for name in ("radial_stress", "hoop_stress", "axial_stress"))
+    error = abs(float(beside.axial_stress - exact.axial_stress)) / largest
     assert error <= beside.error_estimate["stress"] + exact.error_estimate["stress"]
     moved = 0.5 * float(np.max(path.error_estimate["contact_radius"])) * a / 1.3e-6
-    assert beside.error_estimate["stress"] > 0.9 * moved
-    assert beside.error_estimate["stress"] < 1e3 * moved
+    moved *= abs(float(exact.axial_stress)) / largest
+    assert 0.9 * moved < beside.error_estimate["stress"] < 3.0 * moved

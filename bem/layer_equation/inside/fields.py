@@ -10,7 +10,7 @@ import numpy as np
 from bem.kernels.inside import Place, place_of, sheet_of
 from bem.kernels.stack import StackKernel
 from bem.layer_equation.inside.density import Density
-from bem.layer_equation.inside.half_space_part import Points, integrals
+from bem.layer_equation.inside.half_space_part import Integrals, Points, at_edge, integrals
 from bem.layer_equation.inside.half_space_part import fields as half_space_fields
 from bem.layer_equation.inside.layer_part import NAMES, layer_fields
 from contact.records.validation import FloatArray
@@ -34,13 +34,16 @@ class Body:
     density: Density
 
     def at(self, points: Points) -> dict[str, FloatArray]:
-        """2 G u_r/r, 2 G u_z, stresses, pressure and gradient in E*, and G over the surface's, each of shape (n,)."""
+        """2 G u_r/r, 2 G u_z, stresses, pressure and gradient in E*, and G over the surface's, each of shape (n,).
+
+        With them the root of the sum of the squares of the gradient's terms, by which it is rounded.
+        """
         r, depth, ends = points
         z = np.maximum(depth, SURFACE * self.density.radius)
         if self.kernel is None:
             parts = self._of_half_space(Points(r, z, ends))
             return {name: part / math.pi for name, part in parts.items()} | {"modulus": np.ones_like(r)}
-        found = {name: np.empty_like(r) for name in (*NAMES, "modulus")}
+        found = {name: np.zeros_like(r) for name in (*NAMES, "gradient_terms", "modulus")}
         sheets = np.array([place_of(self.kernel, float(depth)).sheet for depth in z])
         for sheet in np.unique(sheets):
             some = sheets == sheet
@@ -59,4 +62,12 @@ class Body:
         if not top:
             return parts
         upper = self._of_half_space(points)
-        return {name: part + upper[name] for name, part in parts.items()}
+        return {name: parts.get(name, 0.0) + part for name, part in upper.items()}
+
+    def of_unit_edge(self, points: Points) -> dict[str, FloatArray]:
+        """What a density of edge value one, in E* times the unit, causes beside the edge: the half-space's share."""
+        r, z, ends = points
+        beside = Points(r, np.maximum(z, SURFACE * self.density.radius), ends)
+        total = Integrals(*np.vstack([at_edge(self.density, beside), np.zeros_like(r)]))
+        parts = half_space_fields(total, r, beside.z, self.poissons_ratio)
+        return {name: part / math.pi for name, part in parts.items()}

@@ -25,7 +25,10 @@ _LENGTH = 1.5
 
 
 class Integrals(NamedTuple):
-    """int phi Re K_mn dt at each point; those of n = 1 are divided by r."""
+    """int phi Re K_mn dt at each point; those of n = 1 are divided by r.
+
+    The last is the sum of the squares of what a rounding does to the terms of i20 and of r i21, over a rounding.
+    """
 
     i00: FloatArray
     i10: FloatArray
@@ -33,6 +36,7 @@ class Integrals(NamedTuple):
     i01: FloatArray
     i11: FloatArray
     i21: FloatArray
+    squares: FloatArray
 
 
 class Points(NamedTuple):
@@ -52,18 +56,22 @@ class Points(NamedTuple):
 def integrals(density: Density, points: Points) -> Integrals:
     """At points of shape (n,)."""
     r, z, ends = points
-    total = np.zeros((6, r.size))
+    total = np.zeros((7, r.size))
     if density.edge_value:
-        edge = np.full(r.shape, density.radius)
-        total -= density.edge_value * _kernels(r, z, edge, ends[-1])
+        total[:6] -= density.edge_value * at_edge(density, points)
     for piece, start, stop in zip(density.pieces, ends[:-1], ends[1:], strict=True):
         total += _over_piece(density, piece, Points(r, z, np.array([start, stop])))
     return Integrals(*total)
 
 
+def at_edge(density: Density, points: Points) -> FloatArray:
+    """What a unit edge value of the density adds to the first six integrals, with the opposite sign, shape (6, n)."""
+    return _kernels(points.r, points.z, np.full(points.r.shape, density.radius), points.ends[-1])
+
+
 def _over_piece(density: Density, piece: Piece, points: Points) -> FloatArray:
     r, z, ends = points
-    total = np.zeros((6, r.size))
+    total = np.zeros((7, r.size))
     first, last = np.arcsinh(ends / z)
     panels = np.ceil((last - first) / _LENGTH).astype(int)
     # Points that need the same number of panels are taken together.
@@ -96,7 +104,11 @@ def _by_panels(density: Density, piece: Piece, points: _Spread, count: int) -> F
     offset = np.minimum(offset, piece.length)
     beyond = z * np.sinh(s)
     slope = density.slope(piece, offset) * width * weight.ravel() * z * np.cosh(s)
-    return np.asarray(np.einsum("cpn,pn->cp", _kernels(r, z, r + beyond, beyond), slope))
+    kernels = _kernels(r, z, r + beyond, beyond)
+    # A position s is rounded by a share of itself, and the term with it.
+    terms = kernels[[2, 5]] * (slope * (1.0 + np.abs(s)))
+    squares = np.sum(terms[0] ** 2, axis=1) + r[:, 0] ** 2 * np.sum(terms[1] ** 2, axis=1)
+    return np.vstack([np.einsum("cpn,pn->cp", kernels, slope), squares])
 
 
 def _kernels(r: FloatArray, z: FloatArray, t: FloatArray, beyond: FloatArray) -> FloatArray:
@@ -125,4 +137,5 @@ def fields(total: Integrals, r: FloatArray, z: FloatArray, poissons_ratio: float
         "hydrostatic_pressure": share * total.i10,
         "pressure_gradient_radial": -share * r * total.i21,
         "pressure_gradient_axial": -share * total.i20,
+        "gradient_terms": share * np.sqrt(total.squares),
     }

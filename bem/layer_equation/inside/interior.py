@@ -21,6 +21,7 @@ from contact.records.validation import FloatArray
 # Relative distance within which an end of a piece is a rounded rim: the rim was divided by the unit, subtracted from
 # another one and multiplied again, which is four roundings.
 _ROUNDED = 4.0 * float(np.finfo(float).eps)
+_SLOPES = ("pressure_gradient_radial", "pressure_gradient_axial")
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,22 +51,28 @@ class ContactInterior:
         points = Points(radius / unit, np.minimum(depth, layer.thickness) / unit, distances)
         found = self._body.at(points)
         shear = found["modulus"] * layer.shear_modulus
-        stresses = {
-            "radial_stress": found["s1"] - found["hoop_strain"],
-            "hoop_stress": found["s2"] + found["hoop_strain"],
-            "axial_stress": found["axial_stress"],
-            "shear_stress": found["shear_stress"],
-        }
-        slopes = {name: found[name] for name in ("pressure_gradient_radial", "pressure_gradient_axial")}
-        length = min(self.density.radius, layer.thickness / unit)
-        sizes = Magnitudes(_largest(stresses), _largest(slopes), length, self.depth)
+        stresses, slopes = _stresses(found), {name: found[name] for name in _SLOPES}
+        edge = self._body.of_unit_edge(points)
+        yields = modulus / (2.0 * layer.shear_modulus)
+        sizes = Magnitudes(
+            displacement=yields * _displacement(found, points.r) / found["modulus"],
+            stress=_largest(stresses),
+            gradient=_largest(slopes),
+            gradient_terms=found["gradient_terms"],
+            edge_displacement=yields * _displacement(edge, points.r),
+            edge_stress=_largest(_stresses(edge)),
+            edge_gradient=_largest({name: edge[name] for name in _SLOPES}),
+            length=min(self.density.radius, layer.thickness / unit),
+            thickness=layer.thickness / unit,
+            depth=self.depth,
+        )
         return InsideFields(
             radial_displacement=modulus * found["hoop_strain"] * radius / (2.0 * shear),
             axial_displacement=modulus * found["axial"] * unit / (2.0 * shear),
             **{name: modulus * values for name, values in stresses.items()},
             hydrostatic_pressure=modulus * found["hydrostatic_pressure"],
             **{name: modulus * values / unit for name, values in slopes.items()},
-            error_estimate=stated_errors(self.density, points, sizes, self.known),
+            error_estimate=stated_errors(self.density, points, sizes, self.known, unit),
         )
 
     @cached_property
@@ -82,6 +89,19 @@ class ContactInterior:
         ends = self.unit * np.array([*(piece.start for piece in self.density.pieces), self.density.radius])
         nearest = given[np.argmin(np.abs(np.subtract.outer(ends, given)), axis=1)]
         return np.where(np.abs(nearest - ends) <= _ROUNDED * ends, nearest, ends)
+
+
+def _displacement(found: Mapping[str, FloatArray], r: FloatArray) -> FloatArray:
+    return np.maximum(np.abs(found["hoop_strain"]) * r, np.abs(found["axial"]))
+
+
+def _stresses(found: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
+    return {
+        "radial_stress": found["s1"] - found["hoop_strain"],
+        "hoop_stress": found["s2"] + found["hoop_strain"],
+        "axial_stress": found["axial_stress"],
+        "shear_stress": found["shear_stress"],
+    }
 
 
 def _largest(parts: Mapping[str, FloatArray]) -> FloatArray:
