@@ -46,16 +46,10 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
         force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
-<<<<<<< HEAD
-    fields = PathFields(scene, system.flat_punch, excess, depth)
+    fields = PathFields(scene, system.flat_punch, excess, depth, density_errors(system, scene, radius))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
     errors = _errors(system, scene, radius, depth, force)
-=======
-    refuse_touching_beside(scene, system, radius, depth)
-    errors = _errors(system, scene, radius, depth, force)
-    fields = PathFields(scene, system.flat_punch, excess, depth, density_errors(system, scene, radius))
->>>>>>> b19
     refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
