@@ -7,6 +7,7 @@ other quantities with it; at a fold, where the slope vanishes, the curvature bou
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,14 +15,17 @@ import numpy as np
 from bem.polynomials.adaptive import NODES
 from contact.records.validation import FloatArray
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch
+from mdr.adhesion.own_panels import rounding
 from mdr.springs.equivalent_system import EquivalentSystem
-from mdr.springs.error_model import SPRING_ROUNDING
+from mdr.springs.error_model import EPS, SPRING_ROUNDING
 from mdr.springs.table_errors import adhesive_errors
 
 # Row behind those of DEPTH and FORCE.
 RADIUS = 2
 # Share of a position over which terms are differentiated: their slopes need two digits. Chosen.
 _STEP = 1e-4
+# Bounds below so many times what roundings leave are not worth another solution; chosen.
+_ROUNDINGS = 10.0
 # Standard deviation over the contact of a density that falls by g from the axis to the edge, over g: between 0.27 and
 # 0.30 for powers from 0.5 to 4, sqrt(1/(2 n + 1) - 1/(n + 1)^2).
 _SPREAD = 0.3
@@ -70,10 +74,12 @@ class BranchErrors:
     Attributes:
         system: Springs and profile.
         branch: Their equilibria.
+        again: Depth [m] and force [N] at an excess a - b [m] once more (`own_panels`), if that is known.
     """
 
     system: EquivalentSystem
     branch: MdrAdhesiveBranch
+    again: Callable[[float], FloatArray | None] | None = None
 
     def of_states(self, y: FloatArray, shift: FloatArray) -> FloatArray:
         """Errors of delta, F and a where y itself is uncertain by a shift, shape (3, n)."""
@@ -84,11 +90,30 @@ class BranchErrors:
         """Errors of delta, F and a of one state: a fold, or else one whose y is known to a shift; a kink stays."""
         if y == 0.0:
             return np.zeros(3)
-        at = np.array([y])
-        if y in self.branch.section_ends[:-1]:
-            return self.of_states(at, np.zeros(1))[:, 0]
+        at, shifted = np.array([y]), np.array([shift])
         folds = [q for q in (DEPTH, FORCE) if y in self.branch.folds(q)]
-        return self.of_states(at, max([self._fold_shift(q, at) for q in folds], default=np.array([shift])))[:, 0]
+        if y in self.branch.section_ends[:-1]:
+            shifted = np.zeros(1)
+        elif folds:
+            shifted = max(self._fold_shift(q, at) for q in folds)
+        errors = self.of_states(at, shifted)[:, 0]
+        errors[:2] += self._excess_over_bounds(at)
+        return np.asarray(errors)
+
+    def _excess_over_bounds(self, y: FloatArray) -> FloatArray:
+        """What solving one state again tells of its depth and force more than the bounds do, or less, shape (2,)."""
+        bounds, (terms, _) = self._at_radius(y)[:, 0], self._terms(y)
+        radius = self.branch.radius(y)
+        least = np.linalg.norm(terms[:, :, 0], axis=1) * rounding(self.system, radius)
+        if y[0] not in self.branch.section_ends:
+            least = least + EPS * self.branch.section_ends[-1] * np.abs(self.branch.slopes(y)[:, 0])
+        if self.again is None or np.all(bounds <= _ROUNDINGS * least):
+            return np.zeros(2)
+        again = self.again(float(self.branch.excess(y, self.system.flat_radius)[0]))
+        if again is None:
+            return np.zeros(2)
+        # The other state errs as well, though by less.
+        return np.asarray(2.0 * np.abs(self.branch.values(y)[:, 0] - again) + least - bounds)
 
     def of_machine_fold(self, y: float, compliance: float) -> FloatArray:
         """Errors of delta, F and a where the displacement delta + F/K of a machine is least; compliance is 1/K."""
