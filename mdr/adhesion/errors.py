@@ -40,7 +40,9 @@ def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatA
 
 
 def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What errors of g, c_N, k_N, kernel count against in delta and F, shape (2, 4, n); these, relative, (4, n).
+    """What errors of g, c_N, k_N, kernel, moment count against in delta and F, (2, 5, n); these, relative, (5, n).
+
+    The moment 2 int c_N g counts by what its own polynomials leave out.
 
     delta = g - dl, and dl goes with c_N^(-1/2), Eq. (40). F = int k_N dg - k_N dl: the first term is the contact
     without adhesion, and k_N is a factor of both. They oscillate along the radius with different phases, so that they
@@ -51,18 +53,22 @@ def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> t
     """
     relative = system.relative_errors(radius)
     of_springs, of_profile = system.kernel_errors(radius)
-    stiffness, g = system.contact_stiffness(radius), system.mdr_profile(radius)
-    elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - system.profile_moment(radius))
+    stiffness, g, moment = (of(radius) for of in (system.contact_stiffness, system.mdr_profile, system.profile_moment))
+    elongation, elastic, none = np.abs(g - depth), np.abs(stiffness * g - moment), np.zeros_like(g)
     pull = stiffness * elongation
     density = np.hypot((elastic - pull) / stiffness, _SPREAD * g)
     terms = np.array(
-        [[g, elongation, np.zeros_like(g), density], [elastic, pull, stiffness * density, stiffness * density]]
+        [
+            [g, elongation, none, density, none],
+            [elastic, pull, stiffness * density, stiffness * density, moment],
+        ]
     )
     errors = [
         relative["indentation_depth"] - of_profile,
         0.5 * (relative["spring_stiffness"] - of_springs),
         relative["contact_stiffness"],
         0.5 * of_springs,
+        system.moment_truncation(radius),
     ]
     return terms, np.array(errors)
 
@@ -153,6 +159,7 @@ class BranchErrors:
         smooth = np.concatenate([slopes * relative, terms[quantity] * relative * of_data])
         rough = SPRING_ROUNDING * terms[quantity].sum(axis=0) + branch.truncation(y)[quantity]
         rough = rough + self.system.profile_truncation(radius) * terms[quantity, 0]
+        rough = rough + self.system.moment_truncation(radius) * terms[quantity, 4]
         return np.asarray(np.linalg.norm(smooth, axis=0) + rough * steepest)
 
     def _terms(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
