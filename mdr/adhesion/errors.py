@@ -25,7 +25,7 @@ RADIUS = 2
 # Share of a position over which terms are differentiated: their slopes need two digits. Chosen.
 _STEP = 1e-4
 # Bounds below so many times what roundings leave are not worth another solution; chosen.
-_ROUNDINGS = 10.0
+_ROUNDINGS = 100.0
 # Standard deviation over the contact of a density that falls by g from the axis to the edge, over g: between 0.27 and
 # 0.30 for powers from 0.5 to 4, sqrt(1/(2 n + 1) - 1/(n + 1)^2).
 _SPREAD = 0.3
@@ -89,8 +89,12 @@ class BranchErrors:
 
     def of_states(self, y: FloatArray, shift: FloatArray) -> FloatArray:
         """Errors of delta, F and a where y itself is uncertain by a shift, shape (3, n)."""
+        return self._moved(y, shift, self._at_radius(y))
+
+    def _moved(self, y: FloatArray, shift: FloatArray, at_radius: FloatArray) -> FloatArray:
+        """The same from the errors of delta and F at fixed radius, shape (2, n)."""
         moved = np.abs(self.branch.slopes(y)) * shift + 0.5 * np.abs(self.branch.curvatures(y)) * shift**2
-        return np.vstack([self._at_radius(y) + moved, self.branch.radius(y + shift) - self.branch.radius(y)])
+        return np.vstack([at_radius + moved, self.branch.radius(y + shift) - self.branch.radius(y)])
 
     def of_point(self, y: float, shift: float) -> FloatArray:
         """Errors of delta, F and a of one state: a fold, or else one whose y is known to a shift; a kink stays."""
@@ -102,24 +106,21 @@ class BranchErrors:
             shifted = np.zeros(1)
         elif folds:
             shifted = max(self._fold_shift(q, at) for q in folds)
-        errors = self.of_states(at, shifted)[:, 0]
-        errors[:2] += self._excess_over_bounds(at)
-        return np.asarray(errors)
+        return self._moved(at, shifted, self._told_again(at))[:, 0]
 
-    def _excess_over_bounds(self, y: FloatArray) -> FloatArray:
-        """What solving one state again tells of its depth and force more than the bounds do, or less, shape (2,)."""
-        bounds, (terms, _) = self._at_radius(y)[:, 0], self._terms(y)
-        radius = self.branch.radius(y)
-        least = np.linalg.norm(terms[:, :, 0], axis=1) * rounding(self.system, radius)
+    def _told_again(self, y: FloatArray) -> FloatArray:
+        """Errors of delta and F at one radius, shape (2, 1): what solving it again tells, where bounds are large."""
+        bounds, (depth, force) = self._at_radius(y), self.branch.values(y)
+        radius, excess = self.branch.radius(y), self.branch.excess(y, self.system.flat_radius)
+        g, stiffness = self.system.profile_beyond(excess), self.system.contact_stiffness(radius)
+        least = rounding(self.system, radius) * np.stack([g + np.abs(g - depth), stiffness * g + np.abs(force)])
         if y[0] not in self.branch.section_ends:
-            least = least + EPS * self.branch.section_ends[-1] * np.abs(self.branch.slopes(y)[:, 0])
-        if self.again is None or np.all(bounds <= _ROUNDINGS * least):
-            return np.zeros(2)
-        again = self.again(float(self.branch.excess(y, self.system.flat_radius)[0]))
+            least = least + EPS * self.branch.section_ends[-1] * np.abs(self.branch.slopes(y))
+        again = None if self.again is None or np.all(bounds <= _ROUNDINGS * least) else self.again(float(excess[0]))
         if again is None:
-            return np.zeros(2)
+            return bounds
         # The other state errs as well, though by less.
-        return np.asarray(2.0 * np.abs(self.branch.values(y)[:, 0] - again) + least - bounds)
+        return np.asarray(2.0 * np.abs(np.stack([depth, force]) - again[:, None]) + least)
 
     def of_machine_fold(self, y: float, compliance: float) -> FloatArray:
         """Errors of delta, F and a where the displacement delta + F/K of a machine is least; compliance is 1/K."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -77,7 +77,8 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         control = CONTROLS.index(loading.controlled)
         loss, tension = route.loss(control), route.largest_tension(control)
         lost_radius, lost_depth, lost_force = route.state(loss)
-        lost, torn = (_point_errors(route, bounds, uncertain, y) for y in (loss, tension))
+        lost = _point_errors(route, bounds, uncertain, loss)
+        torn = lost if tension == loss else _point_errors(route, bounds, uncertain, tension)
         force = route.state(tension)[2]
     depth_scale, force_scale = np.abs(values).max(axis=1)
     return DetachmentPath(
@@ -189,7 +190,7 @@ def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) 
 def _bounds(scene: Scene, system: EquivalentSystem, branch: MdrAdhesiveBranch) -> BranchErrors:
     """Errors along a branch, whose single points may be solved again."""
     again = partial(state_again, system, scene.layer, scene.indenter, work_of_adhesion(scene))
-    return BranchErrors(system, branch, again)
+    return BranchErrors(system, branch, lru_cache(maxsize=None)(again))
 
 
 def _strength(branch: MdrAdhesiveBranch) -> float:
