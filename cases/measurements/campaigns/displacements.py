@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from functools import partial
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -38,6 +38,7 @@ from contact import (
     Sublayer,
 )
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 Draw = np.random.Generator
 
@@ -113,7 +114,7 @@ def _largest(path: ContactPath) -> float:
 def random_body(draw: Draw) -> Scene:
     """A contact of given radius on a layer of one of three kinds."""
     a, slope = log_uniform(draw, *_RATIO), log_uniform(draw, 1e-3, 0.3)
-    layer = (_uniform, _stack, _graded)[draw.integers(3)](draw)
+    layer: Any = (_uniform, _stack, _graded)[draw.integers(3)](draw)
     indenter: Profile = (
         Paraboloid(radius_of_curvature=a / slope),
         Cone(slope=slope),
@@ -123,8 +124,8 @@ def random_body(draw: Draw) -> Scene:
 
 
 def _uniform(draw: Draw) -> ElasticLayer:
-    support = draw.choice(["bonded", "unbonded"])
-    return Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio(draw), support=str(support))
+    support: Support = ("bonded", "unbonded")[int(draw.choice(2))]
+    return Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio(draw), support=support)
 
 
 def _stack(draw: Draw) -> ElasticLayer:
