@@ -19,10 +19,9 @@ from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.abel_integral import even_abel_integral
-from bem.polynomials.chebyshev import differentiation, piecewise_sum
-from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
+from bem.polynomials.even_slopes import EvenSlopes
+from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
 from bem.polynomials.mapped import MappedFunction, MappedGrid
-from bem.polynomials.truncation import rate_of_decay
 from contact.records.validation import FloatArray
 
 EPS = float(np.finfo(float).eps)
@@ -81,14 +80,10 @@ class ContactDensity:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
         return even_abel_integral(self.slope_over_position, self.psi.grid, radius)
 
-    def slope_over_position(self, t: FloatArray) -> FloatArray:
+    @cached_property
+    def slope_over_position(self) -> EvenSlopes:
         """psi'(t)/t at points of (0, a]."""
-        panel, _ = self.psi.grid.locate(t)
-        left, width, coefficients = self._slopes
-        share = (t - left[panel]) / width[panel]
-        innermost = panel == 0
-        values = piecewise_sum(coefficients, panel, 2 * np.where(innermost, share**2, share) - 1)
-        return values / np.where(innermost, 1.0, t)
+        return EvenSlopes.of(self.psi, STRIP)
 
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
@@ -99,32 +94,6 @@ class ContactDensity:
         decay = np.exp(-np.multiply.outer(distance, self.kernel.rates))
         values: FloatArray = -(decay @ (self.kernel.weights * moments)).real / np.pi
         return values
-
-    @cached_property
-    def _slopes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """Panels for slopes: left ends, widths, and coefficients of psi'/t in the first, of psi' in the others.
-
-        Differences of rounded values grow with the inverse of what they are divided by. So the last panel, of which a
-        may leave little, reaches back to a full width, and in the first psi is taken as the function of t^2 that it is.
-        Orders that analyticity leaves below a rounding are rounding errors, magnified most by differentiation.
-        """
-        left, width, coefficients = (
-            values.copy() for values in (self.psi.grid.left, self.psi.grid.width, self.psi.coefficients)
-        )
-        nodes, _ = gauss_nodes(self.psi.grid.count)
-        if len(left) > 1 and width[-1] < width[-2]:
-            width[-1] = width[-2]
-            left[-1] = self.ratio - width[-1]
-            coefficients[-1] = self._interpolated(left[-1] + width[-1] * nodes)
-        coefficients[0] = self._interpolated(width[0] * np.sqrt(nodes)) * 2 / width[0]
-        orders = np.ceil(np.log(EPS) / np.log(rate_of_decay(2 * STRIP / width.max())))
-        coefficients[:, int(orders) :] = 0.0
-        slope = 2 * coefficients @ differentiation(nodes.size).T
-        return left, width, slope / width[:, None]
-
-    def _interpolated(self, t: FloatArray) -> FloatArray:
-        """Chebyshev coefficients of psi over a variable whose Gauss nodes are the points t of [0, a]."""
-        return np.asarray(chebyshev_from_nodes(t.size) @ self.psi(t))
 
 
 def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:

@@ -7,6 +7,7 @@ other quantities with it; at a fold, where the slope vanishes, the curvature bou
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,14 +15,17 @@ import numpy as np
 from bem.polynomials.adaptive import NODES
 from contact.records.validation import FloatArray
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch
+from mdr.adhesion.own_panels import rounding
 from mdr.springs.equivalent_system import EquivalentSystem
-from mdr.springs.error_model import SPRING_ROUNDING
+from mdr.springs.error_model import EPS, SPRING_ROUNDING
 from mdr.springs.table_errors import adhesive_errors
 
 # Row behind those of DEPTH and FORCE.
 RADIUS = 2
 # Share of a position over which terms are differentiated: their slopes need two digits. Chosen.
 _STEP = 1e-4
+# Bounds below so many times what roundings leave are not worth another solution; chosen.
+_ROUNDINGS = 100.0
 # Standard deviation over the contact of a density that falls by g from the axis to the edge, over g: between 0.27 and
 # 0.30 for powers from 0.5 to 4, sqrt(1/(2 n + 1) - 1/(n + 1)^2).
 _SPREAD = 0.3
@@ -36,7 +40,9 @@ def errors_at_radius(system: EquivalentSystem, radius: FloatArray, depth: FloatA
 
 
 def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """What errors of g, c_N, k_N, kernel count against in delta and F, shape (2, 4, n); these, relative, (4, n).
+    """What errors of g, c_N, k_N, kernel, moment count against in delta and F, (2, 5, n); these, relative, (5, n).
+
+    The moment 2 int c_N g counts by what its own polynomials leave out.
 
     delta = g - dl, and dl goes with c_N^(-1/2), Eq. (40). F = int k_N dg - k_N dl: the first term is the contact
     without adhesion, and k_N is a factor of both. They oscillate along the radius with different phases, so that they
@@ -47,18 +53,22 @@ def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> t
     """
     relative = system.relative_errors(radius)
     of_springs, of_profile = system.kernel_errors(radius)
-    stiffness, g = system.contact_stiffness(radius), system.mdr_profile(radius)
-    elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - system.profile_moment(radius))
+    stiffness, g, moment = (of(radius) for of in (system.contact_stiffness, system.mdr_profile, system.profile_moment))
+    elongation, elastic, none = np.abs(g - depth), np.abs(stiffness * g - moment), np.zeros_like(g)
     pull = stiffness * elongation
     density = np.hypot((elastic - pull) / stiffness, _SPREAD * g)
     terms = np.array(
-        [[g, elongation, np.zeros_like(g), density], [elastic, pull, stiffness * density, stiffness * density]]
+        [
+            [g, elongation, none, density, none],
+            [elastic, pull, stiffness * density, stiffness * density, moment],
+        ]
     )
     errors = [
         relative["indentation_depth"] - of_profile,
         0.5 * (relative["spring_stiffness"] - of_springs),
         relative["contact_stiffness"],
         0.5 * of_springs,
+        system.moment_truncation(radius),
     ]
     return terms, np.array(errors)
 
@@ -70,25 +80,47 @@ class BranchErrors:
     Attributes:
         system: Springs and profile.
         branch: Their equilibria.
+        again: Depth [m] and force [N] at an excess a - b [m] once more (`own_panels`), if that is known.
     """
 
     system: EquivalentSystem
     branch: MdrAdhesiveBranch
+    again: Callable[[float], FloatArray | None] | None = None
 
     def of_states(self, y: FloatArray, shift: FloatArray) -> FloatArray:
         """Errors of delta, F and a where y itself is uncertain by a shift, shape (3, n)."""
+        return self._moved(y, shift, self._at_radius(y))
+
+    def _moved(self, y: FloatArray, shift: FloatArray, at_radius: FloatArray) -> FloatArray:
+        """The same from the errors of delta and F at fixed radius, shape (2, n)."""
         moved = np.abs(self.branch.slopes(y)) * shift + 0.5 * np.abs(self.branch.curvatures(y)) * shift**2
-        return np.vstack([self._at_radius(y) + moved, self.branch.radius(y + shift) - self.branch.radius(y)])
+        return np.vstack([at_radius + moved, self.branch.radius(y + shift) - self.branch.radius(y)])
 
     def of_point(self, y: float, shift: float) -> FloatArray:
         """Errors of delta, F and a of one state: a fold, or else one whose y is known to a shift; a kink stays."""
         if y == 0.0:
             return np.zeros(3)
-        at = np.array([y])
-        if y in self.branch.section_ends[:-1]:
-            return self.of_states(at, np.zeros(1))[:, 0]
+        at, shifted = np.array([y]), np.array([shift])
         folds = [q for q in (DEPTH, FORCE) if y in self.branch.folds(q)]
-        return self.of_states(at, max([self._fold_shift(q, at) for q in folds], default=np.array([shift])))[:, 0]
+        if y in self.branch.section_ends[:-1]:
+            shifted = np.zeros(1)
+        elif folds:
+            shifted = max(self._fold_shift(q, at) for q in folds)
+        return self._moved(at, shifted, self._told_again(at))[:, 0]
+
+    def _told_again(self, y: FloatArray) -> FloatArray:
+        """Errors of delta and F at one radius, shape (2, 1): what solving it again tells, where bounds are large."""
+        bounds, (depth, force) = self._at_radius(y), self.branch.values(y)
+        radius, excess = self.branch.radius(y), self.branch.excess(y, self.system.flat_radius)
+        g, stiffness = self.system.profile_beyond(excess), self.system.contact_stiffness(radius)
+        least = rounding(self.system, radius) * np.stack([g + np.abs(g - depth), stiffness * g + np.abs(force)])
+        if y[0] not in self.branch.section_ends:
+            least = least + EPS * self.branch.section_ends[-1] * np.abs(self.branch.slopes(y))
+        again = None if self.again is None or np.all(bounds <= _ROUNDINGS * least) else self.again(float(excess[0]))
+        if again is None:
+            return bounds
+        # The other state errs as well, though by less.
+        return np.asarray(2.0 * np.abs(np.stack([depth, force]) - again[:, None]) + least)
 
     def of_machine_fold(self, y: float, compliance: float) -> FloatArray:
         """Errors of delta, F and a where the displacement delta + F/K of a machine is least; compliance is 1/K."""
@@ -128,6 +160,7 @@ class BranchErrors:
         smooth = np.concatenate([slopes * relative, terms[quantity] * relative * of_data])
         rough = SPRING_ROUNDING * terms[quantity].sum(axis=0) + branch.truncation(y)[quantity]
         rough = rough + self.system.profile_truncation(radius) * terms[quantity, 0]
+        rough = rough + self.system.moment_truncation(radius) * terms[quantity, 4]
         return np.asarray(np.linalg.norm(smooth, axis=0) + rough * steepest)
 
     def _terms(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:

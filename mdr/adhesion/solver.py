@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache, partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,7 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
 from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
+from mdr.adhesion.own_panels import state_again
 from mdr.adhesion.pressure_errors import pressure_errors
 from mdr.adhesion.withdrawal import CONTROLS, MACHINE, Route
 from mdr.elastic import PathFields, density_errors, solve_elastic
@@ -75,7 +77,8 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         control = CONTROLS.index(loading.controlled)
         loss, tension = route.loss(control), route.largest_tension(control)
         lost_radius, lost_depth, lost_force = route.state(loss)
-        lost, torn = (_point_errors(route, bounds, uncertain, y) for y in (loss, tension))
+        lost = _point_errors(route, bounds, uncertain, loss)
+        torn = lost if tension == loss else _point_errors(route, bounds, uncertain, tension)
         force = route.state(tension)[2]
     depth_scale, force_scale = np.abs(values).max(axis=1)
     return DetachmentPath(
@@ -175,20 +178,23 @@ def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) 
     compliance = 1.0 / (loading.machine_stiffness or np.inf)
     if is_punch or loading.initial_contact_radius is not None:
         system, branch = _branch(scene, loading.initial_contact_radius or scene.indenter.max_radius, flat_punch)
-        return (
-            Route(branch, float(branch.section_ends[-1]), pinned=is_punch, compliance=compliance),
-            BranchErrors(system, branch),
-            0.0,
-        )
+        bounds = _bounds(scene, system, branch)
+        return Route(branch, float(branch.section_ends[-1]), pinned=is_punch, compliance=compliance), bounds, 0.0
     if work_of_adhesion(scene) == 0.0:
         raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
     system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= _strength(b))
-    bounds, start = BranchErrors(system, branch), branch.solutions(FORCE, np.array([_strength(branch)]))
+    bounds, start = _bounds(scene, system, branch), branch.solutions(FORCE, np.array([_strength(branch)]))
     if np.isnan(start[0]):
         return Route(branch, float(branch.section_ends[-1]), pinned=False, compliance=compliance), bounds, 0.0
     strongest = max(float(bounds.of_point(y, 0.0)[FORCE]) for y in branch.folds(FORCE))
     uncertain = float(bounds.shift(FORCE, start, strongest)[0])
     return Route(branch, float(start[0]), pinned=False, compliance=compliance), bounds, uncertain
+
+
+def _bounds(scene: Scene, system: EquivalentSystem, branch: MdrAdhesiveBranch) -> BranchErrors:
+    """Errors along a branch, whose single points may be solved again."""
+    again = partial(state_again, system, scene.layer, scene.indenter, work_of_adhesion(scene))
+    return BranchErrors(system, branch, lru_cache(maxsize=None)(again))
 
 
 def _strength(branch: MdrAdhesiveBranch) -> float:

@@ -46,7 +46,7 @@ def equivalent_system(
     Args:
         layer: Layer, stack or half-space.
         indenter: Profile of revolution.
-        max_radius: Largest contact radius [m], above the indenter's flat radius, or equal to a flat punch's own.
+        max_radius: Largest contact radius [m], not below the indenter's flat radius.
         flat_punch: Where k_bar, c_bar and the profile transform come from.
         may_fall: Whether g may fall on the way, so that some contacts of the system are none.
 
@@ -55,6 +55,7 @@ def equivalent_system(
         SeveralContacts: If the contact would not be one circle.
     """
     _refuse_endless_depth(indenter, max_radius)
+    indenter = _touching(indenter, max_radius - indenter.flat_radius)
     unit = max_radius if layer.is_half_space else layer.surface.thickness
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
     if not isinstance(indenter, FlatPunch):
@@ -109,7 +110,7 @@ def contact_fields(
         depth: delta [m].
         edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
     """
-    contact_radius = indenter.flat_radius + excess
+    contact_radius, indenter = indenter.flat_radius + excess, _touching(indenter, excess)
     unit = contact_radius if layer.is_half_space else layer.surface.thickness
     ratio, delta, flat = contact_radius / unit, depth / unit, indenter.flat_radius / unit
     flat_punch = flat_punch.one_contact(ratio)
@@ -130,6 +131,11 @@ def contact_fields(
         table=flat_punch if flat_punch.superposed else None,
         edge_density=_edge_density(profile, density, delta) if edge else 0.0,
     )
+
+
+def _touching(indenter: Profile, excess: float) -> Profile:
+    """The part of the indenter that touches: a flat end that the contact has not left is a flat punch."""
+    return FlatPunch(radius=indenter.flat_radius) if excess == 0.0 and indenter.flat_radius > 0.0 else indenter
 
 
 def _edge_density(profile: MappedFunction, density: LayerShare | None, delta: float) -> float:

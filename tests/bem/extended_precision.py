@@ -80,3 +80,54 @@ def _solved(lower, right):
     for j in range(len(lower)):
         solution[j] = (right[j] - lower[j, :j] @ solution[:j]) / lower[j, j]
     return solution
+
+
+def flat_punch_pressure(support, poissons_ratio, ratio, rho, count=16):
+    """p a/(E* delta) at r = rho a under a flat punch of radius a = ratio h, on panels of up to 3/4 of a thickness."""
+    ratio = LD(ratio)
+    panels, (tau, omega) = int(np.ceil(float(ratio) / 0.75)), rule(count)
+    width = ratio / panels
+    x, root = ((np.arange(panels)[:, None] + tau) * width).ravel(), np.sqrt(np.tile(omega * width, panels))
+    rates, weights = kernel(support, poissons_ratio)
+
+    def transformed(distance):
+        return (np.exp(-np.multiply.outer(distance, rates)) @ weights).real
+
+    differences = [transformed(width * abs(b + tau[:, None] - tau)) for b in range(panels)]
+    sums = [transformed(width * (b + tau[:, None] + tau)) for b in range(2 * panels - 1)]
+    K = np.block(
+        [
+            [(differences[p - q] if p >= q else differences[q - p].T) + sums[p + q] for q in range(panels)]
+            for p in range(panels)
+        ]
+    )
+    lower = _cholesky(np.eye(x.size, dtype=LD) - root[:, None] * K / PI * root)
+    z = _solved(lower, root[:, None])
+    # The factor turned by half a circle is that of the transposed system.
+    phi = _solved(lower.T[::-1, ::-1], z[::-1])[::-1, 0] / root
+    edge = 1 + ((transformed(ratio - x) + transformed(ratio + x)) / PI) @ (root**2 * phi)
+    polynomials, _ = _legendre(count, 2 * tau - 1)
+    orders = ((phi - 1).reshape(panels, count) * omega) @ polynomials.T * (2 * np.arange(count) + 1)
+    found = [edge / np.sqrt((1 - r) * (1 + r)) - ratio * _abel(orders, width, r * ratio, tau, omega) for r in rho]
+    return np.array(found) / PI
+
+
+def _abel(orders, width, r, tau, omega):
+    """int psi'(t)/sqrt(t^2 - r^2) dt of Legendre series on equal panels, over t^2 = r^2 + s^2 panel by panel."""
+    total = LD(0)
+    for panel in range(int(float(r / width)), len(orders)):
+        low, high = (np.sqrt((t - r) * (t + r)) for t in (max(panel * width, r), (panel + 1) * width))
+        for part in range(2):
+            t = np.sqrt(r**2 + (low + (high - low) * (part + tau) / 2) ** 2)
+            _, slopes = _legendre(len(tau), 2 * (t / width - panel) - 1)
+            total += (high - low) / 2 * omega @ (orders[panel] @ slopes * 2 / width / t)
+    return total
+
+
+def _legendre(count, x):
+    """P_n(x) and P_n'(x) for n < count."""
+    values, slopes = [np.ones_like(x), x], [np.zeros_like(x), np.ones_like(x)]
+    for n in range(1, count - 1):
+        values.append(((2 * n + 1) * x * values[n] - n * values[n - 1]) / (n + 1))
+        slopes.append(slopes[n - 1] + (2 * n + 1) * values[n])
+    return np.array(values), np.array(slopes)

@@ -248,3 +248,28 @@ def test_results_do_not_know_their_units():
     )  # mm, N: 1 Pa = 1e-6 N/mm^2, 1 J/m^2 = 1e-3 N/mm
     assert mm.pull_off_force == pytest.approx(si.pull_off_force, rel=1e-12, abs=0.0)
     assert mm.pull_off_depth == pytest.approx(1e3 * si.pull_off_depth, rel=1e-12, abs=0.0)
+
+
+@pytest.mark.parametrize("base", [HALF_SPACE, layer(0.45)], ids=["half-space", "layer"])
+@pytest.mark.parametrize(
+    "indenter", [TruncatedCone(flat_radius=0.8, slope=0.1), TruncatedParaboloid(flat_radius=0.8, radius_of_curvature=3)]
+)
+def test_a_contact_exactly_as_wide_as_the_flat_end_is_a_flat_punch_that_sets_off(base, indenter):
+    """Seen to fail: "indenter: does not rise within 0 m of first touch; a flat end needs a truncated profile"."""
+    at_rim = solve(base, indenter, ContactRadii(values=[0.8, 0.9]))
+    punch = FlatPunch(radius=0.8)
+    start = next(c for c in solve(base, punch).critical_points if c.kind == "start")
+    expected = {"indentation_depth": start.indentation_depth, "normal_force": start.normal_force}
+    for name, value in expected.items():
+        assert getattr(at_rim, name)[0] == pytest.approx(value, rel=1e-12, abs=0.0)
+    r = np.array([0.0, 0.3, 0.79])
+    # Held at its edge, a punch answers linearly.
+    held = solve(base, punch, IndentationDepths(values=0.5 * at_rim.indentation_depth[:1]))
+    assert at_rim.pressure(r, 0) == pytest.approx(2 * held.pressure(r, 0), rel=1e-12, abs=0.0)
+    outside = np.array([0.5, 0.8, 1.1])
+    assert at_rim.surface_displacement(outside, 0) == pytest.approx(
+        2 * held.surface_displacement(outside, 0), rel=1e-11, abs=0.0
+    )
+    path = solve(base, indenter, Detachment(initial_contact_radius=0.8))
+    assert path.contact_radius[0] == pytest.approx(0.8, rel=1e-15, abs=0.0)
+    assert path.normal_force[0] == pytest.approx(start.normal_force, rel=1e-12, abs=0.0)

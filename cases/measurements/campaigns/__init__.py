@@ -6,4 +6,5 @@
 - ``referee_profiles``: slopes of half-space profiles in closed form, written a second time
 - ``campaign``: random scenes against their referee, coverage and sharpness of stated errors
 - ``pressures``, ``pressure_referee``: pressure fields against their own referee, their integral and single radii
+- ``displacements``: beside contacts, alone and in a list, against the direct integral equation
 """

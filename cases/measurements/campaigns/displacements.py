@@ -1,0 +1,141 @@
+"""Displacements beside random contacts on uniform, layered and graded bodies, alone and in a list.
+
+- **displacement alone**: each radius asked for by itself against the same radius in a list that reaches further;
+- **displacement**: distance from the direct integral equation, at its worst radius.
+
+Radii are a rounding beyond those where a method may change its panels, a whole power of two of the contact's radius
+from its edge, and random ones. Distances count relative to the depth.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from bem.layer_equation.method import IntegralEquationMethod
+from cases.measurements.campaigns.campaign import HUNDRED_ROUNDINGS
+from cases.measurements.campaigns.random_scenes import log_uniform, poissons_ratio
+from cases.measurements.driver import measured
+from cases.measurements.measurement import Measurement
+from contact import (
+    Cone,
+    ContactPath,
+    ContactRadii,
+    ElasticLayer,
+    ExponentialDepth,
+    GradedLayer,
+    Layer,
+    LayerStack,
+    Method,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Scene,
+    Solution,
+    Sublayer,
+)
+from contact.records.validation import FloatArray
+from contact.scene.layer import Support
+
+Draw = np.random.Generator
+
+# Distances from the edge over the contact's radius.
+_DOUBLINGS: Final = 2.0 ** np.arange(-4.0, 2.0)
+# a/h on the layers of this campaign; graded ones take seconds beyond.
+_RATIO: Final = (0.05, 3.0)
+
+
+def displacement_campaign(
+    method: Method, *, seed: int, count: int, numbers: Iterable[int] | None = None
+) -> list[Measurement]:
+    """Draw contacts, let the method answer, and check the displacement beside each.
+
+    Args:
+        method: Who answers.
+        seed: Of the scenes.
+        count: How many.
+        numbers: Only these of the scenes; all if None.
+    """
+    rows = []
+    for number in range(count) if numbers is None else numbers:
+        draw = np.random.default_rng([seed, number])
+        scene, distances = random_body(draw), np.append(_DOUBLINGS, draw.uniform(0.01, 5.0, 3))
+        of = Measurement(method=method.name, scene=f"{number}", parameters={"family": "displacement"}, seed=seed)
+        rows += measured(partial(method.solve, scene), partial(_checks, distances=distances), of=of)
+    return rows
+
+
+def _checks(path: Solution, distances: FloatArray) -> tuple[Measurement, Measurement]:
+    assert isinstance(path, ContactPath)
+    return alone_check(path, distances), referee_check(path, distances)
+
+
+def alone_check(path: ContactPath, distances: FloatArray) -> Measurement:
+    """Single radii against the same in a list: nothing but the last digits may depend on the others."""
+    radius = _beside(path, distances)
+    listed = path.surface_displacement(np.append(radius, 2 * radius.max()))[:-1]
+    alone = np.array([path.surface_displacement(radius[[n]])[0] for n in range(radius.size)])
+    error = float(np.abs(alone - listed).max() / path.indentation_depth[0])
+    return Measurement(
+        method=path.method, quantity="displacement alone", error=error, stated=0.0, uncertainty=HUNDRED_ROUNDINGS
+    )
+
+
+def referee_check(path: ContactPath, distances: FloatArray) -> Measurement:
+    """Against the direct integral equation at the same radius; both may miss by what they state of depth and force."""
+    scene = path.scene.replace(loading=ContactRadii(values=path.contact_radius), effects=())
+    opinion = IntegralEquationMethod().solve(scene)
+    radius = _beside(path, distances)
+    off = np.abs(path.surface_displacement(radius) - opinion.surface_displacement(radius))
+    stated, allowance = (_largest(answer) for answer in (path, opinion))
+    return Measurement(
+        method=path.method,
+        quantity="displacement",
+        reference="integral_equation",
+        error=float(off.max() / path.indentation_depth[0]),
+        stated=stated,
+        uncertainty=allowance + HUNDRED_ROUNDINGS,
+    )
+
+
+def _beside(path: ContactPath, distances: FloatArray) -> FloatArray:
+    """Radii [m], each a rounding further out than said."""
+    return np.asarray(np.nextafter(float(path.contact_radius[0]) * (1 + distances), np.inf))
+
+
+def _largest(path: ContactPath) -> float:
+    """The largest error stated of radius, depth, force and stiffness: of the displacement none is stated."""
+    return max(float(np.max(path.error_estimate.get(name, 0.0))) for name in path.ARRAYS)
+
+
+def random_body(draw: Draw) -> Scene:
+    """A contact of given radius on a layer of one of three kinds."""
+    a, slope = log_uniform(draw, *_RATIO), log_uniform(draw, 1e-3, 0.3)
+    layer: Any = (_uniform, _stack, _graded)[draw.integers(3)](draw)
+    indenter: Profile = (
+        Paraboloid(radius_of_curvature=a / slope),
+        Cone(slope=slope),
+        PowerLaw(exponent=float(draw.uniform(1.2, 4.0)), reference_radius=a, reference_height=slope * a),
+    )[draw.integers(3)]
+    return Scene(layer=layer, indenter=indenter, loading=ContactRadii(values=np.array([a])))
+
+
+def _uniform(draw: Draw) -> ElasticLayer:
+    support: Support = ("bonded", "unbonded")[int(draw.choice(2))]
+    return Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio(draw), support=support)
+
+
+def _stack(draw: Draw) -> ElasticLayer:
+    """Two sublayers, the upper one the softer or little stiffer: stiff films may lift off."""
+    upper = Sublayer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio(draw))
+    modulus, thickness = log_uniform(draw, 0.5, 30.0), log_uniform(draw, 0.2, 5.0)
+    lower = Sublayer(thickness=thickness, youngs_modulus=modulus, poissons_ratio=poissons_ratio(draw))
+    return LayerStack(sublayers=(upper, lower), interfaces=("bonded",))
+
+
+def _graded(draw: Draw) -> ElasticLayer:
+    modulus = ExponentialDepth(surface=1.0, base=log_uniform(draw, 0.5, 8.0))
+    return GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=float(draw.uniform(0.0, 0.49)))
