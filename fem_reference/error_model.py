@@ -127,6 +127,18 @@ class HistoryCoefficients:
     share_beside_peak: float = 1 / 3
     # Every number states at least this share of the mean change of all of them by half the cells.
     share_of_mean: float = 0.8
+    # Contact ends when it is half a cell wide: the contact time of a cone is of first order in the cells, so that half
+    # of them change it by what it errs; up to 1.05 times as much was needed (30 impacts, seed 9001, 2026-11-22).
+    first_order: float = 1.25
+    # Contact ends with some energy left in the last cell, which is uneven from mesh to mesh: the restitution erred by
+    # up to 1.8 times what half the cells changed (69 impacts, seeds 9001 and 9002, 2026-11-22).
+    uneven_end: float = 2.0
+    # The end of a slow rebound is judged by the times in which the radius halves, if these take at least so many steps;
+    # chosen: with fewer of them such a time is known to a quarter at best.
+    steps_of_end: float = 4.0
+    # Those times grow at most by this from one to the next, or else the series has no end.  The contact time of two
+    # heavily damped rebounds was longer than computed by 5.5 and 1.1 times the last of them (same impacts).
+    slowest_end: float = 0.9
     # Factor on the truncation.  Chosen, and far on the safe side: a truncation of 1e-5 moved stiffness, depth and force
     # by at most 1.1e-5 (nu = 0.3 to 1/2, a/h = 0.2 to 300, 2026-11-22); at the usual 1e-7 the term adds 4e-6.
     outer_edge_safety: float = 40.0

@@ -10,13 +10,14 @@ from typing import Final, Literal
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.interpolate import CubicSpline
 from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhesion.disc import AdheringDisc
+from bem.grid.error_model import DISCS
 from bem.grid.quadrant import COARSE_CELLS
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
+from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from contact import Adhesion, Detachment, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
@@ -25,12 +26,14 @@ from contact.scene.extent import radius_of_elongation
 # derivatives. What these polynomials leave out is stated as an error.
 NODES: Final = 16
 BROKEN_NODES: Final = 32
-# Knots of the spline through a measured profile's values on the half-space.
-KNOTS: Final = 2000
+# Nodes between two breakpoints of a measured profile for its values on the half-space: 24 follow them to 1e-12.
+LOAD_NODES: Final = 24
 # Radii of each piece between which turning points and crossings are looked for.
 SAMPLES: Final = 400
 # Relative distance from the rim of a flat end, within which a state found by minimisation is one at the rim itself.
 RIM: Final = 1e-7
+# Relative step over which the slope of depth or force is taken at an extremum: places err by its square.
+SLOPE_STEP: Final = 1e-5
 # Factor by which the largest radius grows while the branch is too short.
 GROWTH: Final = 1.6
 # The first trial radius is the half-space's, but at most this times the thickness, where it is no guide any more.
@@ -90,18 +93,21 @@ class DiscBranchPiece:
         return np.asarray(by_t / (2.0 * width * t) + 2.0 * self.half_space(radius)[:2])
 
     def truncation(self, radius: FloatArray) -> FloatArray:
-        """What the last two orders contribute at radii [m], relative to the largest value.
+        """What is left out beyond the last orders at radii [m], relative to the largest value.
 
+        It is told by the last two of them, or by the last quarter where breakpoints make them fall like a power.
         Profile and moment vanish where the piece begins: what they are there is left out of them up to the third node.
         """
-        last = np.abs(self.series[-2:]).sum(axis=0)
+        is_smooth = self.half_space is _zeros
+        last = np.abs(self.series[-2 if is_smooth else -len(self.series) // 4 :]).sum(axis=0)
         begin = np.abs(chebyshev.chebval(-1.0, self.series)) * np.array([0.0, 1.0, 0.0, 1.0])
         middle, beside = (
             float(np.max(part / np.maximum(self.scales, np.finfo(float).tiny)))
             for part in (last, np.maximum(last, begin))
         )
         third = 0.5 - 0.5 * np.cos(2.5 * pi / len(self.series))
-        return np.where(radius - self.inner < (self.outer - self.inner) * third**2, beside, middle)
+        share = DISCS.truncation if is_smooth else DISCS.broken_truncation
+        return share * np.where(radius - self.inner < (self.outer - self.inner) * third**2, beside, middle)
 
 
 def _zeros(radius: FloatArray) -> FloatArray:
@@ -113,11 +119,23 @@ def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray],
 
     phi under a unit depth is 1, of the profile g_hs [m]; k_N/E* is 2 a [m], and the moment 2 int_0^a g_hs da [m^2].
     """
-    # The fourth power makes the knots dense at the axis, where g_hs is small.
-    knots = outer * np.linspace(0.0, 1.0, KNOTS + 1) ** 4
-    g_hs = CubicSpline(knots, half_space_load(indenter, knots))
-    moment = g_hs.antiderivative()
-    return lambda a: np.array([np.ones_like(a), g_hs(a), 2.0 * a, 2.0 * moment(a)])
+    # Beyond a breakpoint c both begin with odd powers of sqrt(a - c), and are analytic in it up to the next.
+    ends = np.array([0.0, *(r for r in indenter.breakpoints if 0.0 < r < outer), outer])
+    width, t = np.diff(ends), 0.5 + 0.5 * chebyshev.chebpts1(LOAD_NODES)
+    radii = ends[:-1] + width * t[:, None] ** 2
+    load = half_space_load(indenter, radii.ravel())
+    moment = np.array([half_space_moment(indenter, a) for a in radii.ravel().tolist()])
+    known = np.stack([load, moment], axis=1).reshape(LOAD_NODES, -1)
+    series = chebyshev.chebfit(2.0 * t - 1.0, known, LOAD_NODES - 1).reshape(LOAD_NODES, -1, 2)
+
+    def values(a: FloatArray) -> FloatArray:
+        """The four at radii [m]."""
+        i = np.clip(np.searchsorted(ends, a, side="right") - 1, 0, width.size - 1)
+        inside = np.sqrt(np.clip((a - ends[i]) / width[i], 0.0, 1.0))
+        g_hs, total = (chebyshev.chebval(2.0 * inside - 1.0, series[:, i, k], tensor=False) for k in (0, 1))
+        return np.array([np.ones_like(a), g_hs, 2.0 * a, total])
+
+    return values
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,15 +242,29 @@ class DiscBranch:
         return [(self._refined(quantity, radii, int(i), bool(rising[i])), bool(rising[i])) for i in places]
 
     def _refined(self, quantity: Quantity, radii: FloatArray, i: int, least: bool) -> float:
-        """The extremum near sample i; at the rim of a flat end it is a kink, which bounded minimisation finds too."""
-        sign = 1.0 if least else -1.0
+        """The extremum near sample i; at the rim of a flat end it is a kink, which bounded minimisation finds too.
+
+        It finds a place to the root of a rounding only; that of a smooth extremum is where the slope vanishes.
+        """
+        sign, flat = 1.0 if least else -1.0, self.scene.indenter.flat_radius
+
+        def rise(a: float) -> float:
+            """Of the quantity over a small step around a radius [m]."""
+            below, above = self.value(quantity, a * np.array([1.0 - SLOPE_STEP, 1.0 + SLOPE_STEP]))
+            return float(above - below)
+
         found = minimize_scalar(
             lambda a: sign * float(self.value(quantity, np.array([a]))[0]),
             bounds=(radii[i - 1], radii[i + 1]),
             method="bounded",
             options={"xatol": 1e-9 * radii[i]},
         )
-        return float(found.x)
+        a = float(found.x)
+        if abs(a - flat) <= RIM * a:
+            return flat
+        low, high = a * (1.0 - 10.0 * SLOPE_STEP), a * (1.0 + 10.0 * SLOPE_STEP)
+        is_kept = flat < low * (1.0 - SLOPE_STEP) or flat > high * (1.0 + SLOPE_STEP)
+        return float(brentq(rise, low, high, xtol=1e-13 * a)) if is_kept and rise(low) * rise(high) < 0.0 else a
 
     def crossing(self, quantity: Quantity, value: float, within: tuple[float, float], *, inmost: bool) -> float | None:
         """The first or last radius in an interval at which the quantity grows with the radius through a value."""

@@ -12,7 +12,9 @@ the half-space is the measure here and hence exact; other contacts are of about 
 The displacement f of a profile leaves in the quotient what the grid makes of its tip, its kinks and the root-like part
 of the pressure. The half-space suffers the same, and its phi = g_hs(a) is an integral of the profile's slope; so on a
 layer the quotient takes the difference of the two. The half-space itself is left to the grid, except for a profile with
-breakpoints, which no polynomial follows: there its phi is exact by construction.
+breakpoints, which no polynomial follows: there its phi is exact by construction. Its moment, an integral of the
+profile, stands in for that of the grid likewise, and what the layer adds to both is corrected by the quotient of these
+two moments: a ring of few cells beyond a rim has a wrong one on the grid.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
+from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from contact import ElasticLayer, Layer, Profile
 from contact.records.validation import FloatArray
 
@@ -38,7 +41,7 @@ LARGEST_SHARE: Final = 0.3
 # Width of the ring, in cells, from which on the fitted polynomial has a third degree.
 CUBIC_FROM: Final = 16.0
 # Largest error of the displacement under the contact; an edge value is off by some ten times that.
-TOLERANCE: Final = 1e-8
+TOLERANCE: Final = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +56,7 @@ class AdheringDisc:
         risen: p/E* [-] of the displacement f.
         measured: The same on the half-space, or zero where it is not used.
         known: phi [m] that goes with it.
+        known_moment: -F_N/E* at no depth [m^2] that goes with it.
     """
 
     layer: ElasticLayer
@@ -62,6 +66,7 @@ class AdheringDisc:
     risen: FloatArray
     measured: FloatArray
     known: float
+    known_moment: float
 
     @classmethod
     def solved(cls, layer: ElasticLayer, indenter: Profile, radius: float, cells: int, threads: int) -> AdheringDisc:
@@ -74,12 +79,12 @@ class AdheringDisc:
             solve_on_contact(operator, disc.contact, target, tolerance=TOLERANCE).pressure / contact_modulus(layer)
             for target in (1.0, height)
         )
-        if not np.any(height) or not is_measured(layer, indenter):
-            return cls(layer, disc, grid, flat, risen, np.zeros(flat.shape), 0.0)
+        if radius <= indenter.flat_radius or not is_measured(layer, indenter):
+            return cls(layer, disc, grid, flat, risen, np.zeros(flat.shape), 0.0, 0.0)
         half_space = half_space_operator(cells)
         measured = solve_on_contact(half_space, disc.contact, height / grid.cell_size, tolerance=TOLERANCE).pressure
         load = float(half_space_load(indenter, np.array([radius - indenter.flat_radius]))[0])
-        return cls(layer, disc, grid, flat, risen, measured, load)
+        return cls(layer, disc, grid, flat, risen, measured, load, half_space_moment(indenter, radius))
 
     @property
     def contact_radius(self) -> float:
@@ -94,7 +99,7 @@ class AdheringDisc:
     @property
     def moment(self) -> float:
         """-F_N/E* at no depth [m^2], so that F_N = E* (stiffness depth - moment)."""
-        return self._total(self.risen)
+        return self.known_moment + self._layer_share * self._total(self.risen - self.measured)
 
     @property
     def edge_flat(self) -> float:
@@ -104,7 +109,13 @@ class AdheringDisc:
     @property
     def edge_risen(self) -> float:
         """phi of the displacement f [m]."""
-        return self.known + self._edge_value(self.risen - self.measured)
+        return self.known + self._layer_share * self._edge_value(self.risen - self.measured)
+
+    @property
+    def _layer_share(self) -> float:
+        """The half-space's moment over that of the grid: what the layer adds is an integral of the same pressures."""
+        measured = self._total(self.measured)
+        return self.known_moment / measured if measured > 0.0 else 1.0
 
     def quotient(self, pressure: FloatArray) -> FloatArray:
         """Pressure over that of the half-space under a unit depth, on the cells of the disc."""

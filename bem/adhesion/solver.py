@@ -11,10 +11,10 @@ import numpy as np
 from bem.adhesion.beside_contact import refuse_touching_beside
 from bem.adhesion.branch import RIM, DiscBranch, Quantity, long_enough
 from bem.adhesion.disc import FARTHEST
-from bem.adhesion.energy_balance import edge_errors
+from bem.adhesion.energy_balance import edge_errors, pull_off_errors
 from bem.adhesion.fields import AdheringFields, pressure_change
 from bem.adhesion.sequence import FollowedState, at_radii, followed
-from bem.adhesion.withdrawal import QUANTITIES, Withdrawal, stable, strength
+from bem.adhesion.withdrawal import Withdrawal, stable, strength
 from bem.grid.calibrated_disc import measured_disc
 from bem.grid.error_model import DISCS
 from bem.grid.quadrant import refuse_thin_layer
@@ -138,31 +138,28 @@ class AdheringDiscs:
         branch, pull_off, other = way.branch, way.pull_off(control), way.compared(coarse, control)
         cut = Withdrawal(branch.cut(), way.start).pull_off(control)
         left_out = DISCS.broken_orders if self.scene.indenter.breakpoints else 1.0
-        floors = self._pull_off_floors(branch, np.array(pull_off["pull_off_contact_radius"]))
+        places = np.array([way.loss(control), way.strongest(control)])
+        floors = self._pull_off_floors(branch, places)
         change, beyond = (
             {name: abs(values[name] / value - 1.0) for name, value in pull_off.items()} for values in (other, cut)
         )
         by_grids = {name: DISCS.difference * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
+        (depth, at_loss), (_, tension) = (self._solved(branch, place[None]) for place in places)
+        shares = {"displacement": (1.0, 0.0), "force": (0.0, 1.0), "machine": (1.0, branch.compliance)}
+        released = pull_off_errors(branch, coarse, np.array(shares[control]), *places.tolist())
+        names = ("pull_off_depth", "pull_off_force", "pull_off_contact_radius", "force_at_loss")
+        # The place is told by its logarithm.
+        sizes = np.array([1.0 if "radius" in name else abs(pull_off[name]) for name in names])
+        least, most = (np.add(errors, (depth, tension, 0.0, at_loss)) / sizes for errors in released)
+        for row, name in enumerate(names):
+            by_grids[name] = float(np.clip(by_grids[name], least[row], most[row]))
         by_grids["pull_off_contact_radius"] += DISCS.radius_floor
-        lost, strongest = way.loss(control), way.strongest(control)
-        for row, name, place in (
-            (0, "pull_off_depth", lost),
-            (1, "pull_off_force", strongest),
-            (1, "force_at_loss", lost),
-        ):
-            value, here = pull_off[name], np.array([place])
-            by_energy = edge_errors(branch, coarse, here)[row, 0]
-            quantity = QUANTITIES["displacement" if row == 0 else "force"]
-            moved = place * (1.0 + by_grids["pull_off_contact_radius"] * np.array([-1.0, 1.0]))
-            by_place = np.max(np.abs(branch.value(quantity, np.minimum(moved, branch.largest_radius)) - value))
-            solved = self._solved(branch, here)[row]
-            by_grids[name] = min(by_grids[name], float((by_energy + by_place + solved) / abs(value)))
         return {name: np.array([error]) for name, error in by_grids.items()}
 
     def _solved(self, branch: DiscBranch, radius: FloatArray) -> FloatArray:
         """Errors of depth [m] and force [N] by linear solutions and the branch's polynomials at one radius [m]."""
         terms = np.abs(branch.depth(radius)) + branch.elongation(radius)
-        error = (DISCS.floor + DISCS.truncation * branch.truncation(radius)) * terms
+        error = (DISCS.floor + branch.truncation(radius)) * terms
         return np.concatenate([error, branch.stiffness(radius) * error])
 
     def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
@@ -172,16 +169,16 @@ class AdheringDiscs:
         a rim or a kink.
         """
         depth, force, errors = fine.depth(radius), fine.force(radius), {}
-        truncated, released = DISCS.truncation * fine.truncation(radius), edge_errors(fine, coarse, radius)
+        truncated, released = fine.truncation(radius), edge_errors(fine, coarse, radius)
         displaced = np.abs(depth) + fine.elongation(radius)
         for name, values, others, terms, by_energy in (
-            ("indentation_depth", depth, coarse.depth(radius), displaced, released[0]),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, released[1]),
+            ("indentation_depth", depth, coarse.depth(radius), displaced, [bound[0] for bound in released]),
+            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, [b[1] for b in released]),
         ):
             nearby = _largest_nearby(np.abs(values - others) / terms, radius)
             by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
-            edge = np.minimum(by_grids, by_energy) + DISCS.floor * terms
-            errors[name] = edge / np.max(np.abs(values)) + truncated
+            edge = np.clip(by_grids, *by_energy) + DISCS.floor * terms
+            errors[name] = (edge + truncated * np.max(terms)) / np.max(np.abs(values))
         return errors
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:
@@ -199,7 +196,7 @@ class AdheringDiscs:
         Edge values say nothing where the radius is prescribed, of the stiffness, or held at a rim, of all but the
         pressure: then flat punches of a known radius are what is left.
         """
-        solved, by_edge = DISCS.floor + DISCS.truncation * fine.truncation(radius), self._by_ring(radius)
+        solved, by_edge = DISCS.floor + fine.truncation(radius), self._by_ring(radius)
         given = isinstance(self.scene.loading, ContactRadii)
         known = 0.0 if given else np.where(self._at_rim(radius), 0.0, by_edge)
         of_load = by_edge if given else known
@@ -207,16 +204,16 @@ class AdheringDiscs:
         floors |= {"normal_force": of_load, "pressure": by_edge}
         return {name: solved + floor for name, floor in floors.items()}
 
-    def _pull_off_floors(self, fine: DiscBranch, lost_at: FloatArray) -> dict[str, float]:
-        """The same of a pull-off at this radius [m]; its depth is a difference, of profile and elongation."""
-        solved, by_edge = DISCS.floor + DISCS.truncation * fine.truncation(lost_at), self._by_ring(lost_at)
-        depth = np.abs(fine.depth(lost_at))
-        terms = (depth + fine.elongation(lost_at)) / depth
+    def _pull_off_floors(self, fine: DiscBranch, places: FloatArray) -> dict[str, float]:
+        """The same of a pull-off lost and strongest at these radii [m]; its depth is a difference, of two terms."""
+        lost, strongest = DISCS.floor + fine.truncation(places) + self._by_ring(places)
+        depth = np.abs(fine.depth(places[:1]))
+        terms = (depth + fine.elongation(places[:1])) / depth
         return {
-            "pull_off_force": float(solved + by_edge),
-            "force_at_loss": float((solved + by_edge) * self._force_terms(fine, lost_at)),
-            "pull_off_depth": float((solved + by_edge) * terms),
-            "pull_off_contact_radius": float(np.where(self._at_rim(lost_at), 0.0, solved + by_edge)),
+            "pull_off_force": float(strongest),
+            "force_at_loss": float(lost * self._force_terms(fine, places[:1])[0]),
+            "pull_off_depth": float(lost * terms[0]),
+            "pull_off_contact_radius": 0.0 if self._at_rim(places)[0] else float(lost),
         }
 
     def _force_terms(self, fine: DiscBranch, lost_at: FloatArray) -> FloatArray:
@@ -276,8 +273,9 @@ class AdheringDiscs:
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""
-        width = FARTHEST * radius / measured_disc(self.points, False).radius
-        return np.asarray(DISCS.ring * np.minimum(width / self.scene.layer.surface.thickness, 1.0) ** 3)
+        ratio = radius / self.scene.layer.surface.thickness
+        width = FARTHEST * ratio / measured_disc(self.points, False).radius
+        return np.asarray(DISCS.ring * np.minimum(ratio, 1.0) * np.minimum(width, 1.0) ** 3)
 
     def _fields(self, held: FollowedState, points: int) -> AdheringFields:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, points, self.threads)

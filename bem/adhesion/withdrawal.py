@@ -42,9 +42,10 @@ class Withdrawal:
 
     def strongest(self, control: Controlled) -> float:
         """The radius [m] of the least force among the states that the withdrawal visits: each the lowest so far."""
-        radii = self.branch.samples()
-        radii = np.concatenate([[self.start], radii[(radii < self.start) & (radii > self.loss(control))][::-1]])
-        radii = np.append(radii, self.loss(control))
+        lost, turned = self.loss(control), [a for a, least in self.branch.turning_points("normal_force") if least]
+        radii = np.concatenate([self.branch.samples(), turned])
+        between = np.unique(radii[(radii < self.start) & (radii > lost)])[::-1]
+        radii = np.concatenate([[self.start], between, [lost]])
         controlled = self.branch.value(QUANTITIES[control], radii)
         visited = radii[controlled <= np.minimum.accumulate(controlled)]
         return float(visited[np.argmin(self.branch.force(visited))])

@@ -65,26 +65,32 @@ class AdheringDiscCoefficients:
     # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
     # an odd power, added up to three times as much.
     truncation: float = 4.0
+    # Times what the last quarter of them contributes where the profile has breakpoints, whose orders fall like a power:
+    # 0.7 was needed at most (10 tables of seeds 7104 and 7301, 2026-11-22).
+    broken_truncation: float = 1.5
     # Times what the last quarter of those orders moves a pull-off of a profile with breakpoints: orders that fall with
     # their square leave three times as much beyond.
     broken_orders: float = 3.0
-    # Relative error of depth and force by the linear solutions, which are solved to 1e-8.
-    floor: float = 2e-8
-    # Relative error of a radius at which minimisation finds a function least: at rims up to 2.3e-8.
-    radius_floor: float = 5e-8
+    # Relative error of depth and force by the linear solutions, which are solved to 1e-10; 2.5e-10 was needed at most
+    # (22 detachments, seed 8501, 2026-11-22).
+    floor: float = 5e-10
+    # Relative error of a radius at which depth or force is found least: the square of the step of slopes, and
+    # roundings.
+    radius_floor: float = 1e-9
     # Differences of grids cross zero along a branch, so the largest within this factor in the radius, either way,
     # counts.
     nearby: float = 1.5
-    # Times (w/h)^3: what a fit over a ring of cells of width w leaves of an edge value that changes over the thickness
-    # h, where two grids agree by accident. A flat punch at a/h = 1 left 0.11 of it (2026-11-22).
+    # Times (w/h)^3 and a/h, up to one each: what a fit over a ring of cells of width w leaves of the layer's part of an
+    # edge value, which is of order a/h and changes over the thickness h, where two grids agree by accident. A flat
+    # punch at a/h = 1 left 0.11 of it (2026-11-22).
     ring: float = 0.12
     # Times the difference of depth and force to what stiffness and moment tell of them (`bem.adhesion.energy_balance`),
     # which was 0.9 to 1.1 of the error where a layer counts, a/h from 0.1 to 5 (30 detachments, seed 7101, 2026-11-22).
     released: float = 2.0
-    # Share of what extrapolation from two grids changes there that counts as its error. Half as many cells change the
-    # moment by 3.1 times its error on 128 cells, by 5.4 times on 96, where second order makes it 3: 0.04 and 0.44 of it
-    # were needed (same scenes, and a sphere on unbonded layers, 2026-11-22).
-    extrapolated: float = 1.0
+    # Share of what extrapolation from two grids changes there that counts as its error. On 128 cells 0.03 of it was
+    # left where a layer counts, as fourth order leaves it (20 detachments, seed 7104, 2026-11-22); what is stated more
+    # is for coarser grids.
+    extrapolated: float = 0.25
     # Times what so many last orders change there, whose derivatives are the largest; chosen, and measured as a whole.
     released_truncation: float = 2.0
     released_orders: int = 2

@@ -16,6 +16,7 @@ from contact import CriticalPoint
 from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import InterpolatedBranch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
+from fem_reference.adhesion.equilibria import adhesive_equilibrium
 from fem_reference.error_model import ON_BRANCH
 
 Load = Callable[[InterpolatedBranch, FloatArray], FloatArray]
@@ -47,12 +48,8 @@ class Extremum:
 
     @cached_property
     def is_at_end(self) -> bool:
-        """Whether it is the end of a piece: a punch's rim, or a kink where the slope jumps.  No error moves it.
-
-        It counts as the end within a thousand times what the search for it may miss.
-        """
-        ends = np.array([piece.high for piece in self.branch.pieces])
-        return bool(np.any(np.abs(ends / self.radius - 1) < 1e3 * ROOT))
+        """Whether it is the end of a piece: a punch's rim, or a kink where the slope jumps.  No error moves it."""
+        return is_end(self.branch, self.radius)
 
     @cached_property
     def curvature(self) -> float:
@@ -97,6 +94,26 @@ class Extremum:
         return self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
 
 
+def is_end(branch: InterpolatedBranch, radius: float) -> bool:
+    """Whether a radius [m] ends a piece of the branch, within a thousand times what the search for it may miss."""
+    ends = np.array([piece.high for piece in branch.pieces])
+    return bool(np.any(np.abs(ends / radius - 1) < 1e3 * ROOT))
+
+
+def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
+    """Error of depth [m] or force / E* [m^2], row 0 or 1, at the end of a piece; zero elsewhere.
+
+    That is one solved contact.  Stiffness and its slope may err against each other at every degree there, so that a
+    change of the load between two degrees is small by accident: their errors are added up, as at any given radius.
+    """
+    if not is_end(branch, radius):
+        return 0.0
+    contact = min(branch.contacts, key=lambda contact: abs(contact.indenter.contact_radius - radius))
+    state = adhesive_equilibrium(contact, branch.work)
+    depth, force = abs(state.depth) * radius, abs(state.force) * radius**2
+    return float((depth * state.error["indentation_depth"], force * state.error["normal_force"])[row])
+
+
 def pull_off_errors(
     branch: InterpolatedBranch, pull_off: CriticalPoint, strongest: CriticalPoint
 ) -> dict[str, FloatArray]:
@@ -127,6 +144,10 @@ def pull_off_errors(
     depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
     force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
     lost += branch.errors_far(here)[1, 0] + between[1] + shift * abs(lost_slope)
+    depth, force, lost = (
+        held_error(branch, radius, row) or error
+        for radius, row, error in ((here[0], 0, depth), (there[0], 1, force), (here[0], 1, lost))
+    )
     is_at_rim = pull_off.contact_radius == branch.pieces[-1].high
     return {
         "pull_off_depth": np.array([depth / abs(pull_off.indentation_depth)]),

@@ -19,6 +19,12 @@ H = TypeVar("H", bound=HistoryPath | ImpactHistory)
 
 # Numbers of an impact that follow from its channels.
 DERIVED = ("coefficient_of_restitution", "contact_time")
+# The channel whose largest change tells how far such a number may be off where two meshes agree in it by accident.
+CHANNELS = {
+    "peak_depth": "indentation_depth",
+    "contact_time": "indentation_depth",
+    "coefficient_of_restitution": "velocity",
+}
 # The channel of each peak.
 PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
 
@@ -31,6 +37,7 @@ class KnownErrors:
         everywhere: of every quantity, from the outer edge and the thickness that stands for a half-space.
         radius: of contact radii, which are read from pressures on cells.
         exact: quantities that are input.
+        cell: cell of the strip [m]; contact ends when it is half as wide.
         space: error of the contact set over what half the cells change: less than one for smooth profiles, whose errors
             fall like the cells' square; next to a kink they fall like the cells, not evenly.
     """
@@ -38,6 +45,7 @@ class KnownErrors:
     everywhere: float
     radius: float
     exact: frozenset[str]
+    cell: float
     space: float
 
 
@@ -58,18 +66,19 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
         name: max(space[name], IN_TIME.share_beside_peak * _change_beside_peak(fine, half_cells, PEAKS[name]))
         for name in fine.SCALARS
     }
+    if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
+        last = _time_after_last_cell(fine, known.cell)
+        space["contact_time"] = max(IN_TIME.first_order * space["contact_time"], last)
+        space["coefficient_of_restitution"] *= IN_TIME.uneven_end
     time = {name: _channel_change(half_cells, half_both, name) for name in channels}
     time |= {name: _scalar_change(half_cells, half_both, name) for name in scalars}
     judged = [name for name in ("indentation_depth", "normal_force", *scalars) if "radius" not in name]
     typical = IN_TIME.share_of_mean * float(np.mean([space[name] for name in judged if name not in known.exact]))
     error = {}
     for name in (*channels, *scalars):
-        size = (
-            max(space[name], typical * _share(fine, name))
-            + time[name]
-            + known.everywhere
-            + known.radius * ("radius" in name)
-        )
+        floor = IN_TIME.share_of_mean * space[CHANNELS[name]] if name in CHANNELS else typical
+        size = max(space[name], floor * _share(fine, name)) + time[name] + known.radius * ("radius" in name)
+        size += known.everywhere * _share(fine, name)
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
     if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
         error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
@@ -91,6 +100,19 @@ def _share(history: HistoryPath | ImpactHistory, name: str) -> float:
     if name != "coefficient_of_restitution" or not isinstance(history, ImpactHistory):
         return 1.0
     return float(np.clip((history.coefficient_of_restitution**-2 - 1) / 2, 0.0, 1.0))
+
+
+def _time_after_last_cell(history: ImpactHistory, cell: float) -> float:
+    """The time by which contact outlasts half a cell [m], over the contact time; zero where the end takes few steps.
+
+    The times in which the radius halves are taken for a geometric series: a cone's halve from one to the next.
+    """
+    wide = [history.time[np.flatnonzero(history.contact_radius > size * cell)[-1]] for size in (2.0, 1.0)]
+    before, last = wide[1] - wide[0], history.time[-1] - wide[1]
+    if before < IN_TIME.steps_of_end * (history.time[1] - history.time[0]):
+        return 0.0
+    ratio = min(last / before, IN_TIME.slowest_end)
+    return float(last * ratio / (1.0 - ratio) / history.contact_time)
 
 
 def _steep_end(history: ImpactHistory, time_error: float) -> float:

@@ -109,6 +109,7 @@ class HistorySetup:
             everywhere=thick + IN_TIME.outer_edge_safety * settings.truncation,
             radius=(IN_TIME.edge_reading_at_kink if at_rim else IN_TIME.edge_reading) * cell / peak_radius,
             exact=frozenset(name for name, is_exact in exact.items() if is_exact),
+            cell=cell,
             space=IN_TIME.kinked_profile if self.scene.indenter.kinks else 1.0,
         )
 

@@ -3,8 +3,12 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
+from bem.adhesion.branch import half_space_values
 from bem.adhesion.disc import AdheringDisc
+from bem.layer_equation.one_radius import half_space_load
+from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from bem.method import Bem
+from cases.measurements.campaigns.referee import direct_density
 from contact import (
     Adhesion,
     Cone,
@@ -259,3 +263,36 @@ def test_pull_off_near_a_kink_of_a_measured_profile_is_sharp(kink, work):
     assert cells.pull_off_contact_radius == pytest.approx(exact.pull_off_contact_radius, rel=4e-4, abs=0.0)
     assert cells.pull_off_force == pytest.approx(exact.pull_off_force, rel=4e-4, abs=0.0)
     assert cells.pull_off_depth == pytest.approx(exact.pull_off_depth, rel=5e-3, abs=0.0)
+
+
+@pytest.mark.parametrize("beyond", [1.001, 1.005, 1.05])
+def test_a_ring_narrower_than_a_cell_beyond_a_rim_has_its_depth_and_moment(beyond):
+    # On the grid such a ring has a moment that is wrong by a tenth or more, or none.
+    layer, radius = LAYER.replace(thickness=4e-2), beyond * CONE.flat_radius
+    disc = AdheringDisc.solved(layer, CONE, radius, 96, 1)
+    exact = direct_density(layer, CONE, radius - CONE.flat_radius)
+    depth = exact.depth * exact.unit
+    moment = disc.stiffness * depth - exact.unit**2 * exact.force(exact.depth)
+    assert disc.edge_risen / disc.edge_flat == pytest.approx(depth, rel=1e-7, abs=0.0)
+    assert disc.moment == pytest.approx(moment, rel=1e-6, abs=0.0)
+
+
+def test_a_measured_profile_on_the_half_space_is_followed_between_its_breakpoints():
+    profile = Tabulated(radii=[0.0, 0.2, 0.5, 0.6, 1.3], heights=[0.0, 0.01, 0.08, 0.12, 0.7])
+    radii = np.linspace(0.01, 1.2, 60)
+    _, load, _, moment = half_space_values(profile, 1.25)(radii)
+    assert load == pytest.approx(half_space_load(profile, radii), rel=1e-11, abs=1e-14)
+    assert moment == pytest.approx([half_space_moment(profile, a) for a in radii.tolist()], rel=1e-11, abs=1e-14)
+
+
+def test_the_strongest_pull_of_a_sphere_is_the_same_under_either_control():
+    # Under displacement control the force passes its extremum on the way, between two samples of the branch.
+    pulled = [detached(LAYER, SPHERE, control).pull_off_force for control in ("displacement", "force")]
+    assert pulled[0] == pytest.approx(pulled[1], rel=1e-10, abs=0.0)
+
+
+def test_a_punch_that_peels_states_the_error_of_its_strongest_pull():
+    # Two grids agree there by accident, at a radius where stiffness and moment say that both are off.
+    exact = Mdr().solve(scene(LAYER, PUNCH, Detachment()))
+    path = detached(LAYER, PUNCH, "displacement")
+    assert abs(path.pull_off_force / exact.pull_off_force - 1.0) < path.error_estimate["pull_off_force"][0] < 1e-2

@@ -11,21 +11,28 @@ from cases.measurements.campaigns.random_scenes import random_scene
 from cases.measurements.campaigns.referee import second_opinion
 from contact import (
     Adhesion,
+    Cone,
     ContactRadii,
+    CriticalPoint,
     Detachment,
     FlatPunch,
     Impact,
     IndentationDepths,
     InvalidInput,
+    KelvinVoigt,
     Layer,
     NormalForces,
     Paraboloid,
     PowerLaw,
     Scene,
+    StageLog,
     Tabulated,
     TruncatedCone,
 )
 from fem_reference import Fem
+from fem_reference.adhesion.branch import solve_branch
+from fem_reference.adhesion.equilibria import adhesive_equilibrium, work_of_adhesion
+from fem_reference.adhesion.pull_off_errors import pull_off_errors
 from mdr import Mdr
 
 LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
@@ -103,6 +110,36 @@ def test_contacts_that_are_nearly_flat_punches(gap):
     for name in ("indentation_depth", "normal_force", "contact_stiffness"):
         error = abs(getattr(path, name)[0] / opinion[name][0] - 1)
         assert error < path.error_estimate[name][0] < 2e-5  # errors were 1e-3 at a gap of 1e-7
+
+
+def test_a_slow_rebound_states_how_long_its_last_cell_may_stay():
+    # The radius halves in times that hardly shorten, so that contact ends long after it is half a cell wide.
+    layer = Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=0.5)
+    relaxes = KelvinVoigt(shear_modulus=1.0, viscosity=5.0)
+    scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=Impact(mass=0.2, velocity=0.05), effects=(relaxes,))
+    answer, exact = Fem(growth=1.0).solve(scene), Mdr().solve(scene)
+    for name in ("contact_time", "coefficient_of_restitution", "peak_force", "peak_depth"):
+        error = abs(getattr(answer, name) / getattr(exact, name) - 1.0)
+        assert error < answer.error_estimate[name][0], name
+
+
+def test_a_pull_off_at_a_rim_errs_like_the_contact_of_that_radius():
+    punch = Scene(
+        layer=LAYER,
+        indenter=FlatPunch(radius=0.5),
+        loading=Detachment(control="force"),
+        effects=(Adhesion(work_of_adhesion=1e-4),),
+    )
+    fem, log = Fem(growth=1.0, edge_cell=1e-4, truncation=1e-4), StageLog()
+    branch = solve_branch([0.4, 0.5], [], work_of_adhesion(punch), lambda a: fem.solve_contact(punch, a, log), 3)
+    held = adhesive_equilibrium(branch.contacts[-1], branch.work)
+    depth, force = held.depth * 0.5, held.force * 0.5**2
+    lost = CriticalPoint(
+        control="force", kind="pull-off", contact_radius=0.5, indentation_depth=depth, normal_force=force
+    )
+    stated = pull_off_errors(branch, lost, lost)
+    assert stated["pull_off_depth"][0] == pytest.approx(held.error["indentation_depth"], rel=1e-9, abs=0.0)
+    assert stated["pull_off_force"][0] == pytest.approx(held.error["normal_force"], rel=1e-9, abs=0.0)
 
 
 def test_radius_of_an_impact_that_ends_beside_the_flat_end():
