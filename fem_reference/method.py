@@ -119,7 +119,8 @@ class Fem:
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
         if scene.effect(Friction) is not None:
-            other = other_layer("full stick by fem", scene.layer)
+            punch = isinstance(scene.indenter, FlatPunch)
+            other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
             return _supports_friction(scene) if other is None else other
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
         if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:

@@ -20,9 +20,9 @@ from fem_reference.elastic.friction.walk import grown, stick_radius
 
 # A touching node lies this share of a cell inside the contact's edge. Measured against MDR (paraboloids, nu 0, 0.3 and
 # 1/2, a/h 0.5 to 5, with and without stick, 80 to 240 cells, 2026-11-22): 0.03 to 0.04.
-EDGE_SHARE = 0.035
+EDGE_SHARE = 0.028
 # The share is uncertain by so much.
-EDGE_UNCERTAIN = 0.01
+EDGE_UNCERTAIN = 0.008
 # One touching point on either side for so many of a strip, and two at least, make the cubic that tells the values
 # between.
 PER_NEIGHBOUR = 15
@@ -112,8 +112,9 @@ class GrowthRecord:
         """Everything at one depth [m]."""
         (force, of_force), (stiffness, of_stiffness) = (self._extrapolated(f, depth) for f in (_force, _stiffness))
         heat, of_heat = self._extrapolated(_heat, depth)
-        (fine, exponent), (coarse, _) = (g.local(np.log(g.radius), depth) for g in self.strips[:2])
-        radius, of_radius = float(np.exp(fine)), abs(fine - coarse) / 2.0 + EDGE_UNCERTAIN * self._cell / np.exp(fine)
+        radius, of_radius = self._extrapolated(_radius, depth)
+        of_radius += EDGE_UNCERTAIN * self._cell / radius
+        exponent = self.strips[0].local(np.log(self.strips[0].radius), depth)[1]
         stick = [float(np.interp(depth, g.depth, g.stick)) for g in self.strips[:2]]
         full = min(stick) == 1.0
         error = {
@@ -132,13 +133,10 @@ class GrowthRecord:
 
         def missing(log_depth: float) -> float:
             """What a depth lacks of the value asked for, relative to it."""
-            depth = float(np.exp(log_depth))
-            if name == "force":
-                return self._extrapolated(_force, depth)[0] / value - 1.0
-            return float(np.exp(finest.local(np.log(finest.radius), depth)[0])) / value - 1.0
+            return self._extrapolated(wanted, float(np.exp(log_depth)))[0] / value - 1.0
 
-        finest = self.strips[0]
-        reached = np.log(finest.depth)
+        wanted = _force if name == "force" else _radius
+        reached = np.log(self.strips[0].depth)
         return float(np.exp(brentq(missing, reached[0], reached[-1] + 0.1, xtol=1e-14)))
 
     @property
@@ -161,6 +159,10 @@ class GrowthRecord:
 
 def _force(strip: Growing, depth: float) -> float:
     return float(np.exp(strip.local(np.log(strip.force), depth)[0]))
+
+
+def _radius(strip: Growing, depth: float) -> float:
+    return float(np.exp(strip.local(np.log(strip.radius), depth)[0]))
 
 
 def _stiffness(strip: Growing, depth: float) -> float:
