@@ -91,8 +91,8 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
     friction = scene.effect(Friction)
     if friction is not None and not scene.layer.is_piecewise_uniform:
         return Unsupported(
-            f"mdr models full stick on uniform layers and stacks, not on a {type(scene.layer).__name__}; describe it as "
-            "a stack of many sublayers"
+            f"mdr models full stick on uniform layers and stacks, not on a {type(scene.layer).__name__}; describe "
+            "it as a stack of many sublayers"
         )
     if friction is not None and not friction.is_stick:
         return Unsupported(

@@ -63,7 +63,6 @@ class UniformKernel:
         """1 - chi."""
         return one_minus_kernel(wavenumber, self.support, self.poissons_ratio)
 
-
     def beyond_half_space(self, wavenumber: NDArray[Any]) -> TangentialKernel:
         """D = C - C_hs for both tractions."""
         return beyond_half_space(wavenumber, self.support, self.poissons_ratio)

@@ -208,7 +208,8 @@ def _first_reach(scene: Scene) -> float:
             return depth - largest
         return modulus * (indenter.flat_radius + excess) * depth - largest
 
-    low, high = math.log(1e-15 * min(room, 1.0)), math.log(room)
+    # A trillionth less than the room there is: beyond a sphere's equator the profile is no number.
+    low, high = math.log(1e-15 * min(room, 1.0)), math.log(room) - 1e-12
     found = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
     return indenter.flat_radius + math.exp(found)
 

@@ -10,8 +10,8 @@ from bem.kernels.layer import one_minus_kernel
 from bem.kernels.of_layer import UniformKernel
 from bem.kernels.tangential import HalfSpaceKernel, beyond_half_space
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.stick.adhered_fields import AdheredFields
-from bem.layer_equation.stick.adhered_punch import adhered_punch
+from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
+from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
 from bem.layer_equation.stick.all_radii import adhered_punches
 from bem.layer_equation.stick.coulomb import coulomb_functions
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch
@@ -114,9 +114,15 @@ def test_stick_is_continuous_at_an_incompressible_layer():
 
 def test_thin_limits():
     """A squeeze film between two walls that hold it is four times stiffer than with one: (3 pi/16) X^3 at nu = 1/2."""
-    excess = [adhered_punch(X, UniformKernel("bonded", 0.5)).stiffness / (3 * math.pi / 16 * X**3) - 1.0 for X in (50.0, 100.0)]
+    excess = [
+        adhered_punch(X, UniformKernel("bonded", 0.5)).stiffness / (3 * math.pi / 16 * X**3) - 1.0
+        for X in (50.0, 100.0)
+    ]
     assert excess == pytest.approx([0.0344, 0.0169], rel=0, abs=1e-4)
-    unbonded = [adhered_punch(X, UniformKernel("unbonded", 0.5)).stiffness / (3 * math.pi / 64 * X**3) - 1.0 for X in (50.0, 100.0)]
+    unbonded = [
+        adhered_punch(X, UniformKernel("unbonded", 0.5)).stiffness / (3 * math.pi / 64 * X**3) - 1.0
+        for X in (50.0, 100.0)
+    ]
     assert unbonded == pytest.approx([0.0243, 0.0113], rel=0, abs=1e-4)
 
 
@@ -162,3 +168,32 @@ def test_spring_stiffness_is_the_derivative_of_the_contact_stiffness():
         assert (high - low) / (4.0 * step) == pytest.approx(
             adhered_punch(a, UniformKernel(support, nu)).spring_stiffness, rel=1e-7, abs=0
         )
+
+
+@pytest.mark.parametrize("ratio", [0.02, 0.5, 5.0, 20.0])
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.5])
+def test_reciprocity_of_the_two_punches(nu, support, ratio):
+    """k_stick = k_0 - int q u_r1 dA, exactly: in transforms k_stick = k_0 - 2 beta int psi v over 2 E* a.
+
+    v = (2/pi) (-eta (1/2) PV int phi_0(s)/(t - s) ds + int D_UW P_0 sin(kappa t) dkappa); PV of P_n is 2 Q_n(t).
+    """
+    kernel = UniformKernel(support, nu)
+    stuck, free = adhered_punch(ratio, kernel), frictionless_punch(ratio, kernel)
+    t, rest, weights = tanh_sinh()
+    psi = AdheredFields(stuck).densities(t, rest).value.imag
+    before, here = np.log((1.0 + t) / rest) / 2.0, t * np.log((1.0 + t) / rest) / 2.0 - 1.0
+    conjugate = free.coefficients[0] * before
+    for n, coefficient in enumerate(free.coefficients[1:], start=1):
+        conjugate += coefficient * here
+        before, here = here, ((2 * n + 1) * t * here - n * before) / (n + 1)
+    beta, eta, kappa = stuck.material.beta, stuck.material.eta, free.transforms.wavenumber
+    transforms = basis_transforms(stuck.material.charge, ratio, stuck.coefficients.size)
+    sine = stuck.coefficients @ transforms.sine
+    assert np.array_equal(transforms.wavenumber, kappa)
+    layer = (free.transforms.weights * stuck.compliance(transforms).coupling * free.transform) @ sine
+    moved = 2.0 / math.pi * (layer - eta * (weights * psi) @ conjugate)
+    k_free = 2.0 * beta * free.coefficients[0]
+    # Roundings of the two solutions grow with the condition of their matrices, 1e2 at a/h = 5 and 1e4 at 20.
+    rounding = max(1e-13, 2e-16 * stuck.condition)
+    assert stuck.stiffness == pytest.approx(k_free - 2.0 * beta * moved, rel=rounding, abs=0)

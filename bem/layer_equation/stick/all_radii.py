@@ -95,8 +95,8 @@ def adhered_punches(max_ratio: float, kernel: StickingKernel) -> AdheredPunches:
         start, stop = 2 * _NODES * p, 2 * _NODES * (p + 1)
         row = lower[start:stop, :start] / root[start:stop, None]
         # What the earlier panels leave of kernel and load.
-        kernel, left = own[p] - row @ row.T, load[start:stop] - row @ z[:start]
-        values[p] = _edge_values(kernel, left.reshape(_NODES, 2))
+        rest, left = own[p] - row @ row.T, load[start:stop] - row @ z[:start]
+        values[p] = _edge_values(rest, left.reshape(_NODES, 2))
     return AdheredPunches(material, values)
 
 

@@ -93,7 +93,9 @@ def growth_table(max_ratio: float, kernel: StickingKernel) -> GrowthTable:
     """Solve the punches of a table that reaches `max_ratio` thicknesses of the surface material."""
     if isinstance(kernel, HalfSpaceKernel):
         punch = adhered_punch(0.0, kernel)
-        return GrowthTable(punch.material, kernel, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness]))
+        return GrowthTable(
+            punch.material, kernel, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness])
+        )
     punches, positions = (math.ceil(start + rate * max_ratio) for start, rate in (_PUNCHES, _POSITIONS))
     to_a, to_x = _to_coefficients(punches), _to_coefficients(positions)
     x = max_ratio * (1.0 + chebyshev.chebpts1(positions)) / 2.0
