@@ -170,7 +170,7 @@ def test_spring_stiffness_is_the_derivative_of_the_contact_stiffness():
         )
 
 
-@pytest.mark.parametrize("ratio", [0.02, 0.5, 5.0, 20.0])
+@pytest.mark.parametrize("ratio", [0.02, 0.5, 5.0, 10.0, 20.0])
 @pytest.mark.parametrize("support", ["bonded", "unbonded"])
 @pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.5])
 def test_reciprocity_of_the_two_punches(nu, support, ratio):
@@ -180,7 +180,7 @@ def test_reciprocity_of_the_two_punches(nu, support, ratio):
     """
     kernel = UniformKernel(support, nu)
     stuck, free = adhered_punch(ratio, kernel), frictionless_punch(ratio, kernel)
-    t, rest, weights = tanh_sinh()
+    t, rest, weights = tanh_sinh(2)
     psi = AdheredFields(stuck).densities(t, rest).value.imag
     before, here = np.log((1.0 + t) / rest) / 2.0, t * np.log((1.0 + t) / rest) / 2.0 - 1.0
     conjugate = free.coefficients[0] * before
@@ -194,6 +194,6 @@ def test_reciprocity_of_the_two_punches(nu, support, ratio):
     layer = (free.transforms.weights * stuck.compliance(transforms).coupling * free.transform) @ sine
     moved = 2.0 / math.pi * (layer - eta * (weights * psi) @ conjugate)
     k_free = 2.0 * beta * free.coefficients[0]
-    # Roundings of the two solutions grow with the condition of their matrices, 1e2 at a/h = 5 and 1e4 at 20.
-    rounding = max(1e-13, 2e-16 * stuck.condition)
+    # Transforms at wavenumbers of 20 a/h lose digits: beyond a/h = 10 other nodes move the stiffness by 2e-13, too.
+    rounding = 1e-13 if ratio <= 10.0 else 5e-13
     assert stuck.stiffness == pytest.approx(k_free - 2.0 * beta * moved, rel=rounding, abs=0)

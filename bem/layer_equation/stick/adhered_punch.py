@@ -190,7 +190,7 @@ def _transforms(charge: float, panel: float, panels: int, count: int, halved: in
     starts, widths = halved_panels(panels, halved)
     kappa = (panel * (starts[:, None] + widths[:, None] * ((1.0 + nodes) / 2.0))).ravel()
     plus = coulomb_functions(charge, kappa, count).values
-    minus = coulomb_functions(-charge, kappa, count).values
+    minus = coulomb_functions(-charge, kappa, count).values if charge else plus
     n = np.arange(count)[:, None]
     scale, mirrored = np.sqrt((2 * n + 1) / 2.0) / 2.0, np.where(n % 2, -1.0, 1.0) * minus
     return BasisTransforms(
