@@ -44,8 +44,8 @@ _FURTHER = 1.3
 # 95 of 96, the miss being 1.4e-13 where 8e-14 is stated (a/h 0.1 to 10, both supports, four kinds of profile, against
 # twice the unknowns and a larger table, 2026-11-22).
 _SAFETY = 5.0
-# Roundings of an adhered punch's stiffness over the condition number of its matrix: at most 8.1, against other nodes and
-# functions (nu = 0, 0.3, 0.45 and 1/2, a/h = 0.02 to 50, 2026-11-22).
+# Roundings of an adhered punch's stiffness over the condition number of its matrix: at most 8.1, against other nodes
+# and functions (nu = 0, 0.3, 0.45 and 1/2, a/h = 0.02 to 50, 2026-11-22).
 _PER_CONDITION = 10.0
 # Largest relative error of depth and force that is answered; beyond, the growth is refused.
 _LARGEST_ERROR = 1e-3
