@@ -7,6 +7,7 @@ large, tells how far that still moves: ``|F_3 - F_2 - 4 (F_2 - F_1)|/3``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,12 +19,15 @@ from contact.records.validation import FloatArray
 from fem_reference.elastic.friction.step import RubbedContact, RubbedState
 from fem_reference.elastic.friction.walk import grown, stick_radius
 
-# A touching node lies this share of a cell inside the contact's edge. Measured against MDR (paraboloids, nu 0, 0.3 and
-# 1/2, a/h 0.5 to 5, both supports, 20 to 80 cells extrapolated to none, 2026-11-22): 0.028 without friction at every
-# nu and under stick at 1/2, 0.026 and 0.020 under stick at nu = 0.3 and 0.
+# A touching node lies this share of a cell inside the contact's edge where the edge slides. Measured against MDR
+# (paraboloids, nu 0, 0.3 and 1/2, a/h 0.5 to 5, both supports, 20 to 80 cells extrapolated to none, 2026-11-22): 0.027
+# to 0.029 without friction at every nu.
 EDGE_SHARE = 0.028
-# The share is uncertain by so much.
-EDGE_UNCERTAIN = 0.008
+# Where the edge sticks, the share is less by so much times eps^2, eps = ln(3 - 4 nu)/(2 pi): 0.0078 at nu = 0, 0.0020
+# at 0.3 (same contacts).
+LESS_BY_STICK = 0.25
+# The share is uncertain by so much: twice what those contacts leave.
+EDGE_UNCERTAIN = 0.0015
 # One touching point on either side for so many of a strip, and two at least, make the cubic that tells the values
 # between.
 PER_NEIGHBOUR = 15
@@ -64,7 +68,18 @@ class Growing:
     def radius(self) -> FloatArray:
         """a [m]."""
         radii = self.contact.surface.radii
-        return np.asarray(self.contact.radius * (radii[1 : len(self.states) + 1] + EDGE_SHARE * radii[1]))
+        share = EDGE_SHARE - np.where(self.stick == 1.0, self.less_by_stick, 0.0)
+        return np.asarray(self.contact.radius * (radii[1 : len(self.states) + 1] + share * radii[1]))
+
+    @property
+    def less_by_stick(self) -> float:
+        """Share of a cell by which an edge that sticks lies farther in than one that slides."""
+        return LESS_BY_STICK * (math.log(3.0 - 4.0 * self.contact.surface.poissons_ratio) / (2.0 * math.pi)) ** 2
+
+    @property
+    def uncertain_share(self) -> float:
+        """Of the edge: where it may slide or stick within a cell, by as much as that makes."""
+        return EDGE_UNCERTAIN + (self.less_by_stick if math.isfinite(self.contact.coefficient) else 0.0)
 
     @cached_property
     def stick(self) -> FloatArray:
@@ -117,7 +132,7 @@ class GrowthRecord:
         (force, of_force), (stiffness, of_stiffness) = (self._extrapolated(f, depth) for f in (_force, _stiffness))
         heat, of_heat = self._extrapolated(_heat, depth, SHARE_OF_HEAT_LEFT)
         radius, of_radius = self._extrapolated(_radius, depth)
-        of_radius += EDGE_UNCERTAIN * self._cell / radius
+        of_radius += self.strips[0].uncertain_share * self._cell / radius
         exponent = self.strips[0].local(np.log(self.strips[0].radius), depth)[1]
         stick = [float(np.interp(depth, g.depth, g.stick)) for g in self.strips[:2]]
         full = min(stick) == 1.0

@@ -40,6 +40,7 @@ class RubbedSurface:
         top_displacements: u_z at its nodes under each pressure and each tangential traction, shape (t, 2 n).
         unknowns: size of the condensed system.
         fingerprint: of the mesh.
+        poissons_ratio: nu of the material at the top.
     """
 
     tractions: TraceSpace
@@ -52,6 +53,7 @@ class RubbedSurface:
     top_displacements: FloatArray
     unknowns: int
     fingerprint: str
+    poissons_ratio: float
 
     @property
     def radii(self) -> FloatArray:
@@ -84,6 +86,7 @@ def condense_rubbed(layer: ElasticLayer, mesh: LayerMesh, backend: str, log: Sta
         top_displacements=solution[2 * top + 1],
         unknowns=problem.space.size,
         fingerprint=mesh.fingerprint,
+        poissons_ratio=layer.surface.poissons_ratio,
     )
 
 
