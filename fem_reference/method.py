@@ -306,6 +306,8 @@ class Fem:
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:
     """Flat punches that stick, and rounded or pointed indenters with any friction; no second effect."""
+    if not scene.layer.is_piecewise_uniform:
+        return Unsupported(f"fem models friction on uniform layers and stacks, not on a {type(scene.layer).__name__}")
     friction = next(effect for effect in scene.effects if isinstance(effect, Friction))
     static = isinstance(scene.loading, IndentationDepths | NormalForces)
     grows = not scene.indenter.flat_radius
