@@ -119,7 +119,8 @@ class Fem:
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether this method models the scene."""
         if scene.effect(Friction) is not None:
-            other = other_layer("full stick by fem", scene.layer)
+            punch = isinstance(scene.indenter, FlatPunch)
+            other = other_layer("full stick of a FlatPunch by fem", scene.layer) if punch else None
             return _supports_friction(scene) if other is None else other
         in_time = isinstance(scene.loading, Impact | DepthHistory | ForceHistory)
         if in_time and (other := other_layer("contact in time by fem", scene.layer)) is not None:
@@ -305,6 +306,8 @@ class Fem:
 
 def _supports_friction(scene: Scene) -> Supported | Unsupported:
     """Flat punches that stick, and rounded or pointed indenters with any friction; no second effect."""
+    if not scene.layer.is_piecewise_uniform:
+        return Unsupported(f"fem models friction on uniform layers and stacks, not on a {type(scene.layer).__name__}")
     friction = next(effect for effect in scene.effects if isinstance(effect, Friction))
     static = isinstance(scene.loading, IndentationDepths | NormalForces)
     grows = not scene.indenter.flat_radius

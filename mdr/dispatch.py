@@ -24,7 +24,6 @@ from contact import (
     Scene,
     Solution,
     Unsupported,
-    other_layer,
 )
 from contact.scene.effects import Viscoelasticity
 
@@ -102,8 +101,11 @@ def solver_of(scene: Scene) -> Solver | Unsupported:
     if viscous is not None and (reason := _not_relaxing(scene.layer, type(viscous).__name__)):
         return Unsupported(reason)
     friction = scene.effect(Friction)
-    if friction is not None and (other := other_layer("full stick by mdr", scene.layer)) is not None:
-        return other
+    if friction is not None and not scene.layer.is_piecewise_uniform:
+        return Unsupported(
+            f"mdr models full stick on uniform layers and stacks, not on a {type(scene.layer).__name__}; describe "
+            "it as a stack of many sublayers"
+        )
     if friction is not None and not friction.is_stick:
         return Unsupported(
             f"mdr models full stick and frictionless contact, and Friction.coefficient = {friction.coefficient:g}; "

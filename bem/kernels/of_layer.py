@@ -13,6 +13,7 @@ from bem.kernels.graded import GradedKernel
 from bem.kernels.layer import compliance_kernel, one_minus_kernel, zero_mode
 from bem.kernels.protocol import SurfaceKernel
 from bem.kernels.stack import Sheet, StackKernel
+from bem.kernels.tangential import HalfSpaceKernel, StickingKernel, TangentialKernel, beyond_half_space
 from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack, UnsupportedSceneError
 from contact.scene.layer import Support
 
@@ -62,6 +63,10 @@ class UniformKernel:
         """1 - chi."""
         return one_minus_kernel(wavenumber, self.support, self.poissons_ratio)
 
+    def beyond_half_space(self, wavenumber: NDArray[Any]) -> TangentialKernel:
+        """D = C - C_hs for both tractions."""
+        return beyond_half_space(wavenumber, self.support, self.poissons_ratio)
+
 
 @surface_kernel.register
 def _(layer: Layer) -> UniformKernel:
@@ -101,6 +106,22 @@ def stack_of(layer: ElasticLayer) -> StackKernel:
         return StackKernel((Sheet(1.0, 1.0, kernel.poissons_ratio, kernel.support == "unbonded"),), None)
     raise UnsupportedSceneError(
         f"fields inside are those of uniform layers and stacks, not of a {type(layer).__name__}"
+    )
+
+
+def sticking_kernel(layer: ElasticLayer) -> StickingKernel:
+    """The kernel of both tractions.
+
+    Raises:
+        UnsupportedSceneError: If the layer is neither of one material nor of several on top of each other.
+    """
+    if layer.is_half_space:
+        return HalfSpaceKernel(layer.surface.poissons_ratio)
+    kernel = surface_kernel(layer)
+    if isinstance(kernel, StackKernel | UniformKernel):
+        return kernel
+    raise UnsupportedSceneError(
+        f"under friction mdr models uniform layers and stacks, not a {type(layer).__name__}: describe it as a stack"
     )
 
 

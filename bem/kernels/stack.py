@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.layer import SERIES_LIMIT, SERIES_TERMS, one_minus_kernel, shear_bracket_over_q
+from bem.kernels.tangential import TangentialKernel, beyond_half_space
 
 
 class Symmetric(NamedTuple):
@@ -87,6 +88,11 @@ class StackKernel:
         return True
 
     @property
+    def poissons_ratio(self) -> float:
+        """Of the first layer."""
+        return self.sheets[0].poissons_ratio
+
+    @property
     def zero_mode(self) -> float:
         """chi/k at k = 0: uniaxial strain, less what groups of layers give that may slide sideways."""
         if self.base is not None:
@@ -110,6 +116,16 @@ class StackKernel:
         alone = one_minus_kernel(q, "bonded", top.poissons_ratio)
         rest: NDArray[Any] = alone - self._through(own, wavenumber) / (2 * (1 - top.poissons_ratio))
         return rest
+
+    def beyond_half_space(self, wavenumber: NDArray[Any]) -> TangentialKernel:
+        """D = C - C_hs for both tractions: that of the first layer alone, and what comes through it."""
+        top = self.sheets[0]
+        q = top.thickness * wavenumber
+        own = step(q, top.poissons_ratio)
+        alone = beyond_half_space(q, "bonded", top.poissons_ratio)
+        nothing = own._replace(glued=_rigid(wavenumber))
+        more = passed(nothing, coupled(self._below(wavenumber), own, slips=top.slips_below))
+        return TangentialKernel(alone.radial + more.uu, alone.coupling + more.uw, alone.normal + more.ww)
 
     def _through(self, own: Step, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """What the layers below add to C_WW of the first."""

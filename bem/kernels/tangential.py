@@ -10,7 +10,9 @@ Numerators and denominators are multiplied by ``exp(-2q)``; no large terms cance
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 
@@ -31,6 +33,41 @@ class TangentialKernel:
     radial: FloatArray
     coupling: FloatArray
     normal: FloatArray
+
+
+class StickingKernel(Hashable, Protocol):
+    """What a layer tells of both tractions; wavenumbers count in units of 1/h of its surface material. Hashable."""
+
+    @property
+    def poissons_ratio(self) -> float:
+        """nu of the surface material."""
+
+    @property
+    def longest(self) -> float:
+        """Length over h on the scale of whose inverse D is smooth."""
+
+    def beyond_half_space(self, wavenumber: FloatArray) -> TangentialKernel:
+        """D = C - C_hs at wavenumbers k > 0, any shape."""
+
+
+@dataclass(frozen=True)
+class HalfSpaceKernel:
+    """A half-space has nothing beyond itself.
+
+    Attributes:
+        poissons_ratio: nu.
+    """
+
+    poissons_ratio: float
+
+    @property
+    def longest(self) -> float:
+        """No layer, no length."""
+        return 1.0
+
+    def beyond_half_space(self, wavenumber: FloatArray) -> TangentialKernel:
+        """D = 0."""
+        return TangentialKernel(*np.zeros((3, *wavenumber.shape)))
 
 
 def beyond_half_space(q: FloatArray, support: Support, poissons_ratio: float) -> TangentialKernel:

@@ -31,6 +31,15 @@ def legendre_rule(count: int) -> tuple[FloatArray, FloatArray]:
     return _frozen(x), _frozen(2 / ((1 - x) * (1 + x) * slope**2))
 
 
+def halved_panels(panels: int, halvings: int) -> tuple[FloatArray, FloatArray]:
+    """Starts and widths of panels of width one, the first of them halved towards zero so many times."""
+    if not panels:
+        return np.empty(0), np.empty(0)
+    first = 2.0 ** -np.arange(halvings, -1.0, -1.0)
+    ends = np.concatenate([[0.0], first, np.arange(2.0, panels + 1)])
+    return ends[:-1], np.diff(ends)
+
+
 def _legendre_and_slope(
     degree: int, x: NDArray[np.floating[Any]]
 ) -> tuple[NDArray[np.floating[Any]], NDArray[np.floating[Any]]]:

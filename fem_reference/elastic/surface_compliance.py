@@ -72,13 +72,14 @@ def strip_mesh(
     settings: Discretisation,
     *,
     outside: float = 1.0,
+    stride: int = STRIDE,
 ) -> LayerMesh:
     """A section with ``cells`` equal pressure cells on the strip of ``radius`` [m], lengths by that radius.
 
     Away from the strip the mesh errs like growth^7, the contact set like 1 / cells^2: both shrink alike.  The growth of
-    120 cells is ``outside``.
+    120 cells is ``outside``; ``stride`` counts displacement nodes from one pressure vertex to the next.
     """
-    cell = STRIP_ORDER / STRIDE / cells
+    cell = STRIP_ORDER / stride / cells
     points = (*((r / radius, cell) for r in kinks if NEAREST_KINK * cell * radius <= r < radius), (1.0, cell))
     growth = outside * (STRIP_CELLS / cells) ** (1 / 3)
     if not isinstance(layer, Layer):

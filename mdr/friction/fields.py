@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import j0
 
-from bem.kernels.tangential import beyond_half_space
 from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
-from bem.layer_equation.stick.adhered_punch import LARGEST_Q, AdheredPunch
+from bem.layer_equation.stick.adhered_punch import LARGEST_Q, AdheredPunch, halvings
+from bem.polynomials.gauss import halved_panels
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact import Scene
 from contact.records.validation import FloatArray
@@ -147,15 +147,16 @@ class StickFields:
         gap = (r - a)[:, None] + a * rest
         inner = (a * weights / np.sqrt(gap * (r[:, None] + a * x))) @ phi.real
         waves = np.zeros_like(r)
-        if table.support is not None:
+        if not table.is_half_space:
             width = min(1.0, 4.0 * math.pi / (a + float(r.max())))
             nodes, w = gauss_nodes(_WAVENUMBERS)
             panels = math.ceil(LARGEST_Q / width)
-            k = (width * (np.arange(panels)[:, None] + nodes)).ravel()
-            extra = beyond_half_space(k, table.support, of.poissons_ratio)
+            starts, widths = halved_panels(panels, halvings(width * table.kernel.longest))
+            k = (width * (starts[:, None] + widths[:, None] * nodes)).ravel()
+            extra = table.kernel.beyond_half_space(k)
             angle = np.multiply.outer(k, a * x)
             P, Q = np.cos(angle) @ (a * weights * phi.real), np.sin(angle) @ (a * weights * phi.imag)
-            density = np.tile(width * w, panels) * (extra.normal * P + extra.coupling * Q)
+            density = np.multiply.outer(widths, width * w).ravel() * (extra.normal * P + extra.coupling * Q)
             waves = j0(np.multiply.outer(r, k)) @ density
         return np.asarray(2.0 / math.pi * (2.0 * of.beta * inner + waves))
 

@@ -11,6 +11,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from bem.kernels.moduli import contact_modulus
+from bem.kernels.of_layer import sticking_kernel
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.layer_equation.stick.adhered_punch import adhered_punch
 from bem.layer_equation.stick.growth import growth_table
@@ -43,6 +44,9 @@ _FURTHER = 1.3
 # 95 of 96, the miss being 1.4e-13 where 8e-14 is stated (a/h 0.1 to 10, both supports, four kinds of profile, against
 # twice the unknowns and a larger table, 2026-11-22).
 _SAFETY = 5.0
+# Roundings of an adhered punch's stiffness over the condition number of its matrix: at most 8.1, against other nodes
+# and functions (nu = 0, 0.3, 0.45 and 1/2, a/h = 0.02 to 50, 2026-11-22).
+_PER_CONDITION = 10.0
 # Largest relative error of depth and force that is answered; beyond, the growth is refused.
 _LARGEST_ERROR = 1e-3
 
@@ -52,7 +56,7 @@ class StickSystem:
     """Growing contact of one scene; lengths in `unit`, forces in E* unit^2.
 
     Attributes:
-        unit: Thickness, or the largest radius on a half-space [m].
+        unit: Thickness of the surface material, or the largest radius on a half-space [m].
         growths: With all unknowns, and with fewer.
     """
 
@@ -98,13 +102,13 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
 def _flat_punch(scene: Scene) -> dict[str, Any]:
     """k_stick delta: nothing grows."""
     radius, layer = scene.indenter.flat_radius, scene.layer
-    ratio = 0.0 if layer.is_half_space else radius / layer.thickness
-    punch = adhered_punch(ratio, layer.support, layer.poissons_ratio)
+    ratio = 0.0 if layer.is_half_space else radius / layer.surface.thickness
+    punch = adhered_punch(ratio, sticking_kernel(layer))
     stiffness = 2.0 * contact_modulus(layer) * radius * punch.stiffness
     values = prescribed(scene)
     by_depth = isinstance(scene.loading, IndentationDepths)
     depth = values if by_depth else values / stiffness
-    exact, error = np.zeros_like(values), np.full_like(values, EPS * (20.0 + punch.condition))
+    exact, error = np.zeros_like(values), np.full_like(values, EPS * (20.0 + _PER_CONDITION * punch.condition))
     return {
         "unknowns": punch.coefficients.size,
         "contact_radius": np.full_like(values, radius),
@@ -122,10 +126,11 @@ def _flat_punch(scene: Scene) -> dict[str, Any]:
 
 
 def _growing(scene: Scene) -> dict[str, Any]:
-    if scene.indenter.flat_radius and scene.layer.poissons_ratio < 0.5:
+    nu = scene.layer.surface.poissons_ratio
+    if scene.indenter.flat_radius and nu < 0.5:
         raise UnsupportedSceneError(
             f"a flat end of radius {scene.indenter.flat_radius:g} m that grows under full stick on a layer with "
-            f"poissons_ratio = {scene.layer.poissons_ratio:g}: its edge field oscillates, and growth from it has no "
+            f"poissons_ratio = {nu:g}: its edge field oscillates, and growth from it has no "
             "stable answer; give Poisson's ratio 0.5, or a rounded edge"
         )
     system, radius = _covering(scene)
@@ -170,7 +175,7 @@ def _slope(system: StickSystem, radius: FloatArray) -> FloatArray:
 def _covering(scene: Scene) -> tuple[StickSystem, FloatArray]:
     """The growth up to the largest radius of the loading, and all its radii."""
     layer, values = scene.layer, prescribed(scene)
-    unit = layer.thickness if not layer.is_half_space else _first_reach(scene)
+    unit = layer.surface.thickness if not layer.is_half_space else _first_reach(scene)
     if isinstance(scene.loading, ContactRadii):
         return _system(scene, unit, float(values.max())), values / unit
     by_depth = isinstance(scene.loading, IndentationDepths)
@@ -206,16 +211,16 @@ def _first_reach(scene: Scene) -> float:
             return depth - largest
         return modulus * (indenter.flat_radius + excess) * depth - largest
 
-    low, high = math.log(1e-15 * min(room, 1.0)), math.log(room)
+    # A trillionth less than the room there is: beyond a sphere's equator the profile is no number.
+    low, high = math.log(1e-15 * min(room, 1.0)), math.log(room) - 1e-12
     found = brentq(missing, low, high, xtol=1e-3) if missing(high) > 0.0 > missing(low) else high
     return indenter.flat_radius + math.exp(found)
 
 
 def _system(scene: Scene, unit: float, reach: float) -> StickSystem:
     ratio = reach / unit
-    support = None if scene.layer.is_half_space else scene.layer.support
-    table = growth_table(_rounded_up(ratio), support, scene.layer.poissons_ratio)
-    span = ratio if support else 0.0
+    table = growth_table(_rounded_up(ratio), sticking_kernel(scene.layer))
+    span = 0.0 if table.is_half_space else ratio
     count = math.ceil(_UNKNOWNS[0] + _UNKNOWNS[1] * span)
     counts = (count, *(count - fewer for fewer in reversed(_FEWER)))
     return StickSystem(unit, tuple(growth(scene.indenter, unit, ratio, table, n) for n in counts))

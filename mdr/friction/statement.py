@@ -14,9 +14,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bem.kernels.of_layer import sticking_kernel
 from bem.layer_equation.stick.frictionless_slip import FrictionlessPunch, frictionless_punch
 from bem.polynomials.gauss_panels import gauss_nodes
-from contact import ContactPath, ContactRadii, FlatPunch, InvalidInput, Scene, refuse_other_layers
+from contact import ContactPath, ContactRadii, FlatPunch, InvalidInput, Scene
 from contact.records.validation import FloatArray
 
 # Gauss nodes of the integral of pressure times slip over the contact, in the angle arcsin(r/a).
@@ -76,9 +77,9 @@ def friction_effect(
 
 
 def _punch(scene: Scene, radius: float) -> FrictionlessPunch:
-    layer = refuse_other_layers("the bound of friction", scene.layer)
-    ratio = 0.0 if layer.is_half_space else radius / layer.thickness
-    return frictionless_punch(ratio, layer.support, layer.poissons_ratio)
+    layer = scene.layer
+    ratio = 0.0 if layer.is_half_space else radius / layer.surface.thickness
+    return frictionless_punch(ratio, sticking_kernel(layer))
 
 
 def _first_order(path: ContactPath, step: int, punch: FrictionlessPunch) -> tuple[float, bool]:

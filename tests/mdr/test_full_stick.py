@@ -91,6 +91,18 @@ def test_the_three_loadings_agree():
     assert by_force.indentation_depth == pytest.approx(path.indentation_depth, rel=1e-12, abs=0)
 
 
+@pytest.mark.parametrize("radius", [30.0, 7.0, 3e-6, 1e-9])
+def test_a_sphere_of_any_size_by_depth_is_that_by_radius(radius):
+    """Seen to fail with R = 30: the search began at the equator, where rounding made the profile no number."""
+    scale = radius / 30.0
+    body = Layer(thickness=scale, youngs_modulus=1.0, poissons_ratio=0.0, support="unbonded")
+    scene = Scene(layer=body, indenter=Sphere(radius=radius), loading=ContactRadii([0.21 * scale]), effects=STICK)
+    by_radius = Mdr().solve(scene)
+    by_depth = Mdr().solve(scene.replace(loading=IndentationDepths(by_radius.indentation_depth)))
+    assert by_depth.contact_radius == pytest.approx(by_radius.contact_radius, rel=1e-12, abs=0)
+    assert by_depth.error_estimate["normal_force"][0] < 1e-12
+
+
 def test_force_grows_with_the_stiffness_of_stick():
     """dF = k_stick d(delta)."""
     path = stuck(0.45, PARABOLOID, ContactRadii([1.0 - 1e-4, 1.0, 1.0 + 1e-4]))

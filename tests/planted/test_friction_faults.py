@@ -5,10 +5,12 @@ import dataclasses
 import numpy as np
 import pytest
 
-from bem.kernels import tangential
+from bem.kernels import stack, tangential
+from bem.layer_equation.stick.growth import growth_table
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference.elastic.friction import step, walk
 from tests.fem_reference import test_friction as friction
+from tests.mdr import test_stick_on_stacks as on_stacks
 from tests.planted.planting import swap
 
 CAUGHT = (AssertionError, NotConvergedError, UnsupportedSceneError)
@@ -82,4 +84,27 @@ def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
 
     swap("bem.kernels.tangential:beyond_half_space", lambda _: wrong)(monkeypatch)
     with pytest.raises(CAUGHT):
-        friction.test_slope_at_vanishing_friction_is_that_of_reciprocity()
+        friction.test_slope_at_vanishing_friction_is_that_of_reciprocity(0.5, "bonded", 0.12)
+
+
+def test_tractions_with_a_kink_inside_cells_of_the_mesh(monkeypatch):
+    """Two cells of the tractions on each cell of the mesh: every second point then moves by another law."""
+    for module in ("surface", "strips"):
+        monkeypatch.setattr(f"fem_reference.elastic.friction.{module}.STRIDE", 2)
+    with pytest.raises(CAUGHT):
+        friction.test_forces_under_stick_converge_to_those_of_mdr_with_second_order("bonded")
+
+
+def test_lower_layers_that_pull_where_they_push(monkeypatch):
+    """What a stack's lower layers add to the coupling has the other sign."""
+    right = stack.StackKernel.beyond_half_space
+
+    def wrong(kernel, wavenumber):
+        found, alone = right(kernel, wavenumber), tangential.beyond_half_space(wavenumber, "bonded", 0.5)
+        return dataclasses.replace(found, coupling=2.0 * alone.coupling - found.coupling)
+
+    monkeypatch.setattr(stack.StackKernel, "beyond_half_space", wrong)
+    growth_table.cache_clear()
+    with pytest.raises(CAUGHT):
+        on_stacks.test_finite_elements_agree_on_one_stack()
+    growth_table.cache_clear()

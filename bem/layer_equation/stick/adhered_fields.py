@@ -117,8 +117,9 @@ class AdheredFields:
     def _layer(self, radius: FloatArray) -> tuple[BasisTransforms, TangentialKernel]:
         """Waves that resolve the surface out to these radii, and the layer's share of the compliance there."""
         reach = max(1.0, float(np.max(radius, initial=0.0)))
+        punch = self.punch
         transforms = basis_transforms(
-            self.punch.material.charge, self.punch.ratio, self.punch.coefficients.size, reach=reach
+            punch.material.charge, punch.ratio, punch.coefficients.size, reach=reach, longest=punch.kernel.longest
         )
         return transforms, self.punch.compliance(transforms)
 

@@ -20,11 +20,10 @@ from functools import lru_cache
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from bem.kernels.tangential import TangentialKernel, beyond_half_space
+from bem.kernels.tangential import StickingKernel, TangentialKernel
 from bem.layer_equation.stick.coulomb import coulomb_functions, phases
-from bem.polynomials.gauss import legendre_rule
+from bem.polynomials.gauss import halved_panels, legendre_rule
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 # Beyond this wavenumber times thickness the layer is a half-space: q^2 exp(-2q) is 1e-16.
 LARGEST_Q = 21.5
@@ -90,8 +89,8 @@ class AdheredPunch:
 
     Attributes:
         material: What the layer is made of.
-        ratio: a/h.
-        support: How the layer lies on its base.
+        ratio: a/h, h being the thickness of the surface material; 0 is the half-space.
+        kernel: Of the layer.
         coefficients: c_n, shape (n,).
         transforms: Of the basis.
         condition: Condition number of the matrix: an error of c is about that many roundings.
@@ -99,7 +98,7 @@ class AdheredPunch:
 
     material: Material
     ratio: float
-    support: Support
+    kernel: StickingKernel
     coefficients: FloatArray
     transforms: BasisTransforms
     condition: float
@@ -130,7 +129,7 @@ class AdheredPunch:
 
     def compliance(self, transforms: BasisTransforms) -> TangentialKernel:
         """D at the nodes of the wavenumber."""
-        return _compliance(transforms, self.ratio, self.support, self.material)
+        return _compliance(transforms, self.ratio, self.kernel)
 
     @property
     def cosine_transform(self) -> FloatArray:
@@ -143,19 +142,18 @@ class AdheredPunch:
         return self.coefficients @ self.transforms.sine
 
 
-def adhered_punch(ratio: float, support: Support, poissons_ratio: float, functions: int | None = None) -> AdheredPunch:
-    """Solve for a punch of radius a on a layer of thickness h.
+def adhered_punch(ratio: float, kernel: StickingKernel, functions: int | None = None) -> AdheredPunch:
+    """Solve for a punch of radius a on a layer whose surface material is h thick.
 
     Args:
         ratio: a/h; 0 is the half-space.
-        support: "bonded" or "unbonded".
-        poissons_ratio: nu in [0, 1/2].
+        kernel: Of the layer.
         functions: How many basis functions; by default what resolves a layer of this ratio.
     """
-    material = Material.of(poissons_ratio)
+    material = Material.of(kernel.poissons_ratio)
     count = functions or functions_for(ratio)
-    transforms = basis_transforms(material.charge, ratio, count)
-    extra = _compliance(transforms, ratio, support, material)
+    transforms = basis_transforms(material.charge, ratio, count, longest=kernel.longest)
+    extra = _compliance(transforms, ratio, kernel)
     P, Q, w = transforms.cosine, transforms.sine, 4.0 / math.pi * transforms.weights
     coupling = (P * (w * extra.coupling)) @ Q.T
     matrix = (P * (w * extra.normal)) @ P.T + (Q * (w * extra.radial)) @ Q.T + coupling + coupling.T
@@ -164,7 +162,7 @@ def adhered_punch(ratio: float, support: Support, poissons_ratio: float, functio
     load[0] = _first_moment(material)
     coefficients = cho_solve(cho_factor(matrix, lower=True), load)
     condition = float(np.linalg.cond(matrix))
-    return AdheredPunch(material, ratio, support, coefficients, transforms, condition)
+    return AdheredPunch(material, ratio, kernel, coefficients, transforms, condition)
 
 
 def functions_for(ratio: float) -> int:
@@ -172,33 +170,40 @@ def functions_for(ratio: float) -> int:
     return math.ceil(24 + 16 * math.sqrt(ratio))
 
 
-def basis_transforms(charge: float, ratio: float, count: int, *, reach: float = 1.0) -> BasisTransforms:
-    """P_n and Q_n on panels that resolve the layer's kernel and waves out to `reach` radii."""
+def basis_transforms(
+    charge: float, ratio: float, count: int, *, reach: float = 1.0, longest: float = 1.0
+) -> BasisTransforms:
+    """P_n and Q_n on panels that resolve waves out to `reach` radii, and a kernel smooth on the scale of 1/longest."""
     panel = min(ratio, 4.0 * math.pi / (1.0 + reach))
     panels = math.ceil(LARGEST_Q * ratio / panel) if ratio else 0
-    return _transforms(charge, panel, panels, count)
+    return _transforms(charge, panel, panels, count, halvings(panel * longest / ratio) if panels else 0)
+
+
+def halvings(width: float) -> int:
+    """How often a panel of this width is halved until it is one wide at most."""
+    return max(0, math.ceil(math.log2(width)))
 
 
 @lru_cache(maxsize=32)
-def _transforms(charge: float, panel: float, panels: int, count: int) -> BasisTransforms:
+def _transforms(charge: float, panel: float, panels: int, count: int, halved: int) -> BasisTransforms:
     nodes, weights = legendre_rule(_NODES)
-    kappa = (panel * (np.arange(panels)[:, None] + (1.0 + nodes) / 2.0)).ravel()
+    starts, widths = halved_panels(panels, halved)
+    kappa = (panel * (starts[:, None] + widths[:, None] * ((1.0 + nodes) / 2.0))).ravel()
     plus = coulomb_functions(charge, kappa, count).values
-    minus = coulomb_functions(-charge, kappa, count).values
+    minus = coulomb_functions(-charge, kappa, count).values if charge else plus
     n = np.arange(count)[:, None]
     scale, mirrored = np.sqrt((2 * n + 1) / 2.0) / 2.0, np.where(n % 2, -1.0, 1.0) * minus
     return BasisTransforms(
         wavenumber=kappa,
-        weights=np.tile(panel / 2.0 * weights, panels),
+        weights=np.multiply.outer(widths, panel / 2.0 * weights).ravel(),
         cosine=scale * (plus + mirrored),
         sine=scale * (plus - mirrored),
     )
 
 
-def _compliance(transforms: BasisTransforms, ratio: float, support: Support, material: Material) -> TangentialKernel:
+def _compliance(transforms: BasisTransforms, ratio: float, kernel: StickingKernel) -> TangentialKernel:
     # A half-space has no wavenumbers at which a layer would show.
-    q = transforms.wavenumber / (ratio or 1.0)
-    return beyond_half_space(q, support, material.poissons_ratio)
+    return kernel.beyond_half_space(transforms.wavenumber / (ratio or 1.0))
 
 
 def _first_moment(material: Material) -> float:

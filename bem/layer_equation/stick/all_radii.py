@@ -22,14 +22,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.tangential import beyond_half_space
-from bem.layer_equation.stick.adhered_punch import LARGEST_Q, Material
+from bem.kernels.tangential import StickingKernel
+from bem.layer_equation.stick.adhered_punch import LARGEST_Q, Material, halvings
 from bem.layer_equation.stick.coulomb import coulomb_functions, gamma_squared, phases
 from bem.layer_equation.triangular import equation_factor, solve_lower
-from bem.polynomials.gauss import legendre_rule
+from bem.polynomials.gauss import halved_panels, legendre_rule
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix, partial_panel_interpolation
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 # Nodes of a panel of one thickness: densities and kernels are smooth on that scale.
 _NODES = 20
@@ -42,7 +41,7 @@ _WAVE_NODES = 22
 
 @dataclass(frozen=True)
 class AdheredPunches:
-    """Adhered punches of every radius up to `max_ratio` on one layer; lengths in its thickness.
+    """Adhered punches of every radius up to `max_ratio` on one layer; lengths in its surface material's thickness.
 
     Attributes:
         material: What the layer is made of.
@@ -79,12 +78,12 @@ class AdheredPunches:
         return np.asarray((self.edge_values**2).sum(-1))
 
 
-def adhered_punches(max_ratio: float, support: Support, poissons_ratio: float) -> AdheredPunches:
+def adhered_punches(max_ratio: float, kernel: StickingKernel) -> AdheredPunches:
     """Factorise for all radii up to `max_ratio` thicknesses, rounded up to a whole number of them."""
-    material, panels = Material.of(poissons_ratio), math.ceil(max_ratio)
+    material, panels = Material.of(kernel.poissons_ratio), math.ceil(max_ratio)
     nodes, weights = gauss_nodes(_NODES)
     x = (np.arange(panels)[:, None] + nodes).ravel()
-    B = _layer_kernel(x, support, material)
+    B = _layer_kernel(x, kernel, material)
     root = np.sqrt(np.repeat(np.tile(weights, panels), 2))
     own = np.array([B[s : s + 2 * _NODES, s : s + 2 * _NODES] for s in range(0, len(B), 2 * _NODES)])
     lower = equation_factor(-math.pi / 2.0 * B, root, max_ratio)
@@ -96,8 +95,8 @@ def adhered_punches(max_ratio: float, support: Support, poissons_ratio: float) -
         start, stop = 2 * _NODES * p, 2 * _NODES * (p + 1)
         row = lower[start:stop, :start] / root[start:stop, None]
         # What the earlier panels leave of kernel and load.
-        kernel, left = own[p] - row @ row.T, load[start:stop] - row @ z[:start]
-        values[p] = _edge_values(kernel, left.reshape(_NODES, 2))
+        rest, left = own[p] - row @ row.T, load[start:stop] - row @ z[:start]
+        values[p] = _edge_values(rest, left.reshape(_NODES, 2))
     return AdheredPunches(material, values)
 
 
@@ -123,19 +122,20 @@ def _place(ratio: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
     return panel, ratio - panel
 
 
-def _layer_kernel(x: FloatArray, support: Support, material: Material) -> FloatArray:
+def _layer_kernel(x: FloatArray, kernel: StickingKernel, material: Material) -> FloatArray:
     """B between pairs at x, shape (2 n, 2 n)."""
     width = min(1.0, 2.0 * math.pi / x[-1])
     nodes, weights = legendre_rule(_WAVENUMBERS)
     panels = math.ceil(LARGEST_Q / width)
-    k = (width * (np.arange(panels)[:, None] + (1.0 + nodes) / 2.0)).ravel()
-    w = 2.0 * material.charge_over_eta * width / 2.0 * np.tile(weights, panels)
+    starts, widths = halved_panels(panels, halvings(width * kernel.longest))
+    k = (width * (starts[:, None] + widths[:, None] * ((1.0 + nodes) / 2.0))).ravel()
+    w = 2.0 * material.charge_over_eta * width / 2.0 * np.multiply.outer(widths, weights).ravel()
     waves, mirrored = half_space_waves(material.charge, np.multiply.outer(x, k))
     even, odd = _pairs((waves + mirrored) / 2.0), _pairs((waves - mirrored) / 2.0)
-    extra = beyond_half_space(k, support, material.poissons_ratio)
+    extra = kernel.beyond_half_space(k)
     coupling = (even * (w * extra.coupling)) @ odd.T
-    kernel = (even * (w * extra.normal)) @ even.T + (odd * (w * extra.radial)) @ odd.T
-    return np.asarray(kernel + coupling + coupling.T)
+    B = (even * (w * extra.normal)) @ even.T + (odd * (w * extra.radial)) @ odd.T
+    return np.asarray(B + coupling + coupling.T)
 
 
 def _pairs(waves: NDArray[np.complex128]) -> FloatArray:

@@ -16,11 +16,10 @@ from numpy.polynomial import legendre
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j1
 
-from bem.kernels.tangential import beyond_half_space
+from bem.kernels.tangential import StickingKernel
 from bem.layer_equation.stick.adhered_punch import BasisTransforms, Material, basis_transforms, functions_for
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 # Gauss nodes of the density between a radius and the edge.
 _NODES = 64
@@ -38,7 +37,7 @@ class FrictionlessPunch:
     Attributes:
         material: What the layer is made of.
         ratio: a/h, 0 for the half-space.
-        support: How the layer lies on its base.
+        kernel: Of the layer.
         coefficients: Of phi in Legendre polynomials P_0, P_1, .. on [-1, 1].
         transform: P(kappa) = int_0^1 phi cos(kappa t) dt, shape (k,).
         transforms: Of the basis, for wavenumbers and weights.
@@ -46,7 +45,7 @@ class FrictionlessPunch:
 
     material: Material
     ratio: float
-    support: Support
+    kernel: StickingKernel
     coefficients: FloatArray
     transform: FloatArray
     transforms: BasisTransforms
@@ -62,7 +61,7 @@ class FrictionlessPunch:
         kappa = self.transforms.wavenumber
         layer = np.zeros_like(s)
         if kappa.size:
-            extra = beyond_half_space(kappa / self.ratio, self.support, self.material.poissons_ratio)
+            extra = self.kernel.beyond_half_space(kappa / self.ratio)
             layer = j1(np.multiply.outer(s, kappa)) @ (self.transforms.weights * extra.coupling * self.transform)
         displacement = 2.0 / math.pi * (layer - self.material.eta * enclosed / s)
         return np.asarray(displacement * radius / s)
@@ -73,14 +72,14 @@ class FrictionlessPunch:
 
 
 @lru_cache(maxsize=64)
-def frictionless_punch(ratio: float, support: Support, poissons_ratio: float) -> FrictionlessPunch:
-    """Solve for a punch of radius a on a layer of thickness h, ratio = a/h; 0 is the half-space."""
-    material = Material.of(poissons_ratio)
-    transforms = basis_transforms(0.0, ratio, functions_for(ratio))
+def frictionless_punch(ratio: float, kernel: StickingKernel) -> FrictionlessPunch:
+    """Solve for a punch of radius a on a layer whose surface material is h thick, ratio = a/h; 0 is the half-space."""
+    material = Material.of(kernel.poissons_ratio)
+    transforms = basis_transforms(0.0, ratio, functions_for(ratio), longest=kernel.longest)
     even = transforms.cosine[::2]
     n = 2 * np.arange(len(even))
     q = transforms.wavenumber / (ratio or 1.0)
-    weights = 4.0 / math.pi * transforms.weights * beyond_half_space(q, support, poissons_ratio).normal
+    weights = 4.0 / math.pi * transforms.weights * kernel.beyond_half_space(q).normal
     matrix = (even * weights) @ even.T
     matrix[np.diag_indices_from(matrix)] += 2.0 * material.beta
     load = np.zeros(len(even))
@@ -88,4 +87,4 @@ def frictionless_punch(ratio: float, support: Support, poissons_ratio: float) ->
     solved = cho_solve(cho_factor(matrix, lower=True), load)
     coefficients = np.zeros(2 * len(even))
     coefficients[::2] = solved * np.where(n % 4, -1.0, 1.0) * np.sqrt((2 * n + 1) / 2.0)
-    return FrictionlessPunch(material, ratio, support, coefficients, solved @ even, transforms)
+    return FrictionlessPunch(material, ratio, kernel, coefficients, solved @ even, transforms)

@@ -18,10 +18,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
+from bem.kernels.tangential import HalfSpaceKernel, StickingKernel
 from bem.layer_equation.stick.adhered_fields import AdheredFields
 from bem.layer_equation.stick.adhered_punch import Material, adhered_punch
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 # Up to this x/a the polynomial g is continued; beyond, its terms magnify rounding and the equation itself is used.
 _CONTINUED = 1.005
@@ -37,14 +37,14 @@ class GrowthTable:
 
     Attributes:
         material: What the layer is made of.
-        support: How the layer lies on its base; None for a half-space.
+        kernel: Of the layer.
         max_ratio: X, largest a/h and x/h.
         coefficients: Of G in x (rows) and a (columns), Chebyshev polynomials on [0, X].
         stiffness: Chebyshev coefficients of k_stick/(2 E* a) on [0, X].
     """
 
     material: Material
-    support: Support | None
+    kernel: StickingKernel
     max_ratio: float
     coefficients: NDArray[np.complex128]
     stiffness: FloatArray
@@ -52,7 +52,7 @@ class GrowthTable:
     @property
     def is_half_space(self) -> bool:
         """Whether no layer shows."""
-        return self.support is None
+        return isinstance(self.kernel, HalfSpaceKernel)
 
     def beside(self, x: float, a: FloatArray) -> NDArray[np.complex128]:
         """G(x; a) for one x and many a, shape of a."""
@@ -89,23 +89,25 @@ class GrowthTable:
 
 
 @lru_cache(maxsize=16)
-def growth_table(max_ratio: float, support: Support | None, poissons_ratio: float) -> GrowthTable:
-    """Solve the punches of a table that reaches `max_ratio` thicknesses; without a support, on a half-space."""
-    if support is None:
-        punch = adhered_punch(0.0, "bonded", poissons_ratio)
-        return GrowthTable(punch.material, None, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness]))
+def growth_table(max_ratio: float, kernel: StickingKernel) -> GrowthTable:
+    """Solve the punches of a table that reaches `max_ratio` thicknesses of the surface material."""
+    if isinstance(kernel, HalfSpaceKernel):
+        punch = adhered_punch(0.0, kernel)
+        return GrowthTable(
+            punch.material, kernel, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness])
+        )
     punches, positions = (math.ceil(start + rate * max_ratio) for start, rate in (_PUNCHES, _POSITIONS))
     to_a, to_x = _to_coefficients(punches), _to_coefficients(positions)
     x = max_ratio * (1.0 + chebyshev.chebpts1(positions)) / 2.0
     values, stiffness = np.empty((positions, punches), dtype=complex), np.empty(punches)
     for j, a in enumerate(max_ratio * (1.0 + chebyshev.chebpts1(punches)) / 2.0):
-        fields = AdheredFields(adhered_punch(float(a), support, poissons_ratio))
+        fields = AdheredFields(adhered_punch(float(a), kernel))
         stiffness[j] = fields.punch.stiffness
         inside = x <= _CONTINUED * a
         values[inside, j] = fields.continued(x[inside] / a)
         values[~inside, j] = fields.transform_beside(x[~inside] / a)
     return GrowthTable(
-        Material.of(poissons_ratio), support, max_ratio, np.asarray(to_x @ values @ to_a.T), to_a @ stiffness
+        Material.of(kernel.poissons_ratio), kernel, max_ratio, np.asarray(to_x @ values @ to_a.T), to_a @ stiffness
     )
 
 

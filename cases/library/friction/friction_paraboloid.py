@@ -27,6 +27,7 @@ from cases.library._claims import agreements, names_of
 from cases.library._layers import THICKNESS, layer_of
 from cases.library._methods import MDR
 from cases.library._reasons import reasons
+from cases.measurements.cost.work_precision import WorkStudy
 from contact import ContactPath, DepthHistory, Friction, IndentationDepths, Layer, Paraboloid, Scene
 
 WHY = reasons("friction_paraboloid")
@@ -206,6 +207,16 @@ LAWS = tuple(
     )
 )
 
+COST = WorkStudy(
+    scene="nu=0.5 stick",
+    quantity="normal_force",
+    ladder=(MDR, *(MethodUse(label=f"growth {g:g}", method="fem", settings={"growth": g}) for g in (0.75, 0.5, 0.25))),
+    reference=MDR,
+    fast_method="mdr",
+    baseline_method="fem",
+    cheap=(MDR,),
+)
+
 CASE = Case(
     name="friction_paraboloid",
     title="A paraboloid with dry friction",
@@ -222,4 +233,5 @@ CASE = Case(
         *TWO_GRIDS,
         *LAWS,
     ),
+    work=(COST,),
 )

@@ -139,11 +139,12 @@ class MostFriction:
 
     def __call__(self, layer: Layer, given: Given, values: FloatArray) -> FloatArray:
         """F_0/(1 - mu max |u_r1|) at depths; NaN where the bound is infinite."""
+        from bem.kernels.of_layer import sticking_kernel  # noqa: PLC0415 - used here only
         from bem.layer_equation.stick.frictionless_slip import frictionless_punch  # noqa: PLC0415 - used here only
 
         path = _exact(layer, IndentationDepths(values))
         ratios = path.contact_radius / layer.thickness
-        punches = [frictionless_punch(float(x), layer.support, layer.poissons_ratio) for x in ratios]
+        punches = [frictionless_punch(float(x), sticking_kernel(layer)) for x in ratios]
         slip = self.coefficient * np.array([punch.largest() for punch in punches])
         return np.asarray(np.divide(path.normal_force, 1.0 - slip, out=np.full_like(slip, np.nan), where=slip < 1.0))
 

@@ -13,7 +13,7 @@ from fem_reference.discrete_layer.indenter import height, shape
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.friction.step import RubbedContact
-from fem_reference.elastic.friction.surface import condense_rubbed
+from fem_reference.elastic.friction.surface import STRIDE, condense_rubbed
 from fem_reference.elastic.friction.walk import grown
 from fem_reference.elastic.surface_compliance import STRIP_CELLS, strip_mesh
 
@@ -64,7 +64,8 @@ class StripMaker:
     def contact(self, radius: float, cells: int) -> RubbedContact:
         """The condensed layer and the indenter on a strip of this radius [m]."""
         scene = self.scene
-        mesh = strip_mesh(scene.layer, radius, cells, scene.indenter.breakpoints, self.settings, outside=AWAY)
+        kinks = scene.indenter.breakpoints
+        mesh = strip_mesh(scene.layer, radius, cells, kinks, self.settings, outside=AWAY, stride=STRIDE)
         surface = condense_rubbed(scene.layer, mesh, self.backend, self.log)
         heights = _heights(scene.indenter, surface.tractions.gauss(4)[0] * radius)
         profile = surface.tractions.moments(heights / radius, 4)

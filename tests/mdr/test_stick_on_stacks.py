@@ -1,0 +1,149 @@
+"""Full stick on stacks: layers cut into sublayers, elastic bases like the layer, finite elements, refusals."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bem.kernels.of_layer import UniformKernel, sticking_kernel
+from bem.kernels.tangential import beyond_half_space
+from bem.layer_equation.stick.adhered_fields import AdheredFields
+from bem.layer_equation.stick.adhered_punch import adhered_punch
+from bem.layer_equation.stick.all_radii import adhered_punches
+from contact import (
+    ContactRadii,
+    ElasticBase,
+    ExponentialDepth,
+    FlatPunch,
+    Friction,
+    GradedLayer,
+    IndentationDepths,
+    Layer,
+    LayerStack,
+    Paraboloid,
+    Scene,
+    Sublayer,
+    UnsupportedSceneError,
+)
+from fem_reference import Fem
+from mdr import Mdr
+from mdr.friction.statement import friction_effect
+
+STICK = (Friction(coefficient=math.inf),)
+PARABOLOID = Paraboloid(radius_of_curvature=10.0)
+
+
+def stack(*materials, slips=(), support="bonded"):
+    """Sublayers of (thickness, E, nu) from the top; interfaces with these numbers slip."""
+    sublayers = tuple(Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=nu) for h, E, nu in materials)
+    faces = tuple("unbonded" if i in slips else "bonded" for i in range(len(materials) - 1))
+    return LayerStack(sublayers=sublayers, interfaces=faces, support=support)
+
+
+STACKS = {
+    "soft on stiff": stack((1.0, 1.0, 0.5), (0.7, 10.0, 0.5)),
+    "stiff on soft": stack((0.5, 10.0, 0.3), (1.0, 1.0, 0.45)),
+    "three, slip below the first": stack(
+        (1.0, 1.0, 0.5), (0.5, 3.0, 0.2), (1.0, 1.0, 0.4), slips=(0,), support="unbonded"
+    ),
+    "elastic base": stack((1.0, 1.0, 0.5), support=ElasticBase(youngs_modulus=20.0, poissons_ratio=0.3)),
+    "soft base": stack((1.0, 10.0, 0.0), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.3)),
+}
+
+
+def scene_of(layer, loading, indenter=PARABOLOID, effects=STICK):
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_a_layer_cut_into_sublayers_has_its_kernel(nu, support):
+    cut = stack((1.0, 1.0, nu), (0.7, 1.0, nu), (1.3, 1.0, nu), support=support)
+    k = np.geomspace(1e-2, 20.0, 30)
+    found, whole = sticking_kernel(cut).beyond_half_space(k), beyond_half_space(3.0 * k, support, nu)
+    for name in ("radial", "coupling", "normal"):
+        exact = getattr(whole, name)
+        assert getattr(found, name) == pytest.approx(exact, rel=1e-13, abs=1e-14)
+
+
+def test_a_base_of_the_same_material_is_a_half_space():
+    base = stack((1.0, 1.0, 0.2), support=ElasticBase(youngs_modulus=1.0, poissons_ratio=0.2))
+    punch = adhered_punch(3.0, sticking_kernel(base))
+    exact = 0.8 * math.log(2.2) / 0.6
+    assert punch.stiffness == pytest.approx(exact, rel=1e-13, abs=0.0)
+
+
+@pytest.mark.parametrize("name", STACKS)
+@pytest.mark.parametrize("ratio", [0.3, 4.0])
+def test_the_surface_below_a_punch_neither_sinks_unevenly_nor_slides(name, ratio):
+    fields = AdheredFields(adhered_punch(ratio, sticking_kernel(STACKS[name])))
+    inside = np.array([0.0, 1e-3, 0.3, 0.7, 0.99, 0.9999])
+    assert fields.normal_displacement(inside) == pytest.approx(np.ones(6), rel=0.0, abs=1e-11)
+    assert fields.radial_displacement(inside) == pytest.approx(np.zeros(6), rel=0.0, abs=1e-11)
+
+
+@pytest.mark.parametrize("name", ["soft on stiff", "three, slip below the first", "elastic base"])
+def test_one_factorisation_equals_single_radii(name):
+    ratios, kernel = np.array([0.3, 1.5, 3.0]), sticking_kernel(STACKS[name])
+    every = adhered_punches(3.0, kernel)
+    punches = [adhered_punch(float(a), kernel) for a in ratios]
+    assert every.stiffness(ratios) == pytest.approx([p.stiffness for p in punches], rel=1e-11, abs=0.0)
+
+
+def test_growth_on_a_layer_cut_in_two_is_that_on_the_layer():
+    whole = Layer(thickness=2.0, youngs_modulus=1.0, poissons_ratio=0.45)
+    cut = stack((1.2, 1.0, 0.45), (0.8, 1.0, 0.45))
+    depths = IndentationDepths([0.02, 0.2])
+    one, two = (Mdr().solve(scene_of(layer, depths)) for layer in (whole, cut))
+    for name in ("contact_radius", "normal_force", "contact_stiffness"):
+        assert getattr(two, name) == pytest.approx(getattr(one, name), rel=1e-9, abs=0.0)
+    r = np.array([0.0, 0.5, 1.1, 3.0])
+    assert two.surface_displacement(r, 1) == pytest.approx(one.surface_displacement(r, 1), rel=1e-8, abs=0.0)
+    assert two.pressure(r, 1) == pytest.approx(one.pressure(r, 1), rel=1e-7, abs=0.0)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("radius", [0.4, 2.0])
+@pytest.mark.parametrize("name", STACKS)
+def test_finite_elements_agree_within_what_both_state(name, radius):
+    exact = Mdr().solve(scene_of(STACKS[name], ContactRadii([radius])))
+    path = Fem(growth=0.75).solve(scene_of(STACKS[name], IndentationDepths(exact.indentation_depth)))
+    for quantity in ("contact_radius", "normal_force", "contact_stiffness"):
+        stated = path.uncertainty(quantity) + exact.uncertainty(quantity)
+        assert np.all(np.abs(getattr(path, quantity) - getattr(exact, quantity)) <= stated), quantity
+    assert path.normal_force == pytest.approx(exact.normal_force, rel=1e-5, abs=0.0)
+    assert path.error_estimate["base_force_defect"][0] < 1e-8
+
+
+def test_finite_elements_agree_on_one_stack():
+    exact = Mdr().solve(scene_of(STACKS["soft on stiff"], ContactRadii([1.0])))
+    path = Fem(growth=1.0).solve(scene_of(STACKS["soft on stiff"], IndentationDepths(exact.indentation_depth)))
+    assert path.normal_force == pytest.approx(exact.normal_force, rel=1e-5, abs=0.0)
+    assert path.error_estimate["base_force_defect"][0] < 1e-10
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STACKS)
+def test_coulomb_friction_by_finite_elements_is_within_the_bound(name):
+    scene = scene_of(STACKS[name], IndentationDepths([0.05]), effects=())
+    path = Mdr().solve(scene)
+    effect = friction_effect(path, 0.2, Mdr().solve)
+    rubbed = Fem(growth=1.0).solve(scene.replace(effects=(Friction(coefficient=0.2),)))
+    change, error = float(rubbed.normal_force[0] / path.normal_force[0]) - 1.0, 1e-5
+    assert effect.lower[0] - error <= change <= effect.upper[0] + error
+    if effect.one_direction[0]:
+        assert abs(change - effect.first_order[0]) <= max(0.04, float(effect.upper[0]) ** 2) + error
+
+
+def test_a_flat_punch_sticks_to_a_stack():
+    cut = stack((1.5, 1.0, 0.5), (0.5, 1.0, 0.5))
+    found = Mdr().solve(scene_of(cut, IndentationDepths([0.01]), FlatPunch(radius=2.0)))
+    whole = adhered_punch(1.0, UniformKernel("bonded", 0.5))
+    modulus = cut.contact_modulus
+    assert found.contact_stiffness[0] == pytest.approx(2.0 * modulus * 2.0 * whole.stiffness, rel=1e-12, abs=0.0)
+
+
+def test_graded_layers_are_refused_by_name():
+    layer = GradedLayer(thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=2.0), poissons_ratio=0.3)
+    with pytest.raises(UnsupportedSceneError, match="full stick on uniform layers and stacks, not on a GradedLayer"):
+        Mdr().solve(scene_of(layer, ContactRadii([1.0])))
