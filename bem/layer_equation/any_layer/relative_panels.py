@@ -142,12 +142,12 @@ def relative_panels(count: int, splits: int) -> RelativePanels:
 def panels_with_bends(marks: tuple[float, ...], widest: float, count: int) -> RelativePanels:
     """Panels that shrink towards axis, rims, bends and edge as well; marks are where rims and bends are on [0, 1]."""
     points = [0.0, *sorted({mark for mark in marks if 0 < mark < 1}), 1.0]
-    parts = []
+    parts: list[FloatArray] = []
     for start, stop in pairwise(points):
         half = (stop - start) / 2
         before = AXIS_LEVELS if start == 0 else BEND_LEVELS
         after = EDGE_LEVELS if stop == 1 else BEND_LEVELS
-        parts += [[start], start + half * RATIO ** np.arange(before, -1, -1.0)]
+        parts += [np.array([start]), start + half * RATIO ** np.arange(before, -1, -1.0)]
         parts += [stop - half * RATIO ** np.arange(1.0, after + 1)]
     coarse = np.append(np.concatenate(parts), 1.0)
     cuts = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)

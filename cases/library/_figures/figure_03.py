@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cases.library._figures._parts import LARGEST_RATIO, UNBONDED, closed_form, layer, mdr_line, name_of, percent, punch
-from cases.library.elastic._hayes import TABLE
+from cases.library._hayes import TABLE
 from cases.results.records.figure import Figure, Panel, Series
 from contact import Layer
 from contact.records.validation import FloatArray

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 from scipy.interpolate import CubicSpline
 
+from cases.library._hayes import column
 from contact.records.validation import FloatArray
 from mdr.curves import series
 
 # Hayes, Keer, Herrmann and Mockros, J. Biomech. 5 (1972) 541, nu = 1/2, as an R package that cites the table has it; a
 # Python program has the same numbers up to a/h = 2 (seen 2026-11-22). The paper itself was not at hand.
-HAYES_AT = np.array([0.0, 0.2, 0.4, 0.6, 0.8, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0, 7.0, 8.0])
-HAYES = np.array(
-    [1, 1.281, 1.683, 2.211, 2.855, 3.609, 5.970, 9.069, 13.0, 17.86, 23.74, 30.75, 48.47, 71.75, 101.27, 137.7]
+HAYES_AT, HAYES = (
+    np.append(at_axis, values) for at_axis, values in zip((0.0, 1.0), column("bonded nu=0.5"), strict=True)
 )
 # A column that stood in public scripts under the heading nu = 0.5, at a/h = 0.2, 0.4, .. 2.0; written down from an
 # earlier reading and not found again on 2026-11-22. That it belongs to nu = 0.48 is our finding.

@@ -10,8 +10,9 @@ from cases.library._figures._parts import UNBONDED, layer, name_of, punch
 from cases.library._figures.figure_03 import thin_layer_stiffness
 from cases.library._figures.figure_04 import second_maximum
 from cases.library._figures.figure_05 import exponent
+from cases.library._hayes import COMMON as HAYES
+from cases.library._hayes import RATIOS as HAYES_RATIOS
 from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, above, deviation, reads, within
-from cases.library.elastic.flat_punch_stiffness import HAYES, HAYES_RATIOS
 from contact import Layer
 
 LAYERS = (UNBONDED, *(layer(nu) for nu in (0.0, 0.3, 0.4, 0.45, 0.5)))

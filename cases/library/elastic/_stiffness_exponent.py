@@ -8,12 +8,12 @@ from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers
 from cases.library._claims import agreements, exact
 from cases.library._figures._symbols import series
+from cases.library._hayes import TABLE as HAYES
+from cases.library._hayes import column, hayes_symbols
 from cases.library._layers import THICKNESS, contact_modulus, layer, scene_name
 from cases.library._methods import MDR, QUICK_FEM
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
-from cases.library.elastic._hayes import TABLE as HAYES
-from cases.library.elastic._hayes import column, hayes_symbols
 from cases.results.records.figure import Series
 from contact import ContactRadii, Paraboloid, Scene
 from contact.records.validation import FloatArray

@@ -30,14 +30,14 @@ from cases.library._convergence import (
 )
 from cases.library._figures import paper_figure
 from cases.library._figures._symbols import pressure_symbols, series
+from cases.library._hayes import COMMON as HAYES
+from cases.library._hayes import RATIOS as HAYES_RATIOS
+from cases.library._hayes import TABLE as HAYES_TABLE
+from cases.library._hayes import column, hayes_symbols
 from cases.library._layers import THICKNESS, contact_modulus, edges, layer_of, scene_name
 from cases.library._methods import BEM, EVERY, FEM, MDR
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
-from cases.library.elastic._hayes import COMMON as HAYES
-from cases.library.elastic._hayes import RATIOS as HAYES_RATIOS
-from cases.library.elastic._hayes import TABLE as HAYES_TABLE
-from cases.library.elastic._hayes import column, hayes_symbols
 from cases.library.elastic._stiffness_exponent import EXPONENT_CLAIMS, EXPONENT_SCENES, exponent_symbols
 from cases.measurements.cost.settings import elastic_costs
 from cases.results.records.figure import Figure, Series
