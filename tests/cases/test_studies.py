@@ -12,7 +12,8 @@ from cases.results.records.reliability import Ladder
 from cases.run.executors import serial
 from tests.cases.example_run import example_run
 
-SLOW = {studies.quick_ladders: pytest.mark.slow}
+# The claims of `code_verification` are judged by tests/verification/test_fem_code_verification.py, too.
+SLOW = dict.fromkeys((studies.quick_ladders, studies.code_verification), pytest.mark.slow)
 
 
 @pytest.mark.parametrize(

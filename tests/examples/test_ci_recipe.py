@@ -23,7 +23,12 @@ import sys
 sys.path.insert(0, {root!r})
 from cases.declare import methods
 methods.BUILT_IN["fake"] = methods.TableEntry(module="tests.cases.fake_method", attribute="FakeHertz")
+from cases.measurements import suites
 from reports.commands import gate, run
+from reports.figures import figure_files
+# Other tests look at pictures and at the studies of the suite, which take most of the time.
+figure_files.write_figure = lambda figure, directory: "<svg></svg>"
+suites.QUICK = ()
 from tests.cases.fake_case import SLOW, fake_case, spoiled
 case = fake_case(slow=spoiled(SLOW, plant={plant!r}))
 run.load_cases = gate.load_cases = lambda: {{case.name: case}}
@@ -52,16 +57,27 @@ def verify(tmp_path, *arguments, plant="", **environment):
     )
 
 
-@pytest.mark.parametrize(("plant", "code"), [("", 0), ("nan", 1)])
-def test_recipe_writes_the_report_and_hands_on_the_exit_code(tmp_path, plant, code):
-    done = verify(tmp_path, "out", "--executor", "serial", plant=plant)
-    assert done.returncode == code, done.stderr
-    assert {"report.html", "summary.md", "junit.xml", "results.json"} <= {p.name for p in (tmp_path / "out").iterdir()}
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory):
+    """A folder in which the recipe ran without a fault, and the finished process."""
+    folder = tmp_path_factory.mktemp("sound")
+    return folder, verify(folder, "out", "--executor", "serial")
 
 
-def test_recipe_gates_where_numbers_are_accepted(tmp_path):
-    assert verify(tmp_path, "out", "--executor", "serial").returncode == 0
-    result = dataclasses.replace(read_run(tmp_path / "out"), stamp=example_run().stamp)
+def test_recipe_writes_the_report_and_hands_on_the_exit_code(tmp_path, sound):
+    for (folder, done), code in (
+        (sound, 0),
+        ((tmp_path, verify(tmp_path, "out", "--executor", "serial", plant="nan")), 1),
+    ):
+        assert done.returncode == code, done.stderr
+        written = {p.name for p in (folder / "out").iterdir()}
+        assert {"report.html", "summary.md", "junit.xml", "results.json"} <= written
+
+
+def test_recipe_gates_where_numbers_are_accepted(tmp_path, sound):
+    folder, done = sound
+    assert done.returncode == 0
+    result = dataclasses.replace(read_run(folder / "out"), stamp=example_run().stamp)
     accepted(tmp_path / "baselines", result, case="fake_hertz")
     done = verify(tmp_path, "out", "--executor", "serial")
     assert (done.returncode, "checks" in done.stdout) == (0, True), done.stdout

@@ -65,6 +65,7 @@ def on_half_space(control: str) -> CaseScene:
         parameters={"control": control},
         scene=scene_of(0.3, 1.0, control, half_space()),
         methods=(MDR, BEM, TABLE) if control == "force" else (MDR, DETACHING_FEM, BEM, TABLE),
+        nightly=() if control == "force" else ("fem",),
     )
 
 

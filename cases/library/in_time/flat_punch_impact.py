@@ -221,8 +221,8 @@ STRUCK = ON_LAYERS[:1]
 IN_TIME = ("coefficient_of_restitution", "contact_time", "peak_depth")
 ORDERS = (
     *studies(STRUCK, TIME_ACCURACY, (*IN_TIME, "energy_residual"), against=FINEST_MDR),
-    *studies(STRUCK, TIME_STEP, dict.fromkeys(IN_TIME, 2.0), against=FINEST_MDR),
-    *studies(STRUCK, TIME_STEP, {"energy_residual": 2.0}),
+    *studies(STRUCK, TIME_STEP, dict.fromkeys(IN_TIME, 2.0), against=FINEST_MDR, nightly=True),
+    *studies(STRUCK, TIME_STEP, {"energy_residual": 2.0}, nightly=True),
 )
 
 

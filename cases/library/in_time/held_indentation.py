@@ -95,7 +95,7 @@ ORDERS = (
         (CREEPING_HALF_SPACE, CREEPING), HISTORY_ACCURACY, ("indentation_depth",), against=FINEST_MDR, nightly=True
     ),
     *studies((HALF_SPACE, RELAXING), HISTORY_ACCURACY, ("normal_force",), against=FINEST_MDR),
-    *studies((ELASTIC,), CELLS_AND_STEPS, {"normal_force": 2.0}, against=FINEST_MDR),
+    *studies((ELASTIC,), CELLS_AND_STEPS, {"normal_force": 2.0}, against=FINEST_MDR, nightly=True),
 )
 
 CASE = Case(
