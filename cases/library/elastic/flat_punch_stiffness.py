@@ -79,7 +79,7 @@ def punch(label: str, ratio: float) -> CaseScene:
         scene=scene,
         # The rings end before the edge, where the pressure is infinite.
         sampling=Sampling(ring_edges=edges(a, (0.0, 0.5, 0.9))),
-        nightly=("fem", "mdr_table") if label == "bonded nu=0.4" else (),
+        nightly=("mdr_table",) if label in ("bonded nu=0.4", "bonded nu=0.45") else (),
     )
 
 

@@ -43,8 +43,19 @@ def records(plan=PLAN):
     return {record.quantity: record for record in coverage_case([plan]).coverage}
 
 
-def test_the_fast_method_on_a_few_nodes_is_covered():
-    found = records()
+@pytest.fixture(scope="module")
+def found():
+    """Records of the plan by quantity."""
+    return records()
+
+
+@pytest.fixture
+def record(found):
+    """The first of them, to be changed."""
+    return next(iter(found.values()))
+
+
+def test_the_fast_method_on_a_few_nodes_is_covered(found):
     assert set(found) == {"contact_radius", "indentation_depth", "normal_force", "contact_stiffness"}
     assert all(record.covered == 1.0 and record.scenes == 12 and record.crashed == 0 for record in found.values())
 
@@ -62,15 +73,13 @@ def test_a_planted_error_beyond_the_stated_one_is_seen(monkeypatch):
     assert by_name["stated errors hold, contact stiffness"] is Status.PASS
 
 
-def test_a_crash_fails_the_claim():
-    (record, *_) = records().values()
+def test_a_crash_fails_the_claim(record):
     assert errors_are_covered(record).status is Status.PASS
     assert errors_are_covered(dataclasses.replace(record, crashed=1)).status is Status.FAIL
 
 
 @pytest.mark.parametrize(("covered", "status"), [(0.951, Status.PASS), (0.949, Status.FAIL)])
-def test_the_limit_is_ninety_five_percent(covered, status):
-    (record, *_) = records().values()
+def test_the_limit_is_ninety_five_percent(record, covered, status):
     assert errors_are_covered(dataclasses.replace(record, covered=covered)).status is status
 
 
@@ -85,8 +94,7 @@ RATIOS = [
 
 
 @pytest.mark.parametrize(("ratios", "status"), RATIOS)
-def test_bars_are_sharp_within_ten_in_the_median_and_a_hundred_at_ninety_percent(ratios, status):
-    (record, *_) = records().values()
+def test_bars_are_sharp_within_ten_in_the_median_and_a_hundred_at_ninety_percent(record, ratios, status):
     percentiles = tuple(np.percentile(ratios, PERCENTILES)) if ratios else ()
     median = float(np.median(ratios)) if ratios else None
     claim = errors_are_sharp(
