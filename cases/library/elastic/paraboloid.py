@@ -90,7 +90,8 @@ def reference(number: int, unit: Callable[[str], float]) -> dict[str, tuple[floa
 def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScene:
     """Return a paraboloid under ``loading``."""
     searched = ("fem", "bem", "mdr_table") if ratio != QUICK_RATIO else ()
-    prescribed = ("fem", "mdr_table") if label == "bonded nu=0.45" else ()
+    late = label == "bonded nu=0.45" or (label == "bonded nu=0.3" and ratio != QUICK_RATIO)
+    prescribed = ("fem", "mdr_table") if late else ()
     return CaseScene(
         name=scene_name(label, ratio) + how,
         parameters={"layer": label, "a_over_h": ratio},
