@@ -131,7 +131,7 @@ def test_older_files_are_read_or_refused_in_one_sentence(tmp_path):
         assert type(load_solution(tmp_path / "a.h5")) is type(solution)
     save_solution(tmp_path / "b.h5", solutions()[1])
     older(tmp_path / "b.h5", drop=("force_at_loss",))
-    with pytest.raises(InvalidInput, match="a stored DetachmentPath without force_at_loss .*; solve its scene again"):
+    with pytest.raises(InvalidInput, match=r"a stored DetachmentPath without force_at_loss .*; solve its scene again"):
         load_solution(tmp_path / "b.h5")
 
 
