@@ -28,7 +28,9 @@ from contact.records.validation import FloatArray
 # The values are arrays, numbers, strings, None, or mappings of the same.
 Tree: TypeAlias = Mapping[str, Any]
 
-SCHEMA = "contact-verification/solution/1"
+SCHEMA = "contact-verification/solution/2"
+# Files of the first layout differ in one entry, which only detachments have; the others are read as they are.
+_READABLE = (SCHEMA, "contact-verification/solution/1")
 SEAL = b"contact-verification sha256 "  # what a file begins with, before the digest of its content
 # A larger file [bytes] is refused before memory is taken. Chosen: the format itself has no limit.
 MAX_BYTES = 2_000_000_000
@@ -228,8 +230,11 @@ def load_solution(path: str | Path) -> Solution:
     Raises:
         InvalidInput: If the file is not one that `save_solution` wrote.
     """
+    tree = read_tree(path)
     try:
-        return solution_from_tree(read_tree(path))
+        return solution_from_tree(tree)
+    except InvalidInput as error:
+        raise InvalidInput(f"{path}: {error}") from None
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
         raise InvalidInput(f"{path}: not a stored solution ({error!r}); write it with save_solution") from None
 
@@ -270,15 +275,25 @@ def _sampled(path: ContactPath, radius: FloatArray) -> dict[str, FloatArray]:
 
 
 def solution_from_tree(tree: Tree) -> Solution:
-    """The inverse of `solution_to_tree`."""
-    if tree.get("schema") != SCHEMA:
-        raise InvalidInput(f"schema = {tree.get('schema')!r}: this version reads {SCHEMA!r}")
+    """The inverse of `solution_to_tree`.
+
+    Raises:
+        InvalidInput: If the tree is of another schema, or of an older one without a number that is needed today.
+    """
+    if tree.get("schema") not in _READABLE:
+        raise InvalidInput(f"schema = {tree.get('schema')!r}: this version reads {' and '.join(map(repr, _READABLE))}")
+    kind = _KINDS[tree["kind"]]
+    if missing := [name for name in (*kind.ARRAYS, *kind.SCALARS) if name not in tree["arrays"]]:
+        raise InvalidInput(
+            f"a stored {kind.__name__} without {', '.join(missing)} (schema {tree['schema']!r}): an older version wrote"
+            " it; solve its scene again with this one"
+        )
     extra: dict[str, Any] = {}
     if "critical_points" in tree:
         extra["critical_points"] = tuple(CriticalPoint(**point) for point in json.loads(tree["critical_points"]))
     if "fields" in tree:
         extra["fields"] = SampledFields(**tree["fields"])
-    return _KINDS[tree["kind"]](
+    return kind(
         scene=scene_from_mapping(json.loads(tree["scene"])),
         method=tree["method"],
         settings=tree["settings"],

@@ -9,6 +9,7 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
+from cases.measurements.measurement import grouped
 from cases.results.files import write_whole
 from cases.results.records.run import Acceptance, CaseResult, RunResult
 from reports.charts import history
@@ -19,12 +20,12 @@ from reports.pages.front import Answer, pairs_table, three_answers_of
 from reports.pages.matrix import run_matrix
 from reports.tables import convergence_table, cost_tables
 from reports.tables.sharing_tables import shared_things
-from reports.tables.table import Table, tabulated
+from reports.tables.table import Table
 from reports.words.file_names import file_name
 from reports.words.moves import baseline_sentence
 from reports.words.numbers import duration, small
 from reports.words.one_factor import one_factor
-from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of, value_text
+from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of
 
 # The folder of the pages of single cases.
 CASES = "cases"
@@ -151,34 +152,55 @@ def without_optional_end_tags(page: str) -> str:
 
 
 def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:
-    """Every accepted change of a number or a tolerance, latest first; a loosened tolerance says so."""
-    return tabulated(
-        sorted(acceptances, key=lambda entry: entry.date, reverse=True),
-        {
-            "date": lambda entry: entry.date,
-            "case": lambda entry: entry.case,
-            "method": lambda entry: entry.method,
-            "quantity": lambda entry: entry.quantity,
-            "old": lambda entry: _accepted(entry.old, entry.old_tolerance),
-            "new": lambda entry: _accepted(entry.new, entry.new_tolerance),
-            "old tolerance": lambda entry: _tolerance(entry.old_tolerance),
-            "new tolerance": lambda entry: _tolerance(entry.new_tolerance) + " LOOSENED" * _loosened(entry),
-            "reason": lambda entry: entry.reason,
-            "revision": lambda entry: entry.revision[:12],
-        },
+    """What each accepted run changed, case by case, latest first, under its date and reason.
+
+    A loosened tolerance says so. Each single number would be thousands of rows: those stand in results.json.
+    """
+    runs = grouped(acceptances, lambda entry: (entry.date, entry.revision[:12], entry.reason))
+    rows: list[tuple[str, ...]] = []
+    for (date, revision, reason), entries in sorted(runs.items(), key=lambda run: run[0][0], reverse=True):
+        cases = grouped(entries, lambda entry: entry.case)
+        rows += [(f"{date}, {revision}: {reason}",), *(_accepted_row(*case) for case in sorted(cases.items()))]
+    if not rows:
+        return None
+    return Table(
         title="Accepted changes",
-        note="Only `contact-verify accept` writes baselines; it loosens a tolerance only when told to.",
-        words=10,
+        note="Only `contact-verify accept` writes baselines; it loosens a tolerance only when told to. Each number and "
+        "tolerance, old and new, stands in results.json under acceptances.",
+        heads=("case", "methods", "new and gone", "largest loosening", "changed numbers", "largest relative change"),
+        rows=tuple(rows),
+        words=4,
     )
 
 
-def _accepted(value: float | None, tolerance: float | None) -> str:
-    """An accepted value with no more digits than its relative tolerance watches."""
-    return "" if value is None else value_text(value, None if tolerance is None else tolerance * abs(value))
+def _accepted_row(case: str, entries: Sequence[Acceptance]) -> tuple[str, ...]:
+    """What was accepted of a case: by which methods, how many numbers, how far the farthest moved."""
+    methods = ", ".join(sorted({entry.method for entry in entries if entry.method}))
+    changed = [e for e in entries if e.old is not None and e.new is not None]
+    moved = [abs(e.new / e.old - 1.0) for e in changed if e.old and e.new is not None]
+    farthest = small(max(moved)) if moved else ""
+    return case, methods, _came_and_went(entries), _loosening(entries), str(len(changed)), farthest
 
 
-def _tolerance(value: float | None) -> str:
-    return "" if value is None else small(value)
+def _came_and_went(entries: Sequence[Acceptance]) -> str:
+    """Numbers that are new, numbers that are gone, and the first of the entries that are in words."""
+    counted = {
+        "new": sum(e.old is None and e.new is not None for e in entries),
+        "gone": sum(e.old is not None and e.new is None for e in entries),
+    }
+    records = list(dict.fromkeys(e.quantity for e in entries if e.old is None and e.new is None))
+    others = [f"{len(records) - 1} more"] if len(records) > 1 else []
+    return ", ".join([f"{number} {word}" for word, number in counted.items() if number] + records[:1] + others)
+
+
+def _loosening(entries: Sequence[Acceptance]) -> str:
+    """How many tolerances were loosened, and which the most."""
+    loosened = [(e.new_tolerance or 0.0, e.old_tolerance or 0.0, e) for e in entries if _loosened(e)]
+    if not loosened:
+        return ""
+    new, old, entry = max(loosened, key=lambda change: change[0] - change[1])
+    place = f"{entry.quantity} of {entry.method}"
+    return f"{len(loosened)} LOOSENED, {place} from {small(old)} to {small(new)}"
 
 
 def _loosened(entry: Acceptance) -> bool:

@@ -3,6 +3,8 @@
 The numbers are made up (a stiffness 2.48 with errors of a first-order and a spectral method); nothing was solved.
 """
 
+import dataclasses
+
 from cases.results.records.claim import Claim, Kind, Origin, Verdict
 from cases.results.records.convergence import ConvergenceClass, ConvergenceStudy, Grid
 from cases.results.records.cost import CheapestRun, DigitPrice, EffectEntry, WorkPoint, WorkPrecision
@@ -523,6 +525,23 @@ def acceptance() -> Acceptance:
         new_tolerance=1.5e-9,
         reason="the quadrature was corrected",
         revision="0" * 40,
+    )
+
+
+def accepted_numbers(count: int) -> tuple[Acceptance, ...]:
+    """So many moved numbers of eleven accepted runs, each with the reason of its run."""
+    return tuple(
+        dataclasses.replace(
+            acceptance(),
+            date=f"2026-01-{1 + i % 11:02}",
+            revision=f"{i % 11:x}" * 40,
+            case=f"case_{i % 7}",
+            quantity=f"normal_force of scene {i}",
+            new=1.49 + 1e-6 * i,
+            new_tolerance=1.5e-9 if i % 5 else 3e-9,
+            reason=f"reason {i % 11}",
+        )
+        for i in range(count)
     )
 
 

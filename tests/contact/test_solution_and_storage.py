@@ -111,6 +111,30 @@ def test_storage_loses_nothing(tmp_path, index):
         assert again.stable_force_control.dtype == np.bool_
 
 
+def older(file, drop=()):
+    """The file as the first layout had it, without these entries."""
+    tree = read_tree(file)
+    write_tree(
+        file,
+        tree
+        | {
+            "schema": "contact-verification/solution/1",
+            "arrays": {k: v for k, v in tree["arrays"].items() if k not in drop},
+        },
+    )
+
+
+def test_older_files_are_read_or_refused_in_one_sentence(tmp_path):
+    for solution in solutions():
+        save_solution(tmp_path / "a.h5", solution)
+        older(tmp_path / "a.h5")
+        assert type(load_solution(tmp_path / "a.h5")) is type(solution)
+    save_solution(tmp_path / "b.h5", solutions()[1])
+    older(tmp_path / "b.h5", drop=("force_at_loss",))
+    with pytest.raises(InvalidInput, match=r"a stored DetachmentPath without force_at_loss .*; solve its scene again"):
+        load_solution(tmp_path / "b.h5")
+
+
 def test_stored_fields_answer_exactly_where_stored_and_nowhere_else(tmp_path):
     solution, radius = path(), np.linspace(0.0, 1e-3, 5)
     save_solution(tmp_path / "a.h5", solution, radius)

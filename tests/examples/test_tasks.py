@@ -19,7 +19,7 @@ FOLDER = Path(__file__).parents[2] / "examples" / "tasks"
 PAGE = (FOLDER / "README.md").read_text(encoding="utf-8")
 SCENES = sorted(file.name for file in FOLDER.glob("*.toml"))
 SCRIPTS = sorted(file.name for file in FOLDER.glob("*.py"))
-SLOW = {"verify_a_case.py", "stress_inside.py", "two_methods.py", "creep.toml"}
+SLOW = {"verify_a_case.py", "wheel_alone.py", "stress_inside.py", "two_methods.py", "creep.toml"}
 
 
 def tasks(names):

@@ -29,6 +29,7 @@ const first = document.querySelector("#worst tbody tr");
 document.body.innerHTML = "<pre id=measured>" + JSON.stringify({
   headline: box(document.querySelector("h1")),
   questions: [...document.querySelectorAll(".answers h2")].map(box),
+  answers: [...document.querySelectorAll(".answers p:not(figcaption p)")].map(box),
   worst: first ? box(first) : [],
   worst_text: first ? first.textContent : "",
   page_width: document.documentElement.scrollWidth,
@@ -79,6 +80,14 @@ def picture(page: Path, target: Path, *, height: int = HEIGHT) -> None:
     """The page as PNG."""
     with tempfile.TemporaryDirectory() as folder:
         _run(f"--screenshot={target}", f"file://{page}", folder, height=height)
+
+
+def printed_pages(page: Path) -> int:
+    """How many sheets of paper the page fills."""
+    with tempfile.TemporaryDirectory() as folder:
+        target = Path(folder) / "page.pdf"
+        _run(f"--print-to-pdf={target}", page.as_uri(), folder)
+        return len(re.findall(rb"/Type\s*/Page\b", target.read_bytes()))
 
 
 def _run(task: str, address: str, profile: str, *more: str, width: int = WIDTH, height: int = HEIGHT) -> str:

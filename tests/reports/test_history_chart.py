@@ -8,6 +8,8 @@ from cases.results.records.run import Acceptance
 from reports.charts.history import accepted_steps, figures
 from reports.commands.studies import PARTIAL, _counted
 from reports.figures.figure import write_figure
+from reports.pages.report import tolerance_history
+from tests.cases.example_run import accepted_numbers
 
 
 def entry(revision, method, old, new):
@@ -56,3 +58,27 @@ def test_a_study_tells_how_far_it_is_and_keeps_what_it_has_found(tmp_path, capsy
     assert (tmp_path / "maps" / PARTIAL).read_text() == "Hertz: 1 %\nDimitriadis: 5 %\n"
     _counted(tmp_path / "maps")("again")
     assert (tmp_path / "maps" / PARTIAL).read_text() == "again\n"
+
+
+def test_the_tolerance_history_has_a_row_a_case_of_each_run_and_names_what_was_loosened():
+    table = tolerance_history(accepted_numbers(770))
+    headings = [row[0] for row in table.rows if len(row) == 1]
+    assert headings == sorted(headings, reverse=True)
+    assert len(headings) == 11
+    rows = [row for row in table.rows if len(row) > 1]
+    assert len(rows) == 77
+    assert sum(int(row[4]) for row in rows) == 770
+    assert all("2 LOOSENED, normal_force of scene" in row[3] for row in rows)
+    assert all(row[3].endswith("of mdr from 1.5e-9 to 3.0e-9") for row in rows)
+
+
+def test_numbers_that_came_and_went_are_counted_apart_from_those_that_moved():
+    entries = (
+        entry("a", "mdr", None, 1.0),
+        entry("a", "fem", 1.0, None),
+        entry("a", "fem", 1.0, 1.5),
+        entry("a", "bem", None, None),
+    )
+    _, row = tolerance_history(entries).rows
+    assert row == ("cone", "bem, fem, mdr", "1 new, 1 gone, force", "", "1", "0.5")
+    assert tolerance_history(()) is None

@@ -36,10 +36,11 @@ def test_thick_layers_are_half_spaces(name):
     assert tiny == pytest.approx([end], rel=3e-6, abs=0.0)
 
 
-@pytest.mark.parametrize("nu", [0.3, 0.45, 0.5])
-def test_quadratics_of_hayes_are_within_three_per_cent_of_what_they_were_fitted_to(nu):
+@pytest.mark.parametrize(("nu", "worst"), [(0.3, 0.01438), (0.45, 0.01533), (0.5, 0.02036)])
+def test_quadratics_of_hayes_are_within_three_per_cent_of_what_they_were_fitted_to(nu, worst):
+    """The largest error as it was found on 2026-11-22: each constant five per cent wrong moves it by more."""
     errors = force_errors(BY_NAME[FITTED_APART], nu)[(RATIOS >= 0.2) & (RATIOS <= 2.0)]
-    assert 5e-3 < np.max(np.abs(errors)) < 3e-2
+    assert np.max(np.abs(errors)) == pytest.approx(worst, rel=0.01, abs=0.0)
 
 
 def test_a_ratio_that_is_not_tabulated_falls_through_to_one_half():
