@@ -14,7 +14,7 @@ from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
 from bem.layer_equation.stick.all_radii import adhered_punches
 from bem.layer_equation.stick.coulomb import coulomb_functions
-from bem.layer_equation.stick.frictionless_slip import frictionless_punch
+from bem.layer_equation.stick.frictionless_slip import frictionless_punch, rung_of
 from contact import Layer
 
 # nu, a/h, support, k_stick/(2 E* a), c_stick/E*, k/(2 E* a) without friction, Q/N, p and q at a/2 over the mean
@@ -188,7 +188,7 @@ def test_reciprocity_of_the_two_punches(nu, support, ratio):
         conjugate += coefficient * here
         before, here = here, ((2 * n + 1) * t * here - n * before) / (n + 1)
     beta, eta, kappa = stuck.material.beta, stuck.material.eta, free.transforms.wavenumber
-    transforms = basis_transforms(stuck.material.charge, ratio, stuck.coefficients.size)
+    transforms = basis_transforms(stuck.material.charge, rung_of(ratio), stuck.coefficients.size, longest=2.0)
     sine = stuck.coefficients @ transforms.sine
     assert np.array_equal(transforms.wavenumber, kappa)
     layer = (free.transforms.weights * stuck.compliance(transforms).coupling * free.transform) @ sine
