@@ -97,6 +97,22 @@ def test_the_surface_below_neither_sinks_unevenly_nor_slides(nu, support, ratio)
     assert fields.radial_displacement(inside) == pytest.approx(np.zeros(6), rel=0, abs=1e-12)
 
 
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("ratio", [10.0, 50.0])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.5])
+def test_wide_punches_leave_what_rounding_leaves(nu, ratio, support):
+    """u_z = 1 is what is left of terms as large as the stiffness; their matrix's condition counts the roundings.
+
+    Seen to fail by 4e-12 at a/h = 10 while the tanh-sinh weights added up to 1 + 4e-15, and by 1e-11 at nu = 0.45 and
+    a/h = 50 with fewer functions; at nu = 1/2 and a/h = 50 more of them change nothing.
+    """
+    punch = adhered_punch(ratio, UniformKernel(support, nu))
+    fields, inside = AdheredFields(punch), np.array([0.0, 1e-3, 0.3, 0.7, 0.99, 0.9999])
+    rounding = 1e-12 if nu < 0.5 or ratio <= 10.0 else 40.0 * np.finfo(float).eps * punch.condition
+    assert fields.normal_displacement(inside) == pytest.approx(np.ones(6), rel=0, abs=rounding)
+    assert fields.radial_displacement(inside) == pytest.approx(np.zeros(6), rel=0, abs=rounding)
+
+
 def test_half_space_of_mossakovskii():
     """k_stick/k = (1 - nu) ln(3 - 4 nu)/(1 - 2 nu)."""
     for nu in (0.0, 0.2, 0.3, 0.45):
