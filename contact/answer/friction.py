@@ -12,6 +12,7 @@ from contact.answer.solution import ContactPath, HistoryPath
 from contact.records.validation import FloatArray
 from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.layer import Layer
+from contact.scene.layer_stack import LayerStack
 
 # From this Poisson's ratio on, and from this a/h, an answer without friction says what friction would move: a
 # coefficient of 0.1 then moves it by up to four per cent or more (0.405 and 0.346 of the bound below at a/h = 1 and
@@ -82,11 +83,24 @@ def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]
 
     With u_r1 the radial displacement under the frictionless unit punch, F <= F_0/(1 - mu max |u_r1|) by reciprocity.
     """
-    ratio = float(np.max(radius, initial=0.0)) / layer.thickness
-    if not isinstance(layer, Layer) or layer.poissons_ratio < _NEARLY_INCOMPRESSIBLE or ratio < _THIN:
+    if layer.surface.poissons_ratio < _NEARLY_INCOMPRESSIBLE:
         return ()
+    ratio = float(np.max(radius, initial=0.0)) / layer.surface.thickness
+    if ratio < _THIN:
+        return ()
+    if not isinstance(layer, Layer):
+        return _told_of_what_lies_below(layer, ratio)
     slip = _SPOKEN_OF * _SLIDES[layer.support] * ratio
     most = f"by up to {100.0 * slip / (1.0 - slip):.2g} %" if slip < 0.5 else "by more than half of it"
     place = f"at a/h = {ratio:.3g} and nu = {layer.poissons_ratio:g}"
     told = f"frictionless: {place} dry friction of {_SPOKEN_OF:g} may raise the force {most}"
     return (f"{told}; contact-verify advise tells more closely, Friction(coefficient=..) solves it",)
+
+
+def _told_of_what_lies_below(layer: ElasticLayer, ratio: float) -> tuple[str, ...]:
+    """On several layers the slip depends on all of them, and has no bound without solving."""
+    if not isinstance(layer, LayerStack):
+        return ()
+    place = f"at a/h = {ratio:.3g} of the surface layer and nu = {layer.surface.poissons_ratio:g}"
+    told = f"frictionless: {place} dry friction may raise the force, the more the stiffer what lies below"
+    return (f"{told}; contact-verify advise bounds it, Friction(coefficient=..) solves it",)

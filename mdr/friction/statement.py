@@ -9,19 +9,16 @@ radii around a_0 that full stick does not leave: measured there, not proved.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from bem.kernels.of_layer import sticking_kernel
 from bem.layer_equation.stick.frictionless_slip import FrictionlessPunch, frictionless_punch
-from bem.polynomials.gauss_panels import gauss_nodes
-from contact import ContactPath, ContactRadii, FlatPunch, InvalidInput, Scene
+from contact import ContactPath, InvalidInput, Scene
 from contact.records.validation import FloatArray
+from mdr.springs.half_space_profile import half_space_profile
 
-# Gauss nodes of the integral of pressure times slip over the contact, in the angle arcsin(r/a).
-_NODES = 32
 # Share of min(1, mu U) by which friction moves the radius at most. Full stick moved it by up to 0.14 of min(1, U), most
 # under a cone on a thick layer of nu = 0 (252 scenes: nu 0 to 1/2, a/h 0.1 to 10, both supports, 2026-11-22).
 _RADIUS_SHARE = 0.2
@@ -48,66 +45,86 @@ class FrictionEffect:
     one_direction: FloatArray
 
 
-def friction_effect(
-    path: ContactPath, coefficient: float, solve: Callable[[Scene[ContactRadii]], ContactPath]
-) -> FrictionEffect:
+def friction_effect(path: ContactPath, coefficient: float) -> FrictionEffect:
     """Bound and first order of what dry friction changes of a frictionless path.
 
     Args:
-        path: Frictionless equilibria, without adhesion.
+        path: Frictionless equilibria of any method, without adhesion.
         coefficient: mu >= 0, finite.
-        solve: Solves a frictionless scene at prescribed radii; not asked for flat punches.
 
     Raises:
         InvalidInput: If the path has effects, or the coefficient is not finite.
+        UnsupportedSceneError: If the layer is neither of one material nor a stack.
     """
     if path.scene.effects or not 0.0 <= coefficient < math.inf:
         raise InvalidInput(
             f"friction of {coefficient:g} beside {len(path.scene.effects)} effects: the bound holds for frictionless "
             "elastic contact and finite coefficients; solve Friction(coefficient=inf) for full stick"
         )
-    punches = [_punch(path.scene, float(a)) for a in path.contact_radius]
-    slip = coefficient * np.array([punch.largest() for punch in punches])
+    contacts = [_contact(path.scene, *state) for state in zip(path.contact_radius, path.indentation_depth, strict=True)]
+    slip = coefficient * np.array([contact.punch.largest() for contact in contacts])
     room = np.divide(1.0, 1.0 - slip, out=np.full_like(slip, math.inf), where=slip < 1.0)
-    least = (1.0 - _lost(path, _RADIUS_SHARE * np.minimum(slip, 1.0), solve)) / (1.0 + slip)
-    moments = [_first_order(path, step, punch) for step, punch in enumerate(punches)]
-    one_way = np.array([known for _, known in moments])
-    first = coefficient * np.array([value if known else 0.0 for value, known in moments])
-    return FrictionEffect(coefficient, least - 1.0, room - 1.0, first, one_way)
+    share = _RADIUS_SHARE * np.minimum(slip, 1.0)
+    lost = np.array([_lost(contact, change) for contact, change in zip(contacts, share, strict=True)])
+    one_way = np.array([_has_one_direction(contact.punch.slip) for contact in contacts])
+    first = [coefficient * abs(one.mean_slip) if known else 0.0 for one, known in zip(contacts, one_way, strict=True)]
+    return FrictionEffect(coefficient, (1.0 - lost) / (1.0 + slip) - 1.0, room - 1.0, np.array(first), one_way)
 
 
-def _punch(scene: Scene, radius: float) -> FrictionlessPunch:
+@dataclass(frozen=True)
+class _Contact:
+    """The frictionless layer under an indenter at a depth, where the contact has any radius.
+
+    Attributes:
+        scene: Layer and indenter.
+        radius: a [m].
+        depth: delta [m].
+        punch: The unit punch of this radius.
+        load: What the indenter presses in, in the punch's basis [m].
+    """
+
+    scene: Scene
+    radius: float
+    depth: float
+    punch: FrictionlessPunch
+    load: FloatArray
+
+    @property
+    def force(self) -> float:
+        """F_0(delta, a) over 8 G [m^2]."""
+        return self.radius * self.punch.force(self.load)
+
+    @property
+    def mean_slip(self) -> float:
+        """int p_0 u_r1 dA/F_0."""
+        return self.punch.mean_slip(lambda t: _pressed(self.scene, self.radius, self.depth, t), self.load)
+
+
+def _contact(scene: Scene, radius: float, depth: float) -> _Contact:
     layer = scene.layer
-    ratio = 0.0 if layer.is_half_space else radius / layer.surface.thickness
-    return frictionless_punch(ratio, sticking_kernel(layer))
+    punch = frictionless_punch(
+        0.0 if layer.is_half_space else float(radius) / layer.surface.thickness, sticking_kernel(layer)
+    )
+    edges = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
+    x, load = punch.projection(tuple(sorted({float(b / radius) for b in edges if 0.0 < b < radius})))
+    return _Contact(scene, radius, depth, punch, load @ _pressed(scene, radius, depth, x))
 
 
-def _first_order(path: ContactPath, step: int, punch: FrictionlessPunch) -> tuple[float, bool]:
-    """int p_0 |u_r1| dA/F_0, and whether slip has one direction."""
-    nodes, weights = gauss_nodes(_NODES)
-    angle = math.pi / 2.0 * nodes
-    s, a = np.sin(angle), float(path.contact_radius[step])
-    slip = punch.radial_displacement(s)
-    area = math.pi**2 * a**2 * weights * s * np.cos(angle)
-    value = float(area @ (path.pressure(a * s, step) * np.abs(slip))) / float(path.normal_force[step])
-    largest = np.abs(slip).max()
-    return value, bool(np.all(slip > -_NO_DIRECTION * largest) or np.all(slip < _NO_DIRECTION * largest))
+def _pressed(scene: Scene, radius: float, depth: float, x: FloatArray) -> FloatArray:
+    """delta - g_hs(a x) [m], the transform of the surface under the indenter."""
+    excess = np.maximum(radius * x - scene.indenter.flat_radius, 0.0)
+    return np.asarray(depth - half_space_profile(scene.indenter, excess))
 
 
-def _lost(path: ContactPath, share: FloatArray, solve: Callable[[Scene[ContactRadii]], ContactPath]) -> FloatArray:
-    """1 - F_0(delta, a)/F_0 at radii that differ by a share: from the states at those radii, pressed on or relieved."""
-    scene = path.scene
-    if isinstance(scene.indenter, FlatPunch):
-        return np.zeros_like(share)
-    lost = np.zeros_like(share)
-    for step, a in enumerate(path.contact_radius):
-        change = float(share[step])
-        least = max(a * (1.0 - change), scene.indenter.flat_radius * (1.0 + 1e-9))
-        radii = [r for r in (least, a * (1.0 + change)) if r < scene.indenter.max_radius and r != a]
-        if not radii or not change:
-            continue
-        near = solve(scene.replace(loading=ContactRadii(radii)))
-        moved = path.indentation_depth[step] - near.indentation_depth
-        force = near.normal_force + near.contact_stiffness * moved
-        lost[step] = max(0.0, float(1.0 - force.min() / path.normal_force[step]))
-    return lost
+def _has_one_direction(slip: FloatArray) -> bool:
+    least = _NO_DIRECTION * np.abs(slip).max()
+    return bool(np.all(slip > -least) or np.all(slip < least))
+
+
+def _lost(contact: _Contact, share: float) -> float:
+    """1 - F_0(delta, a)/F_0 at radii that differ by a share, at most."""
+    scene, a = contact.scene, contact.radius
+    flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
+    near = [max(a * (1.0 - share), flat), min(a * (1.0 + share), end)]
+    forces = [_contact(scene, r, contact.depth).force for r in near if r != a]
+    return max(0.0, 1.0 - min(forces, default=contact.force) / contact.force)

@@ -14,7 +14,7 @@ from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
 from bem.layer_equation.stick.all_radii import adhered_punches
 from bem.layer_equation.stick.coulomb import coulomb_functions
-from bem.layer_equation.stick.frictionless_slip import frictionless_punch
+from bem.layer_equation.stick.frictionless_slip import frictionless_punch, rung_of
 from contact import Layer
 
 # nu, a/h, support, k_stick/(2 E* a), c_stick/E*, k/(2 E* a) without friction, Q/N, p and q at a/2 over the mean
@@ -95,6 +95,22 @@ def test_the_surface_below_neither_sinks_unevenly_nor_slides(nu, support, ratio)
     inside = np.array([0.0, 1e-3, 0.3, 0.7, 0.99, 0.9999])
     assert fields.normal_displacement(inside) == pytest.approx(np.ones(6), rel=0, abs=1e-12)
     assert fields.radial_displacement(inside) == pytest.approx(np.zeros(6), rel=0, abs=1e-12)
+
+
+@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("ratio", [10.0, 50.0])
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.45, 0.5])
+def test_wide_punches_leave_what_rounding_leaves(nu, ratio, support):
+    """u_z = 1 is what is left of terms as large as the stiffness; their matrix's condition counts the roundings.
+
+    Seen to fail by 4e-12 at a/h = 10 while the tanh-sinh weights added up to 1 + 4e-15, and by 1e-11 at nu = 0.45 and
+    a/h = 50 with fewer functions; at nu = 1/2 and a/h = 50 more of them change nothing.
+    """
+    punch = adhered_punch(ratio, UniformKernel(support, nu))
+    fields, inside = AdheredFields(punch), np.array([0.0, 1e-3, 0.3, 0.7, 0.99, 0.9999])
+    rounding = 1e-12 if nu < 0.5 or ratio <= 10.0 else 40.0 * np.finfo(float).eps * punch.condition
+    assert fields.normal_displacement(inside) == pytest.approx(np.ones(6), rel=0, abs=rounding)
+    assert fields.radial_displacement(inside) == pytest.approx(np.zeros(6), rel=0, abs=rounding)
 
 
 def test_half_space_of_mossakovskii():
@@ -188,7 +204,7 @@ def test_reciprocity_of_the_two_punches(nu, support, ratio):
         conjugate += coefficient * here
         before, here = here, ((2 * n + 1) * t * here - n * before) / (n + 1)
     beta, eta, kappa = stuck.material.beta, stuck.material.eta, free.transforms.wavenumber
-    transforms = basis_transforms(stuck.material.charge, ratio, stuck.coefficients.size)
+    transforms = basis_transforms(stuck.material.charge, rung_of(ratio), stuck.coefficients.size, longest=2.0)
     sine = stuck.coefficients @ transforms.sine
     assert np.array_equal(transforms.wavenumber, kappa)
     layer = (free.transforms.weights * stuck.compliance(transforms).coupling * free.transform) @ sine

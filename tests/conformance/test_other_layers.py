@@ -45,7 +45,7 @@ def test_friction_on_other_layers_is_refused(layer, names):
 def test_the_bound_of_friction_refuses_graded_layers():
     path = build("mdr", {}).solve(scene_of(LAYERS[1]))
     with pytest.raises(UnsupportedSceneError, match=r"under friction .* not a GradedLayer"):
-        friction_effect(path, 0.1, build("mdr", {}).solve)
+        friction_effect(path, 0.1)
 
 
 @pytest.mark.parametrize("layer", LAYERS, ids=lambda layer: layer.title)

@@ -7,7 +7,7 @@ import pytest
 
 from bem.kernels.of_layer import UniformKernel
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch
-from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene
+from contact import ContactRadii, IndentationDepths, Layer, LayerStack, Paraboloid, Scene, Sublayer
 from contact.answer.friction import _SLIDES, told_of_friction
 from fem_reference import Fem
 from mdr import Mdr
@@ -25,7 +25,7 @@ def test_the_note_is_above_the_bound(nu, support):
     path = Mdr().solve(scene(nu, 2.0, support))
     (note,) = path.notes
     percent = float(re.search(r"up to (\S+) %", note).group(1))
-    upper = float(friction_effect(path, 0.1, Mdr().solve).upper[0])
+    upper = float(friction_effect(path, 0.1).upper[0])
     assert upper < percent / 100.0 < 3.0 * upper
 
 
@@ -36,6 +36,16 @@ def test_other_layers_have_no_note(nu, radius):
 
 def test_a_half_space_has_none():
     assert told_of_friction(Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.5), np.array([1.0])) == ()
+
+
+@pytest.mark.parametrize(("nu", "radius", "notes"), [(0.5, 2.0, 1), (0.3, 2.0, 0), (0.5, 0.9, 0)])
+def test_stacks_with_a_thin_soft_surface_point_at_the_bound(nu, radius, notes):
+    """Seen to fail: only plain layers had a note."""
+    sublayers = tuple(Sublayer(thickness=1.0, youngs_modulus=E, poissons_ratio=n) for E, n in ((1.0, nu), (10.0, 0.3)))
+    layer = LayerStack(sublayers=sublayers, interfaces=("bonded",), support="bonded")
+    found = Mdr().solve(scene(nu, radius).replace(layer=layer)).notes
+    assert len(found) == notes
+    assert all("advise bounds it" in note for note in found)
 
 
 def test_finite_elements_say_it_too():

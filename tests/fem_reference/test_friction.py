@@ -87,7 +87,7 @@ def test_vanishing_friction_is_the_frictionless_contact(loading):
 def slope_on_strips(nu, support, depth):
     """d ln F/d mu at mu = 0 by the fast method, and on strips of 40 and 80 cells, extrapolated in mu."""
     path = Mdr().solve(rubbed(None, layer(nu, support), IndentationDepths([depth])))
-    effect, radius = friction_effect(path, 1.0, Mdr().solve), float(path.contact_radius[0])
+    effect, radius = friction_effect(path, 1.0), float(path.contact_radius[0])
     maker = strips.StripMaker(
         rubbed(1.0, layer(nu, support), ContactRadii([radius])), Fem().discretisation, "superlu", strips.StageLog()
     )

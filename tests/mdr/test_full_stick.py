@@ -5,6 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from bem.kernels.of_layer import UniformKernel
+from bem.layer_equation.stick.frictionless_slip import frictionless_punch
+from bem.polynomials.gauss_panels import gauss_nodes
 from contact import (
     Cone,
     ContactRadii,
@@ -26,6 +29,7 @@ from contact import (
     scene_to_mapping,
 )
 from mdr import Mdr
+from mdr.friction import statement
 from mdr.friction.statement import friction_effect
 
 STICK = (Friction(coefficient=math.inf),)
@@ -180,19 +184,19 @@ def test_bound_and_first_order_of_friction():
     """First order against quadrature of another program; at mu = 0.01 increments of Coulomb friction by elements."""
     scene = Scene(layer=layer(0.5), indenter=PARABOLOID, loading=IndentationDepths([0.03, 0.12, 0.21]))
     path = Mdr().solve(scene)
-    effect = friction_effect(path, 0.01, Mdr().solve)
+    effect = friction_effect(path, 0.01)
     assert effect.one_direction.all()
     assert effect.first_order == pytest.approx([0.0014053, 0.0055063, 0.0082297], rel=1e-4, abs=0)
     assert effect.upper == pytest.approx([0.0021350, 0.0078201, 0.0119121], rel=0.02, abs=0)
     assert np.all((effect.lower < effect.first_order) & (effect.first_order < effect.upper))
     stick = Mdr().solve(scene.replace(effects=STICK))
-    large = friction_effect(path, 0.5, Mdr().solve)
+    large = friction_effect(path, 0.5)
     assert np.all(large.lower < stick.normal_force / path.normal_force - 1.0)
 
 
 def test_slip_of_both_directions_states_the_bound_only():
     scene = Scene(layer=layer(0.3), indenter=PARABOLOID, loading=ContactRadii([1.4]))
-    effect = friction_effect(Mdr().solve(scene), 0.1, Mdr().solve)
+    effect = friction_effect(Mdr().solve(scene), 0.1)
     assert not effect.one_direction[0]
     assert effect.first_order[0] == 0.0
     assert effect.upper[0] > 0.0
@@ -202,3 +206,32 @@ def test_power_laws_of_any_exponent():
     for exponent in (1.3, 3.0):
         indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=0.05)
         assert stuck(0.3, indenter, ContactRadii([2.0])).error_estimate["normal_force"][0] < 1e-7
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.45, 0.5])
+@pytest.mark.parametrize("indenter", [PARABOLOID, Cone(slope=0.1), TruncatedCone(flat_radius=0.3, slope=0.1)])
+def test_the_statement_about_friction_knows_the_force_and_what_other_radii_lose(nu, indenter):
+    """Its own contact against the path's: F_0, and F_0(delta, a) from states at other radii, relieved or pressed on."""
+    path = Mdr().solve(Scene(layer=layer(nu), indenter=indenter, loading=ContactRadii([0.9, 1.0, 1.1, 5.0])))
+    depth, force = float(path.indentation_depth[1]), path.normal_force
+    here = [statement._contact(path.scene, float(a), depth).force for a in path.contact_radius]
+    expected = force + path.contact_stiffness * (depth - path.indentation_depth)
+    assert np.array(here) / here[1] == pytest.approx(expected / force[1], rel=1e-11, abs=1e-12)
+    assert here[1] > max(here[0], *here[2:])
+
+
+def test_the_first_order_under_a_flat_end_is_that_of_the_pressure():
+    """int p |u_r1| dA/F by quadrature on both sides of the edge; seen to fail by 7e-3 without nodes at the edge."""
+    indenter = TruncatedCone(flat_radius=0.2, slope=0.1)
+    path = Mdr().solve(Scene(layer=layer(0.0), indenter=indenter, loading=ContactRadii([0.3])))
+    punch = frictionless_punch(0.3, UniformKernel("bonded", 0.0))
+    nodes, weights = gauss_nodes(80)
+    # Nodes crowd with the fourth power towards both ends of each stretch.
+    crowded, slope = nodes**4 * (35 - 84 * nodes + 70 * nodes**2 - 20 * nodes**3), 140 * (nodes * (1 - nodes)) ** 3
+    total = 0.0
+    for low, high in ((0.0, 0.2), (0.2, 0.3)):
+        r = low + (high - low) * crowded
+        slid = path.pressure(r) * np.abs(punch.radial_displacement(r / 0.3))
+        total += 2.0 * math.pi * (high - low) * (weights * slope * r) @ slid
+    exact = 0.1 * total / float(path.normal_force[0])
+    assert friction_effect(path, 0.1).first_order == pytest.approx([exact], rel=2e-4, abs=0)

@@ -127,7 +127,7 @@ def test_finite_elements_agree_on_one_stack():
 def test_coulomb_friction_by_finite_elements_is_within_the_bound(name):
     scene = scene_of(STACKS[name], IndentationDepths([0.05]), effects=())
     path = Mdr().solve(scene)
-    effect = friction_effect(path, 0.2, Mdr().solve)
+    effect = friction_effect(path, 0.2)
     rubbed = Fem(growth=1.0).solve(scene.replace(effects=(Friction(coefficient=0.2),)))
     change, error = float(rubbed.normal_force[0] / path.normal_force[0]) - 1.0, 1e-5
     assert effect.lower[0] - error <= change <= effect.upper[0] + error

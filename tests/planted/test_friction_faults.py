@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bem.kernels import stack, tangential
+from bem.layer_equation.stick.frictionless_slip import frictionless_punch
 from bem.layer_equation.stick.growth import growth_table
 from contact import NotConvergedError, UnsupportedSceneError
 from fem_reference.elastic.friction import step, walk
@@ -83,8 +84,10 @@ def test_the_layer_pulls_inward_where_it_pushes_outward(monkeypatch):
         return dataclasses.replace(found, coupling=-0.9 * found.coupling)
 
     swap("bem.kernels.tangential:beyond_half_space", lambda _: wrong)(monkeypatch)
+    frictionless_punch.cache_clear()
     with pytest.raises(CAUGHT):
         friction.test_slope_at_vanishing_friction_is_that_of_reciprocity(0.5, "bonded", 0.12)
+    frictionless_punch.cache_clear()
 
 
 def test_tractions_with_a_kink_inside_cells_of_the_mesh(monkeypatch):

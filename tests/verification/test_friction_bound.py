@@ -39,7 +39,7 @@ def random_scenes(seed):
 def judged(scene, coefficient):
     """Bounds and first order of F/F_0 - 1 by the fast method, its value by finite elements and their error."""
     path = Mdr().solve(scene)
-    effect = friction_effect(path, coefficient, Mdr().solve)
+    effect = friction_effect(path, coefficient)
     rubbed = Fem(growth=0.75).solve(scene.replace(effects=(Friction(coefficient=coefficient),)))
     error = float(rubbed.error_estimate["normal_force"][0])
     change = float(rubbed.normal_force[0] / path.normal_force[0]) - 1.0

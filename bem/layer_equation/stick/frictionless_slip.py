@@ -1,15 +1,17 @@
 """How far the surface slides under a frictionless flat punch that is pressed in by one.
 
 What friction changes follows from it by reciprocity: with u_r1 this radial displacement and q the true tangential
-traction, ``F = F_frictionless(delta, a) - int q u_r1 dA`` exactly. Densities are Legendre polynomials here, the basis
-of the adhered punch without its weight. Lengths in the punch's radius, displacements in its depth.
+traction, ``F = F_frictionless(delta, a) - int q u_r1 dA`` exactly. Densities are even Legendre polynomials here, the
+basis of the adhered punch without its weight. All that depends on the radius but not on the layer is tabulated for a
+factor of two in a/h at a time. Lengths in the punch's radius, displacements in its depth.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
@@ -18,16 +20,41 @@ from scipy.special import j1
 
 from bem.kernels.tangential import StickingKernel
 from bem.layer_equation.stick.adhered_punch import BasisTransforms, Material, basis_transforms, functions_for
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
 from contact.records.validation import FloatArray
 
 # Gauss nodes of the density between a radius and the edge.
 _NODES = 64
-# Below this share of the radius the displacement grows with the radius, to six digits.
-_NEAR_AXIS = 1e-3
 # Radii among which the largest slip is looked for; between two of them it is missed by at most 6e-5
 # of itself (50 layers, against 4001 samples, 2026-11-22).
 _SAMPLES = 201
+# Nodes of the angle, and of a profile's stretches, beyond the functions that they resolve; chosen.
+_ANGLES = 24
+
+
+@dataclass(frozen=True)
+class SlipTables:
+    """What punches of all layers share whose a/h lie between `rung`/2 and `rung`.
+
+    Fields under the punch are known at Gauss nodes of the angle arcsin(r/a), in which they are smooth up to the edge.
+
+    Attributes:
+        transforms: Of the Legendre polynomials.
+        even: Cosine transforms of the even basis functions, shape (n, k).
+        radius: r/a at the nodes of the angle, shape (s,).
+        waves: J_1(kappa r/a) times the weights of the wavenumbers, shape (s, k).
+        enclosing: Takes coefficients to int_s^1 phi t/sqrt(t^2 - s^2) dt, shape (s, n).
+        slope: Takes values to derivatives over the angle times its weights, shape (s, s).
+        samples: Takes values to evenly spaced radii, shape (samples, s).
+    """
+
+    transforms: BasisTransforms
+    even: FloatArray
+    radius: FloatArray
+    waves: FloatArray
+    enclosing: FloatArray
+    slope: FloatArray
+    samples: FloatArray
 
 
 @dataclass(frozen=True)
@@ -38,53 +65,148 @@ class FrictionlessPunch:
         material: What the layer is made of.
         ratio: a/h, 0 for the half-space.
         kernel: Of the layer.
-        coefficients: Of phi in Legendre polynomials P_0, P_1, .. on [-1, 1].
-        transform: P(kappa) = int_0^1 phi cos(kappa t) dt, shape (k,).
-        transforms: Of the basis, for wavenumbers and weights.
+        tables: Of this range of radii.
+        lower: Cholesky factor of the equations for the coefficients, shape (n, n).
+        even_coefficients: Of phi in the even basis, shape (n,).
     """
 
     material: Material
     ratio: float
     kernel: StickingKernel
-    coefficients: FloatArray
-    transform: FloatArray
-    transforms: BasisTransforms
+    tables: SlipTables
+    lower: FloatArray
+    even_coefficients: FloatArray
+
+    @property
+    def coefficients(self) -> FloatArray:
+        """Of phi in Legendre polynomials P_0, P_1, .. on [-1, 1]."""
+        found = np.zeros(2 * self.even_coefficients.size)
+        found[::2] = self.even_coefficients * _scales(self.even_coefficients.size)
+        return found
+
+    @property
+    def transform(self) -> FloatArray:
+        """P(kappa) = int_0^1 phi cos(kappa t) dt, shape (k,)."""
+        return self.even_coefficients @ self.tables.even
+
+    @property
+    def transforms(self) -> BasisTransforms:
+        """Of the Legendre polynomials, for wavenumbers and weights."""
+        return self.tables.transforms
+
+    @cached_property
+    def slip(self) -> FloatArray:
+        """u_r1 at the nodes of the angle, positive outward, shape (s,)."""
+        tables = self.tables
+        extra = self.kernel.beyond_half_space(tables.transforms.wavenumber / (self.ratio or 1.0))
+        enclosed = self.coefficients[0] - tables.enclosing @ self.even_coefficients
+        layer = tables.waves @ (extra.coupling * self.transform)
+        return np.asarray(2.0 / math.pi * (layer - self.material.eta * enclosed / tables.radius))
 
     def radial_displacement(self, radius: FloatArray) -> FloatArray:
         """u_r1 at 0 <= r/a <= 1, positive outward, shape (n,)."""
-        s = np.maximum(radius, _NEAR_AXIS)
-        v, weights = gauss_nodes(_NODES)
-        square = (1.0 - s) * (1.0 + s)
-        t = np.sqrt(s[:, None] ** 2 + square[:, None] * v**2)
-        beyond = np.sqrt(square) * (legendre.legval(t, self.coefficients) @ weights)
-        enclosed = self.coefficients[0] - beyond
-        kappa = self.transforms.wavenumber
-        layer = np.zeros_like(s)
-        if kappa.size:
-            extra = self.kernel.beyond_half_space(kappa / self.ratio)
-            layer = j1(np.multiply.outer(s, kappa)) @ (self.transforms.weights * extra.coupling * self.transform)
-        displacement = 2.0 / math.pi * (layer - self.material.eta * enclosed / s)
-        return np.asarray(displacement * radius / s)
+        return _at_radii(self.tables.radius.size, radius) @ self.slip
 
     def largest(self) -> float:
         """max |u_r1| under the punch."""
-        return float(np.abs(self.radial_displacement(np.linspace(0.0, 1.0, _SAMPLES))).max())
+        return float(np.abs(self.tables.samples @ self.slip).max())
+
+    def projection(self, edges: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+        """Nodes r/a, and what takes a transform there to its load in the basis, shape (n, nodes).
+
+        Args:
+            edges: Places between 0 and 1, in order, beyond which it may begin like a root.
+        """
+        return _projection(edges, self.even_coefficients.size)
+
+    def force(self, load: FloatArray) -> float:
+        """int_0^1 phi dt of the density under a load, by reciprocity with the punch's own."""
+        return float(self.even_coefficients @ load) / 2.0
+
+    def mean_slip(self, transform: Callable[[FloatArray], FloatArray], load: FloatArray) -> float:
+        """int p u_r1 dA/F of the contact whose pressed surface has this transform, and this load.
+
+        By parts it is the slope of u_r1 times int_r^a phi t/sqrt(t^2 - r^2) dt. The half-space's share of phi is the
+        transform itself, the layer's is smooth, so that no edge of a profile need be resolved by the basis.
+        """
+        tables, twice = self.tables, 2.0 * self.material.beta
+        layer = load - twice * cho_solve((self.lower, True), load, check_finite=False)
+        t, height, weights = _towards_edge(tables.radius)
+        enclosing = (height * (transform(t) @ weights) - tables.enclosing @ layer) / twice
+        return float((tables.slope @ self.slip) @ enclosing) / self.force(load)
 
 
 @lru_cache(maxsize=64)
 def frictionless_punch(ratio: float, kernel: StickingKernel) -> FrictionlessPunch:
     """Solve for a punch of radius a on a layer whose surface material is h thick, ratio = a/h; 0 is the half-space."""
-    material = Material.of(kernel.poissons_ratio)
-    transforms = basis_transforms(0.0, ratio, functions_for(ratio), longest=kernel.longest)
-    even = transforms.cosine[::2]
-    n = 2 * np.arange(len(even))
-    q = transforms.wavenumber / (ratio or 1.0)
-    weights = 4.0 / math.pi * transforms.weights * kernel.beyond_half_space(q).normal
-    matrix = (even * weights) @ even.T
+    material, rung = Material.of(kernel.poissons_ratio), rung_of(ratio)
+    tables = slip_tables(rung, kernel.longest)
+    weights = 4.0 / math.pi * tables.transforms.weights
+    normal = kernel.beyond_half_space(tables.transforms.wavenumber / (ratio or 1.0)).normal
+    matrix = (tables.even * (weights * normal)) @ tables.even.T
     matrix[np.diag_indices_from(matrix)] += 2.0 * material.beta
-    load = np.zeros(len(even))
+    load = np.zeros(len(matrix))
     load[0] = math.sqrt(2.0)
-    solved = cho_solve(cho_factor(matrix, lower=True), load)
-    coefficients = np.zeros(2 * len(even))
-    coefficients[::2] = solved * np.where(n % 4, -1.0, 1.0) * np.sqrt((2 * n + 1) / 2.0)
-    return FrictionlessPunch(material, ratio, kernel, coefficients, solved @ even, transforms)
+    lower = cho_factor(matrix, lower=True, check_finite=False)[0]
+    return FrictionlessPunch(material, ratio, kernel, tables, lower, cho_solve((lower, True), load, check_finite=False))
+
+
+def rung_of(ratio: float) -> float:
+    """The next power of two."""
+    return 2.0 ** math.ceil(math.log2(ratio)) if ratio else 0.0
+
+
+@lru_cache(maxsize=16)
+def slip_tables(rung: float, longest: float) -> SlipTables:
+    """Tables up to a/h = rung; a kernel smooth on the scale of 1/longest asks for narrower panels."""
+    # Panels are as wide as the smallest punch of the range bears: half a rung.
+    transforms = basis_transforms(0.0, rung, functions_for(rung), longest=2.0 * longest)
+    even = transforms.cosine[::2]
+    count = len(even) + _ANGLES
+    angle, weights = gauss_nodes(count)
+    radius = np.sin(math.pi / 2.0 * angle)
+    t, height, of_edge = _towards_edge(radius)
+    to_legendre = np.linalg.inv(legendre.legvander(2.0 * angle - 1.0, count - 1))
+    slopes = legendre.legval(2.0 * angle - 1.0, legendre.legder(np.eye(count), scl=2.0)).T
+    return SlipTables(
+        transforms=transforms,
+        even=even,
+        radius=radius,
+        waves=j1(np.multiply.outer(radius, transforms.wavenumber)) * transforms.weights,
+        enclosing=height[:, None] * np.einsum("sv,svn->sn", of_edge + np.zeros_like(t), _even_basis(t, len(even))),
+        slope=weights[:, None] * (slopes @ to_legendre),
+        samples=_at_radii(count, np.linspace(0.0, 1.0, _SAMPLES)),
+    )
+
+
+@lru_cache(maxsize=16)
+def _projection(edges: tuple[float, ...], count: int) -> tuple[FloatArray, FloatArray]:
+    ends = np.array([0.0, *edges, 1.0])
+    length = np.diff(ends)[:, None]
+    # Nodes crowd with the square towards the inner end of each stretch; the basis has twice its degree there.
+    u, weights = gauss_nodes(2 * count + _ANGLES)
+    x = (ends[:-1, None] + length * u**2).ravel()
+    return x, 2.0 * (length * 2.0 * u * weights).ravel() * _even_basis(x, count).T
+
+
+def _at_radii(count: int, radius: FloatArray) -> FloatArray:
+    """Takes values at Gauss nodes of the angle to radii r/a."""
+    return lagrange_matrix(count, 2.0 / math.pi * np.arcsin(radius))
+
+
+def _towards_edge(radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """t = sqrt(s^2 + (1 - s^2) v^2) at Gauss nodes v, sqrt(1 - s^2), and the weights of v."""
+    v, weights = gauss_nodes(_NODES)
+    square = (1.0 - radius) * (1.0 + radius)
+    return np.sqrt(radius[:, None] ** 2 + square[:, None] * v**2), np.sqrt(square), weights
+
+
+def _scales(count: int) -> FloatArray:
+    """(-1)^(n/2) sqrt((2n + 1)/2) of the even n = 0, 2, ..: the basis functions over the Legendre polynomials."""
+    n = 2 * np.arange(count)
+    return np.where(n % 4, -1.0, 1.0) * np.sqrt((2 * n + 1) / 2.0)
+
+
+def _even_basis(t: FloatArray, count: int) -> FloatArray:
+    """The even basis functions at t, shape (*t.shape, count)."""
+    return np.asarray(legendre.legvander(t, 2 * count - 2)[..., ::2] * _scales(count))

@@ -125,7 +125,7 @@ def statement(scene: Scene) -> tuple[float, float, float, float]:
 
     path = Mdr().solve(frictionless(scene))
     assert isinstance(path, ContactPath)
-    effect = friction_effect(path, coefficient(scene), Mdr().solve)
+    effect = friction_effect(path, coefficient(scene))
     force = float(path.normal_force[0])
     return force, 1 + float(effect.lower[0]), 1 + float(effect.upper[0]), 1 + float(effect.first_order[0])
 

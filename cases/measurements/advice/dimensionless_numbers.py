@@ -21,6 +21,7 @@ from contact import (
     ImpactHistory,
     IndentationDepths,
     Layer,
+    LayerStack,
     NotConvergedError,
     Paraboloid,
     Scene,
@@ -124,11 +125,10 @@ def _tip_share(scene: Scene, answer: Solution) -> Number | None:
 
 def _friction(scene: Scene, answer: Solution) -> Number | None:
     """What dry friction would move of the force at the largest depth, from the frictionless answer alone."""
-    if scene.effects or not isinstance(answer, ContactPath) or not isinstance(scene.layer, Layer):
+    if scene.effects or not isinstance(answer, ContactPath) or not isinstance(scene.layer, Layer | LayerStack):
         return None
-    fast = Mdr()
-    path = fast.solve(scene.replace(loading=IndentationDepths([_largest(answer, "indentation_depth")])))
-    effect = friction_effect(path, _TYPICAL_FRICTION, fast.solve)
+    path = Mdr().solve(scene.replace(loading=IndentationDepths([_largest(answer, "indentation_depth")])))
+    effect = friction_effect(path, _TYPICAL_FRICTION)
     low, high = float(effect.lower[0]), float(effect.upper[0])
     order = f", by {100 * effect.first_order[0]:.2g} % to first order" if effect.one_direction[0] else ""
     # The bound at a coefficient mu is mu U/(1 - mu U).

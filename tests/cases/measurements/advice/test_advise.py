@@ -19,9 +19,11 @@ from contact import (
     InvalidInput,
     KelvinVoigt,
     Layer,
+    LayerStack,
     Paraboloid,
     Scene,
     StandardSolid,
+    Sublayer,
 )
 from mdr import Mdr
 
@@ -180,3 +182,18 @@ def test_friction_is_told_with_a_bound_and_its_first_order():
     assert "by 8.2 % to first order" in line
     # max |u_r1| is 1.19121: 0.01 = 1.19121 mu/(1 - 1.19121 mu).
     assert "frictionless is good to 1 % below 0.0083 and 5 % below 0.04;" in line
+
+
+def test_friction_is_told_on_stacks_too():
+    """Seen to fail: only plain layers were told; one layer cut in two is told what the layer is."""
+    half = Sublayer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.5)
+    layers = (
+        Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5),
+        LayerStack(sublayers=(half, half), interfaces=("bonded",), support="bonded"),
+    )
+    told = []
+    for layer in layers:
+        scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=10.0), loading=IndentationDepths([0.21]))
+        told += [line for line in advise(Mdr(), scene, 1e-2).lines if line.startswith("friction = ")]
+    assert len(told) == 2
+    assert told[0] == told[1]
