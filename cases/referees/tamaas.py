@@ -1,8 +1,8 @@
 """Tamaas, a grid code with fast transforms: half-spaces, through its operator of a grid that is not repeated.
 
 Adhesion it has on repeated grids only, as a potential of the gap with a range of its own, and driven by forces.  Its
-solver of Maxwell's solids (`MaxwellViscoelastic`) is not asked yet: in 2.9.0 it follows Lee and Radok where moduli are of
-order one, and keeps its first pressures where they are 1e5 (docs/referees.md).
+solver of Maxwell's solids (`MaxwellViscoelastic`) is not asked yet: in 2.9.0 it follows Lee and Radok where moduli are
+of order one, and keeps its first pressures where they are 1e5 (docs/referees.md).
 """
 
 from dataclasses import dataclass, replace

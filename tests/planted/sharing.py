@@ -110,6 +110,21 @@ def too_large(*, of):
     return plant
 
 
+def too_large_once(*, of):
+    """The same for a function of depth, which is copied in other units: the copy is one per cent too large, not two."""
+    place, _, field = of.rpartition(".")
+
+    def scaled_once(original):
+        def wrong(self, length, value):
+            copy = original(self, length, value)
+            copy.__dict__[field] /= WRONG
+            return copy
+
+        return wrong
+
+    return both(override(place, "scaled", scaled_once), too_large(of=of))
+
+
 def wrong_property(place, name):
     """A property that is one per cent too large."""
     return override(place, name, lambda original: property(times(original)))
@@ -202,8 +217,6 @@ NUMBERS = {
     "modulus of sublayers": ("contact.scene.layer_stack:Sublayer.youngs_modulus", ("stack",)),
     "Poisson's ratio of sublayers": ("contact.scene.layer_stack:Sublayer.poissons_ratio", ("stack",)),
     "thickness of sublayers": ("contact.scene.layer_stack:Sublayer.thickness", ("stack",)),
-    "modulus at the surface": ("contact.scene.depth_functions:ExponentialDepth.surface", ("graded",)),
-    "modulus at the base": ("contact.scene.depth_functions:ExponentialDepth.base", ("graded",)),
     "history of the depth": (f"{LOADING}:DepthHistory.depth", ("held",)),
     "work of adhesion": ("contact.scene.effects:Adhesion.work_of_adhesion", ("pull-off",)),
 }
@@ -322,6 +335,15 @@ FAULTS = (
         )
     ),
     *(SharedFault("numbers of the scene", what, too_large(of=of), probes) for what, (of, probes) in NUMBERS.items()),
+    *(
+        SharedFault(
+            "numbers of the scene",
+            f"modulus at the {end}",
+            too_large_once(of=f"contact.scene.depth_functions:ExponentialDepth.{end}"),
+            ("graded",),
+        )
+        for end in ("surface", "base")
+    ),
     SharedFault("record of an answer", "values", swap("cases.run.recording:_quantity", misread), ELASTIC),
     SharedFault(
         "rings on which pressures are compared",

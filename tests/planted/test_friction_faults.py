@@ -8,7 +8,14 @@ import pytest
 from bem.kernels import stack, tangential
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch
 from bem.layer_equation.stick.growth import growth_table
+from cases.declare.registry import load_cases
+from cases.declare.selection import only_scenes
+from cases.declare.task import Answers
+from cases.judgement.judge import case_result
+from cases.results.status import Status
+from cases.run.solve_task import solve
 from contact import NotConvergedError, UnsupportedSceneError
+from fem_reference import Fem
 from fem_reference.elastic.friction import step, walk
 from tests.fem_reference import test_friction as friction
 from tests.mdr import test_stick_on_stacks as on_stacks
@@ -111,3 +118,26 @@ def test_lower_layers_that_pull_where_they_push(monkeypatch):
     with pytest.raises(CAUGHT):
         on_stacks.test_finite_elements_agree_on_one_stack()
     growth_table.cache_clear()
+
+
+@pytest.mark.slow
+def test_a_coefficient_one_per_cent_wrong_in_the_finite_elements(monkeypatch):
+    """What F adds to first order in mu is one per cent too large: the case's claim on reciprocity fails."""
+    right = Fem.solve
+
+    def wrong(method, scene):
+        effects = tuple(e.replace(coefficient=1.01 * e.coefficient) for e in scene.effects)
+        return dataclasses.replace(right(method, scene.replace(effects=effects)), scene=scene)
+
+    case = load_cases()["friction_paraboloid"]
+    (claim,) = (claim for claim in case.claims if claim.name == "the first order is that of reciprocity")
+    left = dataclasses.replace(only_scenes(case, claim.scenes, ["fem"]), claims=(claim,), work=(), figures=())
+    tasks = {task.identity: task for task in left.tasks()}
+
+    def failing():
+        answers = Answers({identity: solve(task, "") for identity, task in tasks.items()})
+        return [found for found in case_result(left, answers).claims if found.status is Status.FAIL]
+
+    assert failing() == []
+    monkeypatch.setattr(Fem, "solve", wrong)
+    assert [found.name for found in failing()] == ["the first order is that of reciprocity"]
