@@ -1,15 +1,11 @@
-"""Cholesky factors and triangular solves of the integral equations.
-
-SciPy's linear algebra is loaded at the first factorisation: who imports the package to describe a scene need not wait.
-"""
+"""Cholesky factors and triangular solves of the integral equations, by LAPACK itself."""
 
 from __future__ import annotations
-
-from typing import Literal
 
 import numpy as np
 
 from contact import NotConvergedError
+from contact.answer.lapack import lapack
 from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
 
@@ -25,26 +21,32 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
     Raises:
         NotConvergedError: If the matrix is not positive definite in double precision.
     """
-    from scipy.linalg import cholesky  # noqa: PLC0415
-
     kernel *= 2 / np.pi
     kernel *= root[:, None]
     kernel *= -root
     kernel[np.diag_indices_from(kernel)] += 1
-    try:
-        with one_thread:
-            lower: FloatArray = cholesky(kernel, lower=True, overwrite_a=True, check_finite=False)
-    except np.linalg.LinAlgError:
+    with one_thread:
+        lower, failed = lapack().dpotrf(kernel, lower=True, overwrite_a=True, clean=True)
+    if failed:
         message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
-        raise NotConvergedError(message) from None
-    return lower
+        raise NotConvergedError(message)
+    return np.asarray(lower)
 
 
 def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = False) -> FloatArray:
-    """Solution of C x = b, or of C^T x = b; only the lower triangle of C is read."""
-    from scipy.linalg import solve_triangular  # noqa: PLC0415
+    """Solution of C x = b, or of C^T x = b; only the lower triangle of C is read.
 
-    trans: Literal[0, 1] = 1 if transposed else 0
+    Raises:
+        NotConvergedError: If C is singular.
+    """
+    if not right.size:
+        return np.zeros_like(right)
+    # LAPACK counts in columns: a matrix that lies in memory row by row is its own transpose there.
+    by_columns = lower.flags.f_contiguous
     with one_thread:
-        solution: FloatArray = solve_triangular(lower, right, lower=True, trans=trans, check_finite=False)
-    return solution
+        solution, failed = lapack().dtrtrs(
+            lower if by_columns else lower.T, right, lower=by_columns, trans=transposed == by_columns
+        )
+    if failed:
+        raise NotConvergedError(f"the factor is singular in row {failed - 1}")
+    return np.asarray(solution)
