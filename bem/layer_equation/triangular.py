@@ -1,4 +1,4 @@
-"""Cholesky factors and triangular solves of the integral equations, by LAPACK itself."""
+"""Cholesky factors and solves of the integral equations, by LAPACK itself."""
 
 from __future__ import annotations
 
@@ -8,6 +8,9 @@ from contact import NotConvergedError
 from contact.answer.lapack import lapack
 from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
+
+# Side of the squares that a matrix is mirrored by: two of them take 64 kB; chosen.
+_SQUARE = 64
 
 
 def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> FloatArray:
@@ -26,11 +29,22 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
     kernel *= -root
     kernel[np.diag_indices_from(kernel)] += 1
     with one_thread:
-        lower, failed = lapack().dpotrf(kernel, lower=True, overwrite_a=True, clean=True)
+        # LAPACK counts in columns: what lies row by row it would copy first.
+        _mirror(kernel)
+        lower, failed = lapack().dpotrf(kernel.T, lower=True, overwrite_a=True, clean=True)
     if failed:
         message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
         raise NotConvergedError(message)
     return np.asarray(lower)
+
+
+def _mirror(matrix: FloatArray) -> None:
+    """Write the lower triangle onto the upper one, in place, by squares that fit into the cache."""
+    for start in range(0, len(matrix), _SQUARE):
+        for column in range(start, len(matrix), _SQUARE):
+            upper = matrix[start : start + _SQUARE, column : column + _SQUARE]
+            lower = matrix[column : column + _SQUARE, start : start + _SQUARE]
+            upper[:] = lower.T if column > start else np.tril(lower) + np.tril(lower, -1).T
 
 
 def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = False) -> FloatArray:
@@ -50,3 +64,15 @@ def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = Fals
     if failed:
         raise NotConvergedError(f"the factor is singular in row {failed - 1}")
     return np.asarray(solution)
+
+
+def solve_positive(matrix: FloatArray, loads: FloatArray) -> FloatArray:
+    """Solution of A x = b for a symmetric positive definite A; only its lower triangle is read.
+
+    Raises:
+        numpy.linalg.LinAlgError: If it is not positive definite in double precision.
+    """
+    factor, failed = lapack().dpotrf(matrix, lower=True, clean=False)
+    if failed:
+        raise np.linalg.LinAlgError(f"the leading minor of order {failed} is not positive definite")
+    return np.asarray(lapack().dpotrs(factor, loads, lower=True)[0])

@@ -36,3 +36,9 @@ def test_scipy_loads_after_its_compiled_file(later):
 def test_lapack_is_scipys_where_its_file_is_not_found_alone():
     told = "from contact.answer.lapack import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
     assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
+
+
+def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra():
+    run = "from typer.testing import CliRunner; from reports.command_line import app; "
+    run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"
+    assert not loaded_after(run) & {"h5py", "matplotlib", "skfem", "scipy.linalg", "scipy.sparse", "scipy.optimize"}

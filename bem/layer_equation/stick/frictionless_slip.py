@@ -13,11 +13,10 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import j1
 
 from bem.kernels.tangential import StickingKernel
 from bem.layer_equation.stick.adhered_punch import BasisTransforms, Material, basis_transforms, functions_for
+from bem.layer_equation.triangular import solve_positive
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
 
@@ -52,6 +51,9 @@ class FrictionlessPunch:
 
     def radial_displacement(self, radius: FloatArray) -> FloatArray:
         """u_r1 at 0 <= r/a <= 1, positive outward, shape (n,)."""
+        # The friction that bounds an answer needs no Bessel functions.
+        from scipy.special import j1  # noqa: PLC0415
+
         s = np.maximum(radius, _NEAR_AXIS)
         v, weights = gauss_nodes(_NODES)
         square = (1.0 - s) * (1.0 + s)
@@ -84,7 +86,7 @@ def frictionless_punch(ratio: float, kernel: StickingKernel) -> FrictionlessPunc
     matrix[np.diag_indices_from(matrix)] += 2.0 * material.beta
     load = np.zeros(len(even))
     load[0] = math.sqrt(2.0)
-    solved = cho_solve(cho_factor(matrix, lower=True), load)
+    solved = solve_positive(matrix, load)
     coefficients = np.zeros(2 * len(even))
     coefficients[::2] = solved * np.where(n % 4, -1.0, 1.0) * np.sqrt((2 * n + 1) / 2.0)
     return FrictionlessPunch(material, ratio, kernel, coefficients, solved @ even, transforms)
