@@ -3,6 +3,9 @@
 Conventions: SI units; pressing is positive; z points into the layer; r is the distance from the axis.
 """
 
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from contact.answer.friction import FrictionHistory, FrictionPath
 from contact.answer.method import Method, Supported, Unsupported, other_layer, refuse_other_layers
 from contact.answer.solution import (
@@ -17,7 +20,6 @@ from contact.answer.solution import (
     Solution,
 )
 from contact.answer.stages import Cost, StageLog, StageRecord
-from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
 from contact.records.errors import ContactError, InvalidInput, NotConvergedError, UnsupportedSceneError
 from contact.records.validation import Numbers
 from contact.scene.coated_pair import CoatedPair
@@ -61,6 +63,9 @@ from contact.scene.profiles import (
     TruncatedParaboloid,
 )
 from contact.scene.scene import AnyScene, Scene
+
+if TYPE_CHECKING:
+    from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
 
 __all__ = [
     "UNITS",
@@ -133,3 +138,19 @@ __all__ = [
     "scene_from_mapping",
     "scene_to_mapping",
 ]
+
+# Readers of files are loaded when the first of them is asked for: an answer to a scene written in Python needs none.
+_FROM_FILES = ("load_scene", "scene_from_mapping", "scene_to_mapping")
+
+
+def __getattr__(name: str) -> Any:
+    """Load a reader when it is first asked for."""
+    if name not in _FROM_FILES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = getattr(import_module("contact.files.scene_file"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

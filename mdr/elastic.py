@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -44,12 +45,13 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("force"):
         excess, depth = _excess_and_depth(system, scene, chosen)
         radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
-        force = system.force(radius, depth)
         stiffness = system.contact_stiffness(radius)
-    fields = PathFields(scene, system.flat_punch, excess, depth, density_errors(system, scene, radius))
+        # Eq. (4)
+        force = stiffness * depth - system.profile_moment(radius)
+    fields = PathFields(scene, system.flat_punch, excess, depth, partial(density_errors, system, scene, radius))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
-    errors = _errors(system, scene, radius, depth, force)
+    errors = _errors(system, scene, radius, depth, force, contact_stiffness=stiffness)
     refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
@@ -94,8 +96,8 @@ class PathFields:
         flat_punch: The solution the path was made of.
         excess: a - b [m] over the radius of the flat end, shape (n,).
         indentation_depth: delta [m], shape (n,).
-        density_error: What the fields inside lose in solving for the density, relative, shape (n,); if unknown the
-            pressure's error.
+        density_error: Tells, when fields inside are asked for, what they lose in solving for the density, relative,
+            shape (n,); if unknown the pressure's error.
         edge_error: Error of the density's value at the edge [m], shape (n,).
         singular_edge: Whether the pressure may be singular at the edge; by default only under a flat punch.
     """
@@ -104,7 +106,7 @@ class PathFields:
     flat_punch: FlatPunchSolution
     excess: FloatArray
     indentation_depth: FloatArray
-    density_error: FloatArray | None = None
+    density_error: Callable[[], FloatArray | None] | None = None
     edge_error: FloatArray | None = None
     singular_edge: bool | None = None
     _contacts: dict[int, ContactFields] = field(default_factory=dict)
@@ -129,13 +131,17 @@ class PathFields:
         from mdr.springs.inside import density_of  # noqa: PLC0415
 
         contact = self.contact(step)
-        if self.density_error is not None:
-            known = known._replace(density_error=float(self.density_error[step]))
+        if self._density_errors is not None:
+            known = known._replace(density_error=float(self._density_errors[step]))
         if self.edge_error is not None:
             known = known._replace(edge_error=float(self.edge_error[step]))
         return ContactInterior(
             self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known
         )
+
+    @cached_property
+    def _density_errors(self) -> FloatArray | None:
+        return self.density_error() if self.density_error is not None else None
 
     def contact(self, step: int) -> ContactFields:
         """One step's contact."""
@@ -180,7 +186,13 @@ def _excess_and_depth(
 
 
 def _errors(
-    system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
+    system: EquivalentSystem,
+    scene: Scene,
+    radius: FloatArray,
+    depth: FloatArray,
+    force: FloatArray,
+    *,
+    contact_stiffness: FloatArray,
 ) -> dict[str, FloatArray]:
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
     if system.variants:
@@ -199,14 +211,14 @@ def _errors(
             "normal_force": stiffness if depth_given else exact,
         }
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
-    spread = system.contact_stiffness(radius) * depth / force
+    spread = contact_stiffness * depth / force
     of_force = stiffness + errors["indentation_depth"] * spread + system.moment_truncation(radius) * np.abs(spread - 1)
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
         searched = errors["normal_force" if given == "NormalForces" else "contact_radius"]
         moved = searched * depth / (radius * np.abs(system.mdr_profile_slope(radius)))  # a table's noise may fall
-        growth = 2.0 * system.spring_stiffness(radius) * radius / system.contact_stiffness(radius)
+        growth = 2.0 * system.spring_stiffness(radius) * radius / contact_stiffness
     return {
         "contact_radius": moved,
         "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],

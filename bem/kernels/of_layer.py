@@ -5,17 +5,19 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import singledispatch
 from math import inf
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
-from bem.kernels.graded import GradedKernel
 from bem.kernels.layer import compliance_kernel, one_minus_kernel, zero_mode
 from bem.kernels.protocol import SurfaceKernel
-from bem.kernels.stack import Sheet, StackKernel
-from bem.kernels.tangential import HalfSpaceKernel, StickingKernel, TangentialKernel, beyond_half_space
 from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack, UnsupportedSceneError
 from contact.scene.layer import Support
+
+if TYPE_CHECKING:
+    from bem.kernels.graded import GradedKernel
+    from bem.kernels.stack import StackKernel
+    from bem.kernels.tangential import StickingKernel, TangentialKernel
 
 
 @singledispatch
@@ -65,16 +67,21 @@ class UniformKernel:
 
     def beyond_half_space(self, wavenumber: NDArray[Any]) -> TangentialKernel:
         """D = C - C_hs for both tractions."""
+        from bem.kernels.tangential import beyond_half_space  # noqa: PLC0415
+
         return beyond_half_space(wavenumber, self.support, self.poissons_ratio)
 
 
-@surface_kernel.register
+@surface_kernel.register(Layer)
 def _(layer: Layer) -> UniformKernel:
     return UniformKernel(layer.support, layer.poissons_ratio)
 
 
-@surface_kernel.register
+@surface_kernel.register(LayerStack)
 def _(layer: LayerStack) -> StackKernel:
+    # Each kernel is loaded with the first layer that needs it, here and below.
+    from bem.kernels.stack import Sheet, StackKernel  # noqa: PLC0415
+
     unit, modulus, rigid = layer.surface.thickness, layer.shear_modulus, layer.support
     below = rigid.interface if isinstance(rigid, ElasticBase) else rigid
     sheets = [
@@ -88,8 +95,10 @@ def _(layer: LayerStack) -> StackKernel:
     return StackKernel(tuple(sheets), base)
 
 
-@surface_kernel.register
+@surface_kernel.register(GradedLayer)
 def _(layer: GradedLayer) -> GradedKernel:
+    from bem.kernels.graded import GradedKernel  # noqa: PLC0415
+
     return GradedKernel(layer.in_own_units())
 
 
@@ -99,6 +108,8 @@ def stack_of(layer: ElasticLayer) -> StackKernel:
     Raises:
         UnsupportedSceneError: If it is none.
     """
+    from bem.kernels.stack import Sheet, StackKernel  # noqa: PLC0415
+
     kernel = surface_kernel(layer)
     if isinstance(kernel, StackKernel):
         return kernel
@@ -115,6 +126,9 @@ def sticking_kernel(layer: ElasticLayer) -> StickingKernel:
     Raises:
         UnsupportedSceneError: If the layer is neither of one material nor of several on top of each other.
     """
+    from bem.kernels.stack import StackKernel  # noqa: PLC0415
+    from bem.kernels.tangential import HalfSpaceKernel  # noqa: PLC0415
+
     if layer.is_half_space:
         return HalfSpaceKernel(layer.surface.poissons_ratio)
     kernel = surface_kernel(layer)

@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Annotated, Final, Self
+from typing import TYPE_CHECKING, Annotated, Final, Self
 
 import numpy as np
 from pydantic import Field
 
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
-from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor
-from bem.layer_equation.any_layer.graded_solution import GradedSolution
-from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
@@ -23,6 +20,10 @@ from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import positive
 from contact.scene.layer import Support
+
+if TYPE_CHECKING:
+    from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution
+    from bem.layer_equation.any_layer.graded_solution import GradedSolution
 
 # Largest a/h on narrow panels: the dense factor for it takes 110 MB and two seconds.
 LARGEST_FACTORISED_RATIO: Final = 160.0
@@ -94,12 +95,18 @@ def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> fl
 
 @lru_cache(maxsize=8)
 def _graded_solution(surface: SurfaceKernel, ratio: float) -> GradedSolution:
+    # Plain layers, here and below, are answered without the modules of others.
+    from bem.layer_equation.any_layer.graded_solution import GradedSolution  # noqa: PLC0415
+    from bem.layer_equation.any_layer.point_kernel import PointKernel  # noqa: PLC0415
+
     return GradedSolution(PointKernel.of_surface(surface), ratio)
 
 
 # A factor for the largest ratio takes 110 MB.
 @lru_cache(maxsize=8)
 def _any_solution(settings: IntegralEquation, surface: SurfaceKernel, ratio: float) -> AnyLayerSolution:
+    from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor  # noqa: PLC0415
+
     kernel, width = FredholmKernel.of_surface(surface), ANY_WIDTH * settings.panel_width
     factor = GradedFactor.of_any(kernel, int(np.ceil(ratio / width)), width, int(settings.nodes))
     return AnyLayerSolution(kernel, factor)

@@ -17,12 +17,12 @@ from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 from scipy.special import j0
 
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.inside.density import Density, Piece, pieces_of
 from bem.layer_equation.profiles.half_space_slope import profile_slope
+from bem.layer_equation.triangular import solve_positive
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
@@ -381,9 +381,7 @@ def _resolved(scaled: FloatArray, sign: FloatArray, loads: FloatArray) -> FloatA
         dual: FloatArray = loads + scaled @ _resolved(scaled.T, np.ones(nodes), scaled.T @ loads) if waves else loads
         return dual
     square = scaled @ scaled.T if np.all(sign > 0) else (scaled * sign) @ scaled.T
-    factor = cho_factor(np.eye(nodes) - square, lower=True, check_finite=False)
-    solution: FloatArray = cho_solve(factor, loads, check_finite=False)
-    return solution
+    return solve_positive(np.eye(nodes) - square, loads)
 
 
 def layer_waves(layer: ElasticLayer, distance: float) -> tuple[FloatArray, FloatArray]:

@@ -1,17 +1,16 @@
-"""Cholesky factors and triangular solves of the integral equations.
-
-SciPy's linear algebra is loaded at the first factorisation: who imports the package to describe a scene need not wait.
-"""
+"""Cholesky factors and solves of the integral equations, by LAPACK itself."""
 
 from __future__ import annotations
-
-from typing import Literal
 
 import numpy as np
 
 from contact import NotConvergedError
+from contact.answer.lapack import lapack
 from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
+
+# Side of the squares that a matrix is mirrored by: two of them take 64 kB; chosen.
+_SQUARE = 64
 
 
 def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> FloatArray:
@@ -25,26 +24,55 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
     Raises:
         NotConvergedError: If the matrix is not positive definite in double precision.
     """
-    from scipy.linalg import cholesky  # noqa: PLC0415
-
     kernel *= 2 / np.pi
     kernel *= root[:, None]
     kernel *= -root
     kernel[np.diag_indices_from(kernel)] += 1
-    try:
-        with one_thread:
-            lower: FloatArray = cholesky(kernel, lower=True, overwrite_a=True, check_finite=False)
-    except np.linalg.LinAlgError:
+    with one_thread:
+        # LAPACK counts in columns: what lies row by row it would copy first.
+        _mirror(kernel)
+        lower, failed = lapack().dpotrf(kernel.T, lower=True, overwrite_a=True, clean=True)
+    if failed:
         message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
-        raise NotConvergedError(message) from None
-    return lower
+        raise NotConvergedError(message)
+    return np.asarray(lower)
+
+
+def _mirror(matrix: FloatArray) -> None:
+    """Write the lower triangle onto the upper one, in place, by squares that fit into the cache."""
+    for start in range(0, len(matrix), _SQUARE):
+        for column in range(start, len(matrix), _SQUARE):
+            upper = matrix[start : start + _SQUARE, column : column + _SQUARE]
+            lower = matrix[column : column + _SQUARE, start : start + _SQUARE]
+            upper[:] = lower.T if column > start else np.tril(lower) + np.tril(lower, -1).T
 
 
 def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = False) -> FloatArray:
-    """Solution of C x = b, or of C^T x = b; only the lower triangle of C is read."""
-    from scipy.linalg import solve_triangular  # noqa: PLC0415
+    """Solution of C x = b, or of C^T x = b; only the lower triangle of C is read.
 
-    trans: Literal[0, 1] = 1 if transposed else 0
+    Raises:
+        NotConvergedError: If C is singular.
+    """
+    if not right.size:
+        return np.zeros_like(right)
+    # LAPACK counts in columns: a matrix that lies in memory row by row is its own transpose there.
+    by_columns = lower.flags.f_contiguous
     with one_thread:
-        solution: FloatArray = solve_triangular(lower, right, lower=True, trans=trans, check_finite=False)
-    return solution
+        solution, failed = lapack().dtrtrs(
+            lower if by_columns else lower.T, right, lower=by_columns, trans=transposed == by_columns
+        )
+    if failed:
+        raise NotConvergedError(f"the factor is singular in row {failed - 1}")
+    return np.asarray(solution)
+
+
+def solve_positive(matrix: FloatArray, loads: FloatArray) -> FloatArray:
+    """Solution of A x = b for a symmetric positive definite A; only its lower triangle is read.
+
+    Raises:
+        numpy.linalg.LinAlgError: If it is not positive definite in double precision.
+    """
+    factor, failed = lapack().dpotrf(matrix, lower=True, clean=False)
+    if failed:
+        raise np.linalg.LinAlgError(f"the leading minor of order {failed} is not positive definite")
+    return np.asarray(lapack().dpotrs(factor, loads, lower=True)[0])

@@ -5,11 +5,12 @@ A matrix product that is shared by several threads is summed in another order th
 
 from __future__ import annotations
 
-import sys
 from contextlib import ContextDecorator
 from functools import cache
 from threading import Lock
 from typing import TYPE_CHECKING, Any
+
+from contact.answer.lapack import is_loaded
 
 if TYPE_CHECKING:
     from types import TracebackType
@@ -31,7 +32,7 @@ class OneThread(ContextDecorator):
         """Hold every loaded BLAS that is not held yet."""
         with self._lock:
             self._inside += 1
-            for library in _loaded_libraries("scipy.linalg" in sys.modules):
+            for library in _loaded_libraries(is_loaded()):
                 if library.filepath not in self._threads_before:
                     self._threads_before[library.filepath] = library, library.get_num_threads()
                     library.set_num_threads(1)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Callable, Sequence
 from numbers import Real
 from typing import TYPE_CHECKING, Annotated, Any, Self, TypeAlias, overload
@@ -129,12 +130,18 @@ def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, With
     return PlainValidator(validate), WithJsonSchema(schema | ({"maximum": high} if math.isfinite(high) else {}))
 
 
+def _is_masked(value: object) -> bool:
+    """Whether an array is masked; where none was ever made, numpy's module of them need not be loaded to tell."""
+    masked = sys.modules.get("numpy.ma")
+    return masked is not None and isinstance(value, masked.MaskedArray)
+
+
 def _as_vector(value: object, remedy: str) -> FloatArray:
     if isinstance(value, str | bytes) or not isinstance(value, Sequence | np.ndarray):
         raise ValueError(f"must be a list of numbers; {remedy}")  # pydantic collects ValueError only
     if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):
         raise ValueError(f"must be a one-dimensional array of real numbers; {remedy}")
-    if isinstance(value, np.ma.MaskedArray):
+    if _is_masked(value):
         raise ValueError(f"must not be masked: what hides under the mask is no number; {remedy}")
     if len(value) == 0:
         raise ValueError(f"must hold at least one number; {remedy}")

@@ -133,9 +133,8 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         springs = 2.0 * system.spring_stiffness(radius)
         # An elongation that is off by so much [m] moves the density's value at the edge by y1 = sqrt(c_bar) of it.
         at_edge = found.edge * np.sqrt(system.flat_punch.normalized_spring_stiffness(radius / system.length_unit))
-        fields = PathFields(
-            scene, system.flat_punch, found.excess, depth, density_errors(system, scene, radius), at_edge, True
-        )
+        known_inside = partial(density_errors, system, scene, radius)
+        fields = PathFields(scene, system.flat_punch, found.excess, depth, known_inside, at_edge, True)
         pressure = pressure_errors(system, fields, radius, edge=found.edge, moved=errors[RADIUS])
     relative = system.relative_errors(radius)["contact_stiffness"]
     return ContactPath(

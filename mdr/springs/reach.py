@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import brentq
 
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
@@ -187,6 +186,9 @@ def _candidates(scene: Scene, system: EquivalentSystem, value: float) -> list[fl
     """Every excess with this value at which the profile rises, the widest first."""
     if isinstance(scene.loading, ContactRadii):
         return [value - system.flat_radius]
+    # Only profiles that fall on the way come here, and SciPy's roots would double the time of all other first answers.
+    from scipy.optimize import brentq  # noqa: PLC0415
+
     curve, grid = _curve(scene, system), system.profile.grid
     last = system.max_radius - system.flat_radius
     places = np.minimum(system.length_unit * np.unique(np.append(grid.ends, grid.nodes)), last)

@@ -5,7 +5,6 @@ from pathlib import Path
 
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
-from cases.results.files import write_whole
 from contact import (
     ContactPath,
     InvalidInput,
@@ -165,9 +164,15 @@ def _check_ending(path: Path) -> None:
         raise InvalidInput(f"--write {path}: no file can be there; check that the folder exists")
 
 
+def _put(path: Path, content: str | bytes) -> None:
+    from cases.results.files import write_whole  # noqa: PLC0415 - runs and their storage only where a file is written
+
+    write_whole(path, content)
+
+
 def _write(solution: Solution, path: Path) -> None:
     if path.suffix == ".csv":
-        write_whole(path, solution_csv(solution))
+        _put(path, solution_csv(solution))
     elif path.suffix == ".h5":
         from contact.files.storage import save_solution  # noqa: PLC0415 - h5py only where it is asked for
 
@@ -177,12 +182,12 @@ def _write(solution: Solution, path: Path) -> None:
     elif path.stem.startswith(INSIDE):
         from reports.charts.inside import inside_svg  # noqa: PLC0415 - as below
 
-        write_whole(path, inside_svg(solution, _compared(solution)))
+        _put(path, inside_svg(solution, _compared(solution)))
     else:
         from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
-        write_whole(path, figure_svg(solution_figure(solution)))
+        _put(path, figure_svg(solution_figure(solution)))
 
 
 def _write_mesh(solution: Solution, path: Path) -> None:

@@ -18,10 +18,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 
 from bem.kernels.tangential import StickingKernel, TangentialKernel
 from bem.layer_equation.stick.coulomb import coulomb_functions, phases
+from bem.layer_equation.triangular import solve_positive
 from bem.polynomials.gauss import halved_panels, legendre_rule
 from contact.records.validation import FloatArray
 
@@ -160,7 +160,7 @@ def adhered_punch(ratio: float, kernel: StickingKernel, functions: int | None = 
     matrix[np.diag_indices(count)] += math.sqrt(material.kappa)
     load = np.zeros(count)
     load[0] = _first_moment(material)
-    coefficients = cho_solve(cho_factor(matrix, lower=True), load)
+    coefficients = solve_positive(matrix, load)
     condition = float(np.linalg.cond(matrix))
     return AdheredPunch(material, ratio, kernel, coefficients, transforms, condition)
 

@@ -1,0 +1,44 @@
+"""What an answer loads: the waiting of a first answer is nearly all imports, so each loads what it computes with."""
+
+import subprocess
+import sys
+
+import pytest
+
+SCENE = """
+from contact import Cone, ContactRadii, Layer, Scene
+layer = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")
+scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]))
+"""
+# What an elastic answer of MDR computes with is numpy and LAPACK's own compiled file.
+LAPACK = "scipy.linalg._flapack"
+FAR = ("matplotlib", "h5py", "typer", "rich", "skfem", "pyfftw", "numpy.ma", "contact.files", "fem_reference")
+
+
+def loaded_after(code):
+    code = f"{SCENE}{code}\nimport sys; print(*sys.modules)"
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    return set(run.stdout.split())
+
+
+def test_an_elastic_mdr_answer_loads_lapack_alone_and_no_other_method():
+    loaded = loaded_after("from mdr import Mdr; Mdr().solve(scene)")
+    assert {name for name in loaded if name.partition(".")[0] == "scipy"} == {LAPACK}
+    assert not loaded & {*FAR, "bem.method", "bem.grid.operators", "bem.kernels.stack", "mdr.impact", "mdr.adhesion"}
+
+
+@pytest.mark.parametrize("later", ["import scipy.linalg", "import scipy.linalg.lapack", "import scipy.sparse.linalg"])
+def test_scipy_loads_after_its_compiled_file(later):
+    told = f"{later}; import scipy.linalg; assert scipy.linalg.solve_triangular([[2.0]], [1.0])[0] == 0.5"
+    assert "scipy.linalg" in loaded_after(f"from mdr import Mdr; Mdr().solve(scene); {told}")
+
+
+def test_lapack_is_scipys_where_its_file_is_not_found_alone():
+    told = "from contact.answer.lapack import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
+    assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
+
+
+def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra():
+    run = "from typer.testing import CliRunner; from reports.command_line import app; "
+    run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"
+    assert not loaded_after(run) & {"h5py", "matplotlib", "skfem", "scipy.linalg", "scipy.sparse", "scipy.optimize"}
