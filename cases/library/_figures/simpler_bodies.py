@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -53,7 +54,9 @@ class Simplification:
     def paths(self) -> Iterator[tuple[str, ContactPath]]:
         """The full answer and the other one."""
         for name, layer in (("full", self.full), (self.taken_as, self.simpler)):
-            scene = Scene(layer=layer, indenter=INDENTER, loading=IndentationDepths(DEPTHS))
+            scene: Scene[IndentationDepths, Any] = Scene(
+                layer=layer, indenter=INDENTER, loading=IndentationDepths(DEPTHS)
+            )
             yield name, Mdr().solve(scene)
 
 
