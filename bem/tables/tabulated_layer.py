@@ -6,7 +6,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from bem.kernels.of_layer import stack_of
 from contact import ElasticBase, ElasticLayer, InvalidInput, Layer, LayerStack, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -44,19 +43,28 @@ def lowest_face(layer: Tabulable) -> Support:
 
 
 def same_kernel(one: Tabulable, other: Tabulable) -> bool:
-    """Whether two layers have one kernel, but for roundings."""
+    """Whether two layers in these units are one, but for roundings."""
     ours, theirs = _numbers(one), _numbers(other)
-    return ours.shape == theirs.shape and np.allclose(ours, theirs, rtol=SAME, atol=0.0)
+    alike = ours.shape == theirs.shape and np.allclose(ours, theirs, rtol=SAME, atol=0.0)
+    return alike and _faces(one) == _faces(other)
 
 
 def described(layer: Tabulable) -> str:
     """A layer for messages, with all that its kernel depends on."""
     if isinstance(layer, Layer):
         return f"a {layer.title}"
-    return f"a {layer.title}, with h, G (over the first's), nu and slip {_numbers(layer).tolist()}"
+    return f"a {layer.title}, with h, E (E* = 1 at the surface), nu {_numbers(layer).tolist()}, {_faces(layer)}"
 
 
 def _numbers(layer: Tabulable) -> FloatArray:
-    """Thickness, shear modulus, nu and slip of each sublayer and of an elastic base, shape (n, 4)."""
-    kernel = stack_of(layer)
-    return np.array([[*vars(sheet).values()] for sheet in (*kernel.sheets, kernel.base) if sheet is not None])
+    """Thickness, Young's modulus and nu of each sublayer and of an elastic base, shape (n, 3)."""
+    parts = layer.sublayers if isinstance(layer, LayerStack) else (layer,)
+    rows = [[one.thickness, one.youngs_modulus, one.poissons_ratio] for one in parts]
+    base = layer.support
+    rows += [[np.inf, base.youngs_modulus, base.poissons_ratio]] if isinstance(base, ElasticBase) else []
+    return np.array(rows)
+
+
+def _faces(layer: Tabulable) -> tuple[str, ...]:
+    """How each part is held by the one below."""
+    return (*(layer.interfaces if isinstance(layer, LayerStack) else ()), lowest_face(layer))
