@@ -176,10 +176,9 @@ class FlatPunchSolution(Protocol):
         """Whether pressures are superposed from flat punches, Eq. (12), since no density is known."""
         return False
 
-    @property
-    def first_ratio(self) -> float:
-        """The a/h below which these data are read linearly towards the half-space; zero for nowhere."""
-        return 0.0
+    def linear_errors(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """What reading linearly towards the half-space leaves in k_bar and in q, relative, where it is done."""
+        return np.zeros_like(ratio), np.zeros_like(ratio)
 
     @property
     def variants(self) -> tuple[tuple[float, FlatPunchSolution], ...]:

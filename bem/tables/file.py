@@ -2,13 +2,14 @@
 
 The plain layout is `ratios` (a/h), `radii` (r/a), `k_bar` and `p_bar`, the last with one row for each ratio. It is our
 own: the files of the supplement to Forsbach (2023), https://www.mdpi.com/article/10.3390/machines11040474/s1, were not
-seen and may need to be rewritten so. Our own files hold the same four, the stated errors, the kernel, and where the
-numbers come from.
+seen and may need to be rewritten so. Our own files hold the same four, the stated errors, the kernel, with all
+sublayers of a stack, and where the numbers come from.
 """
 
 from __future__ import annotations
 
 import hashlib
+import json
 from dataclasses import replace
 from functools import lru_cache
 from importlib.metadata import version
@@ -20,7 +21,9 @@ from scipy.integrate import simpson
 
 from bem.grid.influence import correction_function, uniform_response
 from bem.tables.table import FlatPunchTable
-from contact import ElasticLayer, InvalidInput, refuse_other_layers
+from bem.tables.tabulated_layer import Tabulable, described, same_kernel, tabulable
+from contact import ElasticLayer, InvalidInput, Layer, LayerStack
+from contact.files.layer_table import layer_mapping, layer_of
 from contact.files.storage import read_tree, write_tree
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -43,6 +46,7 @@ def write_table(path: str | Path, table: FlatPunchTable) -> None:
             "poissons_ratio": table.poissons_ratio,
             "sha256": _digest(table),
             "provenance": table.provenance | {f"{name} version": version(name) for name in NUMERICAL_LIBRARIES},
+            **({"stack": json.dumps(layer_mapping(table.stack))} if table.stack else {}),
             **_arrays(table),
         },
     )
@@ -58,7 +62,7 @@ def read_table(path: str | Path) -> FlatPunchTable:
     if tree.get("schema") != SCHEMA:
         raise InvalidInput(f"{path}: schema {tree.get('schema')!r}; this version reads {SCHEMA!r}")
     kernel = {name: tree[name] for name in ("support", "poissons_ratio", "provenance", *ERRORS)}
-    table = _table(path, tree, **kernel)
+    table = _table(path, tree, stack=_stack(tree), **kernel)
     if _digest(table) != tree["sha256"]:
         raise InvalidInput(
             f"{path}: the arrays do not match the stored hash {tree['sha256'][:12]}; the file is damaged"
@@ -116,14 +120,13 @@ class TableFile(Record):
 
         Raises:
             InvalidInput: If it is of another kernel, or ends below `max_ratio`.
+            UnsupportedSceneError: If the layer is graded.
         """
-        plain = refuse_other_layers("the table of flat punches", layer)
-        table = _stored(self)
-        same_nu = plain.support == "unbonded" or table.poissons_ratio == plain.poissons_ratio
-        if plain.is_half_space or table.support != plain.support or not same_nu:
+        asked, table = tabulable(layer), _stored(self)
+        own = table.stack or _plain(table.support, table.poissons_ratio)
+        if not same_kernel(own, asked):
             raise InvalidInput(
-                f"{self.path} is for a {table.support} layer with nu = {table.poissons_ratio:g}, "
-                f"not for a {plain.support} one with nu = {plain.poissons_ratio:g} and h = {plain.thickness:g}"
+                f"{self.path} is for {described(own)}, not for {described(asked)}; build one with FftTable"
             )
         # Asking for the error refuses a ratio beyond the table.
         table.relative_error(max_ratio)
@@ -138,11 +141,22 @@ class TableFile(Record):
         raise InvalidInput(f"{self.path} cannot be refined; build a table with FftTable instead")
 
 
+def _plain(support: Support, poissons_ratio: float) -> Tabulable:
+    """One layer with this kernel."""
+    return tabulable(Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=poissons_ratio, support=support))
+
+
 @lru_cache(maxsize=8)
 def _stored(file: TableFile) -> FlatPunchTable:
     if file.support is None or file.poissons_ratio is None:
         return read_table(file.path)
     return read_foreign_table(file.path, support=file.support, poissons_ratio=file.poissons_ratio)
+
+
+def _stack(tree: dict[str, Any]) -> LayerStack | None:
+    """The stack of a stored table, None of one layer."""
+    layer = layer_of(json.loads(tree["stack"])) if "stack" in tree else None
+    return layer if isinstance(layer, LayerStack) else None
 
 
 def _arrays(table: FlatPunchTable) -> dict[str, FloatArray]:
@@ -156,7 +170,8 @@ def _arrays(table: FlatPunchTable) -> dict[str, FloatArray]:
 
 
 def _digest(table: FlatPunchTable) -> str:
-    header = f"{table.support} {table.poissons_ratio!r}".encode()
+    stack = json.dumps(layer_mapping(table.stack)) if table.stack else ""
+    header = f"{table.support} {table.poissons_ratio!r}{stack}".encode()
     return hashlib.sha256(header + b"".join(a.astype("<f8").tobytes() for a in _arrays(table).values())).hexdigest()
 
 
@@ -167,6 +182,7 @@ def _table(
     support: Support,
     poissons_ratio: float,
     provenance: dict[str, str | int | float],
+    stack: LayerStack | None = None,
     **errors: FloatArray,
 ) -> FlatPunchTable:
     missing = [name for name in ("ratios", "radii", "k_bar", "p_bar") if name not in tree]
@@ -187,6 +203,7 @@ def _table(
         error=errors.get("error", np.zeros(len(pressure))),
         pressure_error=errors.get("pressure_error", np.zeros(len(pressure))),
         mean_error=errors.get("mean_error", 0.0 * pressure),
+        stack=stack,
     )
 
 

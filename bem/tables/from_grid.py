@@ -10,13 +10,13 @@ from typing import Final, Self
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from bem.grid.calibrated_disc import GAP, THIN, PunchSolution, measured_disc
+from bem.grid.calibrated_disc import FILL, GAP, THIN, PunchSolution, measured_disc
 from bem.grid.error_model import TABLES
 from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
-from contact import ElasticLayer, InvalidInput, refuse_other_layers
+from bem.tables.tabulated_layer import Tabulable, lowest_face, tabulable
+from contact import ElasticLayer, InvalidInput, Layer, LayerStack
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
 # Tabulated ratios a/h. Below the first one a table is read linearly towards the half-space, beyond the last one never.
 SMALLEST_RATIO: Final = 1e-3
@@ -59,20 +59,24 @@ class FftTable(Record):
     def solution(self, layer: ElasticLayer, max_ratio: float) -> FlatPunchTable:
         """The table of this layer's kernel up to at least a/h = `max_ratio`; built once, then remembered.
 
+        On a stack h is the first sublayer's thickness, which the cells of the coarsest grid, four times as wide, must
+        not exceed: a/h reaches an eighth of `cells`.
+
         Raises:
-            InvalidInput: If the layer is a half-space or the ratio is beyond 1000.
+            InvalidInput: If the layer is a half-space or the ratio is beyond 1000, or `cells`/8 on a stack.
+            UnsupportedSceneError: If the layer is graded.
         """
-        plain = refuse_other_layers("the table of flat punches", layer)
-        if plain.is_half_space:
-            raise InvalidInput("a half-space has no a/h; its flat punch is known in closed form, Eq. (14)")
+        unit = tabulable(layer)
         grid = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, self.ratios)
+        largest = LARGEST_RATIO if unit.is_uniform else FILL * self.cells / 8
         # A quotient of two lengths meant as 1000 may come out above it by rounding.
-        if not 0.0 < max_ratio <= LARGEST_RATIO * (1.0 + 1e-12):
-            raise InvalidInput(f"a/h = {max_ratio:g} is outside the table's range (0, {LARGEST_RATIO:g}]")
+        if not 0.0 < max_ratio <= largest * (1.0 + 1e-12):
+            raise InvalidInput(
+                f"a/h = {max_ratio:g} is outside the table's range (0, {largest:g}]"
+                + ("" if unit.is_uniform else f" on stacks with cells = {self.cells}; take more cells")
+            )
         rows = max(LEAST_HALVED, int(np.searchsorted(grid, max_ratio * (1.0 - 1e-12))) + 1 + BEYOND)
-        # Poisson's ratio plays no part in the unbonded layer.
-        poissons_ratio = plain.poissons_ratio if plain.support == "bonded" else 0.0
-        return _build(self, plain.support, poissons_ratio, min(rows, self.ratios))
+        return _build(self, unit, min(rows, self.ratios))
 
     def refined(self) -> Self:
         """A copy with half the cell size."""
@@ -80,44 +84,49 @@ class FftTable(Record):
 
 
 @lru_cache(maxsize=32)
-def _build(settings: FftTable, support: Support, poissons_ratio: float, rows: int) -> FlatPunchTable:
+def _build(settings: FftTable, layer: Tabulable, rows: int) -> FlatPunchTable:
     ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
-    fine, half, quarter = (
-        _on_grid(settings.cells // times, ratios, settings.radii, support, poissons_ratio) for times in (1, 2, 4)
-    )
+    fine, half, quarter = (_on_grid(settings.cells // times, ratios, settings.radii, layer) for times in (1, 2, 4))
     row_share = float(np.clip(np.log(ratios[1] / ratios[0]) ** 2, TABLES.least_row_share, TABLES.largest_row_share))
     return dataclasses.replace(
         _with_errors(fine, half, settings.cells, row_share),
-        provenance=_provenance(settings, support, poissons_ratio),
+        provenance=_provenance(settings, fine),
         variants=((TABLES.half_share, half), (TABLES.quarter_share, quarter), (row_share, _every_other(fine))),
     )
 
 
-def _on_grid(cells: int, ratios: FloatArray, radii: int, support: Support, poissons_ratio: float) -> FlatPunchTable:
+def _on_grid(cells: int, ratios: FloatArray, radii: int, layer: Tabulable) -> FlatPunchTable:
     """The table of one grid, its errors still unknown."""
-    punches = _punches(cells, ratios, support, poissons_ratio)
+    punches = _punches(cells, ratios, layer)
     rho = chebyshev_radii(radii)
     q = np.array([np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, punch.shape) for punch in punches])
+    # Under a flat end a stack may pull, one layer never does.
+    q = np.maximum(q, 0.0) if layer.is_uniform else q
     return FlatPunchTable(
-        support=support,
-        poissons_ratio=poissons_ratio,
+        support=lowest_face(layer),
+        poissons_ratio=layer.surface.poissons_ratio,
         ratios=ratios,
         radii=rho,
         stiffness=np.array([punch.stiffness for punch in punches]),
-        pressure=np.maximum(q, 0.0) / np.sqrt(1.0 - rho**2),
+        pressure=q / np.sqrt(1.0 - rho**2),
         error=np.zeros(len(ratios)),
         pressure_error=np.zeros(len(ratios)),
         mean_error=np.zeros((len(ratios), radii)),
+        stack=layer if isinstance(layer, LayerStack) else None,
     )
 
 
-def _punches(cells: int, ratios: FloatArray, support: Support, poissons_ratio: float) -> list[PunchSolution]:
-    """One solution a ratio, each starting from the one before."""
-    discs = {periodic: measured_disc(cells, periodic) for periodic in {False, ratios[-1] > THIN}}
+def _punches(cells: int, ratios: FloatArray, layer: Tabulable) -> list[PunchSolution]:
+    """One solution a ratio, each starting from the one before. An elastic base is felt beyond any period."""
+    thin = THIN if layer.is_uniform else np.inf
+    discs = {periodic: measured_disc(cells, periodic) for periodic in {False, bool(ratios[-1] > thin)}}
     punches: list[PunchSolution] = []
-    for ratio in ratios:
+    for ratio in ratios.tolist():
         start = punches[-1].pressure if punches else None
-        punches.append(discs[bool(ratio > THIN)].solve(float(ratio), support, poissons_ratio, start))
+        disc = discs[ratio > thin]
+        thickness = disc.radius / ratio
+        stretched = layer.replace(thickness=thickness) if isinstance(layer, Layer) else layer.stretched(thickness)
+        punches.append(disc.on_layer(stretched, ratio, start))
     return punches
 
 
@@ -134,6 +143,9 @@ def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int, row_s
     q, difference = root * fine.pressure, root * np.abs(coarse.pressure - fine.pressure)
     times = np.where(xi > cells / 4, 2.0, 1.0)
     read_stiffness, read_pressure = _reading_errors(fine, row_share)
+    if fine.stack is not None:
+        # Below the first row q is read linearly, but leaves one half with the third power of a/h, as far as films bend.
+        read_pressure[0] += fine.first_bending
     return dataclasses.replace(
         fine,
         error=TABLES.stiffness_floor
@@ -149,13 +161,13 @@ def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int, row_s
 
 
 def _worst(difference: FloatArray, q: FloatArray) -> FloatArray:
-    """The largest error at any radius, relative to the largest q."""
-    return np.asarray(np.max(difference, axis=1) / np.max(q, axis=1))
+    """The largest error at any radius, relative to the largest q; a punch that pulls has negative ones."""
+    return np.asarray(np.max(difference, axis=1) / np.max(np.abs(q), axis=1))
 
 
 def _outwards(difference: FloatArray, q: FloatArray) -> FloatArray:
-    """Relative errors of integrals from each radius to the edge; the radii are equally spaced in arcsin(rho)."""
-    error, integral = (np.cumsum(values[:, ::-1], axis=1)[:, ::-1] for values in (difference, q))
+    """Errors of integrals of q from each radius to the edge, over those of its size; equal steps of arcsin(rho)."""
+    error, integral = (np.cumsum(values[:, ::-1], axis=1)[:, ::-1] for values in (difference, np.abs(q)))
     return np.asarray(error / integral)
 
 
@@ -198,14 +210,17 @@ def _largest_nearby(difference: FloatArray, ratios: FloatArray) -> FloatArray:
     return np.asarray(sliding_window_view(padded, 2 * rows + 1, axis=0).max(axis=-1))
 
 
-def _provenance(settings: FftTable, support: Support, poissons_ratio: float) -> dict[str, str | int | float]:
-    equation = "(29)" if support == "unbonded" else "(31)"
+def _provenance(settings: FftTable, table: FlatPunchTable) -> dict[str, str | int | float]:
+    equation = "(29)" if table.support == "unbonded" else "(31)"
     nearby = f"its largest value within a factor of {TABLES.nearby:g} in a/h"
+    own = table.stack is None
     return {
         "method": "FFT boundary elements, grid discs measured by the half-space",
-        "kernel": f"{support}, Forsbach (2023) Eq. {equation}",
-        "poissons_ratio": poissons_ratio,
+        "kernel": f"{table.support}, Forsbach (2023) Eq. {equation}" if own else "stack of layers",
+        "poissons_ratio": table.poissons_ratio,
         "cells": settings.cells,
-        "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images",
+        "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images"
+        if own
+        else "free space",
         "error": f"difference to {settings.cells // 2} cells, {nearby}",
     }

@@ -20,7 +20,7 @@ from scipy.interpolate import BSpline, RectBivariateSpline, make_interp_spline
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from bem.tables.published_transform import published_profile
-from contact import InvalidInput, Profile
+from contact import InvalidInput, LayerStack, Profile
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
 
@@ -35,7 +35,7 @@ class FlatPunchTable(FlatPunchSolution):
     Attributes:
         support: "bonded" or "unbonded".
         poissons_ratio: nu.
-        ratios: a/h, increasing, shape (n,).
+        ratios: a/h, increasing, shape (n,). On a stack h is the thickness of its first sublayer.
         radii: rho = r/a in [0, 1), increasing, shape (m,).
         stiffness: k_bar, shape (n,), Eq. (10).
         pressure: p_bar, shape (n, m), Eq. (10).
@@ -45,6 +45,8 @@ class FlatPunchTable(FlatPunchSolution):
         provenance: Where the numbers come from, in names and plain values.
         variants: Coarser tables of the same punches, each with the share of its difference that counts as an error of
             this table: what is computed with all of them states an error of its own. None in a table from a file.
+        stack: The stack that the table is of, in units of its first sublayer's thickness and E*; None on one layer.
+            `support` and `poissons_ratio` then describe its lowest face and its surface.
 
     Raises:
         InvalidInput: If shapes, order or values cannot be a table of flat punches.
@@ -61,6 +63,7 @@ class FlatPunchTable(FlatPunchSolution):
     mean_error: FloatArray
     provenance: dict[str, str | int | float] = field(default_factory=dict)
     variants: tuple[tuple[float, FlatPunchTable], ...] = ()
+    stack: LayerStack | None = None
     nodes: ClassVar[int] = 12
     superposed: ClassVar[bool] = True
 
@@ -70,7 +73,8 @@ class FlatPunchTable(FlatPunchSolution):
         _check_axis("radii", self.radii, -1e-300, 1.0)
         rows, columns = len(self.ratios), len(self.radii)
         _check_values("stiffness k_bar", self.stiffness, (rows,))
-        _check_values("pressure p_bar", self.pressure, (rows, columns))
+        # The two-sided solution of a flat punch on a stack may pull.
+        _check_values("pressure p_bar", self.pressure if self.stack is None else abs(self.pressure), (rows, columns))
         _check_values("mean_error", self.mean_error, (rows, columns))
         for name in ("error", "pressure_error"):
             _check_values(name, getattr(self, name), (rows,))
@@ -80,10 +84,19 @@ class FlatPunchTable(FlatPunchSolution):
         """Largest a/h that is covered."""
         return float(self.ratios[-1])
 
+    def linear_errors(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Third order, of coefficients near one on one layer; how far a film bends is seen in q of the first row."""
+        first = float(self.ratios[0])
+        left = np.where(ratio < first, ratio * first**2, 0.0)
+        if self.stack is None:
+            # In q the floor of conjugate gradients is as large.
+            return left, np.zeros_like(left)
+        return left * max(1.0, self.first_bending / first**3), left * (self.first_bending / first**3)
+
     @property
-    def first_ratio(self) -> float:
-        """Smallest a/h of the table."""
-        return float(self.ratios[0])
+    def first_bending(self) -> float:
+        """How far q of the first row is from the half-space's, twice."""
+        return 2.0 * float(np.max(np.abs(self.pressure[0] * np.sqrt(1.0 - self.radii**2) - 0.5)))
 
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar(a/h), shape of `ratio`."""

@@ -42,8 +42,9 @@ class TableDifferences:
             [share * (other - value) for other, value in zip(_values(variant, radius), (k, c, g, moment), strict=True)]
             for share, variant in system.variants
         ]
-        by_stiffness = TABLES.stiffness_floor + _below_table(system, radius)
-        by_profile = TABLES.pressure_floor + system.profile_truncation(radius)
+        linear, bending = system.flat_punch.linear_errors(np.atleast_1d(radius / system.length_unit))
+        by_stiffness = TABLES.stiffness_floor + linear
+        by_profile = TABLES.pressure_floor + bending + system.profile_truncation(radius)
         rows += [
             [by_stiffness * k, by_stiffness * c, 0 * g, 0 * moment],
             [0 * k, 0 * c, by_profile * g, by_profile * moment],
@@ -58,12 +59,6 @@ def _values(system: EquivalentSystem, radius: FloatArray) -> tuple[FloatArray, F
         system.mdr_profile(radius),
         system.profile_moment(radius),
     )
-
-
-def _below_table(system: EquivalentSystem, radius: FloatArray) -> FloatArray:
-    """What the law between the half-space and the first row leaves out: third order, of coefficients near one."""
-    ratio, first = radius / system.length_unit, system.flat_punch.first_ratio
-    return np.where(ratio < first, ratio * first**2, 0.0)
 
 
 def size(changes: FloatArray) -> FloatArray:

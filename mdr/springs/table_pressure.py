@@ -66,4 +66,6 @@ def _punch_errors(system: EquivalentSystem, ratio: FloatArray) -> FloatArray:
     rho = np.sin((np.arange(RINGS) + 0.5) * (np.pi / (2 * RINGS)))
     q = system.flat_punch.smooth_pressure(rho, ratio[:, None])
     changes = [share * (other.flat_punch.smooth_pressure(rho, ratio[:, None]) - q) for share, other in system.variants]
-    return np.asarray(np.max((size(np.array(changes)) + TABLES.pressure_floor) / np.max(q, axis=1)[:, None], axis=1))
+    return np.asarray(
+        np.max((size(np.array(changes)) + TABLES.pressure_floor) / np.max(np.abs(q), axis=1)[:, None], axis=1)
+    )

@@ -155,3 +155,14 @@ def test_adhesion_obeys_griffith():
 def test_what_is_not_modelled_is_refused_by_name():
     with pytest.raises(InvalidInput, match=r"more than 16 times the thickness 1 m of the material at the surface"):
         solve(EXPONENTIAL, PARABOLOID, ContactRadii([20.0]))
+
+
+@pytest.mark.parametrize("radius", [0.3, 1.3])
+def test_the_pressure_is_even_about_the_axis(radius):
+    """Panels there are as narrow as 1e-6 of the contact: their slopes made p(0) up to 1 % wrong."""
+    path = solve(EXPONENTIAL, PARABOLOID, ContactRadii([radius]))
+    near = radius * np.array([0.0, 1e-8, 1e-6, 1e-5, 1e-4, 9e-4, 1.1e-3])
+    outer, outermost = path.pressure(radius * np.array([0.02, 0.04]), 0)
+    curvature = (outermost - outer) / 3.0
+    even = outer - curvature + curvature * (near / (0.02 * radius)) ** 2
+    np.testing.assert_allclose(path.pressure(near, 0), even, rtol=2e-6, atol=0)

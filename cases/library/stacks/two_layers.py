@@ -6,12 +6,14 @@ one for each; they share the kernel, so the contact's pressure is also put back 
 separately: inside the contact it must press the shape of the indenter into the surface. Two equal layers are one. Two
 thin incompressible ones flow between base and punch: a force of delta pi a^4/(8 C), with C the integral of s^2/G over
 the depth s. Where a stiff layer lies on a soft one, flat ends would pull and are refused by name; no such scene stands
-here.
+here. The figure shows what bodies made simpler err by, also one on an elastic base and a graded one.
 """
 
 import math
+from collections.abc import Iterator
 
 from cases.declare.case import Case, CaseScene, text_of
+from cases.declare.task import Answers
 from cases.library._claims import exact, scaling_law
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, studies
 from cases.library._layers import THICKNESS
@@ -28,6 +30,7 @@ from cases.library.stacks._stacks import (
     two_methods,
 )
 from cases.measurements.cost.settings import elastic_costs
+from cases.results.records.figure import Figure
 from contact import ElasticLayer, Layer, LayerStack
 
 # Thickness, modulus and nu of each layer, from the top, and whether the two slip.
@@ -124,6 +127,14 @@ def thinness(scene: AnyScene) -> float:
     return float(scene.layer.thickness / scene.indenter.flat_radius)
 
 
+def simpler_bodies(case: Case, answers: Answers) -> Iterator[Figure]:
+    """What is moved by a base taken as rigid, a buried layer left out, and a grading averaged."""
+    # This import loads MDR, so it waits until the figure is drawn.
+    from cases.library._figures.simpler_bodies import figure  # noqa: PLC0415
+
+    yield figure()
+
+
 FIRST_SCENE = on_two(*FIRST)
 CASE = Case(
     name="two_layers",
@@ -159,4 +170,5 @@ CASE = Case(
         *studies((FIRST_SCENE,), EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
     ),
     work=elastic_costs(FIRST_SCENE.name),
+    figures=(simpler_bodies,),
 )
