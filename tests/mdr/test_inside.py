@@ -308,6 +308,14 @@ def test_the_tip_of_a_power_law_is_resolved(monkeypatch):
     _change_nothing_with_more_nodes(path, r, z, monkeypatch)
 
 
+@pytest.mark.parametrize("room", [0.5, 0.125, 0.0333, 0.0083, 5e-4])
+def test_a_sphere_pressed_to_its_equator_is_resolved(room, monkeypatch):
+    """3e-13 of the stress was left on the axis where 7e-14 was stated, by the first piece of the density."""
+    half = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.2)
+    path = pressed(half, Sphere(radius=1.0 + room), 1.0)
+    _change_nothing_with_more_nodes(path, np.array([0.0, 1e-3, 0.4]), np.array([0.92, 0.92, 0.5]), monkeypatch)
+
+
 def _change_nothing_with_more_nodes(path, r, z, monkeypatch):
     found = path.inside().at(r, z)
     for module in ("half_space_part", "layer_part", "density"):
