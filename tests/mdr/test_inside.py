@@ -316,6 +316,18 @@ def test_a_sphere_pressed_to_its_equator_is_resolved(room, monkeypatch):
     _change_nothing_with_more_nodes(path, np.array([0.0, 1e-3, 0.4]), np.array([0.92, 0.92, 0.5]), monkeypatch)
 
 
+@pytest.mark.parametrize("flat", [0.3, 0.03, 0.01, 1e-3, 1e-4])
+@pytest.mark.parametrize("kind", ["cone", "tabulated"])
+def test_a_small_flat_end_is_resolved(kind, flat, monkeypatch):
+    """8e-11 of the stress was left where 3e-14 was stated: the slope turns over the flat's width, however wide a is."""
+    half = Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.2)
+    radii = np.array([0.0, 0.2, 0.2 + flat, 2.0])
+    close = Tabulated(radii=radii, heights=0.1 * radii**1.5)
+    path = pressed(half, TruncatedCone(flat_radius=flat, slope=0.1) if kind == "cone" else close, 1.0)
+    r, z = np.array([0.0, 1e-3, 0.25, 0.4, 0.99]), np.array([0.92, 0.5, 0.1, 0.1, 0.3])
+    _change_nothing_with_more_nodes(path, r, z, monkeypatch)
+
+
 def _change_nothing_with_more_nodes(path, r, z, monkeypatch):
     found = path.inside().at(r, z)
     for module in ("half_space_part", "layer_part", "density"):
