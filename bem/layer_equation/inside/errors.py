@@ -97,7 +97,9 @@ def stated_errors(
     stress = (share + shifted) * found.stress + felt * found.edge_stress + rounding * mean
     gradient = _DERIVATIVE * (share + shifted) * found.gradient + felt * found.edge_gradient
     gradient += _STEEP * found.gradient + _DERIVATIVE * rounding * mean / found.length
-    gradient += (_UNLIKE * share + _DERIVATIVE * _QUADRATURE) * found.stress / found.length
+    # A radius that is off moves all fields by as much over the length, those where the gradient passes zero as well.
+    unlike = _UNLIKE * (share - grown) + grown / _DERIVATIVE + _DERIVATIVE * _QUADRATURE
+    gradient += unlike * found.stress / found.length
     gradient += _TERM * _EPS * found.gradient_terms
     # A thin layer yields far less than a half-space would under the same force, and is computed as a difference of two
     # integrals, each of them rounded.

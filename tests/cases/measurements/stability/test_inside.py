@@ -30,14 +30,30 @@ def test_points_of_many_random_contacts_lie_within_their_stated_errors(nodes):
     assert beyond(rows) == []
 
 
-def test_stated_errors_are_sharp_on_few_nodes():
-    """A share of the mean pressure was stated where stresses are small: 97 times the true error in the median."""
-    rows = inside_campaign(build("mdr", {"nodes": 12}), seed=41, count=8)
-    for quantity, median in (("stress", 25.0), ("displacement", 100.0), ("pressure_gradient", 60.0)):
-        told = [row.sharpness for row in rows if row.quantity == quantity and row.sharpness is not None]
-        assert len(told) > 20
-        assert np.median(told) < median, quantity
-    assert beyond(rows) == []
+NOT_YET = pytest.mark.xfail(strict=True, reason="stated from the whole contact: twenty to forty times the true error")
+
+
+@pytest.fixture(scope="module")
+def on_few_nodes():
+    """Rows of contacts by MDR on 12 nodes."""
+    return inside_campaign(build("mdr", {"nodes": 12}), seed=41, count=8)
+
+
+@pytest.mark.parametrize(
+    "quantity", ["stress", *(pytest.param(one, marks=NOT_YET) for one in ("displacement", "pressure_gradient"))]
+)
+def test_stated_errors_are_sharp_on_few_nodes(on_few_nodes, quantity):
+    """The requirement: at most 10 times the true error in the median, 100 times at nine of ten points."""
+    assert beyond(on_few_nodes) == []
+    told = [row.sharpness for row in on_few_nodes if row.quantity == quantity and row.sharpness is not None]
+    assert len(told) > 20
+    assert np.median(told) <= 10.0
+    assert np.quantile(told, 0.9) <= 100.0
+
+
+def test_gradients_that_pass_zero_move_with_the_radius():
+    """Under a flat end a found radius moved the gradient by 4.9e-7 where 3.8e-7 was stated."""
+    assert beyond(inside_campaign(build("mdr", {"nodes": 8}), seed=9, count=100, numbers=[87])) == []
 
 
 def test_distances_from_rims_keep_their_digits():
