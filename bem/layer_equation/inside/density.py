@@ -14,7 +14,7 @@ from bem.polynomials.gauss_panels import gauss_nodes
 from contact import PowerLaw, Profile
 from contact.records.validation import FloatArray
 
-# Share of the distance to a pole of the profile's slope by which pieces shrink towards it.
+# Ends of pieces lie so many times as far from a singularity of the profile's slope as the ends before them.
 _GRADING = 4.0
 # Share of its first piece by which a power-law tip is cut off: of the whole piece, 20 nodes left 4e-13 of the stress
 # (exponents 1.05 to 4.7 against 48 nodes, 30 points, seed 3, 2026-11-22).
@@ -100,10 +100,13 @@ def pieces_of(indenter: Profile, unit: float, stretches: Sequence[Stretch]) -> t
     """
     flat = indenter.flat_radius / unit
     pieces = _no_longer([Piece(0.0, flat, 1.0)] if flat else [])
+    previous = -math.inf
     for stretch in stretches:
         start, stop = flat + stretch.start, flat + stretch.stop
         power = 2.0 if start > 0.0 else 4.0 if isinstance(indenter, PowerLaw) else 1.0
-        ends = _graded(start, stop, stretch.room)
+        # Behind its own rim, which the power smooths, the slope is singular at the rim before it and at minus its own.
+        ends = _graded(start, stop, min(2.0 * start, start - previous), stretch.room)
+        previous = start
         if power == 4.0:
             ends.insert(1, start + _TIP * (ends[1] - start))
         pieces += _no_longer([Piece(one, two - one, power if one == start else 1.0) for one, two in pairwise(ends)])
@@ -120,10 +123,19 @@ def _no_longer(pieces: list[Piece]) -> list[Piece]:
     return parts
 
 
-def _graded(start: float, stop: float, room: float) -> list[float]:
-    """Ends of pieces that shrink towards the pole of the slope, `room` beyond stop."""
-    ends, distance = [stop], room
-    while distance < 0.5 * (stop - start):
-        ends.append(stop - distance)
-        distance *= _GRADING
-    return [start, *ends[::-1]]
+def _graded(start: float, stop: float, behind: float, room: float) -> list[float]:
+    """Ends of pieces between singularities of the slope, `behind` before start (zero: none) and `room` beyond stop.
+
+    No piece is longer than three times its distance from them: Gauss nodes leave 3^-40 of it. The first may be four
+    times as long as `behind`, since it is taken over the root of the way.
+    """
+    length, ends = stop - start, {start, stop}
+    ends.update(stop - away for away in _growing(room, length))
+    ends.update(start + away for away in _growing(_GRADING * behind, length))
+    return sorted(ends)
+
+
+def _growing(first: float, length: float) -> list[float]:
+    """first, and then always `_GRADING` times as much, up to a length."""
+    count = math.ceil(math.log(length / first) / math.log(_GRADING)) if 0.0 < first < length else 0
+    return [first * _GRADING**i for i in range(count)]

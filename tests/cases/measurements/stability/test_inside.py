@@ -30,14 +30,37 @@ def test_points_of_many_random_contacts_lie_within_their_stated_errors(nodes):
     assert beyond(rows) == []
 
 
-def test_stated_errors_are_sharp_on_few_nodes():
-    """A share of the mean pressure was stated where stresses are small: 97 times the true error in the median."""
-    rows = inside_campaign(build("mdr", {"nodes": 12}), seed=41, count=8)
-    for quantity, median in (("stress", 25.0), ("displacement", 100.0), ("pressure_gradient", 60.0)):
-        told = [row.sharpness for row in rows if row.quantity == quantity and row.sharpness is not None]
-        assert len(told) > 20
-        assert np.median(told) < median, quantity
-    assert beyond(rows) == []
+@pytest.fixture(scope="module")
+def on_few_nodes():
+    """Rows of contacts by MDR on 12 nodes."""
+    return inside_campaign(build("mdr", {"nodes": 12}), seed=41, count=8)
+
+
+QUANTITIES = ("stress", "displacement", "pressure_gradient")
+
+
+@pytest.mark.xfail(strict=True, reason="on 12 nodes errors are stated 18 times the true ones and more, in the median")
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_stated_errors_are_sharp_on_few_nodes(on_few_nodes, quantity):
+    """The requirement, which does not hold yet: 10 times the true error in the median, 100 times at nine of ten."""
+    told = [row.sharpness for row in on_few_nodes if row.quantity == quantity and row.sharpness is not None]
+    assert np.median(told) <= 10.0
+    assert np.quantile(told, 0.9) <= 100.0
+
+
+@pytest.mark.parametrize(("quantity", "median"), [*zip(QUANTITIES, (25.0, 100.0, 60.0), strict=True)])
+def test_stated_errors_on_few_nodes_follow_the_local_fields(on_few_nodes, quantity, median):
+    """Not the requirement: a share of the mean pressure was stated everywhere, 97 times the true error of stresses."""
+    assert beyond(on_few_nodes) == []
+    told = [row.sharpness for row in on_few_nodes if row.quantity == quantity and row.sharpness is not None]
+    assert len(told) > 20
+    assert np.median(told) < median
+
+
+@pytest.mark.parametrize(("nodes", "number"), [(8, 87), (12, 97), (12, 50)])
+def test_stated_errors_hold_where_gradients_pass_zero_and_at_the_base(nodes, number):
+    """A found radius moved a gradient by 4.9e-7 where 3.8e-7 was stated; a base doubles what a wrong edge makes."""
+    assert beyond(inside_campaign(build("mdr", {"nodes": nodes}), seed=9, count=100, numbers=[number])) == []
 
 
 def test_distances_from_rims_keep_their_digits():
