@@ -22,8 +22,6 @@ from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
 EPS = float(np.finfo(float).eps)
-# A quotient a/h may be so far, relative, from what its value came from: roundings of the two lengths and of a position.
-_BESIDE = 8.0 * EPS
 
 
 @dataclass(frozen=True)
@@ -207,10 +205,10 @@ class IntegralEquationSolution(FlatPunchSolution):
         return 2 * self._left_out(self._edge_share, ratio) / self.edge_density(ratio), 2 * of_kernel
 
     def _left_out(self, function: MappedFunction, ratio: FloatArray) -> FloatArray:
-        """By its polynomials, with their safety beyond the first panel; at an end of two panels by either."""
-        beside = np.stack([ratio * (1.0 - _BESIDE), np.minimum(ratio * (1.0 + _BESIDE), self.max_ratio)])
-        safety = np.where(beside <= self._panels.width[0], 1.0, self.shares.own_safety)
-        return np.asarray(np.max(safety * function.left_out(beside), axis=0))
+        """By its polynomials, with their safety beyond the first panel."""
+        return np.asarray(
+            np.where(ratio <= self._panels.width[0], 1.0, self.shares.own_safety) * function.left_out(ratio)
+        )
 
     def _covered(self, ratio: ArrayLike) -> FloatArray:
         ratio = np.asarray(ratio, dtype=float)

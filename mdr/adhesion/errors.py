@@ -167,5 +167,6 @@ class BranchErrors:
         return _terms(self.system, self.branch.radius(y), self.branch.values(y)[DEPTH])
 
     def _at_radius(self, y: FloatArray) -> FloatArray:
-        own = errors_at_radius(self.system, self.branch.radius(y), self.branch.values(y)[DEPTH])
-        return np.asarray(own + self.branch.truncation(y))
+        places = (y, self.branch.last_sample(y))
+        own = [errors_at_radius(self.system, self.branch.radius(at), self.branch.values(at)[DEPTH]) for at in places]
+        return np.asarray(np.maximum(*own) + self.branch.truncation(y))
