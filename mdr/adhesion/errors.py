@@ -127,7 +127,8 @@ class BranchErrors:
         at = np.array([y])
         error = self._slope_error(DEPTH, at) + compliance * self._slope_error(FORCE, at)
         by_depth, by_force = self.branch.curvatures(at)
-        return self.of_states(at, error / np.abs(by_depth + compliance * by_force))[:, 0]
+        shift = error / np.abs(by_depth + compliance * by_force)
+        return self._moved(at, shift, self._told_again(at))[:, 0]
 
     def shift(self, quantity: int, y: FloatArray, of_target: float = 0.0) -> FloatArray:
         """How far a state moves that is looked for by its depth or force, on either side of a fold."""
