@@ -91,10 +91,10 @@ class MappedGrid:
         shares = [np.array(_DOUBLING if own > 1 else _HALVING) for own in self.power]
         shares = [share if cut else share[[0, -1]] for share, cut in zip(shares, pieces, strict=True)]
         of_pieces = list(zip(shares, self.left, self.width, self.power, strict=True))
-        left = [start + width * share[:-1] for share, start, width, _ in of_pieces]
-        widths = [width * np.diff(share) for share, _, width, _ in of_pieces]
-        power = [np.append(own, np.ones(share.size - 2)) for share, *_, own in of_pieces]
-        return MappedGrid(*(np.concatenate(rows) for rows in (left, widths, power)), self.count)
+        left = np.concatenate([start + width * share[:-1] for share, start, width, _ in of_pieces])
+        widths = np.concatenate([width * np.diff(share) for share, _, width, _ in of_pieces])
+        power = np.concatenate([np.append(own, np.ones(share.size - 2)) for share, *_, own in of_pieces])
+        return MappedGrid(left, widths, power, self.count)
 
 
 @dataclass(frozen=True)
