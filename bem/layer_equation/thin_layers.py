@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -20,6 +21,7 @@ from numpy.polynomial import Chebyshev
 from numpy.typing import ArrayLike
 
 from bem.kernels.of_layer import UniformKernel
+from bem.layer_equation.error_model import WIDE_FACTOR, FactorCoefficients
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fourier_energy import energy_matrix, tail_left_out
 from bem.layer_equation.fredholm_kernel import FredholmKernel
@@ -160,7 +162,7 @@ class LargeRatioSolution(FlatPunchSolution):
     def density_error(self, ratio: ArrayLike) -> FloatArray:
         """Relative error of pressures beyond that of the stiffness: what `wide` makes of k_bar, and its polynomials."""
         ratio = self._covered(ratio)
-        return np.where(ratio <= self.near.max_ratio, 0.0, self._lost(ratio))
+        return np.where(ratio <= self.near.max_ratio, 0.0, self._lost(ratio) + DENSITY_TRUNCATION)
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar."""
@@ -195,13 +197,15 @@ class LargeRatioSolution(FlatPunchSolution):
     @cached_property
     def wide_alone(self) -> WideSolution:
         """The wide panels for all radii: seven digits, but for profiles with breakpoints anywhere."""
-        wide = self.wide
-        return WideSolution(wide.kernel, wide.factor, self._lost)
+        ratios = FIRST_RATIO + PANEL_WIDTH * np.linspace(0.0, 1.0, SAMPLES * PANEL_NODES)
+        springs = [solution.normalized_spring_stiffness(ratios) for solution in (self.wide, self.near)]
+        seen = float(np.max(np.abs(springs[0] / springs[1] - 1)))
+        return WideSolution(self.wide.kernel, self.wide.factor, self._lost, seen)
 
     def _lost(self, ratio: FloatArray) -> FloatArray:
-        """What `wide` makes of k_bar, from `FIRST_RATIO` on, and its polynomials."""
-        ratio = np.maximum(ratio, FIRST_RATIO)
-        return np.abs(self.wide.normalized_contact_stiffness(ratio) / self._stiffness(ratio) - 1) + DENSITY_TRUNCATION
+        """What `wide` makes of k_bar."""
+        stiffness = self.normalized_contact_stiffness(ratio)
+        return np.abs(self.wide.normalized_contact_stiffness(ratio) / stiffness - 1)
 
     @cached_property
     def log_stiffness(self) -> Chebyshev:
@@ -268,13 +272,20 @@ class LargeRatioSolution(FlatPunchSolution):
 
 @dataclass(frozen=True)
 class WideSolution(IntegralEquationSolution):
-    """One factor on wide panels, judged by Ritz values.
+    """One factor on wide panels, judged by Ritz values and by narrow panels.
 
     Attributes:
         lost: Relative error of its k_bar at each ratio.
+        seen: Largest relative error of its c_bar on one panel. The kernel makes the same on every panel.
     """
 
     lost: Callable[[FloatArray], FloatArray]
+    seen: float
+    shares: ClassVar[FactorCoefficients] = WIDE_FACTOR
+
+    def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """The kernel's share as it was seen."""
+        return super()._spring_truncation(ratio)[0], np.full(np.shape(ratio), self.seen)
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar."""

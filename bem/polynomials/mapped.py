@@ -22,6 +22,8 @@ from contact.records.validation import FloatArray
 # Times that pieces may be split, more than halving a piece down to rounding takes.
 MAX_SPLITS = 60
 EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
+# Where a piece is cut, as shares of its width: beside a mapped singularity, and elsewhere. Chosen.
+_DOUBLING, _HALVING = (0.0, 0.125, 0.25, 0.5, 1.0), (0.0, 0.5, 1.0)
 # Two points closer than this, relative to their distance from the start, are one: rounding set them apart.
 GAP = 1e-12
 # Roundings of the largest coefficient that a sum of polynomials adds up to.
@@ -82,13 +84,17 @@ class MappedGrid:
         return piece, s ** (1 / self.power[piece])
 
     def split(self, pieces: NDArray[np.bool_]) -> MappedGrid:
-        """A copy with some pieces cut: in the middle, or, where a singularity is mapped, at an eighth."""
-        cut = self.width * np.where(self.power > 1, 0.125, 0.5)
-        left = np.concatenate([self.left, (self.left + cut)[pieces]])
-        width = np.concatenate([np.where(pieces, cut, self.width), (self.width - cut)[pieces]])
-        power = np.concatenate([self.power, np.ones(np.count_nonzero(pieces))])
-        order = np.argsort(left, kind="stable")
-        return MappedGrid(left[order], width[order], power[order], self.count)
+        """A copy with some pieces cut: in the middle, or, where a singularity is mapped, doubling away from it.
+
+        Values fall towards it by powers, and errors at the far end of a piece would count against them.
+        """
+        shares = [np.array(_DOUBLING if own > 1 else _HALVING) for own in self.power]
+        shares = [share if cut else share[[0, -1]] for share, cut in zip(shares, pieces, strict=True)]
+        of_pieces = list(zip(shares, self.left, self.width, self.power, strict=True))
+        left = np.concatenate([start + width * share[:-1] for share, start, width, _ in of_pieces])
+        widths = np.concatenate([width * np.diff(share) for share, _, width, _ in of_pieces])
+        power = np.concatenate([np.append(own, np.ones(share.size - 2)) for share, *_, own in of_pieces])
+        return MappedGrid(left, widths, power, self.count)
 
 
 @dataclass(frozen=True)

@@ -89,6 +89,12 @@ class MdrAdhesiveBranch:
         """Where in y the section begins that y lies on."""
         return np.asarray(self.section_ends[self._section(y)])
 
+    def last_sample(self, y: FloatArray) -> FloatArray:
+        """Each y, or its panel's last sample if that comes before: values there continue what is sampled."""
+        panel = self.functions.panel(y)
+        last = self.functions.centres + np.max(chebyshev.nodes(NODES)) / self.functions.scales
+        return np.asarray(np.minimum(y, last[panel]))
+
     def truncation(self, y: FloatArray) -> FloatArray:
         """What the polynomials leave out of delta [m] and F [N] at y, and roundings of y, shape (2, n)."""
         return np.asarray(self.tails[:, self.functions.panel(y)] + self.rounding[:, None])

@@ -127,7 +127,8 @@ class BranchErrors:
         at = np.array([y])
         error = self._slope_error(DEPTH, at) + compliance * self._slope_error(FORCE, at)
         by_depth, by_force = self.branch.curvatures(at)
-        return self.of_states(at, error / np.abs(by_depth + compliance * by_force))[:, 0]
+        shift = error / np.abs(by_depth + compliance * by_force)
+        return self._moved(at, shift, self._told_again(at))[:, 0]
 
     def shift(self, quantity: int, y: FloatArray, of_target: float = 0.0) -> FloatArray:
         """How far a state moves that is looked for by its depth or force, on either side of a fold."""
@@ -167,5 +168,6 @@ class BranchErrors:
         return _terms(self.system, self.branch.radius(y), self.branch.values(y)[DEPTH])
 
     def _at_radius(self, y: FloatArray) -> FloatArray:
-        own = errors_at_radius(self.system, self.branch.radius(y), self.branch.values(y)[DEPTH])
-        return np.asarray(own + self.branch.truncation(y))
+        places = (y, self.branch.last_sample(y))
+        own = [errors_at_radius(self.system, self.branch.radius(at), self.branch.values(at)[DEPTH]) for at in places]
+        return np.asarray(np.maximum(*own) + self.branch.truncation(y))

@@ -139,6 +139,8 @@ class EquivalentSystem:
         stiffness = self.flat_punch.relative_error(ratio) + SPRING_ROUNDING
         springs = self.flat_punch.spring_error(ratio) + SPRING_ROUNDING
         data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + SPRING_ROUNDING
+        # Within the flat end g is zero.
+        data = np.where(np.asarray(contact_radius) >= self.flat_radius, data, SPRING_ROUNDING)
         own = self.profile_truncation(contact_radius) + self.position_rounding(np.asarray(contact_radius))
         depth = data + np.where(ratio > self.flat_punch.fitted_from, self.profile_error, 0.0) + own
         # That of the radius holds where depth or force are prescribed, since g rises at least about linearly.

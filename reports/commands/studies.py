@@ -132,7 +132,8 @@ def calibrate(
 
 def campaign(
     family: Annotated[
-        str, typer.Argument(help="elastic, pressure, adhesive, impact, history (of depth) or creep (force).")
+        str,
+        typer.Argument(help="elastic, pressure, displacement, adhesive, impact, history (of depth) or creep (force)."),
     ] = "elastic",
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
     count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
@@ -142,14 +143,16 @@ def campaign(
     from cases.declare.guarded_method import build_guarded  # noqa: PLC0415
     from cases.measurements import measurement  # noqa: PLC0415
     from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
+    from cases.measurements.campaigns.displacements import displacement_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.pressures import pressure_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.random_scenes import FAMILIES, Family  # noqa: PLC0415
     from contact import InvalidInput  # noqa: PLC0415
 
-    if family not in (*FAMILIES, "pressure"):
-        raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, 'pressure'))}")
-    if family == "pressure":
-        found = pressure_campaign(build_guarded(method, {}), seed=seed, count=count)
+    of_fields = {"pressure": pressure_campaign, "displacement": displacement_campaign}
+    if family not in (*FAMILIES, *of_fields):
+        raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, *of_fields))}")
+    if family in of_fields:
+        found = of_fields[family](build_guarded(method, {}), seed=seed, count=count)
     else:
         found = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=cast("Family", family))
     for line in measurement.report(found):

@@ -43,6 +43,12 @@ def test_a_small_campaign_counts_its_ends(capsys):
     assert "beyond: 0, crashed: 0" in capsys.readouterr().out
 
 
+def test_displacements_have_a_door(capsys):
+    """Seen to fail: the campaign was no family."""
+    assert run(["campaign", "displacement", "--count", "1"]) == 0
+    assert "displacement" in capsys.readouterr().out
+
+
 def test_an_unknown_family_names_those_there_are(capsys):
     assert run(["campaign", "plastic"]) == 4
     assert "elastic, adhesive, impact, history, creep" in capsys.readouterr().err.replace("\n", " ")

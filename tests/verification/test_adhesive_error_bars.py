@@ -242,11 +242,23 @@ def test_stated_errors_of_pull_off_are_true_ones_twice(indenter, work):
         assert error < coarse.error_estimate[name][0] < 5 * error + 1e-12, name
 
 
+def test_forces_where_a_soft_machine_loses_contact_are_solved_again():
+    """Seen to fail: 8.4 times the true error, by bounds of narrow contacts."""
+    scene = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4),
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=Detachment(control="displacement", machine_stiffness=0.01),
+        effects=(Adhesion(work_of_adhesion=1e-9),),
+    )
+    coarse, fine = (build("mdr", {"nodes": nodes}).solve(scene) for nodes in (12, 32))
+    error = abs(coarse.force_at_loss / fine.force_at_loss - 1)
+    assert error < coarse.error_estimate["force_at_loss"][0] < 5 * error
+
+
 def test_forces_count_what_the_moment_leaves_out():
     """Seen to fail: 2.8 times the stated error, under a paraboloid with a flat end of 5.6e-6 of the thickness.
 
-    The moment is off by 9e-8 a fifth of a thickness from the flat end, on twelve nodes. Two of these thirty states are
-    beyond what is stated now, by 15 %.
+    One piece of the profile's grid reached over an eightfold growth: errors of its far end counted at its near end.
     """
     scene = random_scene(np.random.default_rng([8401, 22]), "adhesive", (1e-2, CHEAP_RATIO))
     assert isinstance(scene.indenter, TruncatedParaboloid)
@@ -255,6 +267,20 @@ def test_forces_count_what_the_moment_leaves_out():
     radii = path.contact_radius[:180:6]
     expected = adhesive_states(scene, radii).values["normal_force"]
     error = np.abs(path.normal_force[:180:6] - expected) / np.abs(path.normal_force).max()
-    ratio = error / path.error_estimate["normal_force"][:180:6]
-    assert np.mean(ratio <= 1.0) > 0.9
-    assert ratio.max() < 1.2
+    assert np.all(error <= path.error_estimate["normal_force"][:180:6])
+
+
+def test_a_rim_a_little_beyond_a_panel_errs_like_that_panel():
+    """Seen to fail: 2.3 to 2.5 times the stated error, which was that of the next panel, at a/h = 2 + 5e-10.
+
+    No sample of the branch lies on that next panel.
+    """
+    scene = random_scene(np.random.default_rng([8401, 46]), "adhesive", (1e-2, CHEAP_RATIO))
+    assert isinstance(scene.indenter, FlatPunch)
+    path = build("mdr", {"nodes": 12}).solve(scene)
+    rim = np.flatnonzero(path.contact_radius == scene.indenter.radius)[-1]
+    expected = adhesive_states(scene, path.contact_radius[[rim]]).values
+    for quantity in ("indentation_depth", "normal_force"):
+        values = getattr(path, quantity)
+        error = abs(values[rim] - expected[quantity][0]) / np.abs(values).max()
+        assert 0.1 * path.error_estimate[quantity][rim] < error < path.error_estimate[quantity][rim], quantity

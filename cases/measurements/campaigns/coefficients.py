@@ -43,6 +43,7 @@ GROUPS: Final = (
     Group(place="bem.layer_equation.error_model:FACTOR", methods=_MDR, families=FAMILIES),
     # The coverage study draws plain layers; tests/verification/test_stack_error_bars.py measures stacks.
     Group(place="bem.layer_equation.error_model:STACK_FACTOR", methods=("mdr",), families=()),
+    Group(place="bem.layer_equation.error_model:WIDE_FACTOR", methods=("mdr",), families=()),
     Group(place="bem.layer_equation.error_model:ONE_RADIUS", methods=("integral_equation",), families=("elastic",)),
     Group(place=_SPRINGS, names=("SPRING_ROUNDING", "POSITION_ROUNDINGS"), methods=_BOTH_MDR, families=FAMILIES),
     Group(

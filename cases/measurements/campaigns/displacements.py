@@ -26,6 +26,7 @@ from contact import (
     ContactRadii,
     ElasticLayer,
     ExponentialDepth,
+    FlatPunch,
     GradedLayer,
     Layer,
     LayerStack,
@@ -36,6 +37,7 @@ from contact import (
     Scene,
     Solution,
     Sublayer,
+    TruncatedCone,
 )
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
@@ -120,6 +122,10 @@ def random_body(draw: Draw) -> Scene:
         Cone(slope=slope),
         PowerLaw(exponent=float(draw.uniform(1.2, 4.0)), reference_radius=a, reference_height=slope * a),
     )[draw.integers(3)]
+    # One contact in four has a flat end, most of which it has outgrown.
+    if draw.integers(4) == 0:
+        flat = float(draw.uniform(0.1, 1.1))
+        indenter = FlatPunch(radius=a) if flat > 1.0 else TruncatedCone(flat_radius=flat * a, slope=slope)
     return Scene(layer=layer, indenter=indenter, loading=ContactRadii(values=np.array([a])))
 
 

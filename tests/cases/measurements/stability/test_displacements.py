@@ -43,3 +43,11 @@ def test_displacements_on_many_bodies_keep_their_stated_errors():
     rows = displacement_campaign(build("mdr", {}), seed=2, count=60)
     assert beyond(rows) == set()
     assert sum(row.quantity == "displacement" for row in rows) > 50
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["bem", "fem"])
+def test_displacements_of_meshes_and_grids_keep_what_is_stated_of_their_contacts(method):
+    rows = displacement_campaign(build(method, {}), seed=1, count=3)
+    assert beyond(rows) == set()
+    assert sum(row.quantity == "displacement" for row in rows) == 3
