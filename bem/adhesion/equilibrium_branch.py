@@ -24,7 +24,8 @@ from contact.records.validation import FloatArray
 DEPTH, FORCE = 0, 1
 # Share of the largest y below which depth and force have left the tip with a known sign; chosen.
 _TIP = 1e-5
-# How far outside its panel a root may lie; whether it is one is decided by the signs beside it. Chosen.
+# How far outside its panel a root may lie, and how close two of them are one, for roundings make up pairs where a
+# section begins with no slope. Whether it is one is decided by the signs beside it. Chosen.
 _EDGE = 1e-6
 # Most Newton steps to a fold, and the relative step that ends them: a step this short has squared its error already.
 _NEWTON_STEPS, _ROUNDING = 60, 1e-13
@@ -195,7 +196,7 @@ class EquilibriumBranch:
         end = self.section_ends[-1]
         inside = candidates[(candidates > _TIP * end) & (candidates < end)]
         points = np.unique(np.concatenate([[0.0], inside, [end]]))
-        points = points[np.append(True, np.diff(points) > 1e-12 * points[-1])]
+        points = points[np.append(True, np.diff(points) > _EDGE * points[-1])]
         signs = np.sign(self.slopes(0.5 * (points[1:] + points[:-1]))[quantity])
         return np.asarray(points[1:-1][signs[1:] != signs[:-1]])
 

@@ -292,8 +292,10 @@ def _quantity(loading: IndentationDepths | NormalForces) -> int:
 
 
 def _radius(route: Route, y: float) -> float:
-    """Contact radius [m] at y."""
-    return route.state(y)[0]
+    """Contact radius [m] at y, unrounded where a section ends."""
+    branch = route.branch
+    ends: dict[float, float] = dict(zip(branch.section_ends.tolist(), branch.section_radii.tolist(), strict=True))
+    return ends.get(y, route.state(y)[0])
 
 
 def _compared(route: Route, other: DiscBranch, quantity: int) -> dict[str, float]:
