@@ -25,7 +25,7 @@ from typing import Final
 
 import numpy as np
 
-from bem.grid.calibrated_disc import PixelDisc, measured_disc
+from bem.grid.calibrated_disc import TOLERANCE, PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
@@ -39,8 +39,6 @@ FARTHEST: Final = 20.0
 LARGEST_SHARE: Final = 0.3
 # Width of the ring, in cells, from which on the fitted polynomial has a third degree.
 CUBIC_FROM: Final = 16.0
-# Largest error of the displacement under the contact; an edge value is off by some ten times that.
-TOLERANCE: Final = 1e-10
 
 
 @dataclass(frozen=True, eq=False)

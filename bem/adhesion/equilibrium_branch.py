@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, SampledPanel, resolved_panels
+from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 
 DEPTH, FORCE = 0, 1
@@ -27,8 +28,8 @@ _TIP = 1e-5
 # How far outside its panel a root may lie, and how close two of them are one, for roundings make up pairs where a
 # section begins with no slope. Whether it is one is decided by the signs beside it. Chosen.
 _EDGE = 1e-6
-# Most Newton steps to a fold, and the relative step that ends them: a step this short has squared its error already.
-_NEWTON_STEPS, _ROUNDING = 60, 1e-13
+# Relative Newton step that ends an inversion: a step this short has squared its error already.
+_ROUNDING = 1e-13
 # Relative rounding of a position: half of its own, half of the middle of its panel.
 EPS = float(np.finfo(float).eps)
 
@@ -204,7 +205,7 @@ class EquilibriumBranch:
         """The y of each target on a part where the quantity increases; a Newton step out of its bracket is halved."""
         left, right = np.full(target.shape, low), np.full(target.shape, high)
         y = 0.5 * (left + right)
-        for _ in range(_NEWTON_STEPS):
+        for _ in range(MOST_STEPS):
             both = self.functions(y, slice(4))
             excess, slope = both[quantity] - target, both[2 + quantity]
             left, right = np.where(excess <= 0.0, y, left), np.where(excess >= 0.0, y, right)

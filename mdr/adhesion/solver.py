@@ -47,7 +47,7 @@ POINTS = 200
 # States of them with the front at a punch's edge.
 _PINNED = POINTS // 5
 # First trial excess over the flat end, in units of the way to where height and critical elongation are equal; chosen.
-_FIRST_WAY = 2.0
+FIRST_WAY = 2.0
 
 # a/h beyond which the half-space's radius is no guide to the layer's: the largest that one factorisation covers.
 _THIN = LARGEST_FACTORISED_RATIO
@@ -234,7 +234,7 @@ def _first_radius(scene: Scene) -> float:
     On a layer much thinner than that radius the elongation is far shorter than on the half-space.
     """
     flat, thickness = scene.indenter.flat_radius, scene.layer.surface.thickness
-    first = flat + _FIRST_WAY * (balance_radius(scene) - flat)
+    first = flat + FIRST_WAY * (balance_radius(scene) - flat)
     return first if first <= _THIN * thickness else max(FIRST_RATIO * thickness, 2.0 * flat)
 
 
