@@ -226,7 +226,8 @@ class Bem(Record):
             coarse, _ = grid_punch(scene.layer, a, self.points // 2)
         stiffness = punch_stiffness(scene.layer, a, punch)
         depth = value if kind == "depth" else value / stiffness
-        scale = depth * stiffness / (np.pi * a**2)  # p = k_N delta / (pi a^2) p_bar, Eq. (10)
+        # p = k_N delta / (pi a^2) p_bar, Eq. (10).
+        scale = depth * stiffness / (np.pi * a**2)
         cell_size = a / disc.radius
         fields = FlatPunchFields(
             layer=scene.layer,

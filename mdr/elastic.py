@@ -217,7 +217,8 @@ def _errors(
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
         searched = errors["normal_force" if given == "NormalForces" else "contact_radius"]
-        moved = searched * depth / (radius * np.abs(system.mdr_profile_slope(radius)))  # a table's noise may fall
+        # The noise of a table may let its slope fall.
+        moved = searched * depth / (radius * np.abs(system.mdr_profile_slope(radius)))
         growth = 2.0 * system.spring_stiffness(radius) * radius / contact_stiffness
     return {
         "contact_radius": moved,

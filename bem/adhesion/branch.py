@@ -1,21 +1,22 @@
-"""Equilibria of an adhering indenter over the contact radius: stable and unstable ones, and their turning points."""
+"""Equilibria of an adhering indenter over the contact radius, from solutions on a few discs of cells."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import pairwise
 from math import pi
-from typing import Final, Literal
+from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy.optimize import brentq, minimize_scalar
 
 from bem.adhesion.disc import AdheringDisc
+from bem.adhesion.equilibrium_branch import FORCE, EquilibriumBranch
+from bem.adhesion.withdrawal import Route
 from bem.grid.error_model import DISCS
 from bem.grid.quadrant import COARSE_CELLS
-from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from contact import Adhesion, Detachment, FlatPunch, Profile, Scene
@@ -28,19 +29,12 @@ NODES: Final = 16
 BROKEN_NODES: Final = 32
 # Nodes between two breakpoints of a measured profile for its values on the half-space: 24 follow them to 1e-12.
 LOAD_NODES: Final = 24
-# Radii of each piece between which turning points and crossings are looked for.
-SAMPLES: Final = 400
-# Relative distance from the rim of a flat end, within which a state found by minimisation is one at the rim itself.
+# Relative distance within which two radii are one and the same: the rim of a flat end, or where the contact was.
 RIM: Final = 1e-7
-# Relative step over which the slope of depth or force is taken at an extremum: places err by its square.
-SLOPE_STEP: Final = 1e-5
 # Factor by which the largest radius grows while the branch is too short.
 GROWTH: Final = 1.6
 # The first trial radius is the half-space's, but at most this times the thickness, where it is no guide any more.
 FIRST_RATIO: Final = 4.0
-
-# Depth, force, and the displacement of a machine that gives way.
-Quantity = Literal["indentation_depth", "normal_force", "machine"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -194,7 +188,7 @@ class DiscBranch:
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""
-        return np.asarray(contact_modulus(self.scene.layer) * self.values(radius)[2])
+        return np.asarray(self.scene.layer.contact_modulus * self.values(radius)[2])
 
     def depth(self, radius: FloatArray) -> FloatArray:
         """delta [m] where phi = -sqrt(2 pi dgamma a/E*): Eq. (40)."""
@@ -213,14 +207,11 @@ class DiscBranch:
         """F_N [N], in equilibrium or at another depth."""
         _, _, stiffness, moment = self.values(radius)
         delta = self.depth(radius) if depth is None else depth
-        return np.asarray(contact_modulus(self.scene.layer) * (stiffness * delta - moment))
+        return np.asarray(self.scene.layer.contact_modulus * (stiffness * delta - moment))
 
-    def value(self, quantity: Quantity, radius: FloatArray) -> FloatArray:
-        """Depth [m], force [N], or the machine's displacement delta + F/K [m]."""
-        if quantity == "normal_force":
-            return self.force(radius)
-        depth = self.depth(radius)
-        return depth if quantity == "indentation_depth" else depth + self.compliance * self.force(radius, depth)
+    def value(self, quantity: int, radius: FloatArray) -> FloatArray:
+        """Depth [m] or force [N]."""
+        return self.force(radius) if quantity == FORCE else self.depth(radius)
 
     @property
     def compliance(self) -> float:
@@ -229,60 +220,30 @@ class DiscBranch:
         stiffness = loading.machine_stiffness if isinstance(loading, Detachment) else None
         return 1.0 / stiffness if stiffness else 0.0
 
-    def samples(self) -> FloatArray:
-        """Radii along the branch, increasing, the ends of its pieces among them."""
-        t = np.arange(1, SAMPLES + 1) / SAMPLES
-        return np.concatenate([p.inner + (p.outer - p.inner) * t**2 for p in self.pieces])
+    @cached_property
+    def equilibria(self) -> EquilibriumBranch:
+        """Depth and force as polynomials, with their folds and stable parts."""
 
-    def turning_points(self, quantity: Quantity) -> list[tuple[float, bool]]:
-        """Radii where the quantity is stationary, and whether it is least there."""
-        radii = self.samples()
-        rising = np.diff(self.value(quantity, radii)) > 0.0
-        places = np.flatnonzero(np.diff(rising.astype(int))) + 1
-        return [(self._refined(quantity, radii, int(i), bool(rising[i])), bool(rising[i])) for i in places]
+        def sample(start: float, way: FloatArray) -> FloatArray:
+            """Depth [m] and force [N], shape (2, n), so far [m] beyond a radius [m]."""
+            depth = self.depth(start + way)
+            return np.stack([depth, self.force(start + way, depth)])
 
-    def _refined(self, quantity: Quantity, radii: FloatArray, i: int, least: bool) -> float:
-        """The extremum near sample i; at the rim of a flat end it is a kink, which bounded minimisation finds too.
+        indenter = self.scene.indenter
+        breakpoints = (indenter.flat_radius, *indenter.breakpoints)
+        return EquilibriumBranch.sampled(sample, breakpoints=breakpoints, radius=self.largest_radius)
 
-        It finds a place to the root of a rounding only; that of a smooth extremum is where the slope vanishes.
-        """
-        sign, flat = 1.0 if least else -1.0, self.scene.indenter.flat_radius
+    def route(self, start: float) -> Route:
+        """A withdrawal from a contact radius [m]."""
+        y = float(self.equilibria.position(np.array([start]))[0])
+        return Route(self.equilibria, y, isinstance(self.scene.indenter, FlatPunch), self.compliance)
 
-        def rise(a: float) -> float:
-            """Of the quantity over a small step around a radius [m]."""
-            below, above = self.value(quantity, a * np.array([1.0 - SLOPE_STEP, 1.0 + SLOPE_STEP]))
-            return float(above - below)
-
-        found = minimize_scalar(
-            lambda a: sign * float(self.value(quantity, np.array([a]))[0]),
-            bounds=(radii[i - 1], radii[i + 1]),
-            method="bounded",
-            options={"xatol": 1e-9 * radii[i]},
-        )
-        a = float(found.x)
-        if abs(a - flat) <= RIM * a:
-            return flat
-        low, high = a * (1.0 - 10.0 * SLOPE_STEP), a * (1.0 + 10.0 * SLOPE_STEP)
-        is_kept = flat < low * (1.0 - SLOPE_STEP) or flat > high * (1.0 + SLOPE_STEP)
-        return float(brentq(rise, low, high, xtol=1e-13 * a)) if is_kept and rise(low) * rise(high) < 0.0 else a
-
-    def crossing(self, quantity: Quantity, value: float, within: tuple[float, float], *, inmost: bool) -> float | None:
-        """The first or last radius in an interval at which the quantity grows with the radius through a value."""
-        radii = self.samples()
-        radii = np.concatenate([[within[0]], radii[(radii > within[0]) & (radii < within[1])], [within[1]]])
-        excess = self.value(quantity, radii) - value
-        places = np.flatnonzero((excess[:-1] < 0.0) & (excess[1:] >= 0.0))
-        if not places.size:
-            return None
-        i = places[0 if inmost else -1]
-        return float(
-            brentq(
-                lambda a: float(self.value(quantity, np.array([a]))[0]) - value,
-                radii[i],
-                radii[i + 1],
-                xtol=1e-14 * radii[i + 1],
-            )
-        )
+    def crossing(self, quantity: int, value: float, within: tuple[float, float], *, inmost: bool) -> float | None:
+        """The first or last radius in an interval at which depth or force grows with the radius through a value."""
+        y = self.equilibria.stable_solutions(quantity, np.array([value]))[:, 0]
+        radii = self.equilibria.radius(y[np.isfinite(y)])
+        found = radii[(radii >= within[0] * (1.0 - RIM)) & (radii <= within[1] * (1.0 + RIM))]
+        return float(found[0 if inmost else -1]) if found.size else None
 
     def values(self, radius: FloatArray) -> FloatArray:
         """Edge values, stiffness and moment at radii, shape (4, n)."""
@@ -303,7 +264,7 @@ class DiscBranch:
 def adhesive_length(scene: Scene) -> float:
     """dgamma/E* [m]."""
     adhesion = scene.effect(Adhesion)
-    return 0.0 if adhesion is None else adhesion.work_of_adhesion / contact_modulus(scene.layer)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion / scene.layer.contact_modulus
 
 
 def long_enough(scene: Scene, threads: int, enough: Callable[[DiscBranch], bool]) -> float:

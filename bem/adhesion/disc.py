@@ -25,11 +25,10 @@ from typing import Final
 
 import numpy as np
 
-from bem.grid.calibrated_disc import PixelDisc, measured_disc
+from bem.grid.calibrated_disc import TOLERANCE, PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
-from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from contact import ElasticLayer, Layer, Profile
@@ -40,8 +39,6 @@ FARTHEST: Final = 20.0
 LARGEST_SHARE: Final = 0.3
 # Width of the ring, in cells, from which on the fitted polynomial has a third degree.
 CUBIC_FROM: Final = 16.0
-# Largest error of the displacement under the contact; an edge value is off by some ten times that.
-TOLERANCE: Final = 1e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +73,7 @@ class AdheringDisc:
         operator = FreeSpaceOperator(layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
         height = np.where(disc.contact, indenter.height(np.minimum(grid.radius, indenter.max_radius)), 0.0)
         flat, risen = (
-            solve_on_contact(operator, disc.contact, target, tolerance=TOLERANCE).pressure / contact_modulus(layer)
+            solve_on_contact(operator, disc.contact, target, tolerance=TOLERANCE).pressure / layer.contact_modulus
             for target in (1.0, height)
         )
         if radius <= indenter.flat_radius or not is_measured(layer, indenter):

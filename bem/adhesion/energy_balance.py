@@ -15,7 +15,6 @@ import numpy as np
 
 from bem.adhesion.branch import RIM, DiscBranch
 from bem.grid.error_model import DISCS
-from bem.kernels.moduli import contact_modulus
 from contact.records.validation import BoolArray, FloatArray
 
 # Up to so many radii of a flat end the moment beyond it hardly exists on the grid: there what is told of the force was
@@ -103,4 +102,4 @@ def _released(branch: DiscBranch, radius: FloatArray) -> FloatArray:
     with np.errstate(divide="ignore", invalid="ignore"):
         by_stiffness, by_moment = branch.slopes(radius)
         depth = by_moment / by_stiffness - branch.critical_length(radius) / np.sqrt(0.5 * by_stiffness)
-        return np.stack([depth, contact_modulus(branch.scene.layer) * (stiffness * depth - moment)])
+        return np.stack([depth, branch.scene.layer.contact_modulus * (stiffness * depth - moment)])

@@ -12,7 +12,6 @@ from scipy.interpolate import PchipInterpolator
 from bem.adhesion.disc import AdheringDisc
 from bem.grid.quadrant import EDGE_CELLS
 from bem.grid.surface_fields import Rim, ring_interpolator
-from bem.kernels.moduli import contact_modulus
 from contact import Scene
 from contact.records.validation import FloatArray
 
@@ -37,7 +36,7 @@ class AdheringFields:
             return np.zeros(radius.shape)
         last = a - 0.5 * self._disc.grid.cell_size
         r = np.where(radius < a, radius, last)
-        density = contact_modulus(self.scene.layer) / np.pi * self._density(np.minimum(r, last))
+        density = self.scene.layer.contact_modulus / np.pi * self._density(np.minimum(r, last))
         return np.where(radius <= a, density / np.sqrt((a - r) * (a + r)), 0.0)
 
     def surface_displacement(self, radius: FloatArray) -> FloatArray:
@@ -47,7 +46,7 @@ class AdheringFields:
         a, layer, outside = self.contact_radius, self.scene.layer, radius > self.contact_radius
         w = np.asarray(self.indentation_depth - self.scene.indenter.height(np.minimum(radius, a)))
         edge = self.indentation_depth - float(self.scene.indenter.height(a))
-        rim = Rim(layer, self._disc.grid, contact_modulus(layer) * self._pressure, a, edge)
+        rim = Rim(layer, self._disc.grid, layer.contact_modulus * self._pressure, a, edge)
         w[outside] = rim.displacement_outside(radius[outside])
         return w
 

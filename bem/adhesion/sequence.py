@@ -12,7 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bem.adhesion.branch import DiscBranch, Quantity
+from bem.adhesion.branch import DiscBranch
+from bem.adhesion.equilibrium_branch import DEPTH, FORCE
 from contact import FlatPunch, InvalidInput
 from contact.records.validation import FloatArray
 
@@ -34,7 +35,7 @@ class FollowedState:
     contact_stiffness: float
 
 
-def followed(branch: DiscBranch, quantity: Quantity, values: FloatArray) -> list[FollowedState]:
+def followed(branch: DiscBranch, quantity: int, values: FloatArray) -> list[FollowedState]:
     """The states at the values, one after the other.
 
     Raises:
@@ -43,7 +44,7 @@ def followed(branch: DiscBranch, quantity: Quantity, values: FloatArray) -> list
     states, radius = [], 0.0
     for entry, value in enumerate(values.tolist()):
         radius = _next_radius(branch, quantity, value, radius)
-        if radius == 0.0 and quantity == "normal_force":
+        if radius == 0.0 and quantity == FORCE:
             raise InvalidInput(
                 f"loading.values = {value:g} (entry {entry}): no contact carries this tension; "
                 "press first, and pull less than the pull-off force"
@@ -58,20 +59,20 @@ def at_radii(branch: DiscBranch, radii: FloatArray) -> list[FollowedState]:
     return [FollowedState(*row) for row in np.column_stack(columns).tolist()]
 
 
-def state(branch: DiscBranch, quantity: Quantity, value: float, radius: float) -> FollowedState:
+def state(branch: DiscBranch, quantity: int, value: float, radius: float) -> FollowedState:
     """The state with this radius under the prescribed value; a flat punch may be held below its critical tension."""
     if radius == 0.0:
         return FollowedState(0.0, value, 0.0, 0.0)
     a = np.array([radius])
     stiffness = float(branch.stiffness(a)[0])
-    if quantity == "indentation_depth":
+    if quantity == DEPTH:
         return FollowedState(radius, value, float(branch.force(a, np.array([value]))[0]), stiffness)
     # The force that holds the profile at no depth.
     unpressed = float(branch.force(a, np.zeros(1))[0])
     return FollowedState(radius, (value - unpressed) / stiffness, value, stiffness)
 
 
-def _next_radius(branch: DiscBranch, quantity: Quantity, value: float, radius: float) -> float:
+def _next_radius(branch: DiscBranch, quantity: int, value: float, radius: float) -> float:
     """The edge's next place [m], from where it is."""
     indenter, end = branch.scene.indenter, branch.largest_radius
     if radius == 0.0:

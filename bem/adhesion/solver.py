@@ -9,12 +9,13 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import RIM, DiscBranch, Quantity, long_enough
+from bem.adhesion.branch import RIM, DiscBranch, long_enough
 from bem.adhesion.disc import FARTHEST
 from bem.adhesion.energy_balance import edge_errors, pull_off_errors
+from bem.adhesion.equilibrium_branch import DEPTH, FORCE
 from bem.adhesion.fields import AdheringFields, pressure_change
 from bem.adhesion.sequence import FollowedState, at_radii, followed
-from bem.adhesion.withdrawal import Withdrawal, stable, strength
+from bem.adhesion.withdrawal import CONTROLS, MACHINE, Route
 from bem.grid.calibrated_disc import measured_disc
 from bem.grid.error_model import DISCS
 from bem.grid.quadrant import refuse_thin_layer
@@ -107,12 +108,13 @@ class AdheringDiscs:
         fine, coarse = self._branches()
         start = self._start(fine)
         self._refuse_thin_layer(start)
-        withdrawal = Withdrawal(fine, start)
-        pull_off = withdrawal.pull_off(control)
+        route, quantity = fine.route(start), CONTROLS.index(control)
+        pull_off = route.scalars(route.loss(quantity), route.largest_tension(quantity))
         radius: FloatArray = start * np.linspace(1.0, 0.0, STATES, endpoint=False) ** 2
         depth, force = fine.depth(radius), fine.force(radius)
+        rising = fine.equilibria.slopes(fine.equilibria.position(radius)) > 0.0
         refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)
-        errors = self._pull_off_errors(withdrawal, coarse, control)
+        errors = self._pull_off_errors(fine, coarse, route, quantity)
         errors |= self._branch_errors(fine, coarse, radius)
         return DetachmentPath(
             scene=self.scene,
@@ -124,29 +126,33 @@ class AdheringDiscs:
             contact_radius=radius,
             indentation_depth=depth,
             normal_force=force,
-            stable_displacement_control=stable(fine, "indentation_depth", radius),
-            stable_force_control=stable(fine, "normal_force", radius),
-            critical_points=withdrawal.critical_points(),
+            stable_displacement_control=rising[DEPTH],
+            stable_force_control=rising[FORCE],
+            critical_points=route.critical_points(),
             pull_off_force=pull_off["pull_off_force"],
             pull_off_depth=pull_off["pull_off_depth"],
             pull_off_contact_radius=pull_off["pull_off_contact_radius"],
             force_at_loss=pull_off["force_at_loss"],
         )
 
-    def _pull_off_errors(self, way: Withdrawal, coarse: DiscBranch, control: Controlled) -> dict[str, FloatArray]:
+    def _pull_off_errors(
+        self, branch: DiscBranch, coarse: DiscBranch, route: Route, quantity: int
+    ) -> dict[str, FloatArray]:
         """Relative errors of the scalars: of depth and force the lesser of two estimates, as along the branch."""
-        branch, pull_off, other = way.branch, way.pull_off(control), way.compared(coarse, control)
-        cut = Withdrawal(branch.cut(), way.start).pull_off(control)
+        ways = route.loss(quantity), route.largest_tension(quantity)
+        pull_off, other = route.scalars(*ways), _compared(route, coarse, quantity)
+        again = branch.cut().route(_radius(route, route.start))
+        cut = again.scalars(again.loss(quantity), again.largest_tension(quantity))
         left_out = DISCS.broken_orders if self.scene.indenter.breakpoints else 1.0
-        places = np.array([way.loss(control), way.strongest(control)])
+        places = np.array([_radius(route, y) for y in ways])
         floors = self._pull_off_floors(branch, places)
         change, beyond = (
             {name: abs(values[name] / value - 1.0) for name, value in pull_off.items()} for values in (other, cut)
         )
         by_grids = {name: DISCS.difference * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
         (depth, at_loss), (_, tension) = (self._solved(branch, place[None]) for place in places)
-        shares = {"displacement": (1.0, 0.0), "force": (0.0, 1.0), "machine": (1.0, branch.compliance)}
-        released = pull_off_errors(branch, coarse, np.array(shares[control]), *places.tolist())
+        shares = {DEPTH: (1.0, 0.0), FORCE: (0.0, 1.0), MACHINE: (1.0, branch.compliance)}
+        released = pull_off_errors(branch, coarse, np.array(shares[quantity]), *places.tolist())
         names = ("pull_off_depth", "pull_off_force", "pull_off_contact_radius", "force_at_loss")
         # The place is told by its logarithm.
         sizes = np.array([1.0 if "radius" in name else abs(pull_off[name]) for name in names])
@@ -248,7 +254,7 @@ class AdheringDiscs:
         if isinstance(loading, IndentationDepths | NormalForces):
             largest = max(float(loading.values.max()), 0.0)
             return bool(branch.value(_quantity(loading), end)[0] > 1.1 * largest)
-        return bool(branch.force(end)[0] > strength(branch))
+        return bool(branch.force(end)[0] > branch.equilibria.strength)
 
     def _start(self, branch: DiscBranch) -> float:
         """Where a withdrawal starts [m]: as given, at the punch's edge, or pressed as hard as the contact can pull."""
@@ -256,7 +262,7 @@ class AdheringDiscs:
         given = isinstance(loading, Detachment) and loading.initial_contact_radius is not None
         if given or isinstance(self.scene.indenter, FlatPunch):
             return end
-        return branch.crossing("normal_force", strength(branch), (0.0, end), inmost=False) or end
+        return branch.crossing(FORCE, branch.equilibria.strength, (0.0, end), inmost=False) or end
 
     def _states(self, branch: DiscBranch) -> list[FollowedState]:
         loading = self.scene.loading
@@ -281,8 +287,28 @@ class AdheringDiscs:
         return AdheringFields(self.scene, held.contact_radius, held.indentation_depth, points, self.threads)
 
 
-def _quantity(loading: IndentationDepths | NormalForces) -> Quantity:
-    return "normal_force" if isinstance(loading, NormalForces) else "indentation_depth"
+def _quantity(loading: IndentationDepths | NormalForces) -> int:
+    return FORCE if isinstance(loading, NormalForces) else DEPTH
+
+
+def _radius(route: Route, y: float) -> float:
+    """Contact radius [m] at y, unrounded where a section ends."""
+    branch = route.branch
+    ends: dict[float, float] = dict(zip(branch.section_ends.tolist(), branch.section_radii.tolist(), strict=True))
+    return ends.get(y, route.state(y)[0])
+
+
+def _compared(route: Route, other: DiscBranch, quantity: int) -> dict[str, float]:
+    """The scalars of another grid's branch; lost at the rim of a flat end, where both are, at the same radii.
+
+    Just beyond a rim a coarse grid may not see yet that the profile rises, and make up states of its own.
+    """
+    own, rim = other.route(_radius(route, route.start)), other.scene.indenter.flat_radius
+    lost = route.loss(quantity)
+    if rim == 0.0 or _radius(route, lost) != rim:
+        return own.scalars(own.loss(quantity), own.largest_tension(quantity))
+    strongest = route.largest_tension(quantity)
+    return own.scalars(lost, strongest)
 
 
 def _largest_nearby(share: FloatArray, radius: FloatArray) -> FloatArray:

@@ -1,116 +1,133 @@
-"""An adhering indenter withdrawn along its equilibrium branch: where it jumps and where it is lost."""
+"""Where a slowly withdrawn indenter goes along its equilibrium branch, and where it lets go.
+
+Under any control contact holds as long as some state of smaller or equal radius carries what is prescribed: from an
+unstable state the front runs inwards to the next stable one, if there is one. So contact is lost at the smallest depth
+(or force, or displacement of a machine that gives way) of the whole branch within the starting radius.
+"""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
+from functools import cached_property
 
 import numpy as np
 
-from bem.adhesion.branch import RIM, DiscBranch, Quantity
-from contact import CriticalPoint, FlatPunch
-from contact.records.validation import BoolArray, FloatArray
+from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
+from contact import CriticalPoint
 from contact.scene.loading import Controlled
 
-QUANTITIES: Final[dict[Controlled, Quantity]] = {
-    "displacement": "indentation_depth",
-    "force": "normal_force",
-    "machine": "machine",
-}
+# What is controlled in a withdrawal: these prescribe DEPTH, FORCE and MACHINE, in this order.
+CONTROLS: tuple[Controlled, ...] = ("displacement", "force", "machine")
+MACHINE = 2
+# Relative distance at which the sign of a slope beside a fold is looked up; chosen.
+_ASIDE = 1e-6
 
 
 @dataclass(frozen=True)
-class Withdrawal:
-    """The way inwards from a contact radius.
+class Route:
+    """A withdrawal.
 
     Attributes:
-        branch: Its equilibria.
-        start: Contact radius [m] to begin with.
+        branch: All equilibria within a radius at least as large as the first one.
+        start: The y where the front sets off.
+        pinned: Whether the front rests at a sharp edge until the branch's depth is reached (flat punch).
+        compliance: 1/K [m/N] of the machine; zero if it is rigid, and then nothing controls its displacement.
     """
 
-    branch: DiscBranch
+    branch: EquilibriumBranch
     start: float
+    pinned: bool
+    compliance: float = 0.0
 
-    def loss(self, control: Controlled) -> float:
-        """The radius [m] at which contact is lost: where the controlled quantity is least on the whole branch.
+    @property
+    def controls(self) -> tuple[int, ...]:
+        """All that may be prescribed."""
+        return (DEPTH, FORCE, MACHINE) if self.compliance else (DEPTH, FORCE)
 
-        A contact that jumps at a least value comes to rest where the branch passes that value again, if it goes lower.
+    @cached_property
+    def through_machine(self) -> EquilibriumBranch:
+        """The branch whose first quantity is the displacement of the machine."""
+        return self.branch.through_machine(self.compliance)
+
+    def load(self, control: int, y: float) -> float:
+        """What the control prescribes, at y [m or N]."""
+        _, depth, force = self.state(y)
+        return (depth, force, depth + self.compliance * force)[control]
+
+    def state(self, y: float) -> tuple[float, float, float]:
+        """Contact radius, depth and force; the tip itself carries nothing."""
+        if y == 0.0:
+            return 0.0, 0.0, 0.0
+        depth, force = self.branch.values(np.array([y]))[:, 0]
+        return float(self.branch.radius(np.array([y]))[0]), float(depth), float(force)
+
+    def loss(self, control: int) -> float:
+        """The y where contact is lost."""
+        points = [0.0, *self.folds(control), self.start]
+        return min(points, key=lambda y: self.load(control, y))
+
+    def largest_tension(self, control: int) -> float:
+        """The y of the smallest force on the way to the loss of contact.
+
+        A jump lands under less tension than it left with, since it drops springs that pull.
         """
-        quantity = QUANTITIES[control]
-        ends = [a for a, least in self.branch.turning_points(quantity) if least and a < self.start]
-        return min([self.start, *ends], key=lambda a: float(self.branch.value(quantity, np.array([a]))[0]))
+        loss = self.loss(control)
+        if control == FORCE:
+            return loss
+        points = [loss, self.start, *(y for y in self.folds(FORCE) if y > loss)]
+        return min((y for y in points if self._is_met(control, y)), key=lambda y: self.state(y)[2])
 
-    def strongest(self, control: Controlled) -> float:
-        """The radius [m] of the least force among the states that the withdrawal visits: each the lowest so far."""
-        lost, turned = self.loss(control), [a for a, least in self.branch.turning_points("normal_force") if least]
-        radii = np.concatenate([self.branch.samples(), turned])
-        between = np.unique(radii[(radii < self.start) & (radii > lost)])[::-1]
-        radii = np.concatenate([[self.start], between, [lost]])
-        controlled = self.branch.value(QUANTITIES[control], radii)
-        visited = radii[controlled <= np.minimum.accumulate(controlled)]
-        return float(visited[np.argmin(self.branch.force(visited))])
-
-    def pull_off(self, control: Controlled) -> dict[str, float]:
-        """The scalars of a detachment path."""
-        return _scalars(self.branch, self.loss(control), self.strongest(control))
-
-    def compared(self, other: DiscBranch, control: Controlled) -> dict[str, float]:
-        """The same scalars of another grid's branch; lost at the rim of a flat end, where both are, at the same radii.
-
-        Just beyond a rim a coarse grid may not see yet that the profile rises, and make up states of its own.
-        """
-        lost, rim = self.loss(control), self.branch.scene.indenter.flat_radius
-        if rim == 0.0 or abs(lost / rim - 1.0) > RIM:
-            return Withdrawal(other, self.start).pull_off(control)
-        strongest = self.strongest(control)
-        return _scalars(other, rim, rim if abs(strongest / rim - 1.0) < RIM else strongest)
+    def scalars(self, lost: float, strongest: float) -> dict[str, float]:
+        """The numbers of a pull-off that lets go at one y and pulls hardest at another."""
+        radius, depth, force = self.state(lost)
+        return {
+            "pull_off_force": self.state(strongest)[2],
+            "pull_off_depth": depth,
+            "pull_off_contact_radius": radius,
+            "force_at_loss": force,
+        }
 
     def critical_points(self) -> tuple[CriticalPoint, ...]:
-        """Every change of stability inside the start, under any control; first touch; and a punch's own edge."""
-        points = []
-        for control, quantity in QUANTITIES.items():
-            if control == "machine" and not self.branch.compliance:
-                continue
-            if isinstance(self.branch.scene.indenter, FlatPunch):
-                points.append(self._point(control, "start", self.start))
-            for a, least in self.branch.turning_points(quantity):
-                if a < self.start:
-                    points.append(self._point(control, "pull-off" if least else "snap-in", a))
-            points += self._landing(control)
-        return tuple(points)
+        """Where the front sets off, all changes of stability on the way in, and where first touch lands."""
+        starts = [(control, "start", self.start) for control in self.controls if self.pinned]
+        folds = [(control, self._kind(control, y), y) for control in self.controls for y in self.folds(control)]
+        landings = [(control, "snap-in", y) for control in self.controls for y in self._landing(control)]
+        return tuple(self._critical_point(*point) for point in starts + folds + landings)
 
-    def _landing(self, control: Controlled) -> list[CriticalPoint]:
-        """First touch: the smallest stable contact at zero depth, force or displacement of the machine."""
-        if isinstance(self.branch.scene.indenter, FlatPunch):
+    def folds(self, control: int) -> list[float]:
+        """Changes of stability within the start, in the order of the way in."""
+        branch, quantity = self._under(control)
+        return [float(y) for y in branch.folds(quantity)[::-1] if y < self.start]
+
+    def _under(self, control: int) -> tuple[EquilibriumBranch, int]:
+        """A branch, and which of its quantities is prescribed."""
+        return (self.through_machine, DEPTH) if control == MACHINE else (self.branch, control)
+
+    def _kind(self, control: int, y: float) -> str:
+        """Withdrawing, a fold is met from above: what is stable there loses its stability."""
+        branch, quantity = self._under(control)
+        above = branch.slopes(np.array([y * (1.0 + _ASIDE)]))[quantity, 0]
+        return "pull-off" if above > 0.0 else "snap-in"
+
+    def _landing(self, control: int) -> list[float]:
+        """First touch: the stable state at zero depth, force or displacement, of an indenter that starts in a point."""
+        if self.pinned:
             return []
-        found = self.branch.crossing(
-            QUANTITIES[control], 0.0, (float(self.branch.samples()[0]), self.start), inmost=True
-        )
-        return [] if found is None else [self._point(control, "snap-in", found)]
+        branch, quantity = self._under(control)
+        y = float(branch.solutions(quantity, np.zeros(1))[0])
+        return [y] if y > 0.0 else []
 
-    def _point(self, control: Controlled, kind: str, radius: float) -> CriticalPoint:
-        a = np.array([radius])
-        depth, force = float(self.branch.depth(a)[0]), float(self.branch.force(a)[0])
+    def _is_met(self, control: int, y: float) -> bool:
+        """Whether a withdrawal comes by: every state farther out has a larger depth, or displacement."""
+        outside = [f for f in (*self.folds(control), self.start) if f > y]
+        return all(self.load(control, f) >= self.load(control, y) for f in outside)
+
+    def _critical_point(self, control: int, kind: str, y: float) -> CriticalPoint:
+        radius, depth, force = self.state(y)
         return CriticalPoint(
-            control=control, kind=kind, contact_radius=radius, indentation_depth=depth, normal_force=force
+            control=CONTROLS[control],
+            kind=kind,
+            contact_radius=radius,
+            indentation_depth=depth,
+            normal_force=force,
         )
-
-
-def _scalars(branch: DiscBranch, lost: float, strongest: float) -> dict[str, float]:
-    """Force at one radius [m], depth at another, that, and the force there."""
-    return {
-        "pull_off_force": float(branch.force(np.array([strongest]))[0]),
-        "pull_off_depth": float(branch.depth(np.array([lost]))[0]),
-        "pull_off_contact_radius": lost,
-        "force_at_loss": float(branch.force(np.array([lost]))[0]),
-    }
-
-
-def stable(branch: DiscBranch, quantity: Quantity, radius: FloatArray) -> BoolArray:
-    """Whether the quantity grows with the radius, over the last 1e-5 of it."""
-    return np.asarray(branch.value(quantity, radius) > branch.value(quantity, radius * (1.0 - 1e-5)))
-
-
-def strength(branch: DiscBranch) -> float:
-    """The largest tension of the branch [N]."""
-    return -float(np.min(branch.force(branch.samples())))

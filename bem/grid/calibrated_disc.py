@@ -39,7 +39,8 @@ THIN: Final = 8.0
 GAP: Final = 28.0
 # Radius of the disc over half the grid, so that its edge stays a few cells inside.
 FILL: Final = 0.97
-# Largest error of the displacement under the disc; q may be off by three times that, the stiffness by its square.
+# Largest error of the displacement under the disc; q may be off by three times that, the stiffness by its square, and
+# the edge value of an adhering disc by some ten times that.
 TOLERANCE: Final = 1e-10
 # Largest degree of q in 2 rho^2 - 1 (`shape_degree`).
 LARGEST_DEGREE: Final = 20

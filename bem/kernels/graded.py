@@ -12,10 +12,9 @@ half-space of the local material: so 1 - chi, which falls like 1/k only, keeps i
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
-from typing import Any, Final
+from typing import Any, Final, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +28,12 @@ TOLERANCE: Final = 1e-12
 # The same, absolute, against quantities of order one.
 ABSOLUTE: Final = 1e-13
 
-Rates = Callable[[NDArray[Any], NDArray[Any]], NDArray[Any]]
+
+class Rates(Protocol):
+    """Slopes of what is integrated over the depth."""
+
+    def __call__(self, depth: NDArray[Any], values: NDArray[Any], /) -> NDArray[Any]:
+        """Slopes of the values at depths."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bem.kernels.layer import one_minus_kernel
 from bem.kernels.protocol import SurfaceKernel
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
 
@@ -30,8 +30,6 @@ RAY_ANGLE: Final = np.radians(25.0)
 # t = 32, where 1 - chi has fallen to 1e-22.
 FINEST_PANEL: Final = -13
 COARSEST_PANEL: Final = 4
-# Gauss nodes on each of them.
-PANEL_NODES: Final = 20
 # The same for any layer. A stiff sheet on thin incompressible layers has poles near 30 degrees, since its bending
 # stiffness grows like k^4 and their compliance like k^2: k^6 is negative there. Half of that angle, with 24 nodes,
 # leaves 4e-15 of N on 300 random stacks of 1 to 4 layers (moduli 1e-4 to 1e4, thicknesses 1e-3 to 1, against 12

@@ -19,7 +19,7 @@ from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, resolved_panels
 from contact import Detachment, Layer, Profile, Scene
 from contact.records.validation import FloatArray
-from mdr.adhesion.solver import balance_radius, solve_detachment, work_of_adhesion
+from mdr.adhesion.solver import FIRST_WAY, balance_radius, solve_detachment, work_of_adhesion
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.shared_tables import SharedTable, power_law, reference
 
@@ -29,8 +29,6 @@ _KEPT = 32
 _SURVEY = 400
 # Most steps of the refinement: bisection from neighbouring points needs about 40.
 _ROOT_STEPS = 40
-# First trial excess, in units of the radius at which height and critical elongation are equal; chosen.
-_FIRST_WAY = 2.0
 
 
 @dataclass(frozen=True)
@@ -122,7 +120,7 @@ def pull_off_groups(
         if power_law(scene.indenter) is not None and work_of_adhesion(scene) > 0.0 and not _through_machine(scene):
             balance = balance_radius(scene)
             shared[number] = reference(scene.layer, scene.indenter, balance)
-            radius = 2.0 ** np.ceil(np.log2(_FIRST_WAY * balance / shared[number].length))
+            radius = 2.0 ** np.ceil(np.log2(FIRST_WAY * balance / shared[number].length))
             tables[number] = _table_up_to(shared[number], float(radius), flat_punch)
 
     def together(chunk: list[int]) -> FloatArray:

@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
 from bem.polynomials.adaptive import NODES
 from contact.records.validation import FloatArray
-from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch
 from mdr.adhesion.own_panels import rounding
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, SPRING_ROUNDING
@@ -84,7 +84,7 @@ class BranchErrors:
     """
 
     system: EquivalentSystem
-    branch: MdrAdhesiveBranch
+    branch: EquilibriumBranch
     again: Callable[[float], FloatArray | None] | None = None
 
     def of_states(self, y: FloatArray, shift: FloatArray) -> FloatArray:

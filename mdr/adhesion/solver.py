@@ -9,6 +9,8 @@ from functools import lru_cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
+from bem.adhesion.withdrawal import CONTROLS, MACHINE, Route
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO
 from bem.layer_equation.protocol import FlatPunchSource
@@ -29,11 +31,10 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
-from mdr.adhesion.branch import DEPTH, FORCE, MdrAdhesiveBranch, adhesive_branch, critical_elongation
+from mdr.adhesion.branch import adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.own_panels import state_again
 from mdr.adhesion.pressure_errors import pressure_errors
-from mdr.adhesion.withdrawal import CONTROLS, MACHINE, Route
 from mdr.elastic import PathFields, density_errors, solve_elastic
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_beside
@@ -46,7 +47,7 @@ POINTS = 200
 # States of them with the front at a punch's edge.
 _PINNED = POINTS // 5
 # First trial excess over the flat end, in units of the way to where height and critical elongation are equal; chosen.
-_FIRST_WAY = 2.0
+FIRST_WAY = 2.0
 
 # a/h beyond which the half-space's radius is no guide to the layer's: the largest that one factorisation covers.
 _THIN = LARGEST_FACTORISED_RATIO
@@ -181,8 +182,8 @@ def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) 
         return Route(branch, float(branch.section_ends[-1]), pinned=is_punch, compliance=compliance), bounds, 0.0
     if work_of_adhesion(scene) == 0.0:
         raise InvalidInput("effects: without work of adhesion nothing says where to start; give initial_contact_radius")
-    system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= _strength(b))
-    bounds, start = _bounds(scene, system, branch), branch.solutions(FORCE, np.array([_strength(branch)]))
+    system, branch = _reaching(scene, flat_punch, lambda b: b.values(b.section_ends[-1:])[FORCE, 0] >= b.strength)
+    bounds, start = _bounds(scene, system, branch), branch.solutions(FORCE, np.array([branch.strength]))
     if np.isnan(start[0]):
         return Route(branch, float(branch.section_ends[-1]), pinned=False, compliance=compliance), bounds, 0.0
     strongest = max(float(bounds.of_point(y, 0.0)[FORCE]) for y in branch.folds(FORCE))
@@ -190,19 +191,13 @@ def _withdrawal(scene: Scene, loading: Detachment, flat_punch: FlatPunchSource) 
     return Route(branch, float(start[0]), pinned=False, compliance=compliance), bounds, uncertain
 
 
-def _bounds(scene: Scene, system: EquivalentSystem, branch: MdrAdhesiveBranch) -> BranchErrors:
+def _bounds(scene: Scene, system: EquivalentSystem, branch: EquilibriumBranch) -> BranchErrors:
     """Errors along a branch, whose single points may be solved again."""
     again = partial(state_again, system, scene.layer, scene.indenter, work_of_adhesion(scene))
     return BranchErrors(system, branch, lru_cache(maxsize=None)(again))
 
 
-def _strength(branch: MdrAdhesiveBranch) -> float:
-    """Largest tension of the branch [N]: pressing as hard shows all of the way back."""
-    folds = branch.folds(FORCE)
-    return -float(branch.values(folds)[FORCE].min(initial=0.0)) if folds.size else np.inf
-
-
-def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, MdrAdhesiveBranch]:
+def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, EquilibriumBranch]:
     """Springs and equilibria up to a radius [m]."""
     system = equivalent_system(scene.layer, scene.indenter, radius, flat_punch)
     breakpoints = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
@@ -216,8 +211,8 @@ def _branch(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[E
 
 
 def _reaching(
-    scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[MdrAdhesiveBranch], bool]
-) -> tuple[EquivalentSystem, MdrAdhesiveBranch]:
+    scene: Scene, flat_punch: FlatPunchSource, enough: Callable[[EquilibriumBranch], bool]
+) -> tuple[EquivalentSystem, EquilibriumBranch]:
     """A branch that is long enough, or ends at the indenter's rim."""
     for radius in growing_radii(scene.indenter, _first_radius(scene)):
         try:
@@ -238,7 +233,7 @@ def _first_radius(scene: Scene) -> float:
     On a layer much thinner than that radius the elongation is far shorter than on the half-space.
     """
     flat, thickness = scene.indenter.flat_radius, scene.layer.surface.thickness
-    first = flat + _FIRST_WAY * (balance_radius(scene) - flat)
+    first = flat + FIRST_WAY * (balance_radius(scene) - flat)
     return first if first <= _THIN * thickness else max(FIRST_RATIO * thickness, 2.0 * flat)
 
 
@@ -300,7 +295,7 @@ def _prescribed(scene: Scene, flat_punch: FlatPunchSource) -> _Equilibria:
 
 
 def _errors_on_branch(
-    system: EquivalentSystem, branch: MdrAdhesiveBranch, quantity: int, y: FloatArray
+    system: EquivalentSystem, branch: EquilibriumBranch, quantity: int, y: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """Errors of depth, force and radius of states with a prescribed quantity, which is exact; and at their edges."""
     errors = BranchErrors(system, branch)
@@ -331,7 +326,7 @@ def _on_punch(
     )
 
 
-def _refuse_missing(y: FloatArray, values: FloatArray, branch: MdrAdhesiveBranch, quantity: int) -> None:
+def _refuse_missing(y: FloatArray, values: FloatArray, branch: EquilibriumBranch, quantity: int) -> None:
     missing = np.flatnonzero(np.isnan(y))
     if not missing.size:
         return

@@ -40,15 +40,18 @@ def thin_contact_stiffness(layer: Layer, contact_radius: ArrayLike) -> FloatArra
     a, h = np.asarray(contact_radius, dtype=float), layer.thickness
     if is_film(layer):
         return np.pi * layer.youngs_modulus * a**4 / (8 * h**3)  # Eq. (18)
-    return np.pi * foundation_modulus(layer) * a**2 / h  # Eqs. (16), (21)
+    # Eqs. (16), (21).
+    return np.pi * foundation_modulus(layer) * a**2 / h
 
 
 def thin_spring_stiffness(layer: Layer, x: ArrayLike) -> FloatArray:
     """c_N = k_N'/2 [Pa], Eqs. (17), (20) and (22)."""
     x, h = np.asarray(x, dtype=float), layer.thickness
     if is_film(layer):
-        return np.pi * layer.youngs_modulus * x**3 / (4 * h**3)  # Eq. (20), E* = 4 E/3
-    return np.pi * foundation_modulus(layer) * x / h  # Eqs. (17), (22)
+        # Eq. (20), where E* = 4 E/3.
+        return np.pi * layer.youngs_modulus * x**3 / (4 * h**3)
+    # Eqs. (17), (22).
+    return np.pi * foundation_modulus(layer) * x / h
 
 
 def thin_profile(layer: Layer, indenter: Profile, x: ArrayLike) -> FloatArray:

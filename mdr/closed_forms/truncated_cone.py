@@ -15,7 +15,8 @@ def thin_cone_profile(layer: Layer, cone: TruncatedCone, x: ArrayLike) -> FloatA
     if not is_film(layer):
         return cone.height(x)
     x, b = np.asarray(x, dtype=float), cone.flat_radius
-    g = (2 * x + b) / 3 * ((x - b) / x) ** 2 * cone.slope  # Eq. (37), x >= b
+    # Eq. (37) holds for x >= b.
+    g = (2 * x + b) / 3 * ((x - b) / x) ** 2 * cone.slope
     return np.where(x < b, 0.0, g)
 
 

@@ -13,15 +13,13 @@ from scipy.special import j0
 from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import LARGEST_Q, AdheredPunch, halvings
 from bem.polynomials.gauss import halved_panels
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
 from contact import Scene
 from contact.records.validation import FloatArray
 from mdr.friction.growth import Growth, Increments
 
 # Nodes of the density under a contact grow with the thicknesses that it spans: one more rule for each three.
 _SPAN = 3.0
-# Gauss nodes of a panel in the wavenumber.
-_WAVENUMBERS = 20
 # Below this share of a punch's radius its shear grows with the radius, to four digits.
 _NEAR_AXIS = 1e-2
 
@@ -149,7 +147,7 @@ class StickFields:
         waves = np.zeros_like(r)
         if not table.is_half_space:
             width = min(1.0, 4.0 * math.pi / (a + float(r.max())))
-            nodes, w = gauss_nodes(_WAVENUMBERS)
+            nodes, w = gauss_nodes(PANEL_NODES)
             panels = math.ceil(LARGEST_Q / width)
             starts, widths = halved_panels(panels, halvings(width * table.kernel.longest))
             k = (width * (starts[:, None] + widths[:, None] * nodes)).ravel()

@@ -7,10 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
-
-# Most steps of the Illinois rule; smooth functions need about eight between two instants at which they were looked at.
-_ROOT_STEPS = 60
 
 
 def first_below(
@@ -44,7 +42,7 @@ def _fallen(
 ) -> FloatArray:
     """Where functions have just reached zero between times, by the Illinois rule; at once where they start there."""
     above, below, side = np.maximum(function(low), 0.0), function(high), np.zeros(low.size)
-    for _ in range(_ROOT_STEPS):
+    for _ in range(MOST_STEPS):
         share = np.divide(above, above - below, out=np.zeros(low.size), where=above > 0.0)
         at = low + (high - low) * share
         value = function(at)

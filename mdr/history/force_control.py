@@ -8,13 +8,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from bem.polynomials.root_steps import MOST_STEPS
 from contact import NotConvergedError
 from contact.records.validation import FloatArray
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, released_at_once, undeformed
 
-# Most iterations for the depth that carries a force: bisection alone needs about 50.
-_ITERATIONS = 60
 # Relative difference to the target force at which the depth is found.
 _TOLERANCE = 1e-12
 # Share of an interval's larger force that may be missed, since a finite number of springs may leave a jump; chosen.
@@ -117,7 +116,7 @@ def _root(excess: Callable[[float], float], first: float, second: float, target:
     """
     low, high = -np.inf, np.inf
     older, newer, before, now = first, second, excess(first), excess(second)
-    for _ in range(_ITERATIONS):
+    for _ in range(MOST_STEPS):
         low = max([low, *(d for d, e in ((older, before), (newer, now)) if e < 0.0)])
         high = min([high, *(d for d, e in ((older, before), (newer, now)) if e > 0.0)])
         if abs(now) <= _TOLERANCE * target[0]:

@@ -131,7 +131,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     )
 
 
-def _errors(scene: Scene, table: SpringTable | None, found: _Found, springs: float) -> dict[str, FloatArray]:
+def _errors(scene: Scene, table: SpringTable | None, found: _FoundHistory, springs: float) -> dict[str, FloatArray]:
     """Relative to the largest values, the same at all instants.
 
     Args:
@@ -172,7 +172,7 @@ def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np
 
 
 @dataclass(frozen=True)
-class _Found:
+class _FoundHistory:
     """A history and what tells its errors.
 
     Attributes:
@@ -190,7 +190,7 @@ class _Found:
 
 def _followed(
     law: SpringLaw, beds: list[SpringBed], loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
-) -> _Found:
+) -> _FoundHistory:
     """The history on the first bed, and how much it changes on the others and with fewer substeps.
 
     Between two instants a prescribed depth needs no substeps, nor does an elastic layer. Under a force their errors
@@ -199,12 +199,12 @@ def _followed(
     if isinstance(loading, DepthHistory) or law.is_elastic:
         fine, *others = (_follow(law, bed, loading, np.ones_like(substeps)) for bed in beds)
         pairs = [(fine, other) for other in others]
-        return _Found(fine, pairs, [], _error_of_springs(pairs))
+        return _FoundHistory(fine, pairs, [], _error_of_springs(pairs))
     fine, middle, coarse = (_follow(law, beds[0], loading, level * substeps) for level in _LEVELS)
     pairs = [(coarse, _follow(law, bed, loading, substeps)) for bed in beds[1:]]
     depth, error = _limit(fine.depth, middle.depth, coarse.depth)
     change = float(error.max() / np.abs(depth).max()) + _error_of_springs(pairs)
-    return _Found(_Track(depth, fine.force, fine.y, fine.bent), pairs, [(fine, middle)], change)
+    return _FoundHistory(_Track(depth, fine.force, fine.y, fine.bent), pairs, [(fine, middle)], change)
 
 
 def _error_of_springs(pairs: list[tuple[_Track, _Track]]) -> float:

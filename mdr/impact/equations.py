@@ -114,7 +114,8 @@ class Pressing:
             slopes = np.empty_like(state)
             slopes[0] = v
             slopes[1] = g_y
-            slopes[2] = force(own, springs, g, v, gaps) * (g_y * slowing)  # Eq. (48) for any profile
+            # Eq. (48) for any profile.
+            slopes[2] = force(own, springs, g, v, gaps) * (g_y * slowing)
             slopes[shared] = relaxation * (own.weights * g - relaxed)
             slopes[memory] = k_y * v * relaxed + relaxation * (own.weights * moment - faded)
             return slopes

@@ -84,7 +84,7 @@ def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
         NotConvergedError: If an impact does not end.
     """
     twice = lanes.take(np.tile(np.arange(lanes.count), 2))
-    run = _Run(twice, np.repeat([tolerance, COARSER * tolerance], lanes.count))
+    run = _Motion(twice, np.repeat([tolerance, COARSER * tolerance], lanes.count))
     way_in, turn, turned_in = run.press()
     way_out, end = run.recede(way_in, turn, turned_in)
     within = np.zeros(twice.count)
@@ -93,7 +93,7 @@ def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
     return Impacts(twice, way_in, way_out, turn, end, within, drift(twice, way_in[0].memory, end))
 
 
-class _Run:
+class _Motion:
     """IntArray under way; `size` is each lane's next trial step."""
 
     def __init__(self, lanes: ImpactBatch, tolerance: FloatArray) -> None:

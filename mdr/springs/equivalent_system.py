@@ -15,12 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
+from bem.polynomials.root_steps import MOST_STEPS
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
 from mdr.springs.error_model import SPRING_ROUNDING
 
-# Most Newton steps to a contact radius. Bisection alone gains one binary digit a step and needs about 50.
-NEWTON_STEPS = 60
 # A radius is found when the step, or the bracket, is smaller than this share of it: ninety roundings.
 NEWTON_TOLERANCE = 2e-14
 # A relative bracket that is accepted after all steps, where rounding in the curve hides its root; chosen.
@@ -244,7 +243,7 @@ def _safeguarded_newton(curve: _Curve, piece: NDArray[np.intp], target: FloatArr
     """
     low, high, u = np.zeros_like(start), np.ones_like(start), start
     size = np.where(piece > 0, 1.0, 0.0)
-    for _ in range(NEWTON_STEPS):
+    for _ in range(MOST_STEPS):
         residual, slope = curve.value(piece, u) - target, curve.slope(piece, u)
         low, high = np.where(residual <= 0, u, low), np.where(residual >= 0, u, high)
         step = u - np.divide(residual, slope, out=np.full_like(u, np.inf), where=slope > 0)

@@ -45,7 +45,8 @@ def _stretch(indenter: Profile, x: FloatArray, beyond: FloatArray, stop: FloatAr
     The nodes crowd with the fourth power towards the inner end, where a profile like r^1.7 is not analytic.
     """
     nodes, weights = gauss_nodes(NODES)
-    widest = np.arctan2(np.sqrt(beyond * (2 * x - beyond)), x - beyond)  # arccos((x - beyond)/x), exact near zero
+    # This is arccos((x - beyond)/x), exact near zero.
+    widest = np.arctan2(np.sqrt(beyond * (2 * x - beyond)), x - beyond)
     narrowest = np.arctan2(np.sqrt((x - stop) * (x + stop)), stop)
     span = (widest - narrowest)[..., None]
     slope = indenter.slope_at(x[..., None] * np.cos(widest[..., None] - span * nodes**4))

@@ -35,7 +35,7 @@ from mdr.springs.pulling import LEAST_TENSION, OneStep, refuse_pulling
 
 # First trial radius: the half-space's, capped at this a/h, beyond which that is no guide any more; chosen.
 FIRST_RATIO = 10.0
-# Least first excess over a flat end, relative to its radius: closer floating-point numbers tell no radii apart.
+# Least excess over a flat end, relative to its radius, of which a rounded radius still tells four digits.
 LEAST_EXCESS = 1e-12
 # Radii, in units of a length made of the loading, on which the half-space's answer is tabulated: neighbours differ by
 # a fifth.

@@ -164,7 +164,8 @@ def _coefficients(panels: list[SampledPanel], start: float) -> list[FloatArray]:
     analysis, carried, found = chebyshev.analysis(NODES), np.array([start, 0.0, 0.0]), []
     for panel in panels:
         stiffness, profile, rate = panel.values
-        stiffening = 2.0 * stiffness * rate  # dk/dy = 2 c_N da/dy, Eq. (6)
+        # dk/dy = 2 c_N da/dy by Eq. (6).
+        stiffening = 2.0 * stiffness * rate
         rates = np.stack([stiffening, stiffening * profile, stiffening * profile**2], axis=1)
         integrals = panel.half * chebyshev.integration(NODES) @ analysis @ rates
         integrals[0] += carried

@@ -95,7 +95,8 @@ def elastic_changes(
     elif not isinstance(loading, ContactRadii):
         a = a / np.abs(system.mdr_profile_slope(radius))
     own = STIFFNESS_SHARE if is_punch or isinstance(loading, ContactRadii) else 1.0
-    stiffness = own * change.stiffness + 2.0 * system.spring_stiffness(radius) * a  # d(k_N)/da = 2 c_N
+    # d(k_N)/da is 2 c_N.
+    stiffness = own * change.stiffness + 2.0 * system.spring_stiffness(radius) * a
     names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
     return dict(zip(names, (a, delta, force, stiffness), strict=True))
 

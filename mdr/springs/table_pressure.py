@@ -16,14 +16,13 @@ from contact import FlatPunch, Scene
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.reach import LEAST_EXCESS
 from mdr.springs.table_errors import elastic_changes, size
 
 # Radii at which pressures are compared.
 RINGS: Final = 24
 # A coarser table may move the excess over the flat radius by this factor, either way, at most.
 LARGEST_MOVE: Final = 2.0
-# Least excess over the flat radius, relative to the radius, of which a rounded radius still tells four digits.
-LEAST_EXCESS: Final = 1e-12
 
 
 def pressure_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray) -> FloatArray:

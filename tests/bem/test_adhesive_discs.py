@@ -296,3 +296,19 @@ def test_a_punch_that_peels_states_the_error_of_its_strongest_pull():
     exact = Mdr().solve(scene(LAYER, PUNCH, Detachment()))
     path = detached(LAYER, PUNCH, "displacement")
     assert abs(path.pull_off_force / exact.pull_off_force - 1.0) < path.error_estimate["pull_off_force"][0] < 1e-2
+
+
+@pytest.mark.parametrize("method", [Mdr(), Bem(points=96)], ids=lambda m: type(m).__name__)
+def test_a_profile_of_parabolic_pieces_lets_go_once_under_each_control(method):
+    """A section behind a breakpoint begins with no slope: its rounding made up two more snap-ins there."""
+    radii = np.linspace(0.0, 2.0, 6)
+    path = method.solve(
+        Scene(
+            layer=Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3),
+            indenter=Tabulated(radii=radii, heights=radii**2 / 2.0),
+            loading=Detachment(control="force"),
+            effects=(Adhesion(work_of_adhesion=1e-2),),
+        )
+    )
+    met = sorted((point.control, point.kind) for point in path.critical_points)
+    assert met == [(control, kind) for control in ("displacement", "force") for kind in ("pull-off", "snap-in")]

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bem.adhesion.equilibrium_branch import EquilibriumBranch
 from contact import Adhesion, Detachment, Layer, Paraboloid, Scene
 from mdr import Mdr
 from mdr.adhesion import branch as adhesive_branch
@@ -41,8 +42,8 @@ def test_a_lost_two_pi_in_the_elongation(monkeypatch):
 
 
 def test_stability_turned_upside_down(monkeypatch):
-    right = adhesive_branch.MdrAdhesiveBranch.slopes
-    monkeypatch.setattr(adhesive_branch.MdrAdhesiveBranch, "slopes", lambda branch, y: -right(branch, y))
+    right = EquilibriumBranch.slopes
+    monkeypatch.setattr(EquilibriumBranch, "slopes", lambda branch, y: -right(branch, y))
     with pytest.raises(AssertionError):
         adhesion.test_equilibrium_and_stability_are_those_of_the_energy(adhesion.HALF_SPACE, adhesion.PROFILES[0])
 

@@ -9,12 +9,11 @@ import numpy as np
 
 from bem.adhesion.branch import DiscBranch, long_enough
 from bem.adhesion.cell_by_cell.indenter import FOLD, LOST, AdheringIndenter, AdheringState, strength
-from bem.adhesion.withdrawal import Withdrawal
+from bem.adhesion.equilibrium_branch import DEPTH, FORCE
 from bem.grid.calibrated_disc import FILL, disc, measured_disc
 from bem.grid.error_model import CELLS
 from bem.grid.operators import FreeSpaceOperator
 from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid
-from bem.kernels.moduli import contact_modulus
 from contact import Adhesion, CriticalPoint, Detachment, FlatPunch, Scene, StageLog
 from contact.records.validation import BoolArray, FloatArray
 
@@ -143,7 +142,7 @@ def _radius_at(scene: Scene, depths: FloatArray, threads: int) -> float:
 
     longest = long_enough(scene, threads, enough)
     found = DiscBranch.up_to(longest, scene, COARSE_CELLS, threads).crossing(
-        "indentation_depth", largest, (scene.indenter.flat_radius, longest), inmost=False
+        DEPTH, largest, (scene.indenter.flat_radius, longest), inmost=False
     )
     return min(ROOM * found if found is not None else longest, scene.indenter.max_radius)
 
@@ -162,7 +161,8 @@ def start_radius(scene: Scene, threads: int) -> float:
 
 def least_force(branch: DiscBranch) -> float:
     """The radius [m] of the strongest tension."""
-    return Withdrawal(branch, branch.largest_radius).loss("force")
+    route = branch.route(branch.largest_radius)
+    return route.state(route.loss(FORCE))[0]
 
 
 def branch_errors(fine: CellBranch, coarse: CellBranch, control: str) -> dict[str, FloatArray | float]:
@@ -216,7 +216,7 @@ def _on_grid(
     operator = FreeSpaceOperator(scene.layer, cell_size=grid.cell_size, cells=cells, quarter=True, threads=threads)
     contact = disc(cells, FILL * cells / 2)
     height = np.zeros(contact.shape) if isinstance(scene.indenter, FlatPunch) else _finite_height(scene, grid)
-    tension = strength(contact_modulus(scene.layer), work, grid.cell_size)
+    tension = strength(scene.layer.contact_modulus, work, grid.cell_size)
     indenter = AdheringIndenter(operator, grid, height, tension, log)
     return indenter, indenter.first_state(contact)
 

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 
 from bem.polynomials.abel_integral import Stretch
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
 from contact import PowerLaw, Profile
 from contact.records.validation import FloatArray
 
@@ -22,8 +22,6 @@ _TIP = 0.125
 # Longest piece of the density over the thickness: longer ones left 2e-10 of the stress at a/h = 10, where panels that
 # suit a depth span several thicknesses.
 _LONGEST = 1.0
-# Gauss nodes of a panel over which sin(kt) turns at most twice.
-_NODES = 20
 # Entries of a block of sin(kt): 32 MB.
 _BLOCK = 1 << 22
 
@@ -78,7 +76,7 @@ class Density:
 
     def _nodes(self, largest: float) -> tuple[FloatArray, FloatArray]:
         """Nodes t and phi' times weights, for waves up to a wavenumber."""
-        u, w = gauss_nodes(_NODES)
+        u, w = gauss_nodes(PANEL_NODES)
         positions, weighted = [np.empty(0)], [np.empty(0)]
         for piece in self.pieces:
             panels = math.ceil(piece.power * piece.length / min(self.scale, 4.0 * math.pi / largest))

@@ -16,11 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from bem.layer_equation.inside.density import Density, Piece
-from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
 from contact.records.validation import FloatArray
 
-# Gauss nodes of a panel of s, and the panel's length: singularities lie pi/2 beside it, which leaves 1e-15.
-_NODES = 20
+# Length of a panel of s: singularities lie pi/2 beside it, which leaves 1e-15.
 _LENGTH = 1.5
 
 
@@ -93,7 +92,7 @@ class _Spread(NamedTuple):
 
 def _by_panels(density: Density, piece: Piece, points: _Spread, count: int) -> FloatArray:
     r, z, first, width = (column[:, None] for column in points)
-    u, w = gauss_nodes(_NODES)
+    u, w = gauss_nodes(PANEL_NODES)
     share = np.arange(count)[:, None] + u
     weight = np.tile(w, (count, 1))
     # The first panel crowds its nodes towards the piece's beginning.

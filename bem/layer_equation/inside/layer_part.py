@@ -12,13 +12,11 @@ from scipy.special import j0, j1
 
 from bem.kernels.inside import Place, Transfer, half_space_transfer, place_of, sheet_of, transfer
 from bem.kernels.stack import StackKernel
-from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
+from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes, lagrange_matrix
 from contact.records.validation import FloatArray
 
 # exp(-38) is below all digits.
 _DECAYED = 38.0
-# Gauss nodes of a panel, over which waves turn at most twice.
-_NODES = 20
 # First panel of the wavenumber over the reciprocal of the longest length; panels then double.
 _FIRST = 0.5
 
@@ -55,7 +53,7 @@ def wavenumbers(kernel: StackKernel, reach: float, largest: float) -> tuple[Floa
     while ends[-1] < largest:
         ends.append(ends[-1] + width)
         width = min(2.0 * width, widest)
-    u, w = gauss_nodes(_NODES)
+    u, w = gauss_nodes(PANEL_NODES)
     starts, widths = np.array(ends[:-1]), np.diff(ends)
     return (starts[:, None] + widths[:, None] * u).ravel(), (widths[:, None] * w).ravel()
 

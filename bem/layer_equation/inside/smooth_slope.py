@@ -8,14 +8,13 @@ import numpy as np
 
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.one_radius import layer_waves
+from bem.polynomials.gauss_panels import PANEL_NODES
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact import ElasticLayer
 from contact.records.validation import FloatArray
 
-# Panels for each thickness, and their nodes: psi is analytic within two thicknesses of the real axis, which leaves
-# 8^-40 of it.
+# Panels for each thickness: psi is analytic within two thicknesses of the real axis, which leaves 8^-40 of it.
 _PANELS = 2
-_NODES = 20
 # Entries of a block of waves: 8 MB.
 _BLOCK = 1 << 20
 
@@ -31,7 +30,7 @@ def smooth_slope(layer: ElasticLayer, density: ContactDensity) -> MappedFunction
         density: Its share of the density of one contact, lengths by the thickness of the surface material.
     """
     a = density.ratio
-    grid = MappedGrid.equal(a, math.ceil(_PANELS * a), _NODES)
+    grid = MappedGrid.equal(a, math.ceil(_PANELS * a), PANEL_NODES)
     t, positions = grid.nodes.ravel(), density.psi.grid.nodes.ravel()
     mass = ((density.load + density.psi.node_values) * density.psi.grid.weights).ravel()
     waves, weights = layer_waves(layer, 2.0 * a)

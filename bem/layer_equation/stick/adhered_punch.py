@@ -23,12 +23,11 @@ from bem.kernels.tangential import StickingKernel, TangentialKernel
 from bem.layer_equation.stick.coulomb import coulomb_functions, phases
 from bem.layer_equation.triangular import solve_positive
 from bem.polynomials.gauss import halved_panels, legendre_rule
+from bem.polynomials.gauss_panels import PANEL_NODES
 from contact.records.validation import FloatArray
 
 # Beyond this wavenumber times thickness the layer is a half-space: q^2 exp(-2q) is 1e-16.
 LARGEST_Q = 21.5
-# Gauss nodes of a panel in the wavenumber, over which the product of two transforms turns at most twice.
-_NODES = 20
 
 
 @dataclass(frozen=True)
@@ -187,7 +186,7 @@ def halvings(width: float) -> int:
 
 @lru_cache(maxsize=32)
 def _transforms(charge: float, panel: float, panels: int, count: int, halved: int) -> BasisTransforms:
-    nodes, weights = legendre_rule(_NODES)
+    nodes, weights = legendre_rule(PANEL_NODES)
     starts, widths = halved_panels(panels, halved)
     kappa = (panel * (starts[:, None] + widths[:, None] * ((1.0 + nodes) / 2.0))).ravel()
     plus = coulomb_functions(charge, kappa, count).values

@@ -27,13 +27,9 @@ from bem.layer_equation.stick.adhered_punch import LARGEST_Q, Material, halvings
 from bem.layer_equation.stick.coulomb import coulomb_functions, gamma_squared, phases
 from bem.layer_equation.triangular import equation_factor, solve_lower
 from bem.polynomials.gauss import halved_panels, legendre_rule
-from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix, partial_panel_interpolation
+from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes, lagrange_matrix, partial_panel_interpolation
 from contact.records.validation import FloatArray
 
-# Nodes of a panel of one thickness: densities and kernels are smooth on that scale.
-_NODES = 20
-# Gauss nodes of a panel in the wavenumber.
-_WAVENUMBERS = 20
 # Hf is interpolated on panels of this width with so many nodes: it turns once in 2 pi.
 _WAVE_WIDTH = 2.5
 _WAVE_NODES = 22
@@ -59,18 +55,18 @@ class AdheredPunches:
     def stiffness(self, ratio: FloatArray) -> FloatArray:
         """k_stick/(2 E* a) at 0 < a/h <= max_ratio, shape (n,)."""
         panel, within = _place(ratio)
-        nodes, weights = gauss_nodes(_NODES)
+        nodes, weights = gauss_nodes(PANEL_NODES)
         full = np.concatenate([[0.0], np.cumsum(self._square @ weights)])[panel]
         part = np.empty_like(ratio)
         for i, (p, end) in enumerate(zip(panel, within, strict=True)):
-            values = lagrange_matrix(_NODES, end * nodes) @ self.edge_values[p]
+            values = lagrange_matrix(PANEL_NODES, end * nodes) @ self.edge_values[p]
             part[i] = end * (weights @ (values**2).sum(-1))
         return 2.0 * self.material.beta * (full + part) / ratio
 
     def spring_stiffness(self, ratio: FloatArray) -> FloatArray:
         """c_stick/E* = 2 beta |y_1|^2 at 0 <= a/h <= max_ratio, shape (n,)."""
         panel, within = _place(ratio)
-        values = np.einsum("ij,ijk->ik", lagrange_matrix(_NODES, within), self.edge_values[panel])
+        values = np.einsum("ij,ijk->ik", lagrange_matrix(PANEL_NODES, within), self.edge_values[panel])
         return np.asarray(2.0 * self.material.beta * (values**2).sum(-1))
 
     @property
@@ -81,36 +77,36 @@ class AdheredPunches:
 def adhered_punches(max_ratio: float, kernel: StickingKernel) -> AdheredPunches:
     """Factorise for all radii up to `max_ratio` thicknesses, rounded up to a whole number of them."""
     material, panels = Material.of(kernel.poissons_ratio), math.ceil(max_ratio)
-    nodes, weights = gauss_nodes(_NODES)
+    nodes, weights = gauss_nodes(PANEL_NODES)
     x = (np.arange(panels)[:, None] + nodes).ravel()
     B = _layer_kernel(x, kernel, material)
     root = np.sqrt(np.repeat(np.tile(weights, panels), 2))
-    own = np.array([B[s : s + 2 * _NODES, s : s + 2 * _NODES] for s in range(0, len(B), 2 * _NODES)])
+    own = np.array([B[s : s + 2 * PANEL_NODES, s : s + 2 * PANEL_NODES] for s in range(0, len(B), 2 * PANEL_NODES)])
     lower = equation_factor(-math.pi / 2.0 * B, root, max_ratio)
     y0 = math.sqrt(math.pi * material.charge_over_eta)
     load = np.tile([y0, 0.0], x.size)
     z = solve_lower(lower, root * load)
-    values = np.empty((panels, _NODES, 2))
+    values = np.empty((panels, PANEL_NODES, 2))
     for p in range(panels):
-        start, stop = 2 * _NODES * p, 2 * _NODES * (p + 1)
+        start, stop = 2 * PANEL_NODES * p, 2 * PANEL_NODES * (p + 1)
         row = lower[start:stop, :start] / root[start:stop, None]
         # What the earlier panels leave of kernel and load.
         rest, left = own[p] - row @ row.T, load[start:stop] - row @ z[:start]
-        values[p] = _edge_values(rest, left.reshape(_NODES, 2))
+        values[p] = _edge_values(rest, left.reshape(PANEL_NODES, 2))
     return AdheredPunches(material, values)
 
 
 def _edge_values(kernel: FloatArray, load: FloatArray) -> FloatArray:
     """phi(x; x) for an edge x at each node of a panel: (I + B~ w) phi = load on [X, x]."""
-    tau, omega = gauss_nodes(_NODES)
-    E = partial_panel_interpolation(_NODES)
-    blocks = kernel.reshape(_NODES, 2, _NODES, 2)
+    tau, omega = gauss_nodes(PANEL_NODES)
+    E = partial_panel_interpolation(PANEL_NODES)
+    blocks = kernel.reshape(PANEL_NODES, 2, PANEL_NODES, 2)
     half = np.einsum("ijk,kalb->ijalb", E, blocks)
     full = np.einsum("ijalb,iml->ijamb", half, E)
     weights = np.multiply.outer(tau, omega)
-    system = (full * weights[:, None, None, :, None]).reshape(_NODES, 2 * _NODES, 2 * _NODES)
-    right = np.einsum("ijk,ka->ija", E, load).reshape(_NODES, 2 * _NODES, 1)
-    phi = np.linalg.solve(np.eye(2 * _NODES) + system, right).reshape(_NODES, _NODES, 2)
+    system = (full * weights[:, None, None, :, None]).reshape(PANEL_NODES, 2 * PANEL_NODES, 2 * PANEL_NODES)
+    right = np.einsum("ijk,ka->ija", E, load).reshape(PANEL_NODES, 2 * PANEL_NODES, 1)
+    phi = np.linalg.solve(np.eye(2 * PANEL_NODES) + system, right).reshape(PANEL_NODES, PANEL_NODES, 2)
     # Kernel between the edge, which is the panel's own node, and the nodes of the integral.
     to_edge = np.einsum("iakb,imk->iamb", blocks, E)
     return np.asarray(load - np.einsum("iamb,im,imb->ia", to_edge, weights, phi))
@@ -125,7 +121,7 @@ def _place(ratio: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
 def _layer_kernel(x: FloatArray, kernel: StickingKernel, material: Material) -> FloatArray:
     """B between pairs at x, shape (2 n, 2 n)."""
     width = min(1.0, 2.0 * math.pi / x[-1])
-    nodes, weights = legendre_rule(_WAVENUMBERS)
+    nodes, weights = legendre_rule(PANEL_NODES)
     panels = math.ceil(LARGEST_Q / width)
     starts, widths = halved_panels(panels, halvings(width * kernel.longest))
     k = (width * (starts[:, None] + widths[:, None] * ((1.0 + nodes) / 2.0))).ravel()

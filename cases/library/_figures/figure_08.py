@@ -45,7 +45,8 @@ def figure() -> Figure:
     for one in LAYERS:
         lines.append(mdr_line(name_of(one), RATIOS, elongation(one, RATIOS), punch(one).relative_error(RATIOS)))
         power = 3.0 if one.poissons_ratio == 0.5 and one.support == "bonded" else 1.0
-        springs = (1.0 + power) * thin_layer_stiffness(one, thin)  # Eq. (10): c_bar = k_bar + xi k_bar'
+        # Eq. (10): c_bar = k_bar + xi k_bar'.
+        springs = (1.0 + power) * thin_layer_stiffness(one, thin)
         lines.append(closed_form(name_of(one), "thin layer", thin, np.sqrt(thin / springs)))
     lines.append(closed_form("half-space", "half-space", RATIOS, np.sqrt(RATIOS)))
     panel = Panel(

@@ -80,7 +80,8 @@ def stiffness(scene: Scene) -> float:
     a, h = _radius(scene), scene.layer.thickness
     if is_squeezed(scene):
         return np.pi * scene.layer.youngs_modulus * a**4 / (8 * h**3)  # Eq. (18)
-    return np.pi * bed_modulus(scene.layer) * a**2 / h  # Eqs. (16), (21)
+    # Eqs. (16), (21).
+    return np.pi * bed_modulus(scene.layer) * a**2 / h
 
 
 def depth(scene: Scene) -> float:

@@ -11,7 +11,8 @@ from cases.results.records.cost import EffectEntry
 from cases.run.empty_caches import forget
 from contact import Adhesion, ContactError, Detachment, ElasticLayer, Method, Scene, Solution
 
-_IMPORTS_COUNT = 2.0  # seconds: a longer solution hides them
+# A solution of more seconds than this hides the imports.
+_IMPORTS_COUNT = 2.0
 NOTHING_PULLS = "without it nothing pulls: the whole detachment is its work"
 STATIC = ("contact_radius", "indentation_depth", "normal_force")
 

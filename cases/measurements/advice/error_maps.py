@@ -39,8 +39,10 @@ ROWS: Final = (UNBONDED, "0", "0.2", "0.3", "0.4", "0.45", "0.48", "0.49", "0.49
 USUAL_RATIOS: Final = RATIOS[:26]
 FEW_RATIOS: Final = tuple(np.geomspace(1e-2, 20.0, 12).tolist())
 FEW_ROWS: Final = (UNBONDED, "0", "0.3", "0.45", "0.499", "0.5")
-_NODES: Final = 32  # Gauss nodes: the thin-layer forms are polynomials
-_CURVATURE: Final = 1e3  # radius of curvature over thickness
+# Gauss nodes: the thin-layer forms are polynomials.
+_NODES: Final = 32
+# Radius of curvature over thickness.
+_CURVATURE: Final = 1e3
 
 Given: TypeAlias = Literal["depth", "force"]
 # What is sought where depth or force is given.

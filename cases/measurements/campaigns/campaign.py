@@ -39,16 +39,20 @@ from contact.scene.effects import Viscoelasticity
 
 OTHER_UNITS = Units(length=2.0**17, stress=2.0**-23, time=2.0**11)
 _MOTION = ("indentation_depth", "normal_force")
-UNITS_AGREEMENT = 1e-12  # the same scene in other units: only roundings of pow and log differ
+# The same scene in other units differs by roundings of powers and logarithms only.
+UNITS_AGREEMENT = 1e-12
 
 # How far a depth history may change, relative to its largest force, when its scene is written down in another way.
 # Nothing iterates there, so only rounding changes: 8e-15 at most in 150 histories (seed 3, measured 2026-11-22).
 RESTATED_AGREEMENT = 1e-12
-_ROUNDING = 64 * float(np.finfo(float).eps)  # a few operations, also on what was prescribed
-_THIN_LAYERS_REFINED = 8  # one in so many
+# A few operations round, also what was prescribed.
+_ROUNDING = 64 * float(np.finfo(float).eps)
+# One thin layer in so many is refined.
+_THIN_LAYERS_REFINED = 8
 _STATES_OF_A_BRANCH = 5
 _ALL = slice(None)
-_UNLISTED_MOST = 1e-2  # a quantity without a stated error still may not be this far off
+# A quantity without a stated error still may not be this far off.
+_UNLISTED_MOST = 1e-2
 # Sharpness is asked for where the relative true error is above this: below, roundings decide how large an error is.
 HUNDRED_ROUNDINGS = 100 * float(np.finfo(float).eps)
 

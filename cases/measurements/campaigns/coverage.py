@@ -32,7 +32,8 @@ LARGEST_AT_90: Final = 100.0
 FEWEST_RATIOS: Final = 10
 # Seed of the scenes on which bars are judged. Error terms are chosen on other seeds, never on this one.
 SEED: Final = 1401
-_SMALLEST_RATIO: Final = 1e-2  # contact radius over thickness
+# Smallest contact radius over thickness.
+_SMALLEST_RATIO: Final = 1e-2
 _LARGEST_SHOWN: Final = 1e9
 
 TEXT: Final = """

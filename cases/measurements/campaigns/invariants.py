@@ -12,7 +12,8 @@ from cases.measurements.campaigns.units import Units, in_units
 from contact import ContactPath, FlatPunch, ImpactHistory, Layer, Method, Scene, Solution
 
 _POINTS: Final = 400
-PRESSURE_REACH: Final = 160.0  # a/h up to which methods on flat punches know pressures
+# Largest a/h up to which methods on flat punches know pressures.
+PRESSURE_REACH: Final = 160.0
 
 
 def invariant_residuals(method: Method, answer: Solution) -> dict[str, float]:

@@ -42,8 +42,10 @@ from contact import (
 Family: TypeAlias = Literal["elastic", "adhesive", "impact", "history", "creep", "reloading"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 
-RATIO = (1e-3, 1e3)  # contact radius over layer thickness
-SLOPE = (1e-5, 1.0)  # of the indenter at the contact's edge
+# Range of the contact radius over the thickness of the layer.
+RATIO = (1e-3, 1e3)
+# Range of the slope of the indenter at the contact's edge.
+SLOPE = (1e-5, 1.0)
 UNITS = {"length": (1e-9, 1e3), "stress": (1.0, 1e12), "time": (1e-9, 1e6)}
 
 # Share of the elastic scenes whose profile falls here and there.

@@ -37,9 +37,11 @@ BOOTSTRAPS: Final = 200
 CONFIDENCE: Final = 0.95
 SLACK: Final = 0.1
 FEWEST: Final = 5  # sizes
-LEAST_GROWTH: Final = 2.0  # of the seconds, above which a fixed cost can be told from what grows
+# Growth of the seconds above which a fixed cost can be told from what grows.
+LEAST_GROWTH: Final = 2.0
 STEEPEST: Final = 6.0
-SHORTEST: Final = 1e-9  # seconds: the clock may not have ticked, and a logarithm is taken
+# Shortest time [s]: the clock may not have ticked, and a logarithm is taken.
+SHORTEST: Final = 1e-9
 
 TEXT: Final = """
 One size grows and everything else stays: seconds of processor time of first solutions, each size in turn and all of

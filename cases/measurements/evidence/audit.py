@@ -28,12 +28,15 @@ from contact import InvalidInput, Scene, Solution
 
 NAME: Final = "requested_accuracy"
 LEAST_MET: Final = 0.98
-MOST_TIME: Final = 2.0  # over the fastest configuration that meets the accuracy, in the median
+# Most time over that of the fastest configuration that meets the accuracy, in the median.
+MOST_TIME: Final = 2.0
 ACCURACIES: Final = (1e-9, 1e-2)
 _SMALLEST_RATIO: Final = 1e-2
 _SLOW: Final = "creep"  # whose reference takes as long as a hundred others
-_FEW: Final = 30  # one scene in so many is of the slow family
-_WORTH_TIMING: Final = 3.0  # configurations measured slower than this many times the answer are never the fastest
+# One scene in so many is of the slow family.
+_FEW: Final = 30
+# Configurations measured slower than this many times the answer are never the fastest.
+_WORTH_TIMING: Final = 3.0
 ON_REQUEST: Final = "as requested"
 
 # Why a request has no answer, or one that nothing is fine enough to judge, by the error that said so.
@@ -43,7 +46,8 @@ REASONS: Final = {
     "NotConvergedError": "whose answers state more",
     "TableTooShort": "whose answers state more",
 }
-_MOST_DRAWS: Final = 10  # for each request that is answered
+# Most draws for each request that is answered.
+_MOST_DRAWS: Final = 10
 
 TEXT: Final = """
 Random scenes of every kind are solved to a random accuracy with the methods and settings that stored measurements name,

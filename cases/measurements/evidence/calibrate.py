@@ -38,7 +38,8 @@ SAMPLE: Final = 16
 WORST: Final = "worst quantity"
 _FINE_REFERENCE: Final = 1e-10
 _LEAST_BOUND: Final = 1e-15
-_MOST_DRAWS: Final = 60  # for each scene of a sample
+# Most draws for each scene of a sample.
+_MOST_DRAWS: Final = 60
 
 
 @dataclass(frozen=True, kw_only=True)

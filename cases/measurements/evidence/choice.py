@@ -33,7 +33,8 @@ from contact.answer.accuracy import shortfalls, told_where_less
 
 AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
 
-SAFETY: Final = 2.0  # a scene at hand is another than the sample's
+# Safety factor, since a scene at hand is another than the sample's.
+SAFETY: Final = 2.0
 
 
 @dataclass(frozen=True, kw_only=True)

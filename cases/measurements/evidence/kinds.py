@@ -21,7 +21,8 @@ from contact import (
 )
 from contact.records.validation import FloatArray
 
-BANDS: Final = (1.0, 10.0, 25.0)  # upper ends of a/h; evidence reaches as far as an independent reference
+# Upper ends of a/h; evidence reaches as far as an independent reference.
+BANDS: Final = (1.0, 10.0, 25.0)
 KINDS: Final = {
     ContactRadii: "radii",
     Detachment: "detachment",
@@ -29,7 +30,8 @@ KINDS: Final = {
     DepthHistory: "history",
     ForceHistory: "creep",
 }
-_TRIALS: Final = np.geomspace(1e-9, 1e9, 400)  # radii in units of a length of the scene
+# Trial radii in units of a length of the scene.
+_TRIALS: Final = np.geomspace(1e-9, 1e9, 400)
 
 
 def kind_of(scene: Scene) -> str:

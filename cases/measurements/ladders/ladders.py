@@ -23,7 +23,8 @@ _OWN_ERROR = "stated error"
 _REPEATS = "spread of repeats"
 _JUDGES = ("second opinion", "fast method")  # residuals that may not exceed the stated error
 _FAST = "mdr"
-_LARGEST_EXCESS = 1e-12  # of an invariant residual over the stated error: rounding of the check itself
+# Largest excess of an invariant residual over the stated error: rounding of the check itself.
+_LARGEST_EXCESS = 1e-12
 
 
 @dataclass(frozen=True, kw_only=True)

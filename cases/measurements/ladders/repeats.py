@@ -15,7 +15,8 @@ from contact import ContactRadii, DepthFunction, IndentationDepths, Method, Norm
 
 DOUBLE_DIGITS: Final = -float(np.log10(2.0**-53))
 NUDGES: Final = 3
-_UNITS: Final = Units(length=1e-3, stress=1e-6, time=1e-3)  # millimetres, megapascals: other mantissas
+# Millimetres and megapascals have other mantissas.
+_UNITS: Final = Units(length=1e-3, stress=1e-6, time=1e-3)
 _THREADS: Final = 2
 
 
