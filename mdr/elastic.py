@@ -46,8 +46,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         excess, depth = _excess_and_depth(system, scene, chosen)
         radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
         stiffness = system.contact_stiffness(radius)
-        # Eq. (4)
-        force = stiffness * depth - system.profile_moment(radius)
+        force = system.force(radius, depth, stiffness)
     fields = PathFields(scene, system.flat_punch, excess, depth, partial(density_errors, system, scene, radius))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)

@@ -28,6 +28,7 @@ from contact import (
     FlatPunch,
     IndentationDepths,
     NormalForces,
+    NotConvergedError,
     Scene,
     StageLog,
     UnsupportedSceneError,
@@ -249,12 +250,21 @@ class AdheringDiscs:
         return long_enough(self.scene, self.threads, self._reaches)
 
     def _reaches(self, branch: DiscBranch) -> bool:
-        """Whether the branch holds all prescribed values, or all of a withdrawal."""
+        """Whether the branch holds all prescribed values, or all of a withdrawal.
+
+        Raises:
+            UnresolvedLayer: If the branch is rough because the layer is thinner than `LEAST_LAYER` cells.
+            NotConvergedError: If it is rough for another reason.
+        """
         loading, end = self.scene.loading, np.array([branch.largest_radius])
         if isinstance(loading, IndentationDepths | NormalForces):
             largest = max(float(loading.values.max()), 0.0)
             return bool(branch.value(_quantity(loading), end)[0] > 1.1 * largest)
-        return bool(branch.force(end)[0] > branch.equilibria.strength)
+        try:
+            return bool(branch.force(end)[0] > branch.equilibria.strength)
+        except NotConvergedError:
+            self._refuse_thin_layer(branch.largest_radius)
+            raise
 
     def _start(self, branch: DiscBranch) -> float:
         """Where a withdrawal starts [m]: as given, at the punch's edge, or pressed as hard as the contact can pull."""

@@ -66,8 +66,8 @@ def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = Fals
     return np.asarray(solution)
 
 
-def solve_positive(matrix: FloatArray, loads: FloatArray) -> FloatArray:
-    """Solution of A x = b for a symmetric positive definite A; only its lower triangle is read.
+def positive_factor(matrix: FloatArray) -> FloatArray:
+    """Lower Cholesky factor of a symmetric positive definite matrix, of which only the lower triangle is read.
 
     Raises:
         numpy.linalg.LinAlgError: If it is not positive definite in double precision.
@@ -75,4 +75,18 @@ def solve_positive(matrix: FloatArray, loads: FloatArray) -> FloatArray:
     factor, failed = lapack().dpotrf(matrix, lower=True, clean=False)
     if failed:
         raise np.linalg.LinAlgError(f"the leading minor of order {failed} is not positive definite")
+    return np.asarray(factor)
+
+
+def solve_factored(factor: FloatArray, loads: FloatArray) -> FloatArray:
+    """Solution of A x = b from the lower Cholesky factor of A."""
     return np.asarray(lapack().dpotrs(factor, loads, lower=True)[0])
+
+
+def solve_positive(matrix: FloatArray, loads: FloatArray) -> FloatArray:
+    """Solution of A x = b for a symmetric positive definite A; only its lower triangle is read.
+
+    Raises:
+        numpy.linalg.LinAlgError: If it is not positive definite in double precision.
+    """
+    return solve_factored(positive_factor(matrix), loads)

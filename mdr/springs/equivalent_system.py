@@ -97,10 +97,18 @@ class EquivalentSystem:
         inside = self._beyond(excess)
         return np.where(inside > 0, self._force_unit * self.moment(inside), 0.0)
 
-    def force(self, contact_radius: ArrayLike, indentation_depth: ArrayLike) -> FloatArray:
-        """F_N [N] of springs within a under a depth delta that need not belong to a (adhesion), Eq. (4)."""
-        stiffness = self.contact_stiffness(contact_radius)
-        force: FloatArray = stiffness * np.asarray(indentation_depth) - self.profile_moment(contact_radius)
+    def force(
+        self, contact_radius: ArrayLike, indentation_depth: ArrayLike, stiffness: FloatArray | None = None
+    ) -> FloatArray:
+        """F_N [N] of springs within a under a depth delta that need not belong to a (adhesion), Eq. (4).
+
+        Args:
+            contact_radius: a [m].
+            indentation_depth: delta [m].
+            stiffness: k_N(a) [N/m], where it is known already.
+        """
+        k_N = self.contact_stiffness(contact_radius) if stiffness is None else stiffness
+        force: FloatArray = k_N * np.asarray(indentation_depth) - self.profile_moment(contact_radius)
         return force
 
     def elastic_force(self, contact_radius: ArrayLike) -> FloatArray:

@@ -229,7 +229,7 @@ def test_a_pull_off_that_the_grid_does_not_resolve_is_refused():
         loading=Detachment(control="displacement"),
         effects=(Adhesion(work_of_adhesion=4.6e-3),),
     )
-    with pytest.raises(UnsupportedSceneError, match=r"0\.58 cells thick"):
+    with pytest.raises(UnsupportedSceneError, match=r"1\.5 cells thick"):
         Bem(points=128).solve(thin)
 
 

@@ -6,6 +6,7 @@ import scipy.linalg
 
 from bem.layer_equation.triangular import equation_factor, solve_lower, solve_positive
 from contact import NotConvergedError
+from contact.answer.one_thread import one_thread
 
 
 def kernel(size, seed=22):
@@ -18,7 +19,9 @@ def test_the_factor_is_scipys_in_the_memory_of_the_matrix():
     matrix = K * (2 / np.pi) * root[:, None] * -root
     matrix[np.diag_indices(300)] += 1
     lower = equation_factor(K, root, 1.0)
-    assert np.array_equal(lower, scipy.linalg.cholesky(matrix, lower=True))
+    # Other numbers of threads add up in another order.
+    with one_thread:
+        assert np.array_equal(lower, scipy.linalg.cholesky(matrix, lower=True))
     assert np.shares_memory(lower, K)
 
 

@@ -153,7 +153,7 @@ def test_many_parts_are_refused():
 def test_friction_and_time_are_refused():
     scene = Scene(layer=SHEET, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([0.1]))
     stick = Fem().supports(scene.replace(effects=(Friction(coefficient=float("inf")),)))
-    assert "full stick by fem models one uniform layer" in stick.reason
+    assert "full stick of a FlatPunch by fem models one uniform layer" in stick.reason
     impact = Scene(layer=SHEET, indenter=PARABOLOID, loading=Impact(mass=1.0, velocity=0.1))
     assert "contact in time by fem models one uniform layer" in Fem().supports(impact).reason
 

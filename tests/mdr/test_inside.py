@@ -331,7 +331,7 @@ def test_a_small_flat_end_is_resolved(kind, flat, monkeypatch):
 def _change_nothing_with_more_nodes(path, r, z, monkeypatch):
     found = path.inside().at(r, z)
     for module in ("half_space_part", "layer_part", "density"):
-        monkeypatch.setattr(f"bem.layer_equation.inside.{module}._NODES", 36)
+        monkeypatch.setattr(f"bem.layer_equation.inside.{module}.PANEL_NODES", 36)
     finer = path.inside().at(r, z)
     names = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress", "hydrostatic_pressure")
     largest = max(float(np.abs(getattr(finer, name)).max()) for name in names)

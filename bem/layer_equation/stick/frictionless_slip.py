@@ -15,11 +15,10 @@ from functools import cached_property, lru_cache
 
 import numpy as np
 from numpy.polynomial import legendre
-from scipy.linalg import cho_factor, cho_solve
-from scipy.special import j1
 
 from bem.kernels.tangential import StickingKernel
 from bem.layer_equation.stick.adhered_punch import BasisTransforms, Material, basis_transforms, functions_for
+from bem.layer_equation.triangular import positive_factor, solve_factored
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
 from contact.records.validation import FloatArray
 
@@ -130,7 +129,7 @@ class FrictionlessPunch:
         transform itself, the layer's is smooth, so that no edge of a profile need be resolved by the basis.
         """
         tables, twice = self.tables, 2.0 * self.material.beta
-        layer = load - twice * cho_solve((self.lower, True), load, check_finite=False)
+        layer = load - twice * solve_factored(self.lower, load)
         t, height, weights = _towards_edge(tables.radius)
         enclosing = (height * (transform(t) @ weights) - tables.enclosing @ layer) / twice
         return float((tables.slope @ self.slip) @ enclosing) / self.force(load)
@@ -147,8 +146,8 @@ def frictionless_punch(ratio: float, kernel: StickingKernel) -> FrictionlessPunc
     matrix[np.diag_indices_from(matrix)] += 2.0 * material.beta
     load = np.zeros(len(matrix))
     load[0] = math.sqrt(2.0)
-    lower = cho_factor(matrix, lower=True, check_finite=False)[0]
-    return FrictionlessPunch(material, ratio, kernel, tables, lower, cho_solve((lower, True), load, check_finite=False))
+    lower = positive_factor(matrix)
+    return FrictionlessPunch(material, ratio, kernel, tables, lower, solve_factored(lower, load))
 
 
 def rung_of(ratio: float) -> float:
@@ -159,6 +158,9 @@ def rung_of(ratio: float) -> float:
 @lru_cache(maxsize=16)
 def slip_tables(rung: float, longest: float) -> SlipTables:
     """Tables up to a/h = rung; a kernel smooth on the scale of 1/longest asks for narrower panels."""
+    # Only the statement about friction needs Bessel functions.
+    from scipy.special import j1  # noqa: PLC0415
+
     # Panels are as wide as the smallest punch of the range bears: half a rung.
     transforms = basis_transforms(0.0, rung, functions_for(rung), longest=2.0 * longest)
     even = transforms.cosine[::2]
