@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
@@ -130,9 +131,18 @@ def largest_difference() -> tuple[float, float]:
     return float(ratios[worst]), float(off[worst])
 
 
+Row: TypeAlias = tuple[str, str, str, str, Callable[[], Measured], Callable[[float], bool], str]
+
+
 def statements() -> Iterator[Statement]:
     """The statements of these equations."""
-    table: list[tuple[str, str, str, str, Callable[[], Measured], Callable[[float], bool], str]] = [
+    for rows in (_superposition, _thin_profiles, _pairs, _thin_pressures, _impacts, _likeness):
+        yield from (Statement(*row) for row in rows())
+
+
+def _superposition() -> list[Row]:
+    """Eq. (13): displacements outside."""
+    return [
         *(
             (
                 "Eq. (13)",
@@ -146,6 +156,12 @@ def statements() -> Iterator[Statement]:
             for one in (UNBONDED, layer(0.5))
             for place in (1.2, 2.0)
         ),
+    ]
+
+
+def _thin_profiles() -> list[Row]:
+    """Eq. (20): thin layers by the closed form."""
+    return [
         *(
             (
                 "Eq. (20)",
@@ -158,6 +174,12 @@ def statements() -> Iterator[Statement]:
             )
             for name, profile in PROFILES.items()
         ),
+    ]
+
+
+def _pairs() -> list[Row]:
+    """Eqs. (23) and (25): two bodies, two coatings."""
+    return [
         (
             "Eq. (23)",
             "bodies of radii R and 2 R: curvatures add",
@@ -179,6 +201,12 @@ def statements() -> Iterator[Statement]:
             )
             for nu, ratio in ((0.3, 0.5), (0.3, 5.0), (0.5, 0.5), (0.5, 5.0))
         ),
+    ]
+
+
+def _thin_pressures() -> list[Row]:
+    """Eq. (39): pressures on thin layers."""
+    return [
         *(
             (
                 "Eq. (39)",
@@ -191,6 +219,12 @@ def statements() -> Iterator[Statement]:
             )
             for ratio in (20.0, 100.0)
         ),
+    ]
+
+
+def _impacts() -> list[Row]:
+    """Eqs. (53) and (54): numbers of impacts."""
+    return [
         (
             "Eq. (53)",
             "chi_HS of the data of Fig. 12",
@@ -212,6 +246,12 @@ def statements() -> Iterator[Statement]:
             )
             for support in ("unbonded", "bonded")
         ),
+    ]
+
+
+def _likeness() -> list[Row]:
+    """Section 3.2: unbonded layers and bonded ones with nu = 0."""
+    return [
         (
             "Section 3.2",
             "unbonded and bonded with nu = 0 give almost the same, wherever they differ most",
@@ -231,4 +271,3 @@ def statements() -> Iterator[Statement]:
             "MDR, integral equation",
         ),
     ]
-    yield from (Statement(*row) for row in table)
