@@ -3,6 +3,7 @@
 import pytest
 
 from cases.declare.registry import load_cases
+from cases.measurements.cost.work_precision import WorkStudy
 from cases.results.records.claim import Kind, Origin
 
 CASES = load_cases()
@@ -66,3 +67,10 @@ def test_every_task_can_be_planned_and_its_identity_is_unique_or_the_same_questi
     for task in CASES[name].tasks():
         known = tasks.setdefault(task.identity, task)
         assert (known.problem, known.solver, known.timed) == (task.problem, task.solver, task.timed), task.label
+
+
+@pytest.mark.parametrize("name", sorted(CASES))
+def test_timed_settings_name_their_method(name):
+    """Their labels name settings: a report once said what accuracy costs by a method without a name."""
+    studies = [study for study in CASES[name].work if isinstance(study, WorkStudy)]
+    assert all(use.method for study in studies for use in (*study.ladder, *study.cheap, study.reference))
