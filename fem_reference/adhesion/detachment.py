@@ -69,11 +69,7 @@ def detachment_path(
     refuse_touching_contacts(scene, ((c, adhesive_equilibrium(c, work).depth) for c in branch.contacts))
     radius = branch_samples(branch)[::-1]
     depth, force = branch.depth(radius), branch.force(radius)
-    critical = [
-        *_start(scene, branch, loading),
-        *_turning_points(branch, radius, loading),
-        *_landings(scene, branch, radius, loading),
-    ]
+    critical = _critical_points(scene, branch, radius, loading)
     pull_off = _pull_off(branch, radius, loading.controlled, critical)
     modulus = contact_modulus(scene.layer)
     strongest = _strongest_pull(branch, radius, loading.controlled, pull_off, critical)
@@ -84,7 +80,6 @@ def detachment_path(
         "normal_force": force_error / np.abs(force).max(),
         **pull_off_errors(branch, pull_off, strongest),
     }
-    cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c.answer)]
     return DetachmentPath(
         scene=scene,
         method="fem",
@@ -92,9 +87,7 @@ def detachment_path(
         error_estimate=error,
         cost=log.cost(unknowns=max(c.answer.unknowns for c in branch.contacts)),
         stages=log.records,
-        notes=tuple(
-            CAVITATION.format(radius=min(c.indenter.contact_radius for c in cavitating)) for _ in cavitating[:1]
-        ),
+        notes=_notes(branch),
         contact_radius=radius,
         indentation_depth=depth,
         normal_force=modulus * force,
@@ -106,6 +99,23 @@ def detachment_path(
         force_at_loss=modulus * pull_off.normal_force,
         critical_points=tuple(_in_newtons(point, modulus) for point in critical),
     )
+
+
+def _critical_points(
+    scene: Scene, branch: InterpolatedBranch, radius: FloatArray, loading: Detachment
+) -> list[CriticalPoint]:
+    """Where a withdrawal starts, turns and lands."""
+    return [
+        *_start(scene, branch, loading),
+        *_turning_points(branch, radius, loading),
+        *_landings(scene, branch, radius, loading),
+    ]
+
+
+def _notes(branch: InterpolatedBranch) -> tuple[str, ...]:
+    """A warning where contacts pull most in the centre."""
+    cavitating = [c for c in branch.contacts if presses_most_in_the_centre(c.answer)]
+    return tuple(CAVITATION.format(radius=min(c.indenter.contact_radius for c in cavitating)) for _ in cavitating[:1])
 
 
 def _strongest_pull(
