@@ -81,15 +81,12 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         lost = _point_errors(route, bounds, uncertain, loss)
         torn = lost if tension == loss else _point_errors(route, bounds, uncertain, tension)
         force = route.state(tension)[2]
-    depth_scale, force_scale = np.abs(values).max(axis=1)
     return DetachmentPath(
         scene=scene,
         method="mdr",
         settings=settings,
         error_estimate={
-            "contact_radius": errors[RADIUS] / radius.max(),
-            "indentation_depth": errors[DEPTH] / depth_scale,
-            "normal_force": errors[FORCE] / force_scale,
+            **_relative_along(errors, radius, values),
             "pull_off_force": _relative(torn[FORCE], force),
             "pull_off_depth": _relative(lost[DEPTH], lost_depth),
             "pull_off_contact_radius": _relative(lost[RADIUS], lost_radius),
@@ -109,6 +106,16 @@ def solve_detachment(scene: Scene, flat_punch: FlatPunchSource, settings: Mappin
         force_at_loss=lost_force,
         critical_points=route.critical_points(),
     )
+
+
+def _relative_along(errors: FloatArray, radius: FloatArray, values: FloatArray) -> dict[str, FloatArray]:
+    """Errors of the states over the largest radius, depth and force."""
+    depth_scale, force_scale = np.abs(values).max(axis=1)
+    return {
+        "contact_radius": errors[RADIUS] / radius.max(),
+        "indentation_depth": errors[DEPTH] / depth_scale,
+        "normal_force": errors[FORCE] / force_scale,
+    }
 
 
 def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
