@@ -9,7 +9,6 @@ from its edge, and random ones. Distances count relative to the depth.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from functools import partial
 from typing import Any, Final
 
@@ -18,7 +17,7 @@ import numpy as np
 from bem.layer_equation.method import IntegralEquationMethod
 from cases.measurements.campaigns.campaign import HUNDRED_ROUNDINGS
 from cases.measurements.campaigns.random_scenes import log_uniform, poissons_ratio
-from cases.measurements.driver import measured
+from cases.measurements.driver import Judge, drawn_and_measured
 from cases.measurements.measurement import Measurement
 from contact import (
     Cone,
@@ -30,7 +29,6 @@ from contact import (
     GradedLayer,
     Layer,
     LayerStack,
-    Method,
     Paraboloid,
     PowerLaw,
     Profile,
@@ -50,24 +48,12 @@ _DOUBLINGS: Final = 2.0 ** np.arange(-4.0, 2.0)
 _RATIO: Final = (0.05, 3.0)
 
 
-def displacement_campaign(
-    method: Method, *, seed: int, count: int, numbers: Iterable[int] | None = None
-) -> list[Measurement]:
-    """Draw contacts, let the method answer, and check the displacement beside each.
+def _drawn(draw: Draw) -> tuple[Scene, Judge]:
+    scene = random_body(draw)
+    return scene, partial(_checks, distances=np.append(_DOUBLINGS, draw.uniform(0.01, 5.0, 3)))
 
-    Args:
-        method: Who answers.
-        seed: Of the scenes.
-        count: How many.
-        numbers: Only these of the scenes; all if None.
-    """
-    rows = []
-    for number in range(count) if numbers is None else numbers:
-        draw = np.random.default_rng([seed, number])
-        scene, distances = random_body(draw), np.append(_DOUBLINGS, draw.uniform(0.01, 5.0, 3))
-        of = Measurement(method=method.name, scene=f"{number}", parameters={"family": "displacement"}, seed=seed)
-        rows += measured(partial(method.solve, scene), partial(_checks, distances=distances), of=of)
-    return rows
+
+displacement_campaign: Final = partial(drawn_and_measured, draw=_drawn, family="displacement")
 
 
 def _checks(path: Solution, distances: FloatArray) -> tuple[Measurement, Measurement]:

@@ -10,7 +10,8 @@ Each field is one contact in random units. Four checks need no other method's co
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from itertools import pairwise
 from typing import Final, Literal
 
@@ -19,7 +20,7 @@ import numpy as np
 from cases.measurements.campaigns.pressure_referee import reference_pressure
 from cases.measurements.campaigns.random_scenes import UNITS, log_uniform, poissons_ratio, tabulated
 from cases.measurements.campaigns.referee import CHEAP_RATIO, smallest_eigenvalue
-from cases.measurements.driver import measured
+from cases.measurements.driver import Judge, drawn_and_measured
 from cases.measurements.measurement import Measurement
 from contact import (
     Cone,
@@ -29,7 +30,6 @@ from contact import (
     IndentationDepths,
     Layer,
     Loading,
-    Method,
     NormalForces,
     Paraboloid,
     PowerLaw,
@@ -63,25 +63,11 @@ _FORCE_NODES: Final = 16
 _ROUNDINGS: Final = 30 * _EPS
 
 
-def pressure_campaign(
-    method: Method, *, seed: int, count: int, numbers: Iterable[int] | None = None
-) -> list[Measurement]:
-    """Draw contacts, let the method answer, and check each pressure field.
-
-    Args:
-        method: Who answers.
-        seed: Of the scenes.
-        count: How many.
-        numbers: Only these of the scenes; all if None.
-    """
-    chosen = range(count) if numbers is None else numbers
-    return [row for n in chosen for row in _contact_rows(method, seed, n)]
+def _drawn(draw: np.random.Generator) -> tuple[Scene, Judge]:
+    return random_contact(draw), pressure_checks
 
 
-def _contact_rows(method: Method, seed: int, number: int) -> list[Measurement]:
-    of = Measurement(method=method.name, scene=f"{number}", parameters={"family": "pressure"}, seed=seed)
-    scene = random_contact(np.random.default_rng([seed, number]))
-    return measured(lambda: method.solve(scene), pressure_checks, of=of)
+pressure_campaign: Final = partial(drawn_and_measured, draw=_drawn, family="pressure")
 
 
 def pressure_checks(path: Solution, step: int = 0) -> tuple[Measurement, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from typing import Final, Literal
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from cases.measurements.campaigns.campaign import HUNDRED_ROUNDINGS
 from cases.measurements.campaigns.inside.referee import InsideReferee
-from cases.measurements.driver import measured
+from cases.measurements.driver import Judge, drawn_and_measured
 from cases.measurements.measurement import Measurement
 from contact import (
     Adhesion,
@@ -21,7 +21,6 @@ from contact import (
     FlatPunch,
     IndentationDepths,
     Layer,
-    Method,
     NormalForces,
     Paraboloid,
     PowerLaw,
@@ -42,31 +41,19 @@ _SLOPES: Final = ("pressure_gradient_radial", "pressure_gradient_axial")
 _MOVED: Final = ("radial_displacement", "axial_displacement")
 
 
-def inside_campaign(
-    method: Method, *, seed: int, count: int, numbers: Iterable[int] | None = None
-) -> list[Measurement]:
-    """Draw contacts, let the method answer, and judge stress, gradient and displacement at each point.
-
-    Args:
-        method: Who answers.
-        seed: Of the scenes.
-        count: How many.
-        numbers: Only these of the scenes; all if None.
-    """
-    rows = []
-    for number in range(count) if numbers is None else numbers:
-        draw = np.random.default_rng([seed, number])
-        scene, referee = random_inside(draw)
-        of = Measurement(method=method.name, scene=f"{number}", parameters={"family": "inside"}, seed=seed)
-        points = [_point(draw, scene, referee.contact_radius) for _ in range(_POINTS)]
-        rows += measured(partial(method.solve, scene), partial(_judged, referee, points), of=of)
-    return rows
+def _drawn(draw: Draw) -> tuple[Scene, Judge]:
+    scene, referee = random_inside(draw)
+    points = [_point(draw, scene, referee.contact_radius) for _ in range(_POINTS)]
+    return scene, partial(_judged, referee, points)
 
 
 def _judged(referee: InsideReferee, points: list[tuple[float, float]], answer: Solution) -> list[Measurement]:
     assert isinstance(answer, ContactPath)
     inside = answer.inside()
     return [row for r, z in points for row in _checks(answer.method, referee, (r, z), inside.at(r, z))]
+
+
+inside_campaign: Final = partial(drawn_and_measured, draw=_drawn, family="inside")
 
 
 def _checks(
