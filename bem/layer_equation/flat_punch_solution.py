@@ -22,6 +22,8 @@ from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
 EPS = float(np.finfo(float).eps)
+# By this much, relative, the last panel reaches beyond the radius at which it ends, so that rounding takes no further.
+BEYOND = 4.0 * EPS
 
 
 @dataclass(frozen=True)
@@ -37,6 +39,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     kernel: FredholmKernel
     factor: VolterraFactor
     shares: ClassVar[FactorCoefficients] = FACTOR
+    displacement_known: ClassVar[bool] = True
 
     @property
     def max_ratio(self) -> float:
@@ -154,6 +157,12 @@ class IntegralEquationSolution(FlatPunchSolution):
             return self.density(ratio, np.full((self.factor.panels_to(ratio), self.factor.count), depth))
         averages = depth - contact_averages(self.factor, load, flat_radius)
         return self.density(ratio, averages)
+
+    def ending_at(self, ratio: float) -> IntegralEquationSolution | None:
+        """Made anew, with as many nodes a panel."""
+        panels = self.factor.panels_to(ratio)
+        width = ratio / panels * (1.0 + BEYOND)
+        return IntegralEquationSolution(self.kernel, VolterraFactor.of_kernel(self.kernel, panels, width, self.nodes))
 
     def contact_pressure_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
         """From the relative errors of the depth and of the density that is solved for.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import inf
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -21,6 +22,7 @@ class HalfSpaceFlatPunch(FlatPunchSolution):
     max_ratio: float = inf
     variation_length: float = inf
     nodes: int = 24
+    displacement_known: ClassVar[bool] = True
 
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar = 1."""

@@ -149,6 +149,10 @@ class FlatPunchSolution(Protocol):
         """
         return self, ratio
 
+    def ending_at(self, ratio: float) -> FlatPunchSolution | None:
+        """The same layer on panels that are no wider and of which the last ends at this ratio; None where none can."""
+        return None
+
     def one_contact(self, ratio: float) -> FlatPunchSolution:
         """The solution that gives the pressure of one contact."""
         return self
@@ -174,6 +178,11 @@ class FlatPunchSolution(Protocol):
     @property
     def superposed(self) -> bool:
         """Whether pressures are superposed from flat punches, Eq. (12), since no density is known."""
+        return False
+
+    @property
+    def displacement_known(self) -> bool:
+        """Whether `contact_density` tells the surface displacement beside a contact, as tables do not."""
         return False
 
     def linear_errors(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:

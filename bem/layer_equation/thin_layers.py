@@ -74,6 +74,7 @@ class LargeRatioSolution(FlatPunchSolution):
     support: Support
     poissons_ratio: float
     make_near: Callable[[], IntegralEquationSolution]
+    displacement_known: ClassVar[bool] = True
 
     @property
     def max_ratio(self) -> float:
@@ -282,6 +283,9 @@ class WideSolution(IntegralEquationSolution):
     lost: Callable[[FloatArray], FloatArray]
     seen: float
     shares: ClassVar[FactorCoefficients] = WIDE_FACTOR
+
+    def ending_at(self, ratio: float) -> None:
+        """None: it is judged as one with the panels it has."""
 
     def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
         """The kernel's share as it was seen."""

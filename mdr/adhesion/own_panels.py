@@ -14,16 +14,11 @@ import numpy as np
 
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.error_model import FACTOR
-from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
-from bem.layer_equation.one_factorisation import VolterraFactor
 from contact import ElasticLayer, FlatPunch, Profile
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS
-
-# By this much, relative, the panels reach beyond the edge, so that rounding takes no further one.
-_BEYOND = 4.0 * EPS
 
 
 def state_again(
@@ -38,10 +33,10 @@ def state_again(
         work_of_adhesion: dgamma [J/m^2].
         excess: a - b [m] over the radius of the flat end; within it the indenter is a flat punch.
     """
-    solution, a, unit = system.flat_punch, system.flat_radius + excess, system.length_unit
-    if type(solution) is not IntegralEquationSolution:
+    a, unit = system.flat_radius + excess, system.length_unit
+    again = system.flat_punch.ending_at(a / unit)
+    if again is None:
         return None
-    again = _ending_at(solution, a / unit)
     punch = contact_fields(layer, FlatPunch(radius=a), again, excess=0.0, depth=unit, edge=True)
     edge, total = _edge_and_integral(punch.density, 1.0)
     rim = risen = 0.0
@@ -58,14 +53,6 @@ def rounding(system: EquivalentSystem, radius: FloatArray) -> FloatArray:
     """What roundings leave of the terms of such a state, relative, at each radius [m]."""
     stiffness = system.contact_stiffness(radius) / (2.0 * system.contact_modulus * radius)
     return np.asarray(EPS * (2.0 * FACTOR.rounded + FACTOR.spring_growth * stiffness))
-
-
-def _ending_at(solution: IntegralEquationSolution, ratio: float) -> IntegralEquationSolution:
-    """The same layer on as many nodes a panel, the panels no wider and the last ending at the edge."""
-    panels = solution.factor.panels_to(ratio)
-    width = ratio / panels * (1.0 + _BEYOND)
-    factor = VolterraFactor.of_kernel(solution.kernel, panels, width, solution.factor.count)
-    return IntegralEquationSolution(solution.kernel, factor)
 
 
 def _edge_and_integral(density: object, load: float) -> tuple[float, float]:

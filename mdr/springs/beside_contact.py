@@ -7,11 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.protocol import FlatPunchSource
-from bem.layer_equation.thin_layers import LargeRatioSolution
 from contact import ElasticBase, ElasticLayer, LayerStack, Scene
 from contact.answer.one_circle import Circle, never_touches_beside, refuse_touching, touching_radius
 from contact.records.validation import FloatArray
@@ -121,7 +118,7 @@ def _is_clear(scene: Scene, system: EquivalentSystem, contact: ContactFields) ->
 def circle_of(scene: Scene, system: EquivalentSystem, radius: float, depth: float) -> Circle:
     """One contact. Tables hold no displacement outside the contact: there the integral equation gives it."""
     flat_punch = system.flat_punch
-    if not isinstance(flat_punch, HalfSpaceFlatPunch | IntegralEquationSolution | LargeRatioSolution):
+    if not flat_punch.displacement_known:
         flat_punch = IntegralEquation().solution(scene.layer, system.max_radius / system.length_unit)
     excess = radius - system.flat_radius
     fields = contact_fields(scene.layer, scene.indenter, flat_punch, excess=excess, depth=depth, edge=False)

@@ -8,8 +8,12 @@ from pathlib import Path
 
 import numpy as np
 
-import mdr.springs.assembly
+import mdr
+from bem.layer_equation.any_layer.graded_solution import GradedSolution
+from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.protocol import FlatPunchSolution
+from bem.layer_equation.thin_layers import LargeRatioSolution
+from bem.tables.table import FlatPunchTable
 from contact import Layer, Paraboloid
 from mdr import equivalent_system
 from mdr.springs.assembly import contact_fields
@@ -68,8 +72,22 @@ def test_a_new_flat_punch_solution_makes_springs_and_fields():
     assert fields.table is None
 
 
-def test_the_assembly_asks_for_no_class_of_flat_punch_solutions():
-    tree = ast.parse(Path(mdr.springs.assembly.__file__).read_text(encoding="utf-8"))
-    asked = [n.args[1] for n in ast.walk(tree) if isinstance(n, ast.Call) and getattr(n.func, "id", "") == "isinstance"]
-    assert {ast.unparse(one) for one in asked} == {"FlatPunch"}
-    assert not any(isinstance(node, ast.Match) for node in ast.walk(tree))
+def test_springs_and_effects_ask_for_no_class_of_flat_punch_solutions():
+    """Neither by isinstance nor by type(...) nor by match: what a solution can do it says by its interface."""
+    kinds = _subclasses(FlatPunchSolution)
+    assert {GradedSolution, HalfSpaceFlatPunch, LargeRatioSolution, FlatPunchTable} < set(kinds)
+    names = {cls.__name__ for cls in kinds}
+    for path in Path(mdr.__file__).parent.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if _tells_types_apart(node):
+                named = {n.id for n in ast.walk(node) if isinstance(n, ast.Name)}
+                assert not named & names, f"{path}: {ast.unparse(node)}"
+
+
+def _subclasses(cls):
+    return [cls, *(one for sub in cls.__subclasses__() for one in _subclasses(sub))]
+
+
+def _tells_types_apart(node):
+    asked = isinstance(node, ast.Call) and getattr(node.func, "id", "") in {"isinstance", "issubclass"}
+    return asked or isinstance(node, ast.Compare | ast.match_case)

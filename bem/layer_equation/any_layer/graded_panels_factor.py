@@ -157,6 +157,9 @@ class AnyLayerSolution(IntegralEquationSolution):
     factor: GradedFactor
     shares: ClassVar[FactorCoefficients] = STACK_FACTOR
 
+    def ending_at(self, ratio: float) -> None:
+        """None: its panels are graded to the edges of films."""
+
     def panel_ends(self, ratio: float) -> FloatArray:
         """Of the factor's panels."""
         inner = self.factor.ends[1:-1]

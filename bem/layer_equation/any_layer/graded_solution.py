@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
+from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -97,6 +97,7 @@ class GradedSolution(FlatPunchSolution):
     kernel: PointKernel
     reach: float
     nodes: int = PIECE_NODES
+    displacement_known: ClassVar[bool] = True
 
     @property
     def max_ratio(self) -> float:
