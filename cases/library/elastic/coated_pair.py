@@ -44,7 +44,7 @@ def pair(
         youngs_modulus=YOUNGS_MODULUS,
         poissons_ratio=POISSONS_RATIO,
         support="unbonded" if support == "unbonded" else "bonded",
-        loading=ContactRadii(values=np.array([radius])),
+        loading=ContactRadii([radius]),
     ).scene()
 
 
@@ -124,9 +124,7 @@ CASE = Case(
             scenes=names_of(THIN),
             parameter=thinness,
             limit=beds_in_series,
-            formal_order=1.0,
             largest=0.05,
-            tolerance=0.2,
             reason=WHY["series"],
         ),
         *agreements(SYMMETRIC, required("fem", "bem", "integral_equation", "mdr_table")),

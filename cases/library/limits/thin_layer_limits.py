@@ -51,7 +51,7 @@ def cone(label: str, ratio: float) -> CaseScene:
 
 
 def _scene(name: str, label: str, ratio: float, indenter: Profile) -> CaseScene:
-    scene = Scene(layer=layer(label), indenter=indenter, loading=ContactRadii(values=np.array([ratio * THICKNESS])))
+    scene = Scene(layer=layer(label), indenter=indenter, loading=ContactRadii([ratio * THICKNESS]))
     far, slow = ratio > CHECKED_RATIO, label != QUICK_LABEL
     under_cone = isinstance(indenter, TruncatedCone)
     # What takes long: finite elements on their way to other limits, and what no limit is claimed of.
@@ -124,9 +124,7 @@ def approach(
             scenes=tuple(scenes(label, ratio).name for ratio in RATIOS),
             parameter=thinness,
             limit=limit,
-            formal_order=1.0,
             largest=0.1,
-            tolerance=0.2,
             methods=("mdr", "fem"),
             reason=WHY["table 1"],
         )

@@ -43,19 +43,19 @@ def _layer(nu: float, support: Support = "bonded", thickness: float = 1.0) -> La
 
 def nearly_incompressible(gap: float) -> Scene:
     """A cone at a/h = 2 on a bonded layer with nu = 1/2 - gap."""
-    return Scene(layer=_layer(0.5 - gap), indenter=Cone(slope=0.1), loading=ContactRadii(values=np.array([2.0])))
+    return Scene(layer=_layer(0.5 - gap), indenter=Cone(slope=0.1), loading=ContactRadii([2.0]))
 
 
 def contact_ratio(ratio: float, *, nu: float, support: Support) -> Scene:
     """A paraboloid at a given a/h."""
     indenter = Paraboloid(radius_of_curvature=1e3)
-    return Scene(layer=_layer(nu, support), indenter=indenter, loading=ContactRadii(values=np.array([ratio])))
+    return Scene(layer=_layer(nu, support), indenter=indenter, loading=ContactRadii([ratio]))
 
 
 def truncated(flat: float) -> Scene:
     """A truncated cone at a/h = 1 with b/a = flat."""
     indenter = TruncatedCone(flat_radius=flat, slope=0.1)
-    return Scene(layer=_layer(0.45), indenter=indenter, loading=ContactRadii(values=np.array([1.0])))
+    return Scene(layer=_layer(0.45), indenter=indenter, loading=ContactRadii([1.0]))
 
 
 def nearly_flat(gap: float) -> Scene:
@@ -85,7 +85,7 @@ def reversing_punch(nu: float) -> Scene:
 
 def punch_on_layer(thickness: float) -> Scene:
     """A flat punch of unit radius on an incompressible bonded layer."""
-    loading = IndentationDepths(values=np.array([0.01]))
+    loading = IndentationDepths([0.01])
     return Scene(layer=_layer(0.5, thickness=thickness), indenter=FlatPunch(radius=1.0), loading=loading)
 
 
@@ -135,7 +135,7 @@ def noisy_table(noise: float) -> Scene:
     radii = np.linspace(0.0, 2.0, 41)
     rises = np.diff(radii**2 / 20.0) * (1.0 + noise * np.random.default_rng(7).uniform(-1.0, 1.0, 40))
     indenter = Tabulated(radii=radii, heights=np.concatenate([[0.0], np.cumsum(rises)]))
-    return Scene(layer=_layer(0.45), indenter=indenter, loading=IndentationDepths(values=np.array([0.1])))
+    return Scene(layer=_layer(0.45), indenter=indenter, loading=IndentationDepths([0.1]))
 
 
 def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -> Scene[Any, Any]:
@@ -146,9 +146,7 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
     )
     interface: Interface = "bonded"
     stack = LayerStack(sublayers=parts, interfaces=(interface,) * (len(parts) - 1))
-    return Scene(
-        layer=stack, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([ratio]))
-    )
+    return Scene(layer=stack, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii([ratio]))
 
 
 def alternating(count: float) -> Scene[Any, Any]:
@@ -160,9 +158,7 @@ def graded_in_depth(growth: float) -> Scene[Any, Any]:
     """The same on a layer whose modulus is `growth` times as large at the base as at the surface."""
     modulus = ExponentialDepth(surface=1.0, base=growth)
     layer = GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3)
-    return Scene(
-        layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([1.0]))
-    )
+    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii([1.0]))
 
 
 def finer_edge(method: Method, cell: float) -> Method:
