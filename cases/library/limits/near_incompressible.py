@@ -6,7 +6,6 @@ accurate as MDR says they are, and on one and the same mesh as accurate at nu = 
 approach that of the incompressible layer with the first order of 1/2 - nu.
 """
 
-
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.methods import MethodUse
 from cases.judgement.claims.approach import Approach
