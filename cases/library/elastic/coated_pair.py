@@ -15,7 +15,7 @@ from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import agreements, names_of, scaling_law
 from cases.library._convergence import EDGE_CELL, NODES, fem_cells, studies
-from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii
+from cases.library._layers import THICKNESS, YOUNGS_MODULUS, confined_modulus, layer_of, prescribed_radii, thinness
 from cases.library._methods import EVERY, FEM, MDR
 from cases.library._reasons import reasons
 from cases.library._requirements import required
@@ -86,11 +86,6 @@ def beds_in_series(scene: Scene) -> float:
     """k_N = pi a^2 E~/(h1 + h2): two Winkler beds, one after the other."""
     a = float(prescribed_radii(scene)[0])
     return np.pi * a**2 * confined_modulus(layer_of(POISSONS_RATIO)) / sum(UNEQUAL)
-
-
-def thinness(scene: Scene) -> float:
-    """h/a."""
-    return scene.layer.thickness / float(prescribed_radii(scene)[0])
 
 
 FORCE_AND_DEPTH = ("normal_force", "indentation_depth")

@@ -15,7 +15,15 @@ from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import agreements
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, NODES, fem_cells, studies
-from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
+from cases.library._layers import (
+    THICKNESS,
+    confined_modulus,
+    contact_modulus,
+    layer,
+    prescribed_radii,
+    scene_name,
+    thinness,
+)
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._requirements import COARSEST, required
@@ -106,11 +114,6 @@ def cone_force(scene: Scene) -> float:
 
 def _radius(scene: Scene) -> float:
     return float(prescribed_radii(scene)[0])
-
-
-def thinness(scene: Scene) -> float:
-    """h/a."""
-    return scene.layer.thickness / _radius(scene)
 
 
 def approach(
