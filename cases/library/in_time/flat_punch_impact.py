@@ -30,7 +30,8 @@ SHEAR_MODULUS = 1e6  # Pa
 MASS = 0.02  # kg
 VELOCITY = 0.1  # m/s
 RADIUS = 1e-3  # m
-LAYER_DAMPING = 0.3  # on the half-space, of the impacts on layers
+# Damping ratio that the impacts on layers would have on the half-space.
+LAYER_DAMPING = 0.3
 DAMPING_RATIOS = (0.05, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 1.0, 1.5, 2.0, 3.0)
 
 

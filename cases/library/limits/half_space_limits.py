@@ -45,7 +45,8 @@ from contact import (
 WHY = reasons("half_space_limits")
 
 RADIUS = 1e-3  # m
-POISSONS_RATIO = 0.3  # of the half-space
+# Of the half-space.
+POISSONS_RATIO = 0.3
 SLOPE = 0.1
 RADIUS_OF_CURVATURE = 1e-2  # m
 DEPTH = 1e-5  # m

@@ -77,7 +77,8 @@ def elastic_costs(
 
 def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
     """What the pull-off costs."""
-    cheap = MDR[2:3]  # a branch by finite elements takes a second, ten times over
+    # A branch by finite elements takes a second, ten times over.
+    cheap = MDR[2:3]
     quantities = ("pull_off_force", "pull_off_depth")
     return _studies(scene, quantities, (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE), FINEST_MDR, cheap)
 

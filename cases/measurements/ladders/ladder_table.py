@@ -97,7 +97,8 @@ def punch_on_layer(thickness: float) -> Scene:
 
 def damped_punch(damping: float) -> Scene:
     """A flat punch hits a Kelvin-Voigt half-space with damping ratio D = eta sqrt(k/M)/(2 G), Eq. (50)."""
-    layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8
+    # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8.
+    layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
     effect = KelvinVoigt(shear_modulus=layer.shear_modulus, viscosity=2.0 * damping)
     return Scene(
         layer=layer, indenter=FlatPunch(radius=1.0), loading=Impact(mass=8.0, velocity=1e-3), effects=(effect,)
@@ -191,7 +192,8 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
     LadderPlan(
         name="nearly incompressible",
         parameter="1/2 - nu",
-        values=(*_decades(-1, -12), 1e-17),  # the last is nu = 1/2 exactly
+        # The last is nu = 1/2 exactly.
+        values=(*_decades(-1, -12), 1e-17),
         scene=nearly_incompressible,
     ),
     _ratios("bonded", 0.3),
