@@ -11,7 +11,7 @@ import numpy as np
 
 from cases.declare.quantities import single_numbers
 from cases.declare.uncertain_inputs import place_of
-from cases.results.files import csv_text
+from cases.results.csv_table import csv_text
 from contact import UNITS, ContactError, InvalidInput, Method, Scene, Solution
 from contact.files.units import unit_of
 from contact.files.values import vector

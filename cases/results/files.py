@@ -4,10 +4,7 @@
 it.
 """
 
-import csv
-import io
 import os
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -114,15 +111,6 @@ def _replace(path: Path, data: bytes) -> None:
         unfinished.replace(path)
     finally:
         unfinished.unlink(missing_ok=True)
-
-
-def csv_text(heads: Iterable[str], rows: Iterable[Iterable[object]]) -> str:
-    """Return a table as CSV; floats keep all digits that tell them apart, None is an empty cell."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(heads)
-    writer.writerows(rows)
-    return buffer.getvalue()
 
 
 def arrays(run: RunResult) -> dict[str, Any]:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from matplotlib.figure import Figure as Drawing
 
-from cases.results.files import csv_text, write_whole
+from cases.results.csv_table import csv_text
+from cases.results.files import write_whole
 from reports.figures.style import figure_style, png_bytes, svg_text
 
 Cell = str | float | int | bool | None

@@ -6,7 +6,7 @@ import numpy as np
 
 from cases.measurements.sweep import Sweep
 from cases.measurements.uncertain_fit import UncertainFit
-from cases.results.files import csv_text
+from cases.results.csv_table import csv_text
 from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.fit import UNIT_OF_PARAMETER

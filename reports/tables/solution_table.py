@@ -5,7 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from cases.declare.quantities import single_numbers
-from cases.results.files import csv_text
+from cases.results.csv_table import csv_text
 from contact import (
     UNITS,
     ContactPath,
