@@ -449,6 +449,6 @@ def _plain(message: str) -> str:
     """The message without characters that a terminal obeys."""
     if message.isprintable():
         return message
-    from contact.records.plain_text import printable  # noqa: PLC0415
+    from contact.records.errors import printable  # noqa: PLC0415
 
     return printable(message, keep="\n")

@@ -32,19 +32,19 @@ class Shared:
 
     Attributes:
         name: as reports and records call it.
-        kind: code counts against independence; the question and the records are common to every comparison.
         place: module of the sources.
-        methods: names in the method table.
         guard: what notices a mistake that the sharing methods make together.
+        kind: code counts against independence; the question and the records are common to every comparison.
+        methods: names in the method table.
         quantities: the compared quantities it enters; empty for all.
         cases: the cases it enters; empty for all.
     """
 
     name: str
-    kind: Sharing
     place: str
-    methods: tuple[str, ...]
     guard: str
+    kind: Sharing = Sharing.CODE
+    methods: tuple[str, ...] = EVERY
     quantities: tuple[str, ...] = ()
     cases: tuple[str, ...] = ()
 
@@ -59,14 +59,12 @@ NOT_SAID = "not said by its package"
 SHARED: tuple[Shared, ...] = (
     Shared(
         name=LAYER_KERNEL,
-        kind=Sharing.CODE,
         place="bem.kernels.layer",
         methods=ON_THE_KERNEL,
         guard="agreement with finite elements; values of the kernel in extended precision",
     ),
     Shared(
         name="kernel of stacks",
-        kind=Sharing.CODE,
         place="bem.kernels.stack",
         methods=ON_STACKS,
         guard="agreement with finite elements; pressures put back on the body by a second kernel",
@@ -74,7 +72,6 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="kernel of graded layers",
-        kind=Sharing.CODE,
         place="bem.kernels.graded",
         methods=ON_STACKS,
         guard="agreement with finite elements; pressures put back on the body by a second kernel",
@@ -82,7 +79,6 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="moduli over depth",
-        kind=Sharing.CODE,
         place="contact.scene.depth_functions",
         methods=ON_STACKS,
         guard="agreement with finite elements, which write them down themselves",
@@ -90,7 +86,6 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="fields inside from the contact's density",
-        kind=Sharing.CODE,
         place="bem.layer_equation.inside",
         methods=EQUATIONS,
         guard="agreement with finite elements; laws of elastic bodies",
@@ -98,21 +93,18 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="contact modulus",
-        kind=Sharing.CODE,
         place="bem.kernels.moduli",
         methods=ON_THE_KERNEL,
         guard="agreement with finite elements; closed forms of the half-space",
     ),
     Shared(
         name="springs and profile of MDR",
-        kind=Sharing.CODE,
         place="mdr.springs",
         methods=FAST,
         guard="agreement with finite elements and with the integral equation",
     ),
     Shared(
         name="slopes of the half-space transform",
-        kind=Sharing.CODE,
         place="bem.layer_equation.profiles.half_space_slope",
         methods=EQUATIONS,
         guard="agreement with finite elements",
@@ -120,28 +112,24 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="Gauss rules and Chebyshev panels",
-        kind=Sharing.CODE,
         place="bem.polynomials",
         methods=(*EQUATIONS, "mdr_table"),
         guard="agreement with finite elements; closed forms of the half-space",
     ),
     Shared(
         name="boundary elements on a grid",
-        kind=Sharing.CODE,
         place="bem.grid",
         methods=GRIDS,
         guard="agreement with MDR on the integral equation",
     ),
     Shared(
         name="heights of profiles",
-        kind=Sharing.CODE,
         place="contact.scene.profiles",
         methods=GRIDS,
         guard="agreement with MDR and with finite elements, which write profiles down themselves",
     ),
     Shared(
         name="interpolation of tabulated profiles",
-        kind=Sharing.CODE,
         place="contact.scene.profiles",
         methods=ON_THE_KERNEL,
         guard="agreement with finite elements, which interpolate themselves",
@@ -149,7 +137,6 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="relaxation functions",
-        kind=Sharing.CODE,
         place="contact.scene.effects",
         methods=FAST,
         guard="agreement with finite elements, which write them down themselves",
@@ -157,26 +144,20 @@ SHARED: tuple[Shared, ...] = (
     ),
     Shared(
         name="restitution and duration of an impact",
-        kind=Sharing.CODE,
         place="contact.answer.solution",
-        methods=EVERY,
         guard="closed forms of the flat punch's impact",
         quantities=("coefficient_of_restitution", "contact_time"),
     ),
     Shared(
         name="von Mises stress",
-        kind=Sharing.CODE,
         place="contact.answer.inside",
-        methods=EVERY,
         guard="its largest value under a paraboloid on the half-space",
         quantities=("von_mises_inside",),
         cases=("inside_half_space", "inside_layer"),
     ),
     Shared(
         name="reduction of two coated bodies, Eqs. (23)-(25)",
-        kind=Sharing.CODE,
         place="contact.scene.coated_pair",
-        methods=EVERY,
         guard="mirror symmetry: half the approach on one body",
         cases=("coated_pair",),
     ),
@@ -184,21 +165,18 @@ SHARED: tuple[Shared, ...] = (
         name="numbers of the scene",
         kind=Sharing.QUESTION,
         place="contact.scene",
-        methods=EVERY,
         guard="closed forms and tabulated values, which start from constants of the case",
     ),
     Shared(
         name="record of an answer",
         kind=Sharing.RECORD,
         place="cases.run.recording",
-        methods=EVERY,
         guard="closed forms and tabulated values",
     ),
     Shared(
         name="rings on which pressures are compared",
         kind=Sharing.RECORD,
         place="cases.judgement.rules.norms",
-        methods=EVERY,
         guard="the sampled pressure carries the force",
         quantities=("pressure",),
     ),
@@ -206,7 +184,6 @@ SHARED: tuple[Shared, ...] = (
         name="laws and points of fields inside",
         kind=Sharing.RECORD,
         place="cases.run.inside",
-        methods=EVERY,
         guard="closed forms of Huber and Sneddon; each law fails for a wrong field",
         cases=("inside_half_space", "inside_layer"),
     ),

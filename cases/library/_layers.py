@@ -117,6 +117,11 @@ def prescribed_radii(scene: Scene) -> FloatArray:
     return scene.loading.values
 
 
+def thinness(scene: Scene) -> float:
+    """h/a at the first prescribed radius."""
+    return scene.layer.thickness / float(prescribed_radii(scene)[0])
+
+
 def edges(contact_radius: float, fractions: Iterable[float]) -> tuple[float, ...]:
     """Return ring edges [m] at fractions of the contact radius."""
     return tuple(float(x) for x in contact_radius * np.asarray(tuple(fractions)))

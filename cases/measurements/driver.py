@@ -49,7 +49,8 @@ def measured(
         return [_unanswered(of, Status.INVALID, error, start)]
     except CoarseReference as error:
         return [_unanswered(of, Status.INCONCLUSIVE, error, start)]
-    except Exception as error:  # a crash is no named refusal: studies look for it
+    except Exception as error:
+        # A crash is no named refusal: studies look for it.
         return [_unanswered(of, Status.FAIL, error, start)]
     cost = answer.cost
     whole = replace(of, seconds=seconds, unknowns=cost.unknowns, counters=dict(cost.counters))
@@ -104,7 +105,8 @@ def _judged(row: Measurement, whole: Measurement) -> Measurement:
 def first_solution(solve: Callable[[], A]) -> tuple[A, float]:
     """Answer and processor time [s] without anything cached from earlier scenes."""
     forget()
-    with threadpool_limits(limits=1):  # processor time of several threads would count their waiting
+    # Processor time of several threads would count their waiting.
+    with threadpool_limits(limits=1):
         return _timed(solve)
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -13,6 +11,7 @@ import numpy as np
 
 from cases.declare.quantities import single_numbers
 from cases.declare.uncertain_inputs import place_of
+from cases.results.csv_table import csv_text
 from contact import UNITS, ContactError, InvalidInput, Method, Scene, Solution
 from contact.files.units import unit_of
 from contact.files.values import vector
@@ -63,11 +62,8 @@ class Sweep:
 
     def to_csv(self) -> str:
         """The table as text, SI."""
-        columns, buffer = self.columns, io.StringIO()
-        writer = csv.writer(buffer, lineterminator="\n")
-        writer.writerow(columns)
-        writer.writerows(zip(*(values.tolist() for values in columns.values()), strict=True))
-        return buffer.getvalue()
+        rows = zip(*(values.tolist() for values in self.columns.values()), strict=True)
+        return csv_text(self.columns, rows)
 
     def to_frame(self) -> pandas.DataFrame:
         """The table as a data frame.

@@ -18,7 +18,7 @@ from cases.run.recording import cost_record, curves, quantities, stage_records
 from cases.run.time_limit import TimeLimitReached, time_limited
 from cases.run.timing import timed_warm
 from contact import NotConvergedError, Solution, UnsupportedSceneError
-from contact.records.plain_text import printable
+from contact.records.errors import printable
 
 
 def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:

@@ -12,8 +12,7 @@ import numpy as np
 
 from contact.files.units import in_si, unit_of
 from contact.files.values import vector
-from contact.records.errors import InvalidInput
-from contact.records.plain_text import printable
+from contact.records.errors import InvalidInput, printable
 from contact.records.record import Record, shown
 from contact.scene.depth_functions import DEPTH_FUNCTIONS, TabulatedDepth
 from contact.scene.elastic_layer import ElasticLayer

@@ -117,21 +117,16 @@ def _shorthands() -> list[dict[str, Any]]:
     length = {"anyOf": [{"type": "number"}, {"type": "string"}]}
     file, unit = {"type": "string", "description": "CSV: radii, heights"}, {"type": "string"}
     return [
-        _table({"kind": {"const": "cone"}, "half_angle": angle}, ["kind", "half_angle"]),
-        _table(
-            {"kind": {"const": "truncated_cone"}, "half_angle": angle, "flat_radius": length},
-            ["kind", "half_angle", "flat_radius"],
-        ),
-        _table(
-            {"kind": {"const": "spheroconical"}, "half_angle": angle, "radius": length},
-            ["kind", "half_angle", "radius"],
-        ),
-        _table({"kind": {"const": "pyramid"}, "half_angle": angle}, ["kind", "half_angle"]),
-        _table(
-            {"kind": {"const": "tabulated"}, "file": file, "unit": unit, "noise": length},
-            ["kind", "file"],
-        ),
+        _shorthand("cone", {"half_angle": angle}),
+        _shorthand("truncated_cone", {"half_angle": angle, "flat_radius": length}),
+        _shorthand("spheroconical", {"half_angle": angle, "radius": length}),
+        _shorthand("pyramid", {"half_angle": angle}),
+        _shorthand("tabulated", {"file": file}, unit=unit, noise=length),
     ]
+
+
+def _shorthand(kind: str, required: dict[str, Any], **optional: Any) -> dict[str, Any]:
+    return _table({"kind": {"const": kind}} | required | optional, ["kind", *required])
 
 
 def _with_units(field: dict[str, Any]) -> dict[str, Any]:

@@ -14,8 +14,7 @@ import numpy as np
 
 from contact.files.scene_text import MAX_BYTES
 from contact.files.units import factor_of, in_si
-from contact.records.errors import InvalidInput
-from contact.records.plain_text import printable
+from contact.records.errors import InvalidInput, printable
 from contact.records.record import shown
 from contact.records.validation import MAX_ENTRIES, FloatArray
 

@@ -10,8 +10,7 @@ import numpy as np
 import pydantic
 import pydantic.dataclasses
 
-from contact.records.errors import InvalidInput
-from contact.records.plain_text import printable
+from contact.records.errors import InvalidInput, printable
 
 # Validators are built when the first record of a class is made: scenes use few of the classes.
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)

@@ -51,16 +51,24 @@ class DepthFunction(Record):
 
 
 @record
-class ExponentialDepth(DepthFunction):
+class _BetweenFaces(DepthFunction):
+    """Base of those that are known by their values at both faces, whatever the thickness."""
+
+    surface: Annotated[float, *positive(NO_ZERO)]
+    base: Annotated[float, *positive("give the value at the base of the layer")]
+
+    def scaled(self, length: float, value: float) -> Self:
+        return self.replace(surface=self.surface / value, base=self.base / value)
+
+
+@record
+class ExponentialDepth(_BetweenFaces):
     """surface (base/surface)^(z/h).
 
     Attributes:
         surface: Value at z = 0.
         base: Value at z = h.
     """
-
-    surface: Annotated[float, *positive(NO_ZERO)]
-    base: Annotated[float, *positive("give the value at the base of the layer")]
 
     def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
         return np.asarray(self.surface * np.exp(np.asarray(depth) * (self._rate / thickness)))
@@ -72,12 +80,9 @@ class ExponentialDepth(DepthFunction):
     def _rate(self) -> float:
         return math.log(self.base / self.surface)
 
-    def scaled(self, length: float, value: float) -> Self:
-        return self.replace(surface=self.surface / value, base=self.base / value)
-
 
 @record
-class LinearDepth(DepthFunction):
+class LinearDepth(_BetweenFaces):
     """surface + (base - surface) z/h.
 
     Attributes:
@@ -85,17 +90,11 @@ class LinearDepth(DepthFunction):
         base: Value at z = h.
     """
 
-    surface: Annotated[float, *positive(NO_ZERO)]
-    base: Annotated[float, *positive("give the value at the base of the layer")]
-
     def at(self, depth: ArrayLike, thickness: float) -> FloatArray:
         return np.asarray(self.surface + (self.base - self.surface) * (np.asarray(depth) / thickness))
 
     def slope(self, depth: ArrayLike, thickness: float) -> FloatArray:
         return np.full(np.shape(depth), (self.base - self.surface) / thickness)
-
-    def scaled(self, length: float, value: float) -> Self:
-        return self.replace(surface=self.surface / value, base=self.base / value)
 
 
 @record

@@ -64,18 +64,8 @@ def _draw_differences(claims: Sequence[Claim]) -> Drawing:
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log", xlabel="error stated by both", ylabel="relative difference")
     for pair in dict.fromkeys(claim.methods for claim in claims):
-        look = look_of(pair[-1])
-        ours = [claim for claim in claims if claim.methods == pair]
-        axes.plot(
-            [max(_stated(c), SMALLEST) for c in ours],
-            [max(_seen(c), SMALLEST) for c in ours],
-            color=look.colour,
-            marker=look.marker,
-            markersize=3.5,
-            markerfacecolor="none",
-            linestyle="none",
-            label=" – ".join(map(display_name, pair)),
-        )
+        ours = [(max(_stated(c), SMALLEST), max(_seen(c), SMALLEST)) for c in claims if c.methods == pair]
+        _draw_symbols(axes, ours, pair)
     ends = [SMALLEST / 3.0, 3.0 * max(max(_stated(c), _seen(c), SMALLEST) for c in claims)]
     axes.fill_between(ends, ends, [ends[0]] * 2, color=TINT, zorder=0.5)
     axes.plot(ends, ends, color=GREY, linewidth=1.0)
@@ -119,20 +109,18 @@ def _draw_costs(points: Sequence[WorkPoint]) -> Drawing:
     axes = drawing.subplots()
     axes.set(xscale="log", yscale="log", xlabel="seconds", ylabel="bound of the relative error")
     for method in dict.fromkeys(point.method for point in points):
-        look = look_of(method)
-        ours = [point for point in points if point.method == method]
-        axes.plot(
-            [p.seconds for p in ours],
-            [p.bound or SMALLEST for p in ours],
-            color=look.colour,
-            marker=look.marker,
-            markersize=3.5,
-            markerfacecolor="none",
-            linestyle="none",
-            label=display_name(method),
-        )
+        _draw_symbols(axes, [(p.seconds, p.bound or SMALLEST) for p in points if p.method == method], (method,))
     _finish(drawing, axes)
     return drawing
+
+
+def _draw_symbols(axes: Axes, places: Iterable[tuple[float, float]], methods: Sequence[str]) -> None:
+    """Empty symbols of one method, or of the last of two that are compared."""
+    look, (x, y) = look_of(methods[-1]), zip(*places, strict=True)
+    axes.plot(
+        x, y, color=look.colour, marker=look.marker, markersize=3.5, markerfacecolor="none", linestyle="none",
+        label=" – ".join(map(display_name, methods)),
+    )  # fmt: skip
 
 
 def _finish(drawing: Drawing, axes: Axes) -> None:

@@ -1,13 +1,12 @@
 """A figure of the report with what belongs to it: picture, data and caption, and the files it is written to."""
 
-import csv
-import io
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 from matplotlib.figure import Figure as Drawing
 
+from cases.results.csv_table import csv_text
 from cases.results.files import write_whole
 from reports.figures.style import figure_style, png_bytes, svg_text
 
@@ -36,11 +35,7 @@ class ReportFigure:
 
     def csv_text(self) -> str:
         """The data as CSV; floats keep all digits that tell them apart, a missing number is an empty cell."""
-        buffer = io.StringIO()
-        writer = csv.writer(buffer, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows(self.rows)
-        return buffer.getvalue()
+        return csv_text(self.columns, self.rows)
 
 
 def write_figure(figure: ReportFigure, directory: Path) -> str:

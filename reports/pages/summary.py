@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from cases.results.records.run import RunResult
-from contact.records.plain_text import printable
+from contact.records.errors import printable
 from reports.pages.matrix import Cell, run_matrix
 from reports.words.moves import baseline_sentence
 from reports.words.numbers import duration

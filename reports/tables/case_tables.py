@@ -9,7 +9,7 @@ from cases.results.records.scene_run import Quantity, SceneRun
 from contact import UNITS
 from reports.tables.table import Table, tabulated
 from reports.words.method_names import display_name
-from reports.words.numbers import duration, measured, memory, scaled_unit, small
+from reports.words.numbers import duration, last_value, memory, small
 
 # Beyond so many decades of time for one digit, factors are not worth telling apart.
 MOST_DECADES = 3
@@ -56,13 +56,10 @@ def _final(run: SceneRun) -> tuple[Quantity, ...]:
 def _last_value(quantity: Quantity) -> str:
     if not quantity.values:
         return ""
-    value = quantity.values[-1]
-    factor, unit = scaled_unit(value, quantity.unit)
     if not quantity.uncertainty and quantity.name not in UNITS:
         # A residual vanishes but for rounding: it has no uncertainty of its own.
-        return small(value)
-    uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else float("inf")
-    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
+        return small(quantity.values[-1])
+    return last_value(quantity)
 
 
 def cheapest(work: WorkPrecision) -> Table:

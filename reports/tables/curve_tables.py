@@ -1,13 +1,12 @@
 """Fits of force curves and sweeps as tables and CSV files."""
 
-import csv
-import io
 from collections.abc import Sequence
 
 import numpy as np
 
 from cases.measurements.sweep import Sweep
 from cases.measurements.uncertain_fit import UncertainFit
+from cases.results.csv_table import csv_text
 from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, MapFit
 from mdr.curves.fit import UNIT_OF_PARAMETER
@@ -80,12 +79,8 @@ def map_csv(found: MapFit) -> str:
 
 
 def _csv(heads: Sequence[str], columns: Sequence[FloatArray]) -> str:
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    writer.writerow(heads)
     rows = zip(*(column.tolist() for column in columns), strict=True)
-    writer.writerows([value if np.isfinite(value) else "" for value in row] for row in rows)
-    return buffer.getvalue()
+    return csv_text(heads, ([value if np.isfinite(value) else "" for value in row] for row in rows))
 
 
 def map_facts(found: MapFit) -> list[tuple[str, str]]:

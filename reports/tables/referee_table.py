@@ -10,7 +10,7 @@ from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from reports.tables.table import Table
 from reports.words.method_names import display_name
-from reports.words.numbers import duration, measured, memory, scaled_unit, small
+from reports.words.numbers import duration, last_value, memory, small
 
 NOTE = (
     "Errors and bars are relative. The error is that of the check against a closed form or the integral equation; the "
@@ -51,7 +51,7 @@ def _row(claim: Claim, run: SceneRun) -> tuple[str, ...]:
     return (
         who,
         claim.status.value,
-        _answer(run, claim.quantity),
+        last_value(run.quantity(claim.quantity)),
         "" if claim.observed is None else small(abs(claim.observed)),
         "none" if bar is None else small(bar),
         "" if bar is None else "estimated" if estimated else "own",
@@ -59,13 +59,6 @@ def _row(claim: Claim, run: SceneRun) -> tuple[str, ...]:
         duration(cost.cpu_seconds),
         memory(cost.peak_memory_bytes),
     )
-
-
-def _answer(run: SceneRun, name: str) -> str:
-    quantity = run.quantity(name)
-    factor, unit = scaled_unit(quantity.values[-1], quantity.unit)
-    uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else float("inf")
-    return f"{measured(quantity.values[-1] / factor, uncertainty / factor)} {unit}".strip()
 
 
 def _skipped(case: CaseResult) -> Iterator[tuple[str, ...]]:

@@ -1,12 +1,11 @@
 """An answer as people and spreadsheets read it: a table with error bars, and a CSV file with every digit."""
 
-import csv
-import io
 from collections.abc import Iterable
 
 import numpy as np
 
 from cases.declare.quantities import single_numbers
+from cases.results.csv_table import csv_text
 from contact import (
     UNITS,
     ContactPath,
@@ -135,13 +134,10 @@ def _critical_value(solution: Solution, name: str) -> str:
 
 def solution_csv(solution: Solution) -> str:
     """Every state in SI units with its absolute uncertainty; an uncertainty the method does not state stays empty."""
-    buffer = io.StringIO()
-    writer = csv.writer(buffer, lineterminator="\n")
-    heads = [(name, UNITS[name].replace("/", "_per_")) for name in solution.ARRAYS]
-    writer.writerow([head for name, unit in heads for head in (f"{name}_{unit}", f"{name}_uncertainty_{unit}")])
+    units = [(name, UNITS[name].replace("/", "_per_")) for name in solution.ARRAYS]
+    heads = [head for name, unit in units for head in (f"{name}_{unit}", f"{name}_uncertainty_{unit}")]
     columns = [part for name in solution.ARRAYS for part in _csv_columns(solution, name)]
-    writer.writerows(zip(*columns, strict=True))
-    return buffer.getvalue()
+    return csv_text(heads, zip(*columns, strict=True))
 
 
 def _csv_columns(solution: Solution, name: str) -> tuple[list[float], list[float | str]]:

@@ -9,7 +9,7 @@ from rich.console import Console
 from rich.table import Table as RichTable
 from rich.text import Text
 
-from contact.records.plain_text import printable
+from contact.records.errors import printable
 from reports.tables.table import Table
 
 WIDTH_WITHOUT_TERMINAL = 160

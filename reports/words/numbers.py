@@ -6,6 +6,8 @@ The notation is that of CODATA: `1.480210(21)` means 1.480210 with an uncertaint
 import math
 from collections.abc import Iterable
 
+from cases.results.records.scene_run import Quantity
+
 # What stands where a number should be and is none; the letters of a floating point NaN never reach a page.
 NOT_FINITE = "not finite"
 
@@ -90,6 +92,14 @@ def scaled_unit(value: float, unit: str) -> tuple[float, str]:
         return 1.0, ""
     factor, prefix = prefix_for([value])
     return factor, f"{prefix}{unit}"
+
+
+def last_value(quantity: Quantity) -> str:
+    """What a quantity ends with, its uncertainty and a fitting unit: 12.345(67) mN."""
+    value = quantity.values[-1]
+    factor, unit = scaled_unit(value, quantity.unit)
+    uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else math.inf
+    return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
 
 
 def prefix_for(values: Iterable[float]) -> tuple[float, str]:

@@ -242,8 +242,3 @@ def observed_text(claim: Claim) -> str:
 
 def _unit(unit: str) -> str:
     return "" if unit == "1" else f" {unit}"
-
-
-def value_text(value: float, uncertainty: float | None) -> str:
-    """A value as the tables show it; three digits where a method states no uncertainty."""
-    return measured(value, float("inf") if uncertainty is None else uncertainty)

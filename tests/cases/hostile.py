@@ -38,7 +38,7 @@ from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, StageR
 from contact.files import scene_text
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
 from contact.files.storage import load_solution, read_tree, save_solution, write_tree
-from contact.records.plain_text import printable
+from contact.records.errors import printable
 
 End: TypeAlias = Literal["refused", "accepted", "altered", "crashed"]
 Kind: TypeAlias = Literal["mapping", "toml", "hdf5", "json", "writing", "file", "method"]

@@ -12,7 +12,7 @@ import pytest
 from contact import InvalidInput, Layer, NotConvergedError, load_scene, scene_from_mapping
 from contact.files import scene_text as reader
 from contact.files.scene_text import MAX_KEY_PARTS
-from contact.records.plain_text import printable
+from contact.records.errors import printable
 from tests.contact.test_scene_file import GOOD, SCENE
 
 ESCAPES = ("\x1b[31m", "\x07", "\x9b2J", "\u202e", "\r", "\x7f", "\u2028")

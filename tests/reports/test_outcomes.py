@@ -9,7 +9,7 @@ import pytest
 
 from cases.results.records.run import RunResult
 from cases.results.status import Status
-from contact.records.plain_text import printable
+from contact.records.errors import printable
 from reports.pages.annotations import MOST, annotation_lines
 from reports.pages.junit import junit_text
 from reports.pages.report import write_report

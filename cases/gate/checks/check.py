@@ -48,20 +48,9 @@ class BaselineCheck:
         )
 
 
-def regression_claim(name: str, judgement: Judgement, *, unit: str = "1", **words: Any) -> Claim:
+def regression_claim(name: str, judgement: Judgement, **words: Any) -> Claim:
     """Return a comparison with own earlier output as a claim; `words` are the other fields of `Claim`."""
-    return Claim(
-        name=name,
-        kind=Kind.REGRESSION,
-        unit=unit,
-        status=judgement.status,
-        verdict=judgement.verdict,
-        observed=judgement.observed,
-        fraction=judgement.fraction,
-        origin=Origin.OWN_EARLIER_OUTPUT,
-        message=judgement.message,
-        **words,
-    )
+    return judgement.claim(name, kind=Kind.REGRESSION, origin=Origin.OWN_EARLIER_OUTPUT, **words)
 
 
 def extra(what: str, scene: str) -> Judgement:

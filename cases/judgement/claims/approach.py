@@ -31,9 +31,11 @@ class Approach(PerMethod):
 
     kind: ClassVar[Kind] = Kind.ORDER
 
+    # The band of an observed order around the formal one.
+    tolerance: float = 0.2
     parameter: Callable[[Scene], float]
     limit: Callable[[Scene], float]
-    formal_order: float
+    formal_order: float = 1.0
     largest: float
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:

@@ -136,19 +136,15 @@ class DeclaredClaim(ABC):
     ) -> Claim:
         """Return the record of a judgement."""
         status, message = self._declared(judgement)
-        return Claim(
-            name=self.name,
+        return judgement.claim(
+            self.name,
             kind=self.kind,
             scene=scene,
             methods=methods,
             quantity=self.quantity,
-            unit="1",
             status=status,
-            verdict=judgement.verdict,
-            observed=judgement.observed,
             expected=expected,
             tolerance=tolerance or self.tolerance,
-            fraction=judgement.fraction,
             uncertainty=dict(uncertainty or {}),
             origin=self._origin(shared),
             source=self.reason.source,

@@ -3,8 +3,9 @@
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
-from cases.results.records.claim import Verdict
+from cases.results.records.claim import Claim, Verdict
 from cases.results.status import Status, worst
 from contact import InvalidInput
 
@@ -26,6 +27,12 @@ class Judgement:
     observed: float | None
     fraction: float | None
     message: str
+
+    def claim(self, name: str, **words: Any) -> Claim:
+        """Return the record of a claim that ended so; `words` are its other fields."""
+        ends = {"status": self.status, "verdict": self.verdict, "message": self.message}
+        found = {"unit": "1", "observed": self.observed, "fraction": self.fraction}
+        return Claim(name=name, **(ends | found | words))
 
 
 def passed_or_failed(error: float, tolerance: float, message: str, failure: Status = Status.FAIL) -> Judgement:

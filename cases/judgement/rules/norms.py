@@ -57,7 +57,8 @@ def ring_quadrature(edges: Sequence[float], nodes: int = 8) -> RingQuadrature:
     theta, dtheta = np.pi / 2 * (1 + x), np.pi / 2 * w
     centre, half = (radii[1:] + radii[:-1]) / 2, np.diff(radii) / 2
     radius = centre[:, None] - half[:, None] * np.cos(theta)
-    weight = 2 * np.pi * radius * half[:, None] * np.sin(theta) * dtheta  # dA = 2 pi r dr
+    # Areas are dA = 2 pi r dr.
+    weight = 2 * np.pi * radius * half[:, None] * np.sin(theta) * dtheta
     return RingQuadrature(edges=radii, radius=radius, weight=weight)
 
 

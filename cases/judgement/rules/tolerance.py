@@ -28,13 +28,6 @@ def permitted_difference(baseline: float, *, scale: float, rtol: float, atol: fl
     return max(positive_tolerance(rtol) * max(abs(baseline), scale), atol)
 
 
-def is_equal(value: float, baseline: float, *, scale: float, rtol: float, atol: float = 0.0) -> bool:
-    """Whether both are finite and differ by no more than permitted: NaN is never equal to itself."""
-    if not (math.isfinite(value) and math.isfinite(baseline)):
-        return False
-    return abs(value - baseline) <= permitted_difference(baseline, scale=scale, rtol=rtol, atol=atol)
-
-
 def positive_tolerance(tolerance: float) -> float:
     """Return the tolerance itself.
 

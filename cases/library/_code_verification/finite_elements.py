@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from itertools import pairwise
-from typing import Final
+from typing import Any, Final
 
 from cases.judgement.convergence.study import Refinements, study_of
 from cases.judgement.rules.judgement import Judgement, decided, passed_or_failed
@@ -210,38 +210,9 @@ def locking_claims(errors: dict[str, tuple[tuple[float, float], ...]]) -> Iterat
         )
 
 
-def _claim(
-    name: str,
-    judged: Judgement,
-    *,
-    kind: Kind,
-    scene: str,
-    quantity: str,
-    expected: float | None,
-    tolerance: float,
-    source: str,
-    because: str,
-    derived_from: str,
-) -> Claim:
-    return Claim(
-        name=name,
-        kind=kind,
-        scene=scene,
-        methods=("fem",),
-        quantity=quantity,
-        unit="1",
-        status=judged.status,
-        verdict=judged.verdict,
-        observed=judged.observed,
-        expected=expected,
-        tolerance=tolerance,
-        fraction=judged.fraction,
-        origin=Origin.CLOSED_FORM,
-        source=source,
-        because=because,
-        derived_from=derived_from,
-        message=judged.message,
-    )
+def _claim(name: str, judged: Judgement, **words: Any) -> Claim:
+    """The claim that ended so, about finite elements and against mathematics; `words` are its other fields."""
+    return judged.claim(name, methods=("fem",), origin=Origin.CLOSED_FORM, **words)
 
 
 def stability_figure(

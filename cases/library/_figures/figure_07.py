@@ -7,7 +7,7 @@ import numpy as np
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, mdr_line, name_of
 from cases.library.elastic._truncated_cone_limits import pressure_limits, profile_limits
 from cases.results.records.figure import Figure, Panel
-from contact import ContactRadii, Layer, Scene, TruncatedCone
+from contact import ContactPath, ContactRadii, Layer, Profile, Scene, TruncatedCone
 from contact.records.validation import FloatArray
 from mdr import equivalent_system
 from mdr.elastic import solve_elastic
@@ -36,6 +36,11 @@ def depth_over_height(one: Layer, ratio: float) -> float:
     return float(_profile(one, ratio)[0][-1])
 
 
+def pressed(one: Layer, indenter: Profile, radius: float) -> ContactPath:
+    """The contact of a given radius by MDR."""
+    return solve_elastic(Scene(layer=one, indenter=indenter, loading=ContactRadii([radius])), SOURCE, {})
+
+
 def _cone(ratio: float) -> TruncatedCone:
     return TruncatedCone(flat_radius=FLAT * ratio, slope=SLOPE)
 
@@ -62,8 +67,7 @@ def _profiles(one: Layer) -> Panel:
 def _pressures(one: Layer) -> Panel:
     radius, lines = _R[np.abs(_R - FLAT) > _CLEAR], []
     for ratio in RATIOS:
-        scene = Scene(layer=one, indenter=_cone(ratio), loading=ContactRadii(values=np.array([ratio])))
-        path = solve_elastic(scene, SOURCE, {})
+        path = pressed(one, _cone(ratio), ratio)
         mean = float(path.normal_force[0]) / (np.pi * ratio**2)
         error = float(path.error_estimate["pressure"][0])
         lines.append(mdr_line(f"a/h={ratio:g}", radius, path.pressure(ratio * radius) / mean, error))

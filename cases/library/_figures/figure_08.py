@@ -8,13 +8,14 @@ from bem.layer_equation.protocol import FlatPunchSource
 from cases.library._figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch
 from cases.library._figures.figure_03 import thin_layer_stiffness
 from cases.results.records.figure import Figure, Panel, Series
-from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
+from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scene
 from contact.records.validation import FloatArray
 from mdr.adhesion.solver import solve_detachment
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.365), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 241)
-# With this work of adhesion the depth of detachment is -dl_bar in units of the layer.
+# With this work of adhesion the depth of detachment is -dl_bar in units of the layer, and the half-space's critical
+# depth and force are -1 and -2 for a punch of radius one.
 _WORK = 1.0 / (2.0 * np.pi)
 # Reversals of stability are searched up to this a/h.
 _SEARCHED = 20.0
@@ -25,15 +26,22 @@ def elongation(one: Layer, ratio: FloatArray) -> FloatArray:
     return np.sqrt(ratio / punch(one).normalized_spring_stiffness(ratio))
 
 
-def reversals(one: Layer, source: FlatPunchSource = SOURCE) -> list[tuple[str, float, float]]:
-    """Maxima and minima of dl_bar: ("pull-off" or "snap-in", a/h, dl_bar), from a punch of twenty thicknesses."""
+def detached(
+    one: Layer, radius: float, control: str = "displacement", source: FlatPunchSource = SOURCE
+) -> DetachmentPath:
+    """Detachment of a punch from a layer."""
     scene = Scene(
         layer=one,
-        indenter=FlatPunch(radius=_SEARCHED),
-        loading=Detachment(),
+        indenter=FlatPunch(radius=radius),
+        loading=Detachment(control="force" if control == "force" else "displacement"),
         effects=(Adhesion(work_of_adhesion=_WORK),),
     )
-    path = solve_detachment(scene, source, {})
+    return solve_detachment(scene, source, {})
+
+
+def reversals(one: Layer, source: FlatPunchSource = SOURCE) -> list[tuple[str, float, float]]:
+    """Maxima and minima of dl_bar: ("pull-off" or "snap-in", a/h, dl_bar), from a punch of twenty thicknesses."""
+    path = detached(one, _SEARCHED, source=source)
     folds = [c for c in path.critical_points if c.control == "displacement" and c.kind != "start"]
     return [(fold.kind, fold.contact_radius, -fold.indentation_depth) for fold in folds]
 

@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from cases.library._figures._parts import SOURCE, layer, mdr_line
+from cases.library._figures._parts import layer, mdr_line
 from cases.library._figures.figure_04 import second_maximum
-from cases.library._figures.figure_08 import reversals
+from cases.library._figures.figure_08 import detached, reversals
 from cases.results.records.figure import Figure, Panel, Series
-from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
-from mdr.adhesion.solver import solve_detachment
+from contact import Layer
 
 RATIOS = (0.1, 0.3, 0.46, 1.0, 2.0, 4.0)  # a*/h
 # The radius a* of the punch; it stays the same on thinner and thinner layers.
 _RADIUS = 1.0
-# With this work of adhesion the half-space's critical depth is -1 and its force -2.
-_WORK = 1.0 / (2.0 * np.pi)
 
 
 def figure() -> Figure:
@@ -41,13 +38,7 @@ def figure() -> Figure:
 def _curves(ratio: float) -> list[Series]:
     base = layer(0.5)
     thinner = Layer(thickness=_RADIUS / ratio, youngs_modulus=base.youngs_modulus, poissons_ratio=0.5)
-    scene = Scene(
-        layer=thinner,
-        indenter=FlatPunch(radius=_RADIUS),
-        loading=Detachment(),
-        effects=(Adhesion(work_of_adhesion=_WORK),),
-    )
-    path = solve_detachment(scene, SOURCE, {})
+    path = detached(thinner, _RADIUS)
     depth, force = path.indentation_depth, path.normal_force / 2.0
     start = int(np.flatnonzero(path.contact_radius == path.contact_radius[0])[-1])
     error = float(path.error_estimate["normal_force"].max())

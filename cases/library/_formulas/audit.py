@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from cases.library._formulas.table import Formula
+from cases.library._formulas.table import PublishedFormula
 from contact import Cone, ContactRadii, Layer, Paraboloid, Profile, Scene
 from contact.records.validation import FloatArray
 from mdr import Mdr
@@ -52,13 +52,13 @@ def reference(shape: str, support: str, nu: float) -> Reference:
     return Reference(variable=variable, factor=path.normal_force / force, weight=force)
 
 
-def force_errors(formula: Formula, nu: float) -> FloatArray:
+def force_errors(formula: PublishedFormula, nu: float) -> FloatArray:
     """Relative error of the formula's force at the depth that belongs to each of `RATIOS`; NaN beyond its table."""
     right = reference(formula.shape, formula.support, nu)
     return np.asarray(formula.factor(right.variable, nu) / right.factor - 1.0)
 
 
-def modulus_errors(formula: Formula, nu: float) -> FloatArray:
+def modulus_errors(formula: PublishedFormula, nu: float) -> FloatArray:
     """Relative error of the modulus fitted to the exact force curve up to each of `RATIOS` by least squares.
 
     The points of the curve lie equally far apart in depth.  A punch has one stiffness, and its error is that of 1/F.
@@ -78,7 +78,7 @@ def _integral(depth: FloatArray, values: FloatArray) -> FloatArray:
     return np.cumsum(middle * steps)
 
 
-def holds_to(formula: Formula, nu: float, tolerance: float) -> float:
+def holds_to(formula: PublishedFormula, nu: float, tolerance: float) -> float:
     """The a/h up to which the error of the force stays within the tolerance; of thin limits, beyond which it does.
 
     Zero where it never does, infinite where it does beyond all of `RATIOS`; a limit of thin layers the other way round.

@@ -7,7 +7,7 @@ import numpy as np
 
 from cases.library._formulas import audit, cone, paraboloid, punch
 from cases.library._formulas.audit import RATIOS, SHOWN, reference
-from cases.library._formulas.table import FORMULAS, Formula
+from cases.library._formulas.table import FORMULAS, PublishedFormula
 from contact.records.validation import FloatArray
 
 PLACE = Path(__file__).parents[3] / "docs" / "formulas.md"
@@ -70,14 +70,14 @@ def _holding() -> str:
     return _table(heads, (_held(formula, nu) for formula in FORMULAS for nu in formula.poissons_ratios))
 
 
-def _held(formula: Formula, nu: float) -> Iterator[str]:
+def _held(formula: PublishedFormula, nu: float) -> Iterator[str]:
     told = (formula.source, formula.claim) if nu == formula.poissons_ratios[0] else ("", "")
     yield from (formula.name, f"{formula.support}, nu = {nu:g}", *told)
     for share in SHARES:
         yield _range(formula, nu, audit.holds_to(formula, nu, share))
 
 
-def _range(formula: Formula, nu: float, limit: float) -> str:
+def _range(formula: PublishedFormula, nu: float, limit: float) -> str:
     if formula.thin:
         return f"from {_place(formula, nu, limit)}" if np.isfinite(limit) else "nowhere"
     if limit == 0.0:
@@ -85,7 +85,7 @@ def _range(formula: Formula, nu: float, limit: float) -> str:
     return f"to {_place(formula, nu, limit)}" if np.isfinite(limit) else "everywhere"
 
 
-def _place(formula: Formula, nu: float, limit: float) -> str:
+def _place(formula: PublishedFormula, nu: float, limit: float) -> str:
     """a/h, and for a paraboloid delta R/h^2 in brackets."""
     if formula.shape != "paraboloid":
         return f"{limit:.2g}"
@@ -93,7 +93,7 @@ def _place(formula: Formula, nu: float, limit: float) -> str:
     return f"{limit:.2g} ({x**2:.2g})"
 
 
-def _errors(errors: Callable[[Formula, float], FloatArray]) -> str:
+def _errors(errors: Callable[[PublishedFormula, float], FloatArray]) -> str:
     heads = ("formula", "nu", *(f"a/h = {ratio:g}" for ratio in SHOWN))
     judged = ((formula, nu) for formula in FORMULAS for nu in formula.poissons_ratios)
     return _table(heads, ((one.name, f"{nu:g}", *map(_per_cent, errors(one, nu)[AT])) for one, nu in judged))

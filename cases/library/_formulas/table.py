@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal, TypeAlias
 
 from cases.library._formulas import cone, paraboloid, punch
@@ -13,28 +14,33 @@ COMPRESSIBLE = (0.0, 0.3, 0.45, 0.49)
 
 
 @dataclass(frozen=True, kw_only=True)
-class Formula:
+class PublishedFormula:
     """One formula.
 
     Attributes:
         name: with the year.
         shape: of the indenter.
-        support: of the layer.
         factor: of the force on the half-space, over the variable of the shape and nu.
-        poissons_ratios: at which it is judged: those that it claims.
         source: where it stands.
         claim: the range that it is given for.
+        support: of the layer.
+        poissons_ratios: at which it is judged: those that it claims.
         thin: whether it is a limit of thin layers, right beyond an a/h, not up to one.
     """
 
     name: str
     shape: Literal["paraboloid", "cone", "flat punch"]
-    support: Literal["bonded", "unbonded"]
     factor: Factor
-    poissons_ratios: tuple[float, ...]
     source: str
     claim: str
+    support: Literal["bonded", "unbonded"] = "bonded"
+    poissons_ratios: tuple[float, ...] = (0.5,)
     thin: bool = False
+
+
+_paraboloid = partial(PublishedFormula, shape="paraboloid")
+_cone = partial(PublishedFormula, shape="cone")
+_punch = partial(PublishedFormula, shape="flat punch")
 
 
 DIMITRIADIS = "Dimitriadis et al., Biophys. J. 82 (2002) 2798"
@@ -44,118 +50,91 @@ HAYES = "Hayes et al., J. Biomech. 5 (1972) 541; table of an R package that cite
 THICK = "layers that are thick beside the contact"
 
 PARABOLOIDS = (
-    Formula(
+    _paraboloid(
         name="Hertz 1882",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.hertz,
         poissons_ratios=ANY_NU,
         source="Hertz, J. reine angew. Math. 92 (1882) 156",
         claim="half-space",
     ),
-    Formula(
+    _paraboloid(
         name="Dimitriadis 2002, bonded",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.dimitriadis_bonded,
-        poissons_ratios=(0.5,),
         source=f"{DIMITRIADIS}; numbers of two Python programs, of which one cites Eq. (12)",
         claim="sqrt(R delta)/h up to 1",
     ),
-    Formula(
+    _paraboloid(
         name="Dimitriadis 2002, bonded, any nu",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.dimitriadis_bonded_any_nu,
         poissons_ratios=ANY_NU,
         source=f"{DIMITRIADIS}; constants as AtomicJ has them",
         claim="sqrt(R delta)/h up to 1",
     ),
-    Formula(
+    _paraboloid(
         name="Dimitriadis 2002, not bonded",
-        shape="paraboloid",
         support="unbonded",
         factor=paraboloid.dimitriadis_not_bonded,
-        poissons_ratios=(0.5,),
         source=f"{DIMITRIADIS}; numbers of a Python program that cites Eq. (11)",
         claim="sqrt(R delta)/h up to 1",
     ),
-    Formula(
+    _paraboloid(
         name="Dimitriadis 2002, not bonded, any nu",
-        shape="paraboloid",
         support="unbonded",
         factor=paraboloid.dimitriadis_not_bonded_any_nu,
         poissons_ratios=ANY_NU,
         source=f"{DIMITRIADIS}; constants as AtomicJ has them",
         claim="sqrt(R delta)/h up to 1",
     ),
-    Formula(
+    _paraboloid(
         name="Hayes 1972, quadratics",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.hayes_quadratics,
         poissons_ratios=(0.3, 0.45, 0.49, 0.5),
         source="Hayes et al., J. Biomech. 5 (1972) 541; quadratics of two Python programs that cite its data",
         claim="a/h up to 2, nu = 0.3 to 0.5 as tabulated",
     ),
-    Formula(
+    _paraboloid(
         name="Garcia 2018, paraboloid",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.garcia,
-        poissons_ratios=(0.5,),
         source=f"{GARCIA} two Python programs",
         claim=THICK,
     ),
-    Formula(
+    _paraboloid(
         name="Long 2011",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.long,
-        poissons_ratios=(0.5,),
         source="Long, Hall, Wu, Hui, Biophys. J. 101 (2011) 643; constants and range of a public script",
         claim="R/h from 2 to 12.7, also large strains",
     ),
-    Formula(
+    _paraboloid(
         name="Hermanowicz 2021, paraboloid, bonded",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.hermanowicz_bonded,
-        poissons_ratios=(0.5,),
         source=HERMANOWICZ,
         claim="all thicknesses",
     ),
-    Formula(
+    _paraboloid(
         name="Hermanowicz 2021, paraboloid, loose",
-        shape="paraboloid",
         support="unbonded",
         factor=paraboloid.hermanowicz_loose,
         poissons_ratios=(0.3, 0.5),
         source=HERMANOWICZ,
         claim="all thicknesses",
     ),
-    Formula(
+    _paraboloid(
         name="Clifford 2009, rigid base",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.clifford,
         poissons_ratios=COMPRESSIBLE,
         source="Clifford, Seah, Nanotechnology 20 (2009) 145708; constants of nanite, limit of a rigid base",
         claim="films on substrates of about 100 GPa; not made for rigid bases",
     ),
-    Formula(
+    _paraboloid(
         name="thin layer, bed of springs (Johnson 1985)",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.johnson_thin,
         poissons_ratios=COMPRESSIBLE,
         source="Johnson, Contact Mechanics (1985), section 5.8",
         claim="thin compressible layers",
         thin=True,
     ),
-    Formula(
+    _paraboloid(
         name="thin loose layer",
-        shape="paraboloid",
         support="unbonded",
         factor=paraboloid.loose_thin,
         poissons_ratios=(0.3, 0.5),
@@ -163,57 +142,42 @@ PARABOLOIDS = (
         claim="thin layers",
         thin=True,
     ),
-    Formula(
+    _paraboloid(
         name="thin incompressible layer (Chadwick 2002)",
-        shape="paraboloid",
-        support="bonded",
         factor=paraboloid.chadwick_thin,
-        poissons_ratios=(0.5,),
         source="Chadwick, SIAM J. Appl. Math. 62 (2002) 1520",
         claim="thin layers",
         thin=True,
     ),
 )
 CONES = (
-    Formula(
+    _cone(
         name="Sneddon 1965, cone",
-        shape="cone",
-        support="bonded",
         factor=cone.sneddon,
         poissons_ratios=ANY_NU,
         source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
         claim="half-space",
     ),
-    Formula(
+    _cone(
         name="Gavara and Chadwick 2012, as programmed",
-        shape="cone",
-        support="bonded",
         factor=cone.gavara_as_programmed,
-        poissons_ratios=(0.5,),
         source="Gavara, Chadwick, Nature Nanotech. 7 (2012) 733; form of AtomicJ and of two Python programs",
         claim=THICK,
     ),
-    Formula(
+    _cone(
         name="Managuli 2018",
-        shape="cone",
-        support="bonded",
         factor=cone.managuli,
-        poissons_ratios=(0.5,),
         source="Managuli, Roy, Exp. Tech. 42 (2018), Eq. (1), as a Python program has it",
         claim=THICK,
     ),
-    Formula(
+    _cone(
         name="Garcia 2018, cone",
-        shape="cone",
-        support="bonded",
         factor=cone.garcia,
-        poissons_ratios=(0.5,),
         source=f"{GARCIA} two Python programs",
         claim=THICK,
     ),
-    Formula(
+    _cone(
         name="Hermanowicz 2021, cone, loose",
-        shape="cone",
         support="unbonded",
         factor=cone.hermanowicz_loose,
         poissons_ratios=(0.3, 0.5),
@@ -222,94 +186,70 @@ CONES = (
     ),
 )
 PUNCHES = (
-    Formula(
+    _punch(
         name="Boussinesq 1885, punch",
-        shape="flat punch",
-        support="bonded",
         factor=punch.boussinesq,
         poissons_ratios=ANY_NU,
         source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
         claim="half-space",
     ),
-    Formula(
+    _punch(
         name="Hayes 1972, spline of the table",
-        shape="flat punch",
-        support="bonded",
         factor=punch.hayes,
-        poissons_ratios=(0.5,),
         source=HAYES,
         claim="a/h up to 8",
     ),
-    Formula(
+    _punch(
         name="Hayes, column in circulation as nu = 0.5",
-        shape="flat punch",
-        support="bonded",
         factor=punch.hayes_mislabelled,
         poissons_ratios=(0.48, 0.5),
         source="public scripts that cite Hayes et al. (1972), by an earlier reading; not found again",
         claim="a/h up to 2, nu = 0.5",
     ),
-    Formula(
+    _punch(
         name="Garcia 2018, punch",
-        shape="flat punch",
-        support="bonded",
         factor=punch.garcia,
-        poissons_ratios=(0.5,),
         source=f"{GARCIA} a Python program",
         claim=THICK,
     ),
-    Formula(
+    _punch(
         name="Lin, Hui, Conway 2000; Shull 2002",
-        shape="flat punch",
-        support="bonded",
         factor=punch.lin_hui_conway,
-        poissons_ratios=(0.5,),
         source="from memory of Webber et al., Phys. Rev. E 68 (2003) 021805; its abstract: fit to finite elements",
         claim="moderate confinement",
     ),
-    Formula(
+    _punch(
         name="Hermanowicz 2021, punch, bonded",
-        shape="flat punch",
-        support="bonded",
         factor=punch.hermanowicz_bonded,
-        poissons_ratios=(0.5,),
         source=HERMANOWICZ,
         claim="all thicknesses",
     ),
-    Formula(
+    _punch(
         name="Hermanowicz 2021, punch, nu = 0",
-        shape="flat punch",
-        support="bonded",
         factor=punch.hermanowicz_compressible,
         poissons_ratios=(0.0,),
         source=HERMANOWICZ,
         claim="all thicknesses",
     ),
-    Formula(
+    _punch(
         name="Hermanowicz 2021, punch, loose",
-        shape="flat punch",
         support="unbonded",
         factor=punch.hermanowicz_loose,
         poissons_ratios=(0.3, 0.5),
         source=HERMANOWICZ,
         claim="all thicknesses",
     ),
-    Formula(
+    _punch(
         name="thin layer, bed of springs (Barber 1990)",
-        shape="flat punch",
-        support="bonded",
         factor=punch.thin_compressible,
         poissons_ratios=COMPRESSIBLE,
         source="Barber, Wear 138 (1990) 77; Forsbach (2023), Eq. (16)",
         claim="thin compressible layers",
         thin=True,
     ),
-    Formula(
+    _punch(
         name="thin incompressible layer, punch",
-        shape="flat punch",
-        support="bonded",
         factor=punch.thin_incompressible,
-        poissons_ratios=(0.5,),
         source="squeezed film with the fluid's velocity read as displacement; Hermanowicz's cubic term",
         claim="thin layers",
         thin=True,

@@ -5,14 +5,11 @@ from functools import cache, partial
 
 import numpy as np
 
-from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of
-from cases.library._figures.figure_08 import elongation, reversals
+from cases.library._figures._parts import UNBONDED, layer, name_of
+from cases.library._figures.figure_08 import detached, elongation, reversals
 from cases.library._paper.statement import Measured, Statement, above, below, reads
-from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scene
-from mdr.adhesion.solver import solve_detachment
+from contact import DetachmentPath, Layer
 
-# With this work of adhesion the half-space's critical depth is -1 and its force -2 for a punch of radius one.
-WORK = 1.0 / (2.0 * np.pi)
 HALF_UNIT = 0.005
 RATIOS = (0.3, 1.0, 2.0, 4.0)
 
@@ -20,14 +17,7 @@ RATIOS = (0.3, 1.0, 2.0, 4.0)
 @cache
 def pulled(ratio: float, control: str) -> DetachmentPath:
     """Detachment of a punch of radius one from a bonded incompressible layer of thickness 1/ratio."""
-    one = layer(0.5)
-    scene = Scene(
-        layer=Layer(thickness=1 / ratio, youngs_modulus=one.youngs_modulus, poissons_ratio=0.5),
-        indenter=FlatPunch(radius=1.0),
-        loading=Detachment(control="force" if control == "force" else "displacement"),
-        effects=(Adhesion(work_of_adhesion=WORK),),
-    )
-    return solve_detachment(scene, SOURCE, {})
+    return detached(layer(0.5).replace(thickness=1 / ratio), 1.0, control)
 
 
 def first_reversal(one: Layer) -> Measured:

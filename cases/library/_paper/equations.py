@@ -1,14 +1,14 @@
 """Equations that other sections leave out, (13), (20), (23), (25), (39), (53), (54), and a bound of section 3.2."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
-from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 from numpy.polynomial.legendre import leggauss
 
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of, punch
+from cases.library._figures.figure_07 import pressed
 from cases.library._paper.profiles import cone
 from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within
 from cases.library.elastic.coated_pair import pair
@@ -53,15 +53,14 @@ def displacement_by_punches(one: Layer, place: float) -> Measured:
 
 
 def _beside_punch(one: Layer, radius: float, place: float) -> float:
-    loading = IndentationDepths(values=np.array([1e-3]))
+    loading = IndentationDepths([1e-3])
     path = solve_elastic(Scene(layer=one, indenter=FlatPunch(radius=radius), loading=loading), SOURCE, {})
     return float(path.surface_displacement([place], 0)[0]) / 1e-3
 
 
 def thin_depth(profile: Profile) -> Measured:
     """Eq. (20)'s profile, the mean height over the contact, over the depth at a/h = 100, nu = 1/2."""
-    scene = Scene(layer=layer(0.5), indenter=profile, loading=ContactRadii(values=np.array([100.0])))
-    path = solve_elastic(scene, SOURCE, {})
+    path = pressed(layer(0.5), profile, 100.0)
     limit = float(thin_profile(layer(0.5), profile, np.array([100.0]))[0])
     error = float(path.error_estimate["indentation_depth"][0])
     return deviation(limit, float(path.indentation_depth[0]), error)
@@ -84,7 +83,7 @@ def mean_thickness(poissons_ratio: float, ratio: float) -> Measured:
         youngs_modulus=1e6,
         poissons_ratio=poissons_ratio,
         support="bonded",
-        loading=ContactRadii(values=np.array([ratio * 1e-3])),
+        loading=ContactRadii([ratio * 1e-3]),
     )
     return Measured(float(mean_thickness_error(bodies, ratio * 1e-3).normal_force[0]), 1e-9, in_percent=True)
 
@@ -92,9 +91,7 @@ def mean_thickness(poissons_ratio: float, ratio: float) -> Measured:
 def thin_pressure(ratio: float) -> Measured:
     """Eq. (39) in the middle over the solved pressure, nu = 1/2, b/a = 0.5."""
     one = layer(0.5)
-    path = solve_elastic(
-        Scene(layer=one, indenter=cone(ratio), loading=ContactRadii(values=np.array([ratio]))), SOURCE, {}
-    )
+    path = pressed(one, cone(ratio), ratio)
     solved = float(path.pressure(np.array([0.0]))[0])
     error = float(path.error_estimate["pressure"][0])
     return deviation(float(thin_cone_pressure(one, cone(ratio), ratio, np.array([0.0]))[0]), solved, error)
@@ -131,143 +128,110 @@ def largest_difference() -> tuple[float, float]:
     return float(ratios[worst]), float(off[worst])
 
 
-Row: TypeAlias = tuple[str, str, str, str, Callable[[], Measured], Callable[[float], bool], str]
-
-
 def statements() -> Iterator[Statement]:
     """The statements of these equations."""
-    for rows in (_superposition, _thin_profiles, _pairs, _thin_pressures, _impacts, _likeness):
-        yield from (Statement(*row) for row in rows())
+    for section in (_superposition, _thin_profiles, _pairs, _thin_pressures, _impacts, _likeness):
+        yield from section()
 
 
-def _superposition() -> list[Row]:
+def _superposition() -> Iterator[Statement]:
     """Eq. (13): displacements outside."""
-    return [
-        *(
-            (
+    for one in (UNBONDED, layer(0.5)):
+        for place in (1.2, 2.0):
+            yield Statement(
                 "Eq. (13)",
                 f"{name_of(one)}, r = {place:g} a: displacements outside follow from flat punches",
                 "equal",
                 "superposition over the solved displacement, a = h",
                 partial(displacement_by_punches, one, place),
                 within(1e-6),
-                "MDR, integral equation",
             )
-            for one in (UNBONDED, layer(0.5))
-            for place in (1.2, 2.0)
-        ),
-    ]
 
 
-def _thin_profiles() -> list[Row]:
+def _thin_profiles() -> Iterator[Statement]:
     """Eq. (20): thin layers by the closed form."""
-    return [
-        *(
-            (
-                "Eq. (20)",
-                f"{name}: the closed-form MDR of bonded incompressible thin layers",
-                "(2/x^2) int f r dr",
-                "its depth over the depth at a/h = 100",
-                partial(thin_depth, profile),
-                within(GOOD),
-                "MDR, integral equation",
-            )
-            for name, profile in PROFILES.items()
-        ),
-    ]
+    for name, profile in PROFILES.items():
+        yield Statement(
+            "Eq. (20)",
+            f"{name}: the closed-form MDR of bonded incompressible thin layers",
+            "(2/x^2) int f r dr",
+            "its depth over the depth at a/h = 100",
+            partial(thin_depth, profile),
+            within(GOOD),
+        )
 
 
-def _pairs() -> list[Row]:
+def _pairs() -> Iterator[Statement]:
     """Eqs. (23) and (25): two bodies, two coatings."""
-    return [
-        (
-            "Eq. (23)",
-            "bodies of radii R and 2 R: curvatures add",
-            "3/4 of the force of two with R",
-            "force over this",
-            unequal_radii,
-            within(1e-9),
-            "MDR, integral equation",
-        ),
-        *(
-            (
-                "Eq. (25)",
-                f"nu = {nu:g}, a/h = {ratio:g}: coatings of 0.9 h and 1.1 h are well replaced by h",
-                "good",
-                "force over that of the two as they are",
-                partial(mean_thickness, nu, ratio),
-                within(GOOD),
-                "MDR, integral equation",
-            )
-            for nu, ratio in ((0.3, 0.5), (0.3, 5.0), (0.5, 0.5), (0.5, 5.0))
-        ),
-    ]
+    yield Statement(
+        "Eq. (23)",
+        "bodies of radii R and 2 R: curvatures add",
+        "3/4 of the force of two with R",
+        "force over this",
+        unequal_radii,
+        within(1e-9),
+    )
+    for nu, ratio in ((0.3, 0.5), (0.3, 5.0), (0.5, 0.5), (0.5, 5.0)):
+        yield Statement(
+            "Eq. (25)",
+            f"nu = {nu:g}, a/h = {ratio:g}: coatings of 0.9 h and 1.1 h are well replaced by h",
+            "good",
+            "force over that of the two as they are",
+            partial(mean_thickness, nu, ratio),
+            within(GOOD),
+        )
 
 
-def _thin_pressures() -> list[Row]:
+def _thin_pressures() -> Iterator[Statement]:
     """Eq. (39): pressures on thin layers."""
-    return [
-        *(
-            (
-                "Eq. (39)",
-                f"the asymptotic pressure of a truncated cone, a/h = {ratio:g}",
-                "Eq. (39)",
-                "in the middle, over the solved pressure",
-                partial(thin_pressure, ratio),
-                within(GOOD),
-                "MDR, integral equation",
-            )
-            for ratio in (20.0, 100.0)
-        ),
-    ]
+    for ratio in (20.0, 100.0):
+        yield Statement(
+            "Eq. (39)",
+            f"the asymptotic pressure of a truncated cone, a/h = {ratio:g}",
+            "Eq. (39)",
+            "in the middle, over the solved pressure",
+            partial(thin_pressure, ratio),
+            within(GOOD),
+        )
 
 
-def _impacts() -> list[Row]:
+def _impacts() -> Iterator[Statement]:
     """Eqs. (53) and (54): numbers of impacts."""
-    return [
-        (
-            "Eq. (53)",
-            "chi_HS of the data of Fig. 12",
-            "2.65",
-            "chi_HS",
-            impact_number,
-            reads(2.65, 0.005),
-            FORMULA,
-        ),
-        *(
-            (
-                "Eq. (54)",
-                f"{support}: chi_TL and G_inf/G_1 define impacts on thin layers",
-                "defining",
-                "restitution on twice the thickness at one chi_TL over the original",
-                partial(same_thin_impact, support),
-                within(SAME),
-                "MDR, integral equation",
-            )
-            for support in ("unbonded", "bonded")
-        ),
-    ]
-
-
-def _likeness() -> list[Row]:
-    """Section 3.2: unbonded layers and bonded ones with nu = 0."""
-    return [
-        (
-            "Section 3.2",
-            "unbonded and bonded with nu = 0 give almost the same, wherever they differ most",
-            "almost the same",
-            "largest difference of the stiffness",
-            lambda: Measured(largest_difference()[1], 1e-8, in_percent=True),
+    yield Statement(
+        "Eq. (53)",
+        "chi_HS of the data of Fig. 12",
+        "2.65",
+        "chi_HS",
+        impact_number,
+        reads(2.65, 0.005),
+        FORMULA,
+    )
+    for support in ("unbonded", "bonded"):
+        yield Statement(
+            "Eq. (54)",
+            f"{support}: chi_TL and G_inf/G_1 define impacts on thin layers",
+            "defining",
+            "restitution on twice the thickness at one chi_TL over the original",
+            partial(same_thin_impact, support),
             within(SAME),
-            "MDR, integral equation",
-        ),
-        (
-            "Section 3.2",
-            "unbonded and bonded with nu = 0: the difference is largest here",
-            "not said",
-            "a/h",
-            lambda: Measured(largest_difference()[0], 5e-3),
-            lambda value: value > 0.0,
-            "MDR, integral equation",
-        ),
-    ]
+        )
+
+
+def _likeness() -> Iterator[Statement]:
+    """Section 3.2: unbonded layers and bonded ones with nu = 0."""
+    yield Statement(
+        "Section 3.2",
+        "unbonded and bonded with nu = 0 give almost the same, wherever they differ most",
+        "almost the same",
+        "largest difference of the stiffness",
+        lambda: Measured(largest_difference()[1], 1e-8, in_percent=True),
+        within(SAME),
+    )
+    yield Statement(
+        "Section 3.2",
+        "unbonded and bonded with nu = 0: the difference is largest here",
+        "not said",
+        "a/h",
+        lambda: Measured(largest_difference()[0], 5e-3),
+        lambda value: value > 0.0,
+    )

@@ -6,10 +6,10 @@ from functools import partial
 import numpy as np
 
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of
-from cases.library._figures.figure_07 import depth_over_height
+from cases.library._figures.figure_07 import depth_over_height, pressed
 from cases.library._paper.statement import GOOD, Measured, Statement, deviation, within
 from cases.library.elastic.coated_pair import RATIOS, one_body_on_its_plane, symmetric
-from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
+from contact import Layer, Paraboloid, TruncatedCone
 from mdr.closed_forms.truncated_cone import thin_cone_force
 from mdr.elastic import solve_elastic
 
@@ -23,7 +23,7 @@ def cone(ratio: float) -> TruncatedCone:
 
 def depth_over_half_space(one: Layer, ratio: float) -> Measured:
     """Depth of the truncated cone over that of the half-space at the same contact radius."""
-    path = solve_elastic(_scene(one, cone(ratio), ratio), SOURCE, {})
+    path = pressed(one, cone(ratio), ratio)
     sneddon = ratio * 0.01 * np.arccos(FLAT)
     return deviation(
         float(path.indentation_depth[0]), float(sneddon), float(path.error_estimate["indentation_depth"][0])
@@ -32,14 +32,14 @@ def depth_over_half_space(one: Layer, ratio: float) -> Measured:
 
 def thin_force(one: Layer, ratio: float) -> Measured:
     """Eq. (36) or (38) over the force."""
-    path = solve_elastic(_scene(one, cone(ratio), ratio), SOURCE, {})
+    path = pressed(one, cone(ratio), ratio)
     limit = float(thin_cone_force(one, cone(ratio), ratio))
     return deviation(limit, float(path.normal_force[0]), float(path.error_estimate["normal_force"][0]))
 
 
 def thin_depth(one: Layer, ratio: float, share: float) -> Measured:
     """Table 1: depth a^2/(share R) of a paraboloid over the exact one."""
-    path = solve_elastic(_scene(one, Paraboloid(radius_of_curvature=1e3), ratio), SOURCE, {})
+    path = pressed(one, Paraboloid(radius_of_curvature=1e3), ratio)
     error = float(path.error_estimate["indentation_depth"][0])
     return deviation(ratio**2 / (share * 1e3), float(path.indentation_depth[0]), error)
 
@@ -54,10 +54,6 @@ def pair_over_body(ratio: float) -> Measured:
     scene = symmetric("bonded", ratio).scene
     both, alone = (solve_elastic(one, SOURCE, {}) for one in (scene, one_body_on_its_plane(scene)))
     return deviation(float(both.normal_force[0]), float(alone.normal_force[0]), 1e-10)
-
-
-def _scene(one: Layer, indenter: Profile, ratio: float) -> Scene:
-    return Scene(layer=one, indenter=indenter, loading=ContactRadii(values=np.array([ratio])))
 
 
 def statements() -> Iterator[Statement]:

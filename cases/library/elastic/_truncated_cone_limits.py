@@ -43,5 +43,6 @@ def _half_space_pressure(cone: TruncatedCone, a: float, r: FloatArray) -> FloatA
     x = start + s**2
     integrand = (np.arccos(b / x) + b / np.sqrt(x**2 - b**2)) / np.sqrt(x**2 - r[:, None] ** 2) * 2 * s
     pressure = cone.slope / np.pi * np.sum(integrand * WEIGHTS * end / 2, axis=1)  # over E*
-    mean = cone.slope / np.pi * (np.arccos(ratio) + ratio * np.sqrt(1 - ratio**2))  # F/(pi a^2) over E*
+    # F/(pi a^2) over E*.
+    mean = cone.slope / np.pi * (np.arccos(ratio) + ratio * np.sqrt(1 - ratio**2))
     return np.asarray(pressure / mean)

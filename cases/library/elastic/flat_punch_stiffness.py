@@ -70,9 +70,7 @@ PRESSURE = {ratio: numbers("pressure")[scene_name("bonded nu=0.5", ratio)] for r
 def punch(label: str, ratio: float) -> CaseScene:
     """Return a flat punch of radius ``ratio`` h at a given depth."""
     a = ratio * THICKNESS
-    scene = Scene(
-        layer=LAYERS[label], indenter=FlatPunch(radius=a), loading=IndentationDepths(values=np.array([DEPTH]))
-    )
+    scene = Scene(layer=LAYERS[label], indenter=FlatPunch(radius=a), loading=IndentationDepths([DEPTH]))
     return CaseScene(
         name=scene_name(label, ratio),
         parameters={"layer": label, "a_over_h": ratio},

@@ -10,8 +10,6 @@ come back.
 import math
 from collections.abc import Callable
 
-import numpy as np
-
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Sampling
 from cases.library._claims import (
@@ -101,11 +99,9 @@ def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScen
     )
 
 
-BY_RADIUS = tuple(
-    scene(label, ratio, ContactRadii(values=np.array([ratio * THICKNESS]))) for label in LAYERS for ratio in RATIOS
-)
-BY_DEPTH = tuple(scene(*place, IndentationDepths(values=np.array([depth(*place)])), " by depth") for place in PLACES)
-BY_FORCE = tuple(scene(*place, NormalForces(values=np.array([force(*place)])), " by force") for place in PLACES)
+BY_RADIUS = tuple(scene(label, ratio, ContactRadii([ratio * THICKNESS])) for label in LAYERS for ratio in RATIOS)
+BY_DEPTH = tuple(scene(*place, IndentationDepths([depth(*place)]), " by depth") for place in PLACES)
+BY_FORCE = tuple(scene(*place, NormalForces([force(*place)]), " by force") for place in PLACES)
 
 
 RESOLVED = tuple(s for s in BY_RADIUS if float(s.parameters["a_over_h"]) <= 2)

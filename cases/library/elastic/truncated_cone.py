@@ -74,7 +74,7 @@ def cone_scene(label: str, ratio: float) -> CaseScene:
     return CaseScene(
         name=scene_name(label, ratio),
         parameters={"layer": label, "a_over_h": ratio, "b_over_a": FLAT_FRACTION},
-        scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii(values=np.array([a]))),
+        scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii([a])),
         sampling=Sampling(ring_edges=edges(a, RINGS)),
         nightly=() if ratio in QUICK_RATIOS.get(label, ()) else ("fem", "mdr_table"),
     )
@@ -87,7 +87,7 @@ def half_space_scene(flat: float) -> CaseScene:
     return CaseScene(
         name=f"half-space b/a={flat:g}",
         parameters={"layer": "half-space", "a_over_h": 0.0, "b_over_a": flat},
-        scene=Scene(layer=half_space(), indenter=cone, loading=ContactRadii(values=np.array([a]))),
+        scene=Scene(layer=half_space(), indenter=cone, loading=ContactRadii([a])),
         nightly=() if flat in QUICK_FLATS else ("fem",),
     )
 

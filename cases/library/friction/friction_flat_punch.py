@@ -102,9 +102,7 @@ LIMITS = tuple(
         scenes=tuple(scene_name(label, ratio) for ratio in THIN_RATIOS),
         parameter=thinness,
         limit=thin_stiffness,
-        formal_order=1.0,
         largest=2e-2,
-        tolerance=0.2,
         reason=WHY["thin limit"],
     )
     for label in THIN_LABELS

@@ -182,7 +182,6 @@ FIRST_ORDER = Approach(
     limit=to_first_order,
     formal_order=2.0,
     largest=SMALL[-1] ** 2,
-    tolerance=0.2,
     reason=WHY["first order"],
 )
 TWO_GRIDS = tuple(

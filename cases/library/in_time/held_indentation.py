@@ -28,7 +28,8 @@ WHY = reasons("held_indentation")
 
 DEPTH = 5e-5  # m
 FORCE = 2.0  # N
-RAMP = 1e-3  # s, as long as the solid takes to relax
+# Pressing [s] takes as long as the solid takes to relax.
+RAMP = 1e-3
 END = 2 * RAMP
 THICKNESS = 1e-3  # m
 INSTANTANEOUS = LONG_TERM_MODULUS + MAXWELL_MODULUS

@@ -32,14 +32,16 @@ from contact.records.validation import FloatArray
 WHY = reasons("sphere_impact")
 
 MAXWELL_MODULUS = 7.5e6  # Pa, G_1
-LONG_TERM_MODULUS = MAXWELL_MODULUS / 9  # G_inf/G_1 = 0.111..
+# The paper has G_inf/G_1 = 0.111..
+LONG_TERM_MODULUS = MAXWELL_MODULUS / 9
 RELAXATION_TIME = 1e-3  # s
 MASS = 0.02  # kg
 RADIUS_OF_CURVATURE = 1e-2  # m
 # Velocity [m/s]; only R v0 matters.
 VELOCITY = 1.27479e-3 / RADIUS_OF_CURVATURE
 THICKNESSES = (1e-3, 2e-3, 3e-3)  # m
-IMPACT_NUMBER = 2.65  # chi_HS of these data, Eq. (53)
+# chi_HS of these data, Eq. (53).
+IMPACT_NUMBER = 2.65
 
 FEM = MethodUse(label="fem")
 

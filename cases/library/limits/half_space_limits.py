@@ -45,7 +45,8 @@ from contact import (
 WHY = reasons("half_space_limits")
 
 RADIUS = 1e-3  # m
-POISSONS_RATIO = 0.3  # of the half-space
+# Of the half-space.
+POISSONS_RATIO = 0.3
 SLOPE = 0.1
 RADIUS_OF_CURVATURE = 1e-2  # m
 DEPTH = 1e-5  # m
@@ -66,7 +67,7 @@ def on_thick_layer(label: str, ratio: float) -> CaseScene:
     scene = Scene(
         layer=layer(label),
         indenter=FlatPunch(radius=ratio * THICKNESS),
-        loading=IndentationDepths(values=np.array([DEPTH])),
+        loading=IndentationDepths([DEPTH]),
     )
     return CaseScene(
         name=scene_name(label, ratio),
@@ -76,13 +77,13 @@ def on_thick_layer(label: str, ratio: float) -> CaseScene:
     )
 
 
-AT_RADIUS = ContactRadii(values=np.array([RADIUS]))
+AT_RADIUS = ContactRadii([RADIUS])
 CURVED = (
     on_half_space("cone", Cone(slope=SLOPE), AT_RADIUS),
     on_half_space("paraboloid", Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), AT_RADIUS),
     on_half_space("quartic", PowerLaw(exponent=4.0, reference_radius=RADIUS, reference_height=1e-6), AT_RADIUS),
 )
-PUNCH = on_half_space("flat punch", FlatPunch(radius=RADIUS), IndentationDepths(values=np.array([DEPTH])))
+PUNCH = on_half_space("flat punch", FlatPunch(radius=RADIUS), IndentationDepths([DEPTH]))
 THICK = tuple(on_thick_layer(label, ratio) for label in LAYERS for ratio in THICK_RATIOS)
 
 
@@ -157,7 +158,6 @@ CLAIMS = (
             limit=thick_limit(label),
             formal_order=2.0,
             largest=1e-3,
-            tolerance=0.2,
             reason=WHY["first order term"],
         )
         for label in LAYERS

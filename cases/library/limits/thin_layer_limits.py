@@ -15,7 +15,15 @@ from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
 from cases.library._claims import agreements
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, NODES, fem_cells, studies
-from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, layer, prescribed_radii, scene_name
+from cases.library._layers import (
+    THICKNESS,
+    confined_modulus,
+    contact_modulus,
+    layer,
+    prescribed_radii,
+    scene_name,
+    thinness,
+)
 from cases.library._methods import BEM, EQUATION, FEM, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._requirements import COARSEST, required
@@ -51,7 +59,7 @@ def cone(label: str, ratio: float) -> CaseScene:
 
 
 def _scene(name: str, label: str, ratio: float, indenter: Profile) -> CaseScene:
-    scene = Scene(layer=layer(label), indenter=indenter, loading=ContactRadii(values=np.array([ratio * THICKNESS])))
+    scene = Scene(layer=layer(label), indenter=indenter, loading=ContactRadii([ratio * THICKNESS]))
     far, slow = ratio > CHECKED_RATIO, label != QUICK_LABEL
     under_cone = isinstance(indenter, TruncatedCone)
     # What takes long: finite elements on their way to other limits, and what no limit is claimed of.
@@ -108,11 +116,6 @@ def _radius(scene: Scene) -> float:
     return float(prescribed_radii(scene)[0])
 
 
-def thinness(scene: Scene) -> float:
-    """h/a."""
-    return scene.layer.thickness / _radius(scene)
-
-
 def approach(
     what: str, quantity: str, scenes: Callable[[str, float], CaseScene], limit: Callable[[Scene], float]
 ) -> tuple[Approach, ...]:
@@ -124,9 +127,7 @@ def approach(
             scenes=tuple(scenes(label, ratio).name for ratio in RATIOS),
             parameter=thinness,
             limit=limit,
-            formal_order=1.0,
             largest=0.1,
-            tolerance=0.2,
             methods=("mdr", "fem"),
             reason=WHY["table 1"],
         )

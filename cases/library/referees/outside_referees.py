@@ -87,9 +87,7 @@ def at_depth(label: str, indenter: str) -> CaseScene:
     return CaseScene(
         name=f"{indenter}, {label}",
         parameters={"indenter": indenter, "layer": label},
-        scene=Scene(
-            layer=LAYERS[label], indenter=INDENTERS[indenter], loading=IndentationDepths(values=np.array([depth]))
-        ),
+        scene=Scene(layer=LAYERS[label], indenter=INDENTERS[indenter], loading=IndentationDepths([depth])),
     )
 
 

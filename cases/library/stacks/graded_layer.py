@@ -123,7 +123,6 @@ CASE = Case(
             limit=stiffness,
             formal_order=2.0,
             largest=2e-3,
-            tolerance=0.2,
             methods=("mdr",),
             nightly=True,
             reason=WHY["sublayers"],

@@ -34,12 +34,14 @@ from contact.records.validation import FloatArray
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
 
-TYPICAL_DENSITY = 1000.0  # kg/m^3 of soft layers; a scene knows none
+# That of soft layers [kg/m^3]; a scene knows none.
+TYPICAL_DENSITY = 1000.0
 ATOMIC_RANGE = 0.3e-9  # m
 _HALF_SPACE_MOVES = (0.4, 1.2)  # times a/h
 _ADHESION_MOVES = 2.0  # times dl/delta
 _DASHPOT_MOVES = 6.5  # times tau/T
-_JKR_HOLDS = 20.0  # dl/z0 at a Tabor parameter of 5, with the contact radius at no load
+# dl/z0 at a Tabor parameter of 5, with the contact radius at no load.
+_JKR_HOLDS = 20.0
 _SMALL_INERTIA = 0.1
 # Coefficient of friction between wet soft layers and smooth indenters, as an order of magnitude.
 _TYPICAL_FRICTION = 0.1
@@ -147,7 +149,8 @@ def _adhesion(scene: Scene, answer: Solution, accuracy: float) -> list[Number]:
     adhesion = scene.effect(Adhesion)
     work = 0.0 if adhesion is None else adhesion.work_of_adhesion
     radius, depth = _largest(answer, "contact_radius"), _largest(answer, "indentation_depth")
-    elongation = math.sqrt(2 * math.pi * work * radius / scene.layer.contact_modulus)  # Eq. (40) with c_N = E*
+    # Eq. (40) with c_N = E*.
+    elongation = math.sqrt(2 * math.pi * work * radius / scene.layer.contact_modulus)
     share, range_ = elongation / depth if depth else math.inf, elongation / ATOMIC_RANGE
     verdict = "may be left out" if _ADHESION_MOVES * share <= accuracy else "may count"
     holds = "JKR holds" if range_ >= _JKR_HOLDS else "JKR is in doubt, adhesion acts at a distance"

@@ -5,7 +5,7 @@ relative to the fast method's. The a/h of a map is that of the exact answer.
 """
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
@@ -166,14 +166,14 @@ FORMULAS: Final = (
     MapPlan(name="half-space", title="Half-space (Hertz)", answer=half_space),
     MapPlan(name="thin layer", title="Thin layer: bed, at nu = 0.5 film", answer=thin_layer),
 )
+
+
+def _as_it_comes(method: str) -> MapPlan:
+    return MapPlan(name=method, title=method, answer=Solved(method), ratios=FEW_RATIOS, rows=FEW_ROWS)
+
+
 METHODS: Final = tuple(
-    MapPlan(
-        name=method,
-        title=title,
-        answer=Solved(method, settings),
-        ratios=FEW_RATIOS,
-        rows=FEW_ROWS,
-    )
+    replace(_as_it_comes(method), title=title, answer=Solved(method, settings))
     for method, title, settings in (
         ("mdr", "MDR, 12 nodes", {"nodes": 12}),
         ("mdr_table", "MDR on an FFT table, 64 cells", {"cells": 64, "ratios": 60, "radii": 100}),
@@ -198,10 +198,6 @@ def plans_of(names: Collection[str], methods: Collection[str]) -> tuple[MapPlan,
             raise InvalidInput(f"no map of {name!r}; there are {', '.join(known)}")
     wanted = dict.fromkeys((*names, *methods)) or known
     return tuple(known.get(name) or _as_it_comes(name) for name in wanted)
-
-
-def _as_it_comes(method: str) -> MapPlan:
-    return MapPlan(name=method, title=method, answer=Solved(method), ratios=FEW_RATIOS, rows=FEW_ROWS)
 
 
 def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *FRICTION, *METHODS), progress: Say = silent) -> CaseResult:

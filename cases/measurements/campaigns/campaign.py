@@ -160,7 +160,8 @@ def _against_springs(answer: HistoryPath) -> Measurement:
 def _branch_checks(answer: DetachmentPath) -> tuple[Measurement, ...]:
     """Some states of a branch, as far as the second opinion reaches, each at its own contact radius."""
     scene = answer.scene
-    first = np.flatnonzero(answer.contact_radius == answer.contact_radius[0])[-1]  # before it a punch's front is held
+    # Before the last state of the first radius a punch's front is held.
+    first = np.flatnonzero(answer.contact_radius == answer.contact_radius[0])[-1]
     chosen = np.linspace(first, len(answer.contact_radius) - 1, _STATES_OF_A_BRANCH).round().astype(int)
     radii = answer.contact_radius[chosen]
     if np.max(radii) > LARGEST_RATIO * scene.layer.thickness or np.min(radii) <= 0:
@@ -174,9 +175,11 @@ def _branch_checks(answer: DetachmentPath) -> tuple[Measurement, ...]:
 
 def _comparable(answer: Solution, other: Solution) -> tuple[str, ...]:
     """Quantities of two answers that stand for the same states; an impact's samples lie where its steps fall."""
-    if isinstance(answer, ImpactHistory | DetachmentPath):  # states of two branches lie at different radii
+    # States of two branches lie at different radii.
+    if isinstance(answer, ImpactHistory | DetachmentPath):
         return single_numbers(answer)
-    if isinstance(answer, HistoryPath):  # its contact radius jumps where contact is lost
+    # Its contact radius jumps where contact is lost.
+    if isinstance(answer, HistoryPath):
         same = isinstance(other, HistoryPath) and np.array_equal(answer.time, other.time)
         return tuple(answer.error_estimate) if same else ()
     names = (*answer.ARRAYS, *answer.SCALARS)

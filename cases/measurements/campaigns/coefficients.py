@@ -32,7 +32,7 @@ class Group:
     place: str
     names: tuple[str, ...] = ()
     methods: tuple[str, ...]
-    families: tuple[str, ...]
+    families: tuple[str, ...] = ()
     quantities: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
@@ -42,8 +42,8 @@ _BOTH_MDR: Final = ("mdr", "mdr_table")
 GROUPS: Final = (
     Group(place="bem.layer_equation.error_model:FACTOR", methods=_MDR, families=FAMILIES),
     # The coverage study draws plain layers; tests/verification/test_stack_error_bars.py measures stacks.
-    Group(place="bem.layer_equation.error_model:STACK_FACTOR", methods=("mdr",), families=()),
-    Group(place="bem.layer_equation.error_model:WIDE_FACTOR", methods=("mdr",), families=()),
+    Group(place="bem.layer_equation.error_model:STACK_FACTOR", methods=_MDR),
+    Group(place="bem.layer_equation.error_model:WIDE_FACTOR", methods=_MDR),
     Group(place="bem.layer_equation.error_model:ONE_RADIUS", methods=("integral_equation",), families=("elastic",)),
     Group(place=_SPRINGS, names=("SPRING_ROUNDING", "POSITION_ROUNDINGS"), methods=_BOTH_MDR, families=FAMILIES),
     Group(
@@ -100,7 +100,7 @@ GROUPS: Final = (
         families=("adhesive",),
         quantities={"radius_floor": ("pull_off_contact_radius",)},
     ),
-    Group(place="bem.grid.error_model:CELLS", methods=("bem",), families=()),
+    Group(place="bem.grid.error_model:CELLS", methods=("bem",)),
     Group(
         place="fem_reference.error_model:FIXED_RADIUS",
         methods=("fem",),
@@ -108,11 +108,11 @@ GROUPS: Final = (
         quantities={"pressure_per_fall": _PRESSURE, "pressure_bounds": _PRESSURE},
     ),
     # The coverage study solves finite elements at prescribed radii only.
-    Group(place="fem_reference.error_model:AT_LOAD", methods=("fem",), families=()),
+    Group(place="fem_reference.error_model:AT_LOAD", methods=("fem",)),
     Group(place="fem_reference.error_model:ON_BRANCH", methods=("fem",), families=("adhesive",)),
     Group(place="fem_reference.error_model:IN_TIME", methods=("fem",), families=("impact",)),
     # The coverage study asks for no fields inside.
-    Group(place="fem_reference.error_model:INSIDE", methods=("fem",), families=()),
+    Group(place="fem_reference.error_model:INSIDE", methods=("fem",)),
 )
 
 

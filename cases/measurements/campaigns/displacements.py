@@ -112,7 +112,7 @@ def random_body(draw: Draw) -> Scene:
     if draw.integers(4) == 0:
         flat = float(draw.uniform(0.1, 1.1))
         indenter = FlatPunch(radius=a) if flat > 1.0 else TruncatedCone(flat_radius=flat * a, slope=slope)
-    return Scene(layer=layer, indenter=indenter, loading=ContactRadii(values=np.array([a])))
+    return Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]))
 
 
 def _uniform(draw: Draw) -> ElasticLayer:

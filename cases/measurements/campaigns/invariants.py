@@ -61,9 +61,11 @@ def pressure_presses(method: Method, answer: Solution) -> float | None:
     """No tension without adhesion: the largest tensile over the largest pressure."""
     if not isinstance(answer, ContactPath) or not _pressure_is_known(answer) or answer.scene.effects:
         return None
-    if isinstance(answer.scene.indenter, FlatPunch):  # singular at its edge
+    # Its pressure is singular at the edge.
+    if isinstance(answer.scene.indenter, FlatPunch):
         return None
-    rho = np.sqrt(np.arange(1, 50) / 50.3)  # irrational: neither the tip of a cone nor a rim is hit
+    # Irrational, so that neither the tip of a cone nor a rim is hit.
+    rho = np.sqrt(np.arange(1, 50) / 50.3)
     p = answer.pressure(float(answer.contact_radius[-1]) * rho, step=len(answer) - 1)
     return float(max(-p.min(), 0.0) / p.max())
 

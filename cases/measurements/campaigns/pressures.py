@@ -228,8 +228,8 @@ def _loading(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Loading:
     kind = draw.integers(2 if isinstance(indenter, FlatPunch) else 0, 4 if isinstance(indenter, FlatPunch) else 6)
     depth = float(np.minimum(indenter.height(a), a)) if a > indenter.flat_radius else 0.01 * a
     if kind < 4 and not isinstance(indenter, FlatPunch):
-        return ContactRadii(values=np.array([a]))
+        return ContactRadii([a])
     depth *= log_uniform(draw, 0.1, 1.0)
     if kind % 2:
-        return IndentationDepths(values=np.array([depth]))
-    return NormalForces(values=np.array([2 * layer.contact_modulus * a * depth]))
+        return IndentationDepths([depth])
+    return NormalForces([2 * layer.contact_modulus * a * depth])

@@ -179,7 +179,7 @@ def _elastic(draw: Draw, ratio: tuple[float, float]) -> Scene:
     loading = _static_loading(draw, layer, indenter, a)
     if draw.random() < _FALLING:
         indenter, depth = falling_table(draw, a)
-        loading = IndentationDepths(values=np.array([depth]))
+        loading = IndentationDepths([depth])
         if draw.random() < 1 / 3:
             loading = ContactRadii(values=draw.uniform(0.02, 0.9, 1) * indenter.max_radius)
     return Scene(layer=layer, indenter=indenter, loading=loading)

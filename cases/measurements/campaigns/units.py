@@ -14,57 +14,25 @@ from contact.records.record import Record
 
 R = TypeVar("R", bound=Record)
 
-# exponents of length, stress and time; force is stress length^2, mass is stress length time^2
-_LENGTH, _STRESS, _TIME, _FORCE, _NUMBER = (1, 0, 0), (0, 1, 0), (0, 0, 1), (2, 1, 0), (0, 0, 0)
-
+# Quantities by their exponents of length, stress and time; force is stress length^2, mass is stress length time^2.
+_QUANTITIES: dict[tuple[int, int, int], str] = {
+    (1, 0, 0): (
+        "thickness radius flat_radius radius_of_curvature reference_radius reference_height radii heights "
+        "smoothing initial_contact_radius depth ContactRadii.values IndentationDepths.values contact_radius "
+        "indentation_depth peak_depth peak_contact_radius pull_off_depth pull_off_contact_radius"
+    ),
+    (2, 1, 0): "NormalForces.values force normal_force peak_force pull_off_force force_at_loss",
+    (0, 1, 0): "youngs_modulus shear_modulus shear_moduli long_term_shear_modulus maxwell_shear_modulus",
+    (0, 1, 1): "viscosity",
+    (0, 0, 1): "relaxation_times time contact_time",
+    (1, 0, -1): "velocity",
+    (1, 1, 2): "mass",
+    (1, 1, 0): "work_of_adhesion contact_stiffness machine_stiffness",
+    (0, 0, 0): "slope exponent coefficient poissons_ratio coefficient_of_restitution",
+    (3, 1, 0): "kinetic_energy stored_energy dissipated_energy",
+}
 DIMENSIONS: dict[str, tuple[int, int, int]] = {
-    "thickness": _LENGTH,
-    "radius": _LENGTH,
-    "flat_radius": _LENGTH,
-    "radius_of_curvature": _LENGTH,
-    "reference_radius": _LENGTH,
-    "reference_height": _LENGTH,
-    "radii": _LENGTH,
-    "heights": _LENGTH,
-    "smoothing": _LENGTH,
-    "initial_contact_radius": _LENGTH,
-    "depth": _LENGTH,
-    "ContactRadii.values": _LENGTH,
-    "IndentationDepths.values": _LENGTH,
-    "NormalForces.values": _FORCE,
-    "force": _FORCE,
-    "youngs_modulus": _STRESS,
-    "shear_modulus": _STRESS,
-    "shear_moduli": _STRESS,
-    "long_term_shear_modulus": _STRESS,
-    "maxwell_shear_modulus": _STRESS,
-    "viscosity": (0, 1, 1),
-    "relaxation_times": _TIME,
-    "time": _TIME,
-    "velocity": (1, 0, -1),
-    "mass": (1, 1, 2),
-    "work_of_adhesion": (1, 1, 0),
-    "slope": _NUMBER,
-    "exponent": _NUMBER,
-    "coefficient": _NUMBER,
-    "poissons_ratio": _NUMBER,
-    "contact_radius": _LENGTH,
-    "indentation_depth": _LENGTH,
-    "normal_force": _FORCE,
-    "contact_stiffness": (1, 1, 0),
-    "kinetic_energy": (3, 1, 0),
-    "stored_energy": (3, 1, 0),
-    "dissipated_energy": (3, 1, 0),
-    "peak_force": _FORCE,
-    "peak_depth": _LENGTH,
-    "peak_contact_radius": _LENGTH,
-    "contact_time": _TIME,
-    "coefficient_of_restitution": _NUMBER,
-    "pull_off_force": _FORCE,
-    "pull_off_depth": _LENGTH,
-    "pull_off_contact_radius": _LENGTH,
-    "force_at_loss": _FORCE,
-    "machine_stiffness": (1, 1, 0),
+    name: exponents for exponents, names in _QUANTITIES.items() for name in names.split()
 }
 
 

@@ -201,7 +201,8 @@ def scaling_case(plans: Iterable[ScalingPlan] = PLANS, progress: Say = silent) -
 def fitted(plan: ScalingPlan) -> ScalingFit:
     """Time every size, round by round, and fit the exponent."""
     sizes, tasks = np.array(plan.sizes), [_task(plan, size) for size in plan.sizes]
-    first_solution(tasks[0])  # loads what the method imports on demand
+    # The first solution loads what the method imports on demand.
+    first_solution(tasks[0])
     rounds = [[first_solution(task) for task in tasks] for _ in range(plan.repeats)]
     samples = np.array([[max(seconds, SHORTEST) for _, seconds in found] for found in rounds])
     exponent, half_width = exponent_of(sizes, samples)

@@ -10,14 +10,17 @@ from typing import Final
 from cases.declare.methods import MethodUse
 from cases.measurements.cost.work_precision import WorkStudy
 
-MDR: Final = tuple(MethodUse(label=f"{n} nodes", method="mdr", settings={"nodes": n}) for n in (8, 12, 16, 24))
-MDR_IN_TIME: Final = tuple(
-    MethodUse(label=f"accuracy {accuracy:g}", method="mdr", settings={"accuracy": accuracy})
-    for accuracy in (1e-4, 1e-6, 1e-8, 1e-10)
-)
-EQUATION: Final = tuple(
-    MethodUse(label=f"{n} nodes", method="integral_equation", settings={"nodes": n}) for n in (6, 8, 10, 16)
-)
+
+def _each(method: str, setting: str, values: Sequence[float], label: str, **fixed: float) -> tuple[MethodUse, ...]:
+    """A method with each value of one setting, in this order."""
+    return tuple(
+        MethodUse(label=label.format(value), method=method, settings={setting: value, **fixed}) for value in values
+    )
+
+
+MDR: Final = _each("mdr", "nodes", (8, 12, 16, 24), "{} nodes")
+MDR_IN_TIME: Final = _each("mdr", "accuracy", (1e-4, 1e-6, 1e-8, 1e-10), "accuracy {:g}")
+EQUATION: Final = _each("integral_equation", "nodes", (6, 8, 10, 16), "{} nodes")
 FEM: Final = (
     *(
         MethodUse(
@@ -27,32 +30,16 @@ FEM: Final = (
         )
         for order, growth, edge in ((2, 0.5, 1e-4), (3, 0.5, 1e-5), (3, 0.25, 1e-6), (4, 0.5, 1e-7), (4, 0.25, 1e-8))
     ),
-    *(
-        MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
-        for accuracy in (1e-2, 1e-4, 1e-6)
-    ),
+    *_each("fem", "accuracy", (1e-2, 1e-4, 1e-6), "accuracy {:g}"),
 )
-FEM_DETACHING: Final = tuple(
-    MethodUse(label=f"accuracy {accuracy:g}", method="fem", settings={"accuracy": accuracy})
-    for accuracy in (1e-2, 1e-3, 1e-4)
-)
-FEM_IN_TIME: Final = tuple(
-    MethodUse(label=f"growth {growth:g}", method="fem", settings={"growth": growth}) for growth in (1.0, 0.5, 0.25)
-)
+FEM_DETACHING: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4), "accuracy {:g}")
+FEM_IN_TIME: Final = _each("fem", "growth", (1.0, 0.5, 0.25), "growth {:g}")
 BEM: Final = (
-    *(MethodUse(label=f"{n} cells", method="bem", settings={"points": n}) for n in (128, 256, 512, 1024)),
-    *(
-        MethodUse(
-            label=f"256 cells, tolerance {tolerance:g}", method="bem", settings={"points": 256, "tolerance": tolerance}
-        )
-        for tolerance in (1e-3, 1e-5)
-    ),
+    *_each("bem", "points", (128, 256, 512, 1024), "{} cells"),
+    *_each("bem", "tolerance", (1e-3, 1e-5), "256 cells, tolerance {:g}", points=256),
 )
 PERIODIC: Final = MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"})
-TABLE: Final = tuple(
-    MethodUse(label=f"{n} cells", method="mdr_table", settings={"cells": n, "ratios": 60, "radii": 200})
-    for n in (64, 128)
-)
+TABLE: Final = _each("mdr_table", "cells", (64, 128), "{} cells", ratios=60, radii=200)
 # The route of the paper: 400 rows of a/h, 500 radii.
 PUBLISHED_TABLE: Final = MethodUse(
     label="256 cells, 400 x 500", method="mdr_table", settings={"cells": 256, "ratios": 400, "radii": 500}
@@ -90,7 +77,8 @@ def elastic_costs(
 
 def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
     """What the pull-off costs."""
-    cheap = MDR[2:3]  # a branch by finite elements takes a second, ten times over
+    # A branch by finite elements takes a second, ten times over.
+    cheap = MDR[2:3]
     quantities = ("pull_off_force", "pull_off_depth")
     return _studies(scene, quantities, (*MDR, *FEM_DETACHING, *BEM[:2], *TABLE), FINEST_MDR, cheap)
 

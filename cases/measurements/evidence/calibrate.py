@@ -57,7 +57,8 @@ _IN_TIME: Final = ("impact", "history")
 CANDIDATES: Final[tuple[Candidate, ...]] = (
     *(
         Candidate(method="mdr", settings={"nodes": nodes}, kinds=_STATIC)
-        for nodes in (12, 14, 16, 20, 24)  # fewer are slower: the profile is resolved with as many on a piece
+        # Fewer are slower: the profile is resolved with as many on a piece.
+        for nodes in (12, 14, 16, 20, 24)
     ),
     *(
         Candidate(method="mdr", settings={"nodes": nodes}, kinds=("detachment",), sample=8)
@@ -65,7 +66,8 @@ CANDIDATES: Final[tuple[Candidate, ...]] = (
     ),
     *(
         Candidate(method="mdr", settings={"accuracy": accuracy}, kinds=_IN_TIME, sample=8)
-        for accuracy in (1e-7, 1e-9, 1e-11)  # 1e-5 takes as long as 1e-7
+        # 1e-5 takes as long as 1e-7.
+        for accuracy in (1e-7, 1e-9, 1e-11)
     ),
     Candidate(method="mdr", settings={"accuracy": 1e-12}, kinds=("impact",), sample=8),
     *(Candidate(method="mdr", settings={"accuracy": a}, kinds=("creep",), sample=6) for a in (1e-7, 1e-9, 1e-11)),
@@ -95,7 +97,8 @@ def calibrate(
     """
     found = []
     runs = [(kind, band, candidate) for candidate in candidates for kind in candidate.kinds for band in bands]
-    for kind, band, candidate in sorted(runs, key=lambda run: run[:2]):  # scenes together: their references are kept
+    # Scenes stand together, since their references are kept.
+    for kind, band, candidate in sorted(runs, key=lambda run: run[:2]):
         measurement = measure(candidate, kind, band, sample_of(seed, kind, band, candidate.sample))
         if measurement is not None:
             progress(_line(measurement))

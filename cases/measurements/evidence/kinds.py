@@ -68,14 +68,16 @@ def rough_radius(scene: Scene) -> float:
         return float(scene.loading.values[-1])
     radii = _trial_radii(scene)
     g = half_space_load(scene.indenter, radii - scene.indenter.flat_radius)
-    load = 2 * (radii * g - np.concatenate([[0.0], np.cumsum(np.diff(radii) * (g[1:] + g[:-1]) / 2)]))  # F / E*
+    # This is F/E*.
+    load = 2 * (radii * g - np.concatenate([[0.0], np.cumsum(np.diff(radii) * (g[1:] + g[:-1]) / 2)]))
     measure, wanted = _wanted(scene, g, load, radii)
     return float(np.interp(wanted, measure, radii))
 
 
 def _trial_radii(scene: Scene) -> FloatArray:
     flat, end = scene.indenter.flat_radius, scene.indenter.max_radius
-    if np.isfinite(end):  # a table may be far smaller than the layer is thick
+    # A table may be far smaller than the layer is thick.
+    if np.isfinite(end):
         within: FloatArray = flat + (end - flat) * _TRIALS[: _TRIALS.size // 2] * (1 - 1e-12)
         return within
     scale = scene.layer.thickness if np.isfinite(scene.layer.thickness) else flat or 1.0
@@ -94,7 +96,8 @@ def _wanted(scene: Scene, g: FloatArray, load: FloatArray, radii: FloatArray) ->
             return energy, 0.5 * mass * velocity**2 / modulus
         case Detachment(initial_contact_radius=float(start)):
             return radii, start
-        case Detachment():  # load = 2 a dl, dl = sqrt(2 pi Delta gamma a/E*): no outer force
+        case Detachment():
+            # Without an outer force the load is 2 a dl with dl = sqrt(2 pi Delta gamma a/E*).
             adhesion = scene.effect(Adhesion)
             work = 0.0 if adhesion is None else adhesion.work_of_adhesion
             return load / radii**1.5, 2.0 * float(np.sqrt(2.0 * np.pi * work / modulus))

@@ -15,6 +15,7 @@ from contact import (
     Cone,
     ContactRadii,
     Detachment,
+    ElasticLayer,
     ExponentialDepth,
     FlatPunch,
     GradedLayer,
@@ -34,7 +35,14 @@ from contact import (
 from contact.scene.layer import Support
 from contact.scene.layer_stack import Interface
 
-DECADES: Final = tuple(10.0**k for k in range(-3, 4))
+
+def _decades(first: int, last: int, step: int = 1) -> tuple[float, ...]:
+    """Powers of ten, both ends included, upwards or downwards."""
+    direction = step if last >= first else -step
+    return tuple(10.0**k for k in range(first, last + (1 if last >= first else -1), direction))
+
+
+DECADES: Final = _decades(-3, 3)
 
 
 def _layer(nu: float, support: Support = "bonded", thickness: float = 1.0) -> Layer:
@@ -43,19 +51,22 @@ def _layer(nu: float, support: Support = "bonded", thickness: float = 1.0) -> La
 
 def nearly_incompressible(gap: float) -> Scene:
     """A cone at a/h = 2 on a bonded layer with nu = 1/2 - gap."""
-    return Scene(layer=_layer(0.5 - gap), indenter=Cone(slope=0.1), loading=ContactRadii(values=np.array([2.0])))
+    return Scene(layer=_layer(0.5 - gap), indenter=Cone(slope=0.1), loading=ContactRadii([2.0]))
+
+
+def _under_paraboloid(layer: ElasticLayer, ratio: float) -> Scene[Any, Any]:
+    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii([ratio]))
 
 
 def contact_ratio(ratio: float, *, nu: float, support: Support) -> Scene:
     """A paraboloid at a given a/h."""
-    indenter = Paraboloid(radius_of_curvature=1e3)
-    return Scene(layer=_layer(nu, support), indenter=indenter, loading=ContactRadii(values=np.array([ratio])))
+    return _under_paraboloid(_layer(nu, support), ratio)
 
 
 def truncated(flat: float) -> Scene:
     """A truncated cone at a/h = 1 with b/a = flat."""
     indenter = TruncatedCone(flat_radius=flat, slope=0.1)
-    return Scene(layer=_layer(0.45), indenter=indenter, loading=ContactRadii(values=np.array([1.0])))
+    return Scene(layer=_layer(0.45), indenter=indenter, loading=ContactRadii([1.0]))
 
 
 def nearly_flat(gap: float) -> Scene:
@@ -63,10 +74,10 @@ def nearly_flat(gap: float) -> Scene:
     return truncated(1.0 - gap)
 
 
-def detaching_punch(ratio: float, *, control: str) -> Scene:
-    """An adhering flat punch on an incompressible bonded layer; at a/h = 0.4619 detachment begins to be stable."""
+def detaching_punch(ratio: float, *, control: str = "displacement", nu: float = 0.5) -> Scene:
+    """An adhering flat punch on a bonded layer; at nu = 1/2 and a/h = 0.4619 detachment begins to be stable."""
     return Scene(
-        layer=_layer(0.5),
+        layer=_layer(nu),
         indenter=FlatPunch(radius=ratio),
         loading=Detachment(control=control),  # type: ignore[arg-type]  # a literal, passed on
         effects=(Adhesion(work_of_adhesion=1e-4),),
@@ -75,23 +86,19 @@ def detaching_punch(ratio: float, *, control: str) -> Scene:
 
 def reversing_punch(nu: float) -> Scene:
     """The same from a/h = 8, where stability reverses twice for nu between about 0.361 and 0.369."""
-    return Scene(
-        layer=_layer(nu),
-        indenter=FlatPunch(radius=8.0),
-        loading=Detachment(control="displacement"),
-        effects=(Adhesion(work_of_adhesion=1e-4),),
-    )
+    return detaching_punch(8.0, nu=nu)
 
 
 def punch_on_layer(thickness: float) -> Scene:
     """A flat punch of unit radius on an incompressible bonded layer."""
-    loading = IndentationDepths(values=np.array([0.01]))
+    loading = IndentationDepths([0.01])
     return Scene(layer=_layer(0.5, thickness=thickness), indenter=FlatPunch(radius=1.0), loading=loading)
 
 
 def damped_punch(damping: float) -> Scene:
     """A flat punch hits a Kelvin-Voigt half-space with damping ratio D = eta sqrt(k/M)/(2 G), Eq. (50)."""
-    layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)  # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8
+    # G = 1, E* = 4, k_N = 8 at a = 1, and M = 8.
+    layer = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
     effect = KelvinVoigt(shear_modulus=layer.shear_modulus, viscosity=2.0 * damping)
     return Scene(
         layer=layer, indenter=FlatPunch(radius=1.0), loading=Impact(mass=8.0, velocity=1e-3), effects=(effect,)
@@ -135,7 +142,7 @@ def noisy_table(noise: float) -> Scene:
     radii = np.linspace(0.0, 2.0, 41)
     rises = np.diff(radii**2 / 20.0) * (1.0 + noise * np.random.default_rng(7).uniform(-1.0, 1.0, 40))
     indenter = Tabulated(radii=radii, heights=np.concatenate([[0.0], np.cumsum(rises)]))
-    return Scene(layer=_layer(0.45), indenter=indenter, loading=IndentationDepths(values=np.array([0.1])))
+    return Scene(layer=_layer(0.45), indenter=indenter, loading=IndentationDepths([0.1]))
 
 
 def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -> Scene[Any, Any]:
@@ -145,10 +152,7 @@ def layered(*layers: tuple[float, float], nu: float = 0.3, ratio: float = 1.0) -
         for place, (h, E) in enumerate(layers)
     )
     interface: Interface = "bonded"
-    stack = LayerStack(sublayers=parts, interfaces=(interface,) * (len(parts) - 1))
-    return Scene(
-        layer=stack, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([ratio]))
-    )
+    return _under_paraboloid(LayerStack(sublayers=parts, interfaces=(interface,) * (len(parts) - 1)), ratio)
 
 
 def alternating(count: float) -> Scene[Any, Any]:
@@ -159,10 +163,7 @@ def alternating(count: float) -> Scene[Any, Any]:
 def graded_in_depth(growth: float) -> Scene[Any, Any]:
     """The same on a layer whose modulus is `growth` times as large at the base as at the surface."""
     modulus = ExponentialDepth(surface=1.0, base=growth)
-    layer = GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3)
-    return Scene(
-        layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=np.array([1.0]))
-    )
+    return _under_paraboloid(GradedLayer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=0.3), 1.0)
 
 
 def finer_edge(method: Method, cell: float) -> Method:
@@ -191,22 +192,19 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
     LadderPlan(
         name="nearly incompressible",
         parameter="1/2 - nu",
-        values=(*(10.0**-k for k in range(1, 13)), 1e-17),  # the last is nu = 1/2 exactly
+        # The last is nu = 1/2 exactly.
+        values=(*_decades(-1, -12), 1e-17),
         scene=nearly_incompressible,
     ),
     _ratios("bonded", 0.3),
     _ratios("bonded", 0.5),
     _ratios("unbonded", 0.3),
-    LadderPlan(
-        name="vanishing flat end", parameter="b/a", values=tuple(10.0**-k for k in range(1, 9)), scene=truncated
-    ),
-    LadderPlan(
-        name="nearly a flat punch", parameter="1 - b/a", values=tuple(10.0**-k for k in range(1, 9)), scene=nearly_flat
-    ),
+    LadderPlan(name="vanishing flat end", parameter="b/a", values=_decades(-1, -8), scene=truncated),
+    LadderPlan(name="nearly a flat punch", parameter="1 - b/a", values=_decades(-1, -8), scene=nearly_flat),
     LadderPlan(
         name="edge cell",
         parameter="cell over radius",
-        values=tuple(10.0**-k for k in range(2, 9)),
+        values=_decades(-2, -8),
         scene=lambda _: contact_ratio(1.0, nu=0.5, support="bonded"),
         method=finer_edge,
         only=("fem",),
@@ -223,7 +221,7 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
     LadderPlan(
         name="punch on a thinner and thinner layer",
         parameter="h/a",
-        values=tuple(reversed(DECADES)),
+        values=_decades(3, -3),
         scene=punch_on_layer,
         quantity="contact_stiffness",
     ),
@@ -237,40 +235,40 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
     LadderPlan(
         name="relaxation time",
         parameter="tau/T",
-        values=tuple(10.0**k for k in range(-6, 7)),
+        values=_decades(-6, 6),
         scene=relaxation_time,
         quantity="coefficient_of_restitution",
     ),
     LadderPlan(
         name="long-term modulus",
         parameter="G_inf/G_1",
-        values=tuple(10.0**k for k in range(6, -7, -1)),
+        values=_decades(6, -6),
         scene=long_term_share,
         quantity="coefficient_of_restitution",
     ),
     LadderPlan(
         name="impact speed",
         parameter="v0 tau/h",
-        values=tuple(10.0**k for k in range(-6, 4)),
+        values=_decades(-6, 3),
         scene=impact_speed,
         quantity="peak_force",
     ),
     LadderPlan(
         name="units",
         parameter="scale of lengths, inverse of stresses",
-        values=tuple(10.0**k for k in range(-9, 10, 3)),
+        values=_decades(-9, 9, 3),
         scene=in_other_units,
     ),
     LadderPlan(
         name="noise in a measured profile",
         parameter="relative noise",
-        values=tuple(10.0**k for k in range(-12, 1)),
+        values=_decades(-12, 0),
         scene=noisy_table,
     ),
     LadderPlan(
         name="contrast of two layers",
         parameter="E1/E2",
-        values=tuple(10.0**k for k in range(-4, 5)),
+        values=_decades(-4, 4),
         scene=lambda contrast: layered((0.5, contrast), (0.5, 1.0)),
     ),
     LadderPlan(
@@ -294,7 +292,7 @@ LADDERS: Final[tuple[LadderPlan, ...]] = (
     LadderPlan(
         name="one layer nearly incompressible",
         parameter="1/2 - nu1",
-        values=(*(10.0**-k for k in range(1, 13, 2)), 1e-17),
+        values=(*_decades(-1, -11, 2), 1e-17),
         scene=lambda gap: layered((0.5, 1.0), (0.5, 3.0), nu=0.5 - gap),
     ),
 )

@@ -59,9 +59,11 @@ def _one_ulp(name: str, value: Any, draw: np.random.Generator) -> Any:
         return value
     steps = draw.integers(-1, 2, np.shape(value))
     moved = np.where(steps == 0, value, np.nextafter(value, np.where(steps > 0, np.inf, -np.inf)))
-    moved = np.where(np.asarray(value) == 0.0, value, moved)  # zero has no last place
+    # Zero has no last place.
+    moved = np.where(np.asarray(value) == 0.0, value, moved)
     if name == "poissons_ratio":
-        return float(min(float(moved), 0.5)) if value != 0.5 else 0.5  # exactly incompressible is another problem
+        # Exactly incompressible is another problem.
+        return float(min(float(moved), 0.5)) if value != 0.5 else 0.5
     return moved if isinstance(value, np.ndarray) else float(moved)
 
 
