@@ -3,6 +3,7 @@
 import numpy as np
 
 from contact import FlatPunch, Loading, Scene, other_layer
+from contact.scene.extent import radius_of_load
 
 # A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
 # falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
@@ -35,6 +36,12 @@ def box(scene: Scene, depth: float) -> float:
     else:
         reach = _where_high(scene, depth if scene.layer.is_half_space else 2.0 * depth)
     return 2.0 * (RIM * reach if scene.layer.is_half_space else reach + BESIDE * scene.layer.thickness)
+
+
+def deepest(scene: Scene, force: float, modulus: float) -> float:
+    """A depth [m] that a force [N] on a half-space of this E* [Pa] does not exceed."""
+    load, indenter = force / modulus, scene.indenter
+    return load / (indenter.radius if isinstance(indenter, FlatPunch) else radius_of_load(indenter, load / 2.0))
 
 
 def surface(scene: Scene, points: int, size: float) -> list[list[float]]:

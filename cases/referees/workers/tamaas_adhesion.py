@@ -31,6 +31,7 @@ def contact(question: dict[str, Any]) -> Any:
     kind = tamaas.PolonskyKeerRey.type
 
     def at(force: float) -> tuple[float, float] | None:
+        """Contact radius and depth [m] at a force [N], None where no state is found."""
         solver = tamaas.PolonskyKeerRey(model, surface, TOLERANCE, kind.gap, kind.pressure)
         adhesion = tamaas.ExponentialAdhesionFunctional(surface)
         adhesion.setParameters({"rho": question["range_in_cells"] * size / n, "surface_energy": work})
