@@ -46,8 +46,9 @@ def question(scene: Scene, points: int, steps: int) -> tuple[dict[str, Any], flo
     if viscous is None or not isinstance(loading, ForceHistory):
         raise UnsupportedSceneError(refused(scene))
     law = viscous.relaxation
-    # Where all has relaxed it is deepest; E* is 4 G at nu = 1/2.
-    size = box(scene, deepest(scene, float(loading.force[-1]), 4.0 * law.long_term_modulus))
+    # Forces that never fall go no deeper than the last one on a solid of compliance J(T) <= 1/G(T); E* is 4 G.
+    left = law.long_term_modulus + float(law.moduli @ np.exp(-float(np.ptp(loading.time)) / law.times))
+    size = box(scene, deepest(scene, float(loading.force[-1]), 4.0 * left))
     durations = np.diff(loading.time)
     share = durations / durations.sum()
     intervals = [

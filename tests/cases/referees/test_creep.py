@@ -87,6 +87,29 @@ def test_the_question_has_no_stresses_and_no_lengths():
     assert asked["moduli"] == pytest.approx([9.0], rel=1e-12, abs=0.0)
 
 
+def crept(solid):
+    """Int J dF/F of the standard solid at the end of the ramp and hold."""
+    soft, ramp, end = solid.long_term_shear_modulus, SCENE.loading.time[1], SCENE.loading.time[-1]
+    stiff = soft + solid.maxwell_shear_modulus
+    slower = solid.viscosity / solid.maxwell_shear_modulus * stiff / soft
+    fading = slower / ramp * (np.exp(-(end - ramp) / slower) - np.exp(-end / slower))
+    return 1 / soft - (1 / soft - 1 / stiff) * fading
+
+
+@pytest.mark.parametrize("relaxation_time", [1e-6, 1e-3, 1.0])
+def test_the_grid_is_wider_than_the_contact_and_not_by_much(relaxation_time):
+    """The bound J(T) <= 1/G(T) serves solids that are glassy, relaxing or relaxed at the end."""
+    solid = StandardSolid(
+        long_term_shear_modulus=SOLID.long_term_shear_modulus,
+        maxwell_shear_modulus=SOLID.maxwell_shear_modulus,
+        viscosity=relaxation_time * SOLID.maxwell_shear_modulus,
+    )
+    scene = SCENE.replace(effects=(solid,))
+    _, size = question(scene, 8, 20)
+    diameter = 2.0 * np.cbrt(3 / 16 * SCENE.indenter.radius_of_curvature * SCENE.loading.force[-1] * crept(solid))
+    assert 1.1 * diameter < size < 2.5 * diameter
+
+
 def test_steps_are_shared_among_intervals_and_none_goes_without():
     asked, _ = question(pressed(0.0, 1.0, 2.0, 2.0, time=(0.0, 0.5, 0.501, 1.0)), 8, 20)
     assert [interval["steps"] for interval in asked["intervals"]] == [10, 1, 10]
