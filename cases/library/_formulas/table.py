@@ -23,6 +23,7 @@ class Formula:
         factor: of the force on the half-space, over the variable of the shape and nu.
         poissons_ratios: at which it is judged: those that it claims.
         source: where it stands.
+        checked: what its numbers were compared with, or why they could not be.
         claim: the range that it is given for.
         thin: whether it is a limit of thin layers, right beyond an a/h, not up to one.
     """
@@ -33,6 +34,7 @@ class Formula:
     factor: Factor
     poissons_ratios: tuple[float, ...]
     source: str
+    checked: str
     claim: str
     thin: bool = False
 
@@ -41,6 +43,10 @@ DIMITRIADIS = "Dimitriadis et al., Biophys. J. 82 (2002) 2798"
 GARCIA = "Garcia, Garcia, Biophys. J. 114 (2018) 2923; numbers of"
 HERMANOWICZ = "Hermanowicz, Int. J. Mech. Sci. 193 (2021) 106138; numbers as the program AtomicJ has them"
 HAYES = "Hayes et al., J. Biomech. 5 (1972) 541; table of an R package that cites it"
+PROGRAMS = "two public programs, digit by digit"
+AUTHORS_PROGRAM = "the author's own program AtomicJ, digit by digit; the abstract has the range"
+OUR_LIMIT = "our own solver: its error falls with growing a/h (test)"
+NANITE = "nanite 4.2.3, as installed (test)"
 THICK = "layers that are thick beside the contact"
 
 PARABOLOIDS = (
@@ -51,6 +57,7 @@ PARABOLOIDS = (
         factor=paraboloid.hertz,
         poissons_ratios=ANY_NU,
         source="Hertz, J. reine angew. Math. 92 (1882) 156",
+        checked=NANITE,
         claim="half-space",
     ),
     Formula(
@@ -60,6 +67,7 @@ PARABOLOIDS = (
         factor=paraboloid.dimitriadis_bonded,
         poissons_ratios=(0.5,),
         source=f"{DIMITRIADIS}; numbers of two Python programs, of which one cites Eq. (12)",
+        checked=PROGRAMS,
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
@@ -69,6 +77,7 @@ PARABOLOIDS = (
         factor=paraboloid.dimitriadis_bonded_any_nu,
         poissons_ratios=ANY_NU,
         source=f"{DIMITRIADIS}; constants as AtomicJ has them",
+        checked="AtomicJ, digit by digit; range from memory",
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
@@ -78,6 +87,7 @@ PARABOLOIDS = (
         factor=paraboloid.dimitriadis_not_bonded,
         poissons_ratios=(0.5,),
         source=f"{DIMITRIADIS}; numbers of a Python program that cites Eq. (11)",
+        checked="a public program, digit by digit",
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
@@ -87,6 +97,7 @@ PARABOLOIDS = (
         factor=paraboloid.dimitriadis_not_bonded_any_nu,
         poissons_ratios=ANY_NU,
         source=f"{DIMITRIADIS}; constants as AtomicJ has them",
+        checked="AtomicJ, digit by digit; range from memory",
         claim="sqrt(R delta)/h up to 1",
     ),
     Formula(
@@ -96,6 +107,7 @@ PARABOLOIDS = (
         factor=paraboloid.hayes_quadratics,
         poissons_ratios=(0.3, 0.45, 0.49, 0.5),
         source="Hayes et al., J. Biomech. 5 (1972) 541; quadratics of two Python programs that cite its data",
+        checked=PROGRAMS,
         claim="a/h up to 2, nu = 0.3 to 0.5 as tabulated",
     ),
     Formula(
@@ -105,6 +117,7 @@ PARABOLOIDS = (
         factor=paraboloid.garcia,
         poissons_ratios=(0.5,),
         source=f"{GARCIA} two Python programs",
+        checked=PROGRAMS,
         claim=THICK,
     ),
     Formula(
@@ -114,6 +127,7 @@ PARABOLOIDS = (
         factor=paraboloid.long,
         poissons_ratios=(0.5,),
         source="Long, Hall, Wu, Hui, Biophys. J. 101 (2011) 643; constants and range of a public script",
+        checked="a public script, with its range",
         claim="R/h from 2 to 12.7, also large strains",
     ),
     Formula(
@@ -123,6 +137,7 @@ PARABOLOIDS = (
         factor=paraboloid.hermanowicz_bonded,
         poissons_ratios=(0.5,),
         source=HERMANOWICZ,
+        checked=AUTHORS_PROGRAM,
         claim="all thicknesses",
     ),
     Formula(
@@ -132,6 +147,7 @@ PARABOLOIDS = (
         factor=paraboloid.hermanowicz_loose,
         poissons_ratios=(0.3, 0.5),
         source=HERMANOWICZ,
+        checked=AUTHORS_PROGRAM,
         claim="all thicknesses",
     ),
     Formula(
@@ -141,6 +157,7 @@ PARABOLOIDS = (
         factor=paraboloid.clifford,
         poissons_ratios=COMPRESSIBLE,
         source="Clifford, Seah, Nanotechnology 20 (2009) 145708; constants of nanite, limit of a rigid base",
+        checked=f"{NANITE}, which names Eqs. (9) and (10), and the range",
         claim="films on substrates of about 100 GPa; not made for rigid bases",
     ),
     Formula(
@@ -150,6 +167,7 @@ PARABOLOIDS = (
         factor=paraboloid.johnson_thin,
         poissons_ratios=COMPRESSIBLE,
         source="Johnson, Contact Mechanics (1985), section 5.8",
+        checked=OUR_LIMIT,
         claim="thin compressible layers",
         thin=True,
     ),
@@ -160,6 +178,7 @@ PARABOLOIDS = (
         factor=paraboloid.loose_thin,
         poissons_ratios=(0.3, 0.5),
         source="Johnson, Contact Mechanics (1985), section 5.8",
+        checked=OUR_LIMIT,
         claim="thin layers",
         thin=True,
     ),
@@ -170,6 +189,7 @@ PARABOLOIDS = (
         factor=paraboloid.chadwick_thin,
         poissons_ratios=(0.5,),
         source="Chadwick, SIAM J. Appl. Math. 62 (2002) 1520",
+        checked=OUR_LIMIT,
         claim="thin layers",
         thin=True,
     ),
@@ -182,6 +202,7 @@ CONES = (
         factor=cone.sneddon,
         poissons_ratios=ANY_NU,
         source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
+        checked=NANITE,
         claim="half-space",
     ),
     Formula(
@@ -191,6 +212,7 @@ CONES = (
         factor=cone.gavara_as_programmed,
         poissons_ratios=(0.5,),
         source="Gavara, Chadwick, Nature Nanotech. 7 (2012) 733; form of AtomicJ and of two Python programs",
+        checked="three public programs; abstract without numbers",
         claim=THICK,
     ),
     Formula(
@@ -200,6 +222,7 @@ CONES = (
         factor=cone.managuli,
         poissons_ratios=(0.5,),
         source="Managuli, Roy, Exp. Tech. 42 (2018), Eq. (1), as a Python program has it",
+        checked="one public program; no abstract was found",
         claim=THICK,
     ),
     Formula(
@@ -209,6 +232,7 @@ CONES = (
         factor=cone.garcia,
         poissons_ratios=(0.5,),
         source=f"{GARCIA} two Python programs",
+        checked=PROGRAMS,
         claim=THICK,
     ),
     Formula(
@@ -218,6 +242,7 @@ CONES = (
         factor=cone.hermanowicz_loose,
         poissons_ratios=(0.3, 0.5),
         source=HERMANOWICZ,
+        checked=AUTHORS_PROGRAM,
         claim="all thicknesses",
     ),
 )
@@ -229,6 +254,7 @@ PUNCHES = (
         factor=punch.boussinesq,
         poissons_ratios=ANY_NU,
         source="Sneddon, Int. J. Eng. Sci. 3 (1965) 47",
+        checked="our own solver on the half-space",
         claim="half-space",
     ),
     Formula(
@@ -238,6 +264,7 @@ PUNCHES = (
         factor=punch.hayes,
         poissons_ratios=(0.5,),
         source=HAYES,
+        checked="an R package and a Python program, digit by digit",
         claim="a/h up to 8",
     ),
     Formula(
@@ -247,6 +274,7 @@ PUNCHES = (
         factor=punch.hayes_mislabelled,
         poissons_ratios=(0.48, 0.5),
         source="public scripts that cite Hayes et al. (1972), by an earlier reading; not found again",
+        checked="not found again",
         claim="a/h up to 2, nu = 0.5",
     ),
     Formula(
@@ -256,6 +284,7 @@ PUNCHES = (
         factor=punch.garcia,
         poissons_ratios=(0.5,),
         source=f"{GARCIA} a Python program",
+        checked="a public program, digit by digit",
         claim=THICK,
     ),
     Formula(
@@ -265,6 +294,7 @@ PUNCHES = (
         factor=punch.lin_hui_conway,
         poissons_ratios=(0.5,),
         source="from memory of Webber et al., Phys. Rev. E 68 (2003) 021805; its abstract: fit to finite elements",
+        checked="nothing: no program and no readable text has its numbers; abstract without numbers",
         claim="moderate confinement",
     ),
     Formula(
@@ -274,6 +304,7 @@ PUNCHES = (
         factor=punch.hermanowicz_bonded,
         poissons_ratios=(0.5,),
         source=HERMANOWICZ,
+        checked=AUTHORS_PROGRAM,
         claim="all thicknesses",
     ),
     Formula(
@@ -283,6 +314,7 @@ PUNCHES = (
         factor=punch.hermanowicz_compressible,
         poissons_ratios=(0.0,),
         source=HERMANOWICZ,
+        checked=AUTHORS_PROGRAM,
         claim="all thicknesses",
     ),
     Formula(
@@ -292,6 +324,7 @@ PUNCHES = (
         factor=punch.hermanowicz_loose,
         poissons_ratios=(0.3, 0.5),
         source=HERMANOWICZ,
+        checked=AUTHORS_PROGRAM,
         claim="all thicknesses",
     ),
     Formula(
@@ -300,7 +333,8 @@ PUNCHES = (
         support="bonded",
         factor=punch.thin_compressible,
         poissons_ratios=COMPRESSIBLE,
-        source="Barber, Wear 138 (1990) 77; Forsbach (2023), Eq. (16)",
+        source="Forsbach (2023), Eq. (16), after Barber 1990",
+        checked=f"{OUR_LIMIT}; Barber's paper was not found",
         claim="thin compressible layers",
         thin=True,
     ),
@@ -311,6 +345,7 @@ PUNCHES = (
         factor=punch.thin_incompressible,
         poissons_ratios=(0.5,),
         source="squeezed film with the fluid's velocity read as displacement; Hermanowicz's cubic term",
+        checked=OUR_LIMIT,
         claim="thin layers",
         thin=True,
     ),
