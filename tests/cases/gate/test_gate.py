@@ -156,8 +156,9 @@ def test_a_case_that_left_the_suite_fails_by_its_name(folder):
     result = gated(clean_run(other), folder)
     lost = result.case("example_cone")
     assert {claim.status for claim in lost.claims} == {Status.INCOMPARABLE}
-    single = dataclasses.replace(clean_run(other), suite="")
-    assert "example_cone" not in {case.name for case in gated(single, folder).cases}
+    for suite in ("", "referees", "nightly"):
+        elsewhere = dataclasses.replace(clean_run(other), suite=suite)
+        assert "example_cone" not in {case.name for case in gated(elsewhere, folder).cases}
 
 
 @pytest.mark.parametrize(
