@@ -93,9 +93,7 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=SAMPLES, help=f"how often each is timed, at least {SAMPLES}")
     rounds = parser.parse_args().rounds
     scenes = {scene.name: scene for scene in suite.SCENES}
-    sys.stdout.write(
-        "| scene | method | seconds | of which start | times MDR | error |\n|---|---|---|---|---|---|\n"
-    )
+    sys.stdout.write("| scene | method | seconds | of which start | times MDR | error |\n|---|---|---|---|---|---|\n")
     grids, nanite = suite.REFEREES[1:3], suite.REFEREES[3]
     race(scenes["paraboloid, half-space"], (MDR, FEM, BEM, *grids, nanite), rounds)
     race(scenes["flat punch, bonded nu=0.3"], (MDR, FEM, BEM, CALCULIX, grids[0]), rounds)

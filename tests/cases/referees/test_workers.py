@@ -81,6 +81,7 @@ def test_an_iteration_that_never_ends_is_told_with_its_depth(script):
         pressed(script, StandingStill(ends_at=9.0))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(bool(process.lacks(contact_mechanics.PACKAGE)), reason="ContactMechanics is not installed")
 def test_a_depth_at_which_it_stands_still_is_answered():
     """The 17th of 200 depths on 16 points ended in 500 steps without an answer before it started again."""
