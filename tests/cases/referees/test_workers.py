@@ -1,6 +1,8 @@
 """Scripts that run beside solvers of others, here beside stand-ins: restarts, and pressures of a relaxing solid."""
 
 import importlib.util
+import io
+import json
 import sys
 from types import ModuleType, SimpleNamespace
 
@@ -131,3 +133,30 @@ def test_depth_and_radius_are_those_of_what_touches(creep):
     assert (depth, radius) == (5.0, pytest.approx(np.sqrt(3 / np.pi) / 2, rel=1e-15, abs=0.0))
     with pytest.raises(SystemExit, match=r"displace the surface by 5.0 to 5.1 under one indenter"):
         creep.state(model_of(5.0 + surface + np.array([[0.0, 0.1], [0.0, 0.0]])), surface, pressure, elastic)
+
+
+class ClosedForms:
+    """JKR's force and depth over the contact radius, with R = E* = 1 and a work of adhesion of 1/(2 pi)."""
+
+    @staticmethod
+    def radius_unit(**_):
+        return 1.0
+
+    @staticmethod
+    def force(*, contact_radius, **_):
+        return 4 / 3 * contact_radius**3 - 2 * contact_radius**1.5
+
+    @staticmethod
+    def penetration(*, contact_radius, **_):
+        return contact_radius**2 - contact_radius**0.5
+
+
+@pytest.mark.parametrize(("by_force", "exact"), [(True, (9 / 16) ** (1 / 3)), (False, (1 / 16) ** (1 / 3))])
+def test_where_contact_is_lost_is_found_to_twelve_digits(script, monkeypatch, capsys, by_force, exact):
+    """A minimum of the values alone was 3e-9 off in radius and 1e-8 in depth, where rounding was stated."""
+    worker = script("adhesion_jkr", Adhesion={}, **{"Adhesion.ReferenceSolutions": {"JKR": ClosedForms}})
+    monkeypatch.setattr("sys.stdin", io.StringIO(json.dumps({"by_force": by_force, "states": 50})))
+    worker.main()
+    answer = json.loads(capsys.readouterr().out)
+    assert min(answer["contact_radius"]) == pytest.approx(exact, rel=3e-12, abs=0.0)
+    assert answer["force_control"] == pytest.approx([(9 / 16) ** (1 / 3)], rel=3e-12, abs=0.0)
