@@ -14,6 +14,7 @@ from cases.declare.case import Case, ClaimOfCase
 from cases.declare.foreign.restated import with_restated
 from cases.declare.foreign_agreements import foreign_agreements, relaxed
 from cases.declare.methods import REFEREES, MethodUse, load, registered
+from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.declared import PerMethod
 from cases.judgement.claims.residual import Residual
 from contact import InvalidInput
@@ -91,11 +92,19 @@ def _extended(case: Case, claim: ClaimOfCase, accuracies: Mapping[str, float]) -
         return replace(claim, methods=claim.methods or tuple(use.label for use in case.methods))
     if not isinstance(claim, PerMethod):
         return claim
+    methods = (*claim.methods, *accuracies) if claim.methods else ()
+    if isinstance(claim, Approach):
+        words = {
+            name: f"{name} claims {own:.2g}; a rate is known beyond that only"
+            for name, own in accuracies.items()
+            if own
+        }
+        return replace(claim, methods=methods, accuracies=accuracies, relaxed={**claim.relaxed, **words})
     asked = max([claim.tolerance, *claim.tolerances.values()])
     said = {name: words for label, own in accuracies.items() for name, words in relaxed(label, asked, own).items()}
     return replace(
         claim,
-        methods=(*claim.methods, *accuracies) if claim.methods else (),
+        methods=methods,
         tolerances={**claim.tolerances, **{name: max(asked, own) for name, own in accuracies.items()}},
         relaxed={**claim.relaxed, **said},
     )

@@ -1,9 +1,10 @@
 """A run against what was accepted: every number, error bar, counter and claim, nothing missing and nothing extra."""
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Container, Iterable, Iterator
 from dataclasses import replace
 
 from cases.gate.baseline import Baseline
+from cases.gate.checks.absent import absent_claims, not_installed
 from cases.gate.checks.claims import missing_claims
 from cases.gate.checks.counts import count_checks
 from cases.gate.checks.uncertainties import uncertainty_checks
@@ -28,6 +29,7 @@ def gate(
     """Return ``run`` with a regression claim for every quantity and counter that was accepted or is new.
 
     The stated uncertainty that moved most is another one for each solution, as is each accepted claim that is missing.
+    A method that is not installed where the run was made is told once and not compared.
 
     Args:
         run: a run whose own claims are judged.
@@ -65,8 +67,22 @@ def _gated(case: CaseResult, baselines: list[Baseline], ladders: tuple[Ladder, .
     """Return ``case`` with its regression claims; those of an earlier gate are replaced."""
     own = (claim for claim in case.claims if claim.kind is not Kind.REGRESSION)
     seen = replace(case, runs=tuple(row for row in case.runs if watched(case.name, row)))
-    found = *_regression_claims(seen, baselines), *missing_claims(case, baselines), *ladder_claims(case, ladders)
+    absent = not_installed(case)
+    present = [_without(baseline, absent) for baseline in baselines if baseline.method not in absent]
+    found = (
+        *_regression_claims(seen, present),
+        *missing_claims(case, present),
+        *absent_claims(case.name, baselines, absent),
+        *ladder_claims(case, ladders),
+    )
     return replace(case, claims=(*own, *found))
+
+
+def _without(baseline: Baseline, absent: Container[str]) -> Baseline:
+    """The baseline without claims that need a method that is not installed."""
+    claims = baseline.claims
+    left = None if claims is None else tuple(c for c in claims if not any(name in absent for name in c.methods))
+    return replace(baseline, claims=left)
 
 
 def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[Claim]:

@@ -18,8 +18,28 @@ from cases.judgement.rules.tolerance import relative_spread
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.run.executors import process_pool
 from cases.run.solve_task import solve
-from contact import ContactRadii, ElasticLayer, IndentationDepths, InvalidInput, Layer, NormalForces, Scene
+from contact import (
+    ContactRadii,
+    DepthHistory,
+    ElasticLayer,
+    ForceHistory,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Loading,
+    NormalForces,
+    Scene,
+)
+from contact.records.validation import FloatArray
 
+# What each loading prescribes.
+PRESCRIBED: Mapping[type[Loading], str] = {
+    ContactRadii: "values",
+    IndentationDepths: "values",
+    NormalForces: "values",
+    DepthHistory: "depth",
+    ForceHistory: "force",
+}
 PLAIN_KERNEL = "Prescott"  # every x86-64 processor has it; a library other than OpenBLAS takes no notice
 
 # The keys are method, scene and quantity.
@@ -49,7 +69,9 @@ def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[tuple[Task, 
     """Solve each task's nudged scene, in fresh processes."""
     with process_pool(jobs) as executor:
         nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
-        futures = [(task, repetition, executor.submit(solve, repetition, "")) for task, repetition in nudged]
+        futures = [
+            (task, repetition, executor.submit(solve, repetition, "", estimates=False)) for task, repetition in nudged
+        ]
         return [(task, _numbers(repetition, future.result())) for task, repetition, future in futures]
 
 
@@ -70,14 +92,20 @@ def nudged_scene(scene: Scene, towards: float) -> Scene:
 
     Where that is no scene (a radius beyond the end of a table) the loading stays as it is.
     """
-    loading = scene.loading
     nudged = scene.replace(layer=_nudged_layer(scene.layer, towards))
-    if not isinstance(loading, ContactRadii | IndentationDepths | NormalForces):
+    name = next((name for kind, name in PRESCRIBED.items() if isinstance(scene.loading, kind)), "")
+    if not name:
         return nudged
+    values = getattr(scene.loading, name)
     try:
-        return nudged.replace(loading=loading.replace(values=np.nextafter(loading.values, towards)))
+        return nudged.replace(loading=scene.loading.replace(**{name: _nudged(values, towards)}))
     except InvalidInput:
         return nudged
+
+
+def _nudged(values: FloatArray, towards: float) -> FloatArray:
+    """Each number one unit in the last place away; a zero means that nothing is pressed, and stays."""
+    return np.where(values == 0.0, values, np.nextafter(values, towards))
 
 
 def _nudged_layer(layer: ElasticLayer, towards: float) -> ElasticLayer:

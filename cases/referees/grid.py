@@ -3,11 +3,13 @@
 import numpy as np
 
 from contact import FlatPunch, Loading, Scene, other_layer
+from contact.scene.extent import radius_of_load
 
 # A repeated layer reaches so many thicknesses beyond the contact on each side: what neighbours feel of one another
 # falls like exp(-2.1 r/h) on unbonded and faster on bonded layers (first root of their kernels), to 5e-8 over eight.
 BESIDE = 4.0
-# The rest of the grid around the contact of a half-space, which is not repeated: a rim of free cells.
+# Side of a half-space's grid, which is not repeated, over the diameter it must hold: of n points n/22 stay free on each
+# side of a flat punch, three of 64, and more beside curved indenters, whose contact is smaller than that diameter.
 RIM = 1.1
 # What stands higher than so many sides of the grid never touches: all beyond a rim.
 FAR = 1e3
@@ -35,6 +37,12 @@ def box(scene: Scene, depth: float) -> float:
     else:
         reach = _where_high(scene, depth if scene.layer.is_half_space else 2.0 * depth)
     return 2.0 * (RIM * reach if scene.layer.is_half_space else reach + BESIDE * scene.layer.thickness)
+
+
+def deepest(scene: Scene, force: float, modulus: float) -> float:
+    """A depth [m] that a force [N] on a half-space of this E* [Pa] does not exceed."""
+    load, indenter = force / modulus, scene.indenter
+    return load / (indenter.radius if isinstance(indenter, FlatPunch) else radius_of_load(indenter, load / 2.0))
 
 
 def surface(scene: Scene, points: int, size: float) -> list[list[float]]:

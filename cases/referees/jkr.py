@@ -40,5 +40,5 @@ class Jkr:
         return detachment.answered(scene, found, log, method=self.name, settings=settings)
 
     def refined(self) -> Self:
-        """A copy with twice the states."""
+        """A copy with twice the states, and half the steps of the differences that find where contact is lost."""
         return replace(self, states=2 * self.states)

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from contact import Method, NotConvergedError, Scene, Supported, Unsupported, UnsupportedSceneError
+from contact.records.extras import NOT_INSTALLED
 from contact.records.validation import FloatArray
 
 WORKERS = Path(__file__).with_name("workers")
@@ -60,7 +61,7 @@ def lacks(package: str) -> str:
     """Why a package cannot be asked, empty where it can."""
     if version(package):
         return ""
-    return f"{package} is not installed: pip install 'contact-verification[referees]'"
+    return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[referees]'"
 
 
 def support(reason: str) -> Supported | Unsupported:

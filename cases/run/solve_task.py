@@ -21,13 +21,14 @@ from contact import NotConvergedError, Solution, UnsupportedSceneError
 from contact.records.errors import printable
 
 
-def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
+def solve(task: Task, key: str, time_limit: float = 0.0, *, estimates: bool = True) -> SceneRun:
     """Return the row of ``task``: its numbers, or the status and the reason why there are none.
 
     Args:
         task: what to solve.
         key: content key that the row carries.
         time_limit: seconds; zero for no limit.
+        estimates: whether a method that states no errors is refined for them, which takes many times its own time.
     """
     try:
         # With one thread, times can be compared and sums repeat bit by bit.
@@ -35,7 +36,7 @@ def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
             support = task.solver.supports(task.problem)
             if not support:
                 return without_numbers(task, key, Status.SKIP, getattr(support, "reason", "not supported"))
-            return _solved(task, key)
+            return _solved(task, key, estimates=estimates)
     except TimeLimitReached:
         return without_numbers(task, key, Status.TIMEOUT, f"{task.method}: not finished after {time_limit:g} s")
     except UnsupportedSceneError as error:
@@ -47,7 +48,7 @@ def solve(task: Task, key: str, time_limit: float = 0.0) -> SceneRun:
         return without_numbers(task, key, Status.INVALID, f"{task.method} crashed: {type(error).__name__}: {error}")
 
 
-def _solved(task: Task, key: str) -> SceneRun:
+def _solved(task: Task, key: str, *, estimates: bool) -> SceneRun:
     if task.timed or task.forgetful:
         # This loads what the method imports on demand.
         task.solver.solve(task.problem)
@@ -58,7 +59,7 @@ def _solved(task: Task, key: str) -> SceneRun:
     samples = timed_warm(lambda: solutions.append(task.solver.solve(task.problem))).samples if task.timed else ()
     # The row of a timing run shows the stages of a warm solve.
     solution = solutions[0]
-    if not task.timed and task.method in registered():
+    if estimates and not task.timed and task.method in registered():
         solution = _estimated(task, solution)
     return SceneRun(
         key=key,

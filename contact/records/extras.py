@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Final
 
+# What every reason says if only a package or a program is missing: what could not be asked is not compared.
+NOT_INSTALLED: Final = "is not installed"
+
 EXTRA_OF: Final[Mapping[str, str]] = {
     "skfem": "fem",
     "gmsh": "fem",
@@ -22,4 +25,4 @@ def missing_extra(error: BaseException) -> str:
     """What to install where an import failed for want of an extra; empty for any other error."""
     package = (error.name or "").partition(".")[0] if isinstance(error, ModuleNotFoundError) else ""
     extra = EXTRA_OF.get(package)
-    return f"{package} is not installed: pip install 'contact-verification[{extra}]'" if extra else ""
+    return f"{package} {NOT_INSTALLED}: pip install 'contact-verification[{extra}]'" if extra else ""

@@ -1,8 +1,8 @@
 """A limit: along a sequence of scenes the answer approaches a closed form at a known rate."""
 
 import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
 from typing import ClassVar
 
 from cases.declare.case import Case, CaseScene
@@ -27,6 +27,7 @@ class Approach(PerMethod):
         limit: the closed form the quantity's last step tends to.
         formal_order: of the distance in the parameter.
         largest: the relative distance of the last scene must not exceed this.
+        accuracies: that methods claim for themselves, relative, by label.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
@@ -37,27 +38,44 @@ class Approach(PerMethod):
     limit: Callable[[Scene], float]
     formal_order: float = 1.0
     largest: float
+    accuracies: Mapping[str, float] = field(default_factory=dict)
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge the sequence once for each method."""
         scenes = self.scenes_of(case)[-2:]
         for label in self.labels(case, scenes[-1]):
             runs = [answers.of(case.task(scene, case.use(scene, label))) for scene in scenes]
-            judged = first_missing(*runs) or self._judged(scenes, runs)
+            judged = first_missing(*runs) or self._judged(scenes, runs, self.accuracies.get(label, 0.0))
             yield self.record(judged, scenes[-1].name, (label,), expected=self.formal_order)
 
-    def _judged(self, scenes: tuple[CaseScene, ...], runs: list[SceneRun]) -> Judgement:
-        far, near = (
-            run.quantity(self.quantity).values[-1] / self.limit(scene.scene) - 1
-            for scene, run in zip(scenes, runs, strict=True)
-        )
+    def _judged(self, scenes: tuple[CaseScene, ...], runs: list[SceneRun], claimed: float) -> Judgement:
+        """Judge the rate; what fails inside the method's stated or claimed error stays open."""
+        pairs = [
+            (run.quantity(self.quantity), self.limit(scene.scene)) for scene, run in zip(scenes, runs, strict=True)
+        ]
+        far, near = (quantity.values[-1] / limit - 1 for quantity, limit in pairs)
+        errors = [max([claimed, *(u / abs(limit) for u in found.uncertainty[-1:])]) for found, limit in pairs]
+        ratio = self.parameter(scenes[0].scene) / self.parameter(scenes[1].scene)
+        judged = self._rate(far, near, ratio)
+        if judged.status is not Status.FAIL or not self._may_hold((far, near), errors, ratio):
+            return judged
+        return nothing_compared(Status.INCONCLUSIVE, f"{judged.message}; error {max(errors):.1e}: refine")
+
+    def _rate(self, far: float, near: float, ratio: float) -> Judgement:
         if abs(near) > self.largest:
             message = f"{near:+.1e} from the limit, at most {self.largest:g} claimed"
             return nothing_compared(Status.FAIL, message)
         if near == 0 or far == 0:
             return nothing_compared(Status.INCONCLUSIVE, "at the limit to the last bit: no rate to measure")
-        ratio = self.parameter(scenes[0].scene) / self.parameter(scenes[1].scene)
         order = math.log(abs(far / near)) / math.log(ratio)
         kind = ConvergenceClass.MONOTONE if far * near > 0 else ConvergenceClass.OSCILLATORY
         judged = judge_order(order, self.formal_order, kind)
         return replace(judged, message=f"{judged.message}; {near:+.1e} from the limit")
+
+    def _may_hold(self, distances: tuple[float, float], errors: list[float], ratio: float) -> bool:
+        """Whether true distances within the errors could be near the limit and fall at the formal order."""
+        (least_far, least_near), (most_far, most_near) = (
+            [max(abs(d) + sign * e, 0.0) for d, e in zip(distances, errors, strict=True)] for sign in (-1, 1)
+        )
+        fall = ratio**self.formal_order
+        return least_near <= self.largest and least_far <= fall * most_near and fall * least_near <= most_far

@@ -25,13 +25,16 @@ finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as 
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
 A formula is judged at the Poisson's ratios that it claims.
 
-**Where the numbers come from.** No original paper was at hand. Constants of Dimitriadis, Garcia, Gavara and Chadwick,
-Managuli, Long, Hermanowicz and Hayes were compared on 2026-11-22, digit by digit, with public programs that cite these
-papers (AtomicJ; Python programs for force curves; a script for Long; an R package and a Python program for Hayes'
-table); where several have one, they agree. Constants of Clifford are those of nanite. Closed forms of the half-space
-and limits of thin layers were checked by our own solver, not against the books. From memory alone are the fit of Lin,
-Hui and Conway, all ranges under "claimed for" but that of Long, and the numbers of sections. What is said of a formula
-below holds for these numbers, and for its authors' only as far as programs copied them rightly.
+**Where the numbers come from.** No original paper could be read in full; the column "checked against" says what was
+read in its place on 2026-11-22. Public programs that cite the papers (AtomicJ; Python programs for force curves; a
+script for Long; an R package and a Python program for Hayes' table) were compared digit by digit; where several have a
+number, they agree. AtomicJ is by the author of Hermanowicz 2021, whose abstract says that the formulas hold for any
+thickness. A test asks the installed nanite for Hertz, the cone and Clifford. Abstracts were found of Dimitriadis, of
+Gavara and Chadwick, and of Lin, Hui and Conway: finite elements of a punch that sticks and of one that slides, fitted
+by analytic compliances, without their numbers. Limits of thick and thin layers are tests with our own solver. From
+memory remain the numbers of the fit of Lin, Hui and Conway, the ranges of Dimitriadis, Garcia, Gavara and Managuli, and
+the numbers of sections and pages. What is said of a formula below holds for these numbers, and for its authors' only as
+far as programs copied them rightly.
 
 - **Error of the force**: formula over exact force at the same depth, minus one.
 - **Error of the modulus**: Young's modulus that least squares find in an exact force curve from zero to the depth that
@@ -66,12 +69,20 @@ def _table(heads: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def _holding() -> str:
-    heads = ("formula", "layer", "source", "claimed for", *(f"holds to {100 * share:g} %" for share in SHARES))
+    heads = (
+        "formula",
+        "layer",
+        "source",
+        "checked against",
+        "claimed for",
+        *(f"holds to {100 * share:g} %" for share in SHARES),
+    )
     return _table(heads, (_held(formula, nu) for formula in FORMULAS for nu in formula.poissons_ratios))
 
 
 def _held(formula: PublishedFormula, nu: float) -> Iterator[str]:
-    told = (formula.source, formula.claim) if nu == formula.poissons_ratios[0] else ("", "")
+    told = (formula.source, formula.checked, formula.claim)
+    told = told if nu == formula.poissons_ratios[0] else ("",) * 3
     yield from (formula.name, f"{formula.support}, nu = {nu:g}", *told)
     for share in SHARES:
         yield _range(formula, nu, audit.holds_to(formula, nu, share))

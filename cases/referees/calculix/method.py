@@ -30,8 +30,9 @@ from contact import (
     other_layer,
 )
 from contact.answer.from_depth import QUANTITIES
+from contact.records.extras import NOT_INSTALLED
 
-NEEDS = "CalculiX (the program ccx) is not installed: apt-get install calculix-ccx"
+NEEDS = f"CalculiX (the program ccx) {NOT_INSTALLED}: apt-get install calculix-ccx"
 # The coarsest mesh meets a depth so well, relative; what is left is made up for by the exponents, to second order. Ten
 # secant steps are twice what any scene needed.
 MET, MOST_STEPS = 1e-4, 10

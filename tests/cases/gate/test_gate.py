@@ -6,6 +6,7 @@ import pytest
 
 from cases.results.records.claim import Kind
 from cases.results.status import ExitCode, Status, exit_code
+from contact.records.extras import NOT_INSTALLED
 from reports.pages.annotations import MOST, annotation_lines
 from tests.cases.example_run import OTHER_SCENE, SCENE, fast_run, passing_case
 from tests.cases.gate.example_baselines import accepted, clean_run, gated, regressions, scaled, with_force, with_rows
@@ -107,6 +108,41 @@ def test_a_solver_that_broke_down_is_invalid_with_its_reason(folder):
     assert all("value is nan" in claim.message for claim in found)
 
 
+def skipped(reason, scenes=(SCENE, OTHER_SCENE)):
+    """The clean run with every solution of finite elements on these scenes skipped for a reason."""
+
+    def change(row):
+        if row.method != "fem" or row.scene not in scenes:
+            return row
+        return dataclasses.replace(row, status=Status.SKIP, reason=reason, quantities=(), curves=(), cost=None)
+
+    run = with_rows(change)
+    (case,) = run.cases
+    return dataclasses.replace(run, cases=(dataclasses.replace(case, claims=()),))
+
+
+ABSENT = f"fem {NOT_INSTALLED}: pip install something"
+
+
+def test_a_method_that_is_not_installed_is_told_once_and_not_compared(folder):
+    claims = [claim for claim in regressions(gated(skipped(ABSENT), folder)) if "fem" in claim.methods]
+    assert [claim.status for claim in claims] == [Status.SKIP]
+    assert ABSENT in claims[0].message
+    assert "4 accepted numbers are not compared" in claims[0].message
+
+
+def test_what_is_installed_is_compared_beside_what_is_not(folder):
+    other = [claim for claim in regressions(gated(skipped(ABSENT), folder)) if claim.methods == ("mdr",)]
+    assert Status.PASS in {claim.status for claim in other}
+    assert len(other) > 8
+
+
+@pytest.mark.parametrize(("reason", "scenes"), [("it models half-spaces", (SCENE, OTHER_SCENE)), (ABSENT, (SCENE,))])
+def test_a_method_that_refuses_or_answers_some_scenes_only_still_misses_what_was_accepted(folder, reason, scenes):
+    found = [claim for claim in failures(skipped(reason, scenes), folder) if "normal_force" in claim.quantity]
+    assert {claim.scene for claim in found if claim.scene} == set(scenes)
+
+
 def test_what_nobody_accepted_fails_by_its_name(folder):
     stranger = dataclasses.replace(fast_run(SCENE), method="newcomer")
     case = dataclasses.replace(passing_case(), runs=(*passing_case().runs, stranger))
@@ -120,8 +156,9 @@ def test_a_case_that_left_the_suite_fails_by_its_name(folder):
     result = gated(clean_run(other), folder)
     lost = result.case("example_cone")
     assert {claim.status for claim in lost.claims} == {Status.INCOMPARABLE}
-    single = dataclasses.replace(clean_run(other), suite="")
-    assert "example_cone" not in {case.name for case in gated(single, folder).cases}
+    for suite in ("", "referees", "nightly"):
+        elsewhere = dataclasses.replace(clean_run(other), suite=suite)
+        assert "example_cone" not in {case.name for case in gated(elsewhere, folder).cases}
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,18 @@ from cases.declare.registry import load_cases
 from cases.gate import spread
 from cases.gate.spread import measured_spreads, nudged_scene
 from cases.run.solve_task import solve
-from contact import ContactRadii, FlatPunch, IndentationDepths, InvalidInput, Layer, Scene, Tabulated
+from contact import (
+    ContactRadii,
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    Paraboloid,
+    Scene,
+    Tabulated,
+)
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
 
 
@@ -53,6 +64,30 @@ def test_a_loading_that_would_leave_the_scene_stays():
     assert nudged_scene(scene, np.inf).loading == scene.loading
     assert nudged_scene(scene, np.inf).layer != scene.layer
     assert nudged_scene(scene, 0.0).loading != scene.loading
+
+
+@pytest.mark.parametrize(("kind", "name"), [(DepthHistory, "depth"), (ForceHistory, "force")])
+def test_a_history_is_nudged_where_it_is_not_zero(kind, name):
+    scene = Scene(
+        layer=Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.5),
+        indenter=Paraboloid(radius_of_curvature=1e-2),
+        loading=kind(time=np.array([0.0, 1.0, 2.0]), **{name: np.array([0.0, 1e-5, 1e-5])}),
+    )
+    nudged = getattr(nudged_scene(scene, np.inf).loading, name)
+    assert nudged.tolist() == [0.0, *[np.nextafter(1e-5, np.inf)] * 2]
+
+
+def test_repetitions_are_not_refined_for_an_error(monkeypatch):
+    """Only their numbers count; a referee's refinement takes many times as long as its answer."""
+    asked = []
+    (scene, *_), (use, *_) = fake_case().scenes, fake_case().methods
+    task = fake_case().task(scene, use)
+    monkeypatch.setattr("cases.run.solve_task.registered", lambda: {task.method: None})
+    monkeypatch.setattr("cases.run.solve_task._estimated", lambda _, answer: asked.append(answer) or answer)
+    solve(task, "", estimates=False)
+    assert not asked
+    solve(task, "")
+    assert len(asked) == 1
 
 
 @pytest.mark.usefixtures("in_this_process")
