@@ -231,7 +231,7 @@ CLAIMS = (
         scenes=(CREEPING.name,),
         fast="tamaas",
         reference="mdr",
-        tolerance=3e-2,
+        tolerance=1e-2,
         reason=WHY["creep by a grid"],
     ),
     *(
