@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact import Cost, Impact, ImpactHistory, Paraboloid, Scene
+from contact import Cost, Impact, ImpactHistory, Layer, Paraboloid, Scene
 from fem_reference.in_time.errors import KnownErrors, with_errors
-from tests.mdr.viscoelastic_scenes import figure_12
 
 PEAKS = ("peak_force", "peak_depth", "coefficient_of_restitution")
 
 
 def rebound(end: float, radius: float = 1e-3) -> ImpactHistory:
     """A contact that is all but over at t = 1 s and ends at `end` [s]; its radius is read with a scatter."""
-    scene: Scene = figure_12(2e-3)
-    assert isinstance(scene.loading, Impact)
-    assert isinstance(scene.indenter, Paraboloid)
+    scene = Scene(
+        layer=Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded"),
+        indenter=Paraboloid(radius_of_curvature=1e-2),
+        loading=Impact(mass=1e-3, velocity=1.0),
+    )
     time = np.append(np.linspace(0.0, 1.0, 101), np.linspace(1.0, end, 51)[1:])
     pulse = np.where(time < 1.0, np.sin(np.pi * np.minimum(time, 1.0)), 0.0)
     pulse[time >= 1.0] = 1e-6 * (1.0 - (time[time >= 1.0] - 1.0) / (end - 1.0))
