@@ -13,7 +13,7 @@ from mdr import Mdr
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
 
 
-@pytest.mark.parametrize("nodes", [8, 12, 16, 24])
+@pytest.mark.parametrize("nodes", [8, 12, *(pytest.param(n, marks=pytest.mark.slow) for n in (16, 24))])
 def test_errors_of_power_laws_hold_on_narrow_and_wide_contacts(nodes: int) -> None:
     """Depth and force were off by up to 21 000 times the stated error where n is far from an integer."""
     for exponent in (1.09, 2.3, 3.49, 4.1, 6.3, 6.99, 8.35, 8.5, 12.2, 15.5, 15.9):

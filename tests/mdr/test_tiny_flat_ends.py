@@ -39,7 +39,7 @@ def indenter(kind: str, b: float) -> Profile:
 
 @pytest.mark.parametrize("body", BODIES)
 @pytest.mark.parametrize("kind", ["cone", "paraboloid", "spheroconical", "table"])
-@pytest.mark.parametrize("nodes", [12, 20])
+@pytest.mark.parametrize("nodes", [12, pytest.param(20, marks=pytest.mark.slow)])
 def test_a_path_from_the_tip_to_the_thickness_keeps_its_bars(kind: str, body: str, nodes: int) -> None:
     """Depth and force at radii from b to h, for b/h from 1e-8 to 0.1, against one equation for each radius."""
     for b in (1e-8, 3e-6, 1e-4, 0.1):
