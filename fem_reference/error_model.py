@@ -125,6 +125,9 @@ class HistoryCoefficients:
     # A peak states at least this share of the largest change beside it: an error of second order in the cells is a
     # third to a fifth of what half the cells change.
     share_beside_peak: float = 1 / 3
+    # The same of the largest contact radius, which is read from pressures on cells: it erred by up to 0.4 of the change
+    # beside it where the edge jumps from cell to cell (70 impacts, seeds 9003, 9104 and 9105, 2026-11-22).
+    radius_beside_peak: float = 0.5
     # Every number states at least this share of the mean change of all of them by half the cells.
     share_of_mean: float = 0.8
     # Contact ends when it is half a cell wide: the contact time of a cone is of first order in the cells, so that half
@@ -143,8 +146,8 @@ class HistoryCoefficients:
     # by at most 1.1e-5 (nu = 0.3 to 1/2, a/h = 0.2 to 300, 2026-11-22); at the usual 1e-7 the term adds 4e-6.
     outer_edge_safety: float = 40.0
     # Distance, in cells, between the true contact edge and the one read from the pressures, whose polynomial is good to
-    # 0.06 cells.
-    edge_reading: float = 0.1
+    # 0.06 cells. Largest radii that half the cells changed by less erred by up to 0.04, once by 0.11 (same impacts).
+    edge_reading: float = 0.06
     # The same beside a kink, where pressures do not end like sqrt(a - r).
     edge_reading_at_kink: float = 1.0
     # How many cells from a kink count as beside it.

@@ -206,6 +206,7 @@ def _errors(
         of_depth = exact if depth_given else stiffness
         return linear | {
             "pressure": system.flat_punch.punch_pressure_error(ratio) + of_depth + PRESSURE_ROUNDING,
+            "surface_displacement": system.flat_punch.spring_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "indentation_depth": of_depth,
             "normal_force": stiffness if depth_given else exact,
         }
@@ -225,6 +226,9 @@ def _errors(
         "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
         "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"]) + moved + rounding,
+        # An error of g moves the surface like a flat punch, by no more than itself; without an edge density that of a
+        # does nothing.
+        "surface_displacement": errors["indentation_depth"] + rounding,
     }
 
 

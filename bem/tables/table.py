@@ -1,9 +1,9 @@
 """A table of flat punches, k_bar(a/h) and p_bar(r/a; a/h), as functions: section 3.2 of Forsbach (2023).
 
-Between the rows and columns the table is read by splines of smooth functions only: `ln k_bar` over `ln(a/h)`, and
-`q = p_bar sqrt(1 - rho^2)` over `ln(a/h)` and `theta = arcsin(rho)`, in which q is even about the axis and about the
-edge. The half-space, a/h = 0, is the table's exact first row: between it and the smallest tabulated ratio, 1/k_bar and
-q are linear in a/h (so are the solutions for a/h -> 0, up to third order: the layer then answers with one constant).
+Between the rows and columns the table is read by splines of smooth functions only: `ln k_bar` over `ln(a/h)`, less what
+a thick layer has of it, and `q = p_bar sqrt(1 - rho^2)` over `ln(a/h)` and `theta = arcsin(rho)`, in which q is even
+about the axis and about the edge. The half-space, a/h = 0, is the table's exact first row: between it and the smallest
+tabulated ratio q is linear in a/h, and 1/k_bar too (the layer then answers with one constant) but for the third order.
 Nothing is read beyond the largest ratio.
 """
 
@@ -85,12 +85,12 @@ class FlatPunchTable(FlatPunchSolution):
         return float(self.ratios[-1])
 
     def linear_errors(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Third order, of coefficients near one on one layer; how far a film bends is seen in q of the first row."""
+        """Of k_bar the third order is known; how far a film bends is seen in q of the first row."""
         first = float(self.ratios[0])
         left = np.where(ratio < first, ratio * first**2, 0.0)
         if self.stack is None:
             # In q the floor of conjugate gradients is as large.
-            return left, np.zeros_like(left)
+            return first * left, np.zeros_like(left)
         return left * max(1.0, self.first_bending / first**3), left * (self.first_bending / first**3)
 
     @property
@@ -101,17 +101,13 @@ class FlatPunchTable(FlatPunchSolution):
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar(a/h), shape of `ratio`."""
         xi = self._checked(ratio)
-        first = self.ratios[0]
-        read = np.exp(self._log_stiffness(np.log(np.maximum(xi, first))))
-        deviation = np.minimum(xi / first, 1.0) * (1.0 - 1.0 / read)
-        return np.asarray(1.0 / (1.0 - deviation))
+        return np.asarray(self._thick(xi) * np.exp(self._log_share(xi)[0]))
 
     def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """c_bar = k_bar + xi k_bar' = k_bar (1 + d ln k_bar / d ln xi), Eq. (10), shape of `ratio`."""
         xi = self._checked(ratio)
-        stiffness = self.normalized_contact_stiffness(xi)
-        slope = self._log_stiffness.derivative()(np.log(np.maximum(xi, self.ratios[0])))
-        return np.asarray(stiffness * np.where(xi < self.ratios[0], stiffness, 1.0 + slope))
+        (share, slope), thick, s = self._log_share(xi), self._thick(xi), self._first_order * xi
+        return np.asarray(thick * np.exp(share) * (1.0 + slope + s * (1.0 + 2.0 * s) / thick))
 
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
         """q(rho; a/h) = p_bar sqrt(1 - rho^2), `rho` and `ratio` broadcast."""
@@ -124,7 +120,7 @@ class FlatPunchTable(FlatPunchSolution):
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar and c_bar."""
-        return self._larger_neighbour(self.error, ratio)
+        return self._larger_neighbour(self.error, ratio) + self.linear_errors(np.asarray(ratio, dtype=np.float64))[0]
 
     def smooth_pressure_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the error of q at any radius, relative to its largest value."""
@@ -175,9 +171,45 @@ class FlatPunchTable(FlatPunchSolution):
             )
         return xi
 
+    def _thick(self, ratio: FloatArray) -> FloatArray:
+        """1 + s + s^2, which k_bar of a thick layer is up to third order."""
+        s = self._first_order * ratio
+        return np.asarray(1.0 + s + s**2)
+
+    def _log_share(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """ln k_bar less a thick layer's, and its slope by ln(a/h).
+
+        Below the first row it is of third order on one layer; on a stack 1/k_bar is linear.
+        """
+        first = self.ratios[0]
+        t = np.log(np.maximum(ratio, first))
+        share, slope = self._share_spline(t), self._share_spline.derivative()(t)
+        begun = self._share_spline(np.log(first)) * (ratio / first) ** 3
+        rise = 3.0 * begun
+        if self.stack is not None:
+            s, thick = self._first_order * np.minimum(ratio, first), self._thick(np.minimum(ratio, first))
+            begun, rise = -np.log1p(-s) - np.log(thick), s / (1.0 - s) - s * (1.0 + 2.0 * s) / thick
+        return np.where(ratio < first, begun, share), np.where(ratio < first, rise, slope)
+
     @cached_property
-    def _log_stiffness(self) -> BSpline:
-        return make_interp_spline(np.log(self.ratios), np.log(self.stiffness), k=5)
+    def _first_order(self) -> float:
+        """d(k_bar)/d(a/h) of the half-space: (1 - 1/k_bar)/(a/h) of the first two rows, free of the third order.
+
+        On a stack the first row stands alone: a stiff film bends there already.
+        """
+        rate = (1.0 - 1.0 / self.stiffness[:2]) / self.ratios[:2]
+        if self.stack is not None:
+            return float(rate[0])
+        square = self.ratios[:2] ** 2
+        return float((rate[0] * square[1] - rate[1] * square[0]) / (square[1] - square[0]))
+
+    @cached_property
+    def _share_spline(self) -> BSpline:
+        """Over ln(a/h), on one layer further down than the first row, since a spline ends less well than it runs."""
+        t, share = np.log(self.ratios), np.log(self.stiffness / self._thick(self.ratios))
+        below = (t[1] - t[0]) * np.arange(-LEAST_ROWS if self.stack is None else 0, 0)
+        begun = share[0] * np.exp(3.0 * below)
+        return make_interp_spline(np.append(t[0] + below, t), np.append(begun, share), k=5)
 
     @cached_property
     def _smooth_pressure(self) -> RectBivariateSpline:

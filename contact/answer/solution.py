@@ -177,10 +177,12 @@ class ContactPath(Solution):
         """The quantity's own magnitude; with adhesion, where it may cross zero, its largest along the path.
 
         That of the pressure is the mean pressure F/(pi a^2) under the contact, with adhesion at least that of a flat
-        punch at the same depth.
+        punch at the same depth; that of the surface's displacement is the depth.
         """
         if quantity == "pressure":
             return self._mean_pressure()
+        if quantity == "surface_displacement":
+            return self.scale("indentation_depth")
         if self._adheres or not hasattr(self, quantity):
             return super().scale(quantity)
         return np.abs(np.asarray(getattr(self, quantity), dtype=np.float64))

@@ -25,6 +25,9 @@ CHANNELS = {
     "contact_time": "indentation_depth",
     "coefficient_of_restitution": "velocity",
 }
+# What the edge alone tells: cells know it to a share of one, and the end of a slow rebound hardly at all. It says
+# nothing of depth and force.
+_OF_THE_EDGE = ("contact_time", "peak_contact_radius")
 # The channel of each peak.
 PEAKS = {"peak_force": "normal_force", "peak_depth": "indentation_depth", "peak_contact_radius": "contact_radius"}
 
@@ -63,7 +66,7 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
     space = {name: known.space * _channel_change(fine, half_cells, name) for name in channels}
     space |= {name: known.space * _scalar_change(fine, half_cells, name) for name in scalars}
     space |= {
-        name: max(space[name], IN_TIME.share_beside_peak * _change_beside_peak(fine, half_cells, PEAKS[name]))
+        name: max(space[name], _share_beside_peak(name) * _change_beside_peak(fine, half_cells, PEAKS[name]))
         for name in fine.SCALARS
     }
     if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
@@ -72,17 +75,24 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
         space["coefficient_of_restitution"] *= IN_TIME.uneven_end
     time = {name: _channel_change(half_cells, half_both, name) for name in channels}
     time |= {name: _scalar_change(half_cells, half_both, name) for name in scalars}
-    judged = [name for name in ("indentation_depth", "normal_force", *scalars) if "radius" not in name]
+    judged = [name for name in ("indentation_depth", "normal_force", *scalars) if name not in _OF_THE_EDGE]
     typical = IN_TIME.share_of_mean * float(np.mean([space[name] for name in judged if name not in known.exact]))
     error = {}
     for name in (*channels, *scalars):
         floor = IN_TIME.share_of_mean * space[CHANNELS[name]] if name in CHANNELS else typical
-        size = max(space[name], floor * _share(fine, name)) + time[name] + known.radius * ("radius" in name)
+        reading = known.radius * ("radius" in name)
+        size = max(space[name], floor * _share(fine, name), 0.0 if name in channels else reading) + time[name]
+        # A channel is read at every instant, a peak only where readings of both meshes were compared around it.
+        size += reading if name in channels else 0.0
         size += known.everywhere * _share(fine, name)
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
     if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
         error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
     return replace(fine, error_estimate=error)
+
+
+def _share_beside_peak(name: str) -> float:
+    return IN_TIME.radius_beside_peak if "radius" in name else IN_TIME.share_beside_peak
 
 
 def _change_beside_peak(fine: H, half_cells: H, name: str) -> float:

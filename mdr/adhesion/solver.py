@@ -39,6 +39,7 @@ from mdr.elastic import PathFields, density_errors, solve_elastic
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.error_model import PRESSURE_ROUNDING
 from mdr.springs.reach import FIRST_RATIO
 from mdr.springs.shared_tables import growing_radii, power_law
 
@@ -155,7 +156,8 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
             "normal_force": _relative(errors[FORCE], force),
             "contact_stiffness": _relative(relative * stiffness + springs * errors[RADIUS], stiffness),  # Eq. (6)
             "pressure": pressure,
-        },
+        }
+        | _displacement_error(system, radius, depth, errors),
         cost=log.cost(unknowns=getattr(system.flat_punch, "unknowns", 0)),
         stages=log.records,
         contact_radius=radius,
@@ -164,6 +166,17 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         contact_stiffness=stiffness,
         fields=fields,
     )
+
+
+def _displacement_error(
+    system: EquivalentSystem, radius: FloatArray, depth: FloatArray, errors: FloatArray
+) -> dict[str, FloatArray]:
+    """Of the depth, and beside the edge of the radius: there the surface rises from it by the root of the distance."""
+    if system.variants:
+        return {}
+    hanging = np.abs(system.mdr_profile(radius) - depth)
+    beside = 2.0 / np.pi * hanging * np.sqrt(2.0 * errors[RADIUS] / radius)
+    return {"surface_displacement": _relative(errors[DEPTH] + beside, depth) + PRESSURE_ROUNDING}
 
 
 def _relative(errors: FloatArray | float, values: FloatArray | float) -> FloatArray:

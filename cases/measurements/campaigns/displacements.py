@@ -27,6 +27,7 @@ from contact import (
     ExponentialDepth,
     FlatPunch,
     GradedLayer,
+    IndentationDepths,
     Layer,
     LayerStack,
     Paraboloid,
@@ -73,19 +74,23 @@ def alone_check(path: ContactPath, distances: FloatArray) -> Measurement:
 
 
 def referee_check(path: ContactPath, distances: FloatArray) -> Measurement:
-    """Against the direct integral equation at the same radius; both may miss by what they state of depth and force."""
-    scene = path.scene.replace(loading=ContactRadii(values=path.contact_radius), effects=())
+    """Against the direct integral equation at the same radius, which may miss by what it states of depth and force."""
+    own, by_radius = path.scene.loading, ContactRadii(values=path.contact_radius)
+    is_punch = isinstance(path.scene.indenter, FlatPunch)
+    scene = path.scene.replace(loading=own if is_punch else by_radius, effects=())
     opinion = IntegralEquationMethod().solve(scene)
     radius = _beside(path, distances)
     off = np.abs(path.surface_displacement(radius) - opinion.surface_displacement(radius))
-    stated, allowance = (_largest(answer) for answer in (path, opinion))
+    stated, allowance = _stated(path), _stated(opinion) + HUNDRED_ROUNDINGS
+    error = float(off.max() / path.indentation_depth[0])
     return Measurement(
         method=path.method,
         quantity="displacement",
         reference="integral_equation",
-        error=float(off.max() / path.indentation_depth[0]),
+        error=error,
         stated=stated,
-        uncertainty=allowance + HUNDRED_ROUNDINGS,
+        uncertainty=allowance,
+        sharpness=stated / error if error > allowance else None,
     )
 
 
@@ -94,8 +99,10 @@ def _beside(path: ContactPath, distances: FloatArray) -> FloatArray:
     return np.asarray(np.nextafter(float(path.contact_radius[0]) * (1 + distances), np.inf))
 
 
-def _largest(path: ContactPath) -> float:
-    """The largest error stated of radius, depth, force and stiffness: of the displacement none is stated."""
+def _stated(path: ContactPath) -> float:
+    """What is stated of the displacement, or else the largest of radius, depth, force and stiffness."""
+    if "surface_displacement" in path.error_estimate:
+        return float(np.max(path.error_estimate["surface_displacement"]))
     return max(float(np.max(path.error_estimate.get(name, 0.0))) for name in path.ARRAYS)
 
 
@@ -112,7 +119,9 @@ def random_body(draw: Draw) -> Scene:
     if draw.integers(4) == 0:
         flat = float(draw.uniform(0.1, 1.1))
         indenter = FlatPunch(radius=a) if flat > 1.0 else TruncatedCone(flat_radius=flat * a, slope=slope)
-    return Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]))
+    is_punch = isinstance(indenter, FlatPunch)
+    loading = IndentationDepths([slope * a]) if is_punch else ContactRadii([a])
+    return Scene(layer=layer, indenter=indenter, loading=loading)
 
 
 def _uniform(draw: Draw) -> ElasticLayer:

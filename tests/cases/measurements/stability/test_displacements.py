@@ -5,7 +5,8 @@ import pytest
 
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from cases.declare.methods import build
-from cases.measurements.campaigns.displacements import displacement_campaign
+from cases.measurements.campaigns.displacements import displacement_campaign, random_body
+from cases.measurements.measurement import sharpness
 from cases.results.status import Status
 from mdr.springs import surface_fields
 
@@ -22,6 +23,24 @@ def test_displacements_keep_their_stated_errors():
     assert beyond(displacement_campaign(build("mdr", {}), seed=1, count=7, numbers=(*LAYERS, GRADED))) == set()
     direct = build("integral_equation", {})
     assert beyond(displacement_campaign(direct, seed=1, count=7, numbers=LAYERS)) == set()
+
+
+def test_mdr_states_an_error_of_displacements_by_itself():
+    scene = random_body(np.random.default_rng([1, LAYERS[0]]))
+    path = build("mdr", {"nodes": 12}).solve(scene)
+    stated = path.uncertainty("surface_displacement")
+    assert stated.shape == path.contact_radius.shape
+    assert 0.0 < stated[0] < 1e-6 * path.indentation_depth[0]
+    rows = displacement_campaign(build("mdr", {"nodes": 12}), seed=1, count=7, numbers=LAYERS)
+    assert beyond(rows) == set()
+    # Of wide bars this one number of a few scenes would tell at once: depth and force err by as much.
+    assert np.median(sharpness(row for row in rows if row.quantity == "displacement")) < 30.0
+
+
+def test_every_body_that_may_be_drawn_is_a_scene():
+    """Flat punches were drawn with a radius to be reached, and ended the campaign."""
+    drawn = {type(random_body(np.random.default_rng([7901, n])).indenter).__name__ for n in range(60)}
+    assert "FlatPunch" in drawn
 
 
 def test_a_shell_that_ends_a_rounding_before_the_radius_is_seen(monkeypatch):

@@ -1,0 +1,28 @@
+"""Blunt tips r^n with any n: stated errors hold on the fewest nodes as on many."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from cases.measurements.campaigns.referee import second_opinion
+from contact import ContactPath, ContactRadii, Layer, PowerLaw, Scene
+from mdr import Mdr
+
+LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
+
+
+@pytest.mark.parametrize("nodes", [8, 12, *(pytest.param(n, marks=pytest.mark.slow) for n in (16, 24))])
+def test_errors_of_power_laws_hold_on_narrow_and_wide_contacts(nodes: int) -> None:
+    """Depth and force were off by up to 21 000 times the stated error where n is far from an integer."""
+    for exponent in (1.09, 2.3, 3.49, 4.1, 6.3, 6.99, 8.35, 8.5, 12.2, 15.5, 15.9):
+        tip = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=0.1)
+        for a in (0.01, 0.5):
+            scene = Scene(layer=LAYER, indenter=tip, loading=ContactRadii(values=np.array([0.5 * a, a])))
+            path = Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene)
+            assert isinstance(path, ContactPath)
+            other = second_opinion(path)
+            for name in ("indentation_depth", "normal_force"):
+                error = np.abs(getattr(path, name) / other.values[name] - 1.0)
+                assert np.all(error <= path.error_estimate[name] + other.uncertainty), (exponent, a, name)
