@@ -15,7 +15,7 @@ timing, so that results repeat bit by bit.
 
 from __future__ import annotations
 
-from typing import Any, Literal, Protocol
+from typing import Any, Final, Literal, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -26,6 +26,9 @@ from contact import InvalidInput
 from contact.records.validation import FloatArray
 
 Planning = Literal["FFTW_ESTIMATE", "FFTW_MEASURE"]
+# Unused numbers after each row of a plane, one line of cache. Rows of a power of two numbers would all begin at the same
+# place of the cache: column transforms then took 3.8 times as long (256 x 256 cells, 2026-11-22).
+BESIDE_ROWS: Final = 8
 
 
 class Transform(Protocol):
@@ -90,7 +93,7 @@ class QuarterTransform:
         _checked_sizes(2 * cells, period)
         self.cells, self.period = cells, period
         half = period // 2
-        self._plane = pyfftw.zeros_aligned((half, half), dtype="float64")
+        self._plane = pyfftw.zeros_aligned((half, half + BESIDE_ROWS), dtype="float64")[:, :half]
         occupied = self._plane[:cells]
         plan = _planner(threads, planning)
         self._rows = plan(occupied, occupied, axes=(1,), direction="FFTW_REDFT10")
