@@ -13,7 +13,7 @@ from bem.grid.calibrated_disc import FILL as DISC_FILL
 from bem.grid.conjugate_gradients import GridSolution, solve_contact
 from bem.grid.contact_edge import STEP, area_radius, slope
 from bem.grid.error_model import DIRECT
-from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffness_exponent
+from bem.grid.flat_punch import StiffnessNearby, contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid, grid_sequence, prolonged, refuse_thin_layer
 from bem.kernels.moduli import contact_modulus
@@ -188,6 +188,7 @@ class GridContactSearch:
         radius = area_radius(guess.answer.pressure, guess.on_grid.grid.cell_size)
         start: FloatArray | None = None
         beside: Beside | None = None
+        known: StiffnessNearby | None = None
         states: list[CircularContact] = []
         box = radius
         for cells in grid_sequence(points):
@@ -200,8 +201,9 @@ class GridContactSearch:
                 stiffness = on_grid.stiffness(answer, beside)
             start, beside = prolonged(answer.pressure), beside.prolonged()
             if cells >= points // 2:
-                states.append(self._measured(on_grid, answer, stiffness, radius))
-                radius = states[-1].contact_radius
+                with self.log.stage("contact_stiffness"):
+                    radius, known = self._radius(stiffness, radius, cells, known)
+                states.append(self._state(on_grid, answer, radius, stiffness))
         return states[1], states[0]
 
     def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[CircularContact, CircularContact]:
@@ -282,13 +284,11 @@ class GridContactSearch:
             radius *= 1.3
         raise NotConvergedError(f"the contact at a depth of {depth:g} m outgrew every box")
 
-    def _measured(
-        self, on_grid: IndenterOnGrid, answer: GridSolution, stiffness: float, near: float
-    ) -> CircularContact:
-        """With the radius of the flat punch that is as stiff."""
-        with self.log.stage("contact_stiffness"):
-            radius = radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(on_grid.grid.cells, near))
-        return self._state(on_grid, answer, radius, stiffness)
+    def _radius(
+        self, stiffness: float, near: float, cells: int, known: StiffnessNearby | None
+    ) -> tuple[float, StiffnessNearby]:
+        """That of the flat punch that is as stiff."""
+        return radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(cells, near), known)
 
     def _state(self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float) -> CircularContact:
         self._check_inside(answer, on_grid.grid, radius)
