@@ -29,8 +29,8 @@ COARSE_TOLERANCE: Final = 1e-5
 # The first coarse box holds a contact of this times the radius where f equals the depth. Not round on purpose: a cell
 # centre exactly on that radius would let rounding decide whether it touches.
 FIRST_BOX: Final = 1.0973
-# Tolerance of the states beside a contact over the scatter that is stated for their slope: the radius then lost less than
-# a tenth of that scatter (12 contacts on 128 and 256 cells, 2026-11-22).
+# Tolerance of the states beside a contact over the scatter that is stated for their slope: the radius then lost less
+# than a tenth of that scatter (12 contacts on 128 and 256 cells, 2026-11-22).
 BESIDE_SHARE: Final = 0.05
 # Contact radius over half the box, and its largest value in a coarse box, which leaves room for a deeper contact.
 FILL: Final = 0.88

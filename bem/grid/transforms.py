@@ -26,7 +26,7 @@ from contact import InvalidInput
 from contact.records.validation import FloatArray
 
 Planning = Literal["FFTW_ESTIMATE", "FFTW_MEASURE"]
-# Unused numbers after each row of a plane, one line of cache. Rows of a power of two numbers would all begin at the same
+# Unused numbers after each row of a plane, one line of cache. Rows of a power of two numbers would all begin at one
 # place of the cache: column transforms then took 3.8 times as long (256 x 256 cells, 2026-11-22).
 BESIDE_ROWS: Final = 8
 
