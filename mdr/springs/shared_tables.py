@@ -65,7 +65,11 @@ def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> SharedTab
     coefficient, exponent = law
     length = scale if layer.is_half_space else layer.thickness
     return SharedTable(
-        layer.in_own_units(), _unit_power(exponent), length, coefficient * length**exponent, contact_modulus(layer) * length
+        layer.in_own_units(),
+        _unit_power(exponent),
+        length,
+        coefficient * length**exponent,
+        contact_modulus(layer) * length,
     )
 
 
