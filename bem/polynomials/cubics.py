@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contact.answer.lapack import lapack
 from contact.records.validation import FloatArray
@@ -59,10 +60,11 @@ class PiecewiseCubic:
         ends = [_end_slope(*width[:2], *secant[:2]), _end_slope(*width[:-3:-1], *secant[:-3:-1])]
         return cls.hermite(x, y, np.concatenate([ends[:1], inner, ends[1:]]))
 
-    def __call__(self, points: FloatArray) -> FloatArray:
+    def __call__(self, points: ArrayLike) -> FloatArray:
         """Values at points of any shape."""
-        piece = self.x[1:-1].searchsorted(points, side="right")
-        t = points - self.x.take(piece)
+        at = np.asarray(points, dtype=np.float64)
+        piece = self.x[1:-1].searchsorted(at, side="right")
+        t = at - self.x.take(piece)
         value, slope, bend, third = (row.take(piece) for row in self.powers)
         return np.asarray(value + t * (slope + t * (bend + t * third)))
 

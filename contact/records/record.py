@@ -25,7 +25,9 @@ class Record:
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
     def _content(self) -> tuple[Any, ...]:
-        values = [getattr(self, name) for name in _names(type(self))]
+        # A class is hashable, whatever its instances are.
+        names = _names(type(self))  # type: ignore[arg-type]
+        values = [getattr(self, name) for name in names]
         return type(self), *[value.tobytes() if isinstance(value, np.ndarray) else value for value in values]
 
     def __eq__(self, other: object) -> bool:
