@@ -122,6 +122,7 @@ def main() -> None:
                     times[source].append(seconds)
             moved = float(np.max(np.abs(answers[SOURCE] / answers[folder] - 1)))
             found.append(line(row, times[folder], times[SOURCE], moved))
+            sys.stderr.write(f"{found[-1][1]}\n")
     sys.stdout.write("| row | seconds before | now | ratio | answers moved |\n|---|---|---|---|---|\n")
     for _, text in sorted(found, key=lambda pair: -pair[0].ratio):
         sys.stdout.write(f"{text}\n")
