@@ -7,11 +7,11 @@ from functools import cached_property
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from bem.adhesion.disc import AdheringDisc
 from bem.grid.quadrant import EDGE_CELLS
 from bem.grid.surface_fields import Rim, ring_interpolator
+from bem.polynomials.cubics import PiecewiseCubic
 from contact import Scene
 from contact.records.validation import FloatArray
 
@@ -60,7 +60,7 @@ class AdheringFields:
         return np.asarray(self.indentation_depth * self._disc.flat - self._disc.risen)
 
     @cached_property
-    def _density(self) -> PchipInterpolator:
+    def _density(self) -> PiecewiseCubic:
         """p over that of the half-space under a unit depth [m]: smooth up to the edge."""
         disc = self._disc
         r, quotient = disc.grid.radius[disc.disc.contact], disc.quotient(self._pressure)

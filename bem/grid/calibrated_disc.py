@@ -90,7 +90,14 @@ class PixelDisc:
         """Covered cells of the quadrant."""
         return disc(self.cells, FILL * self.cells / 2)
 
-    def solve(self, ratio: float, support: Support, poissons_ratio: float, start: FloatArray | None) -> PunchSolution:
+    def solve(
+        self,
+        ratio: float,
+        support: Support,
+        poissons_ratio: float,
+        start: FloatArray | None,
+        tolerance: float = TOLERANCE,
+    ) -> PunchSolution:
         """Flat punch on a layer with a/h = `ratio`."""
         layer = Layer(
             thickness=self.radius / ratio,
@@ -98,16 +105,18 @@ class PixelDisc:
             poissons_ratio=poissons_ratio,
             support=support,
         )
-        return self.on_layer(layer, ratio, start)
+        return self.on_layer(layer, ratio, start, tolerance)
 
-    def on_layer(self, layer: ElasticLayer, ratio: float, start: FloatArray | None) -> PunchSolution:
+    def on_layer(
+        self, layer: ElasticLayer, ratio: float, start: FloatArray | None, tolerance: float = TOLERANCE
+    ) -> PunchSolution:
         """Flat punch on a layer in this disc's units, as thick as its radius over `ratio`, with E* = 1."""
         cells = fast_period(ceil(2 * self.radius + GAP * layer.thickness)) if self.periodic else self.cells
         kind = PeriodicOperator if self.periodic else FreeSpaceOperator
         operator = kind(layer, cell_size=1.0, cells=cells, quarter=True)
         contact = _resized(self.contact, cells // 2)
         first = None if start is None else _resized(start, cells // 2)
-        answer = solve_on_contact(operator, contact, 1.0, start=first, tolerance=TOLERANCE)
+        answer = solve_on_contact(operator, contact, 1.0, start=first, tolerance=tolerance)
         return PunchSolution(
             stiffness=_stiffness(answer) / (2.0 * self.radius),
             shape=self._shape(answer.pressure[contact], ratio),

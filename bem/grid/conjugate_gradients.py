@@ -11,7 +11,7 @@ grid: the search direction is preconditioned by the inverse kernel, restricted t
 J. Comput. Phys. 257, 431), and callers start from a coarser grid's answer.
 
 With a prescribed force the depth is an unknown too: directions are kept free of net force, and the depth follows from
-the same projection.
+the same projection. The displacement follows each step and is computed afresh only where the projection acts.
 
 Sums over cells mean the same on a whole grid and on a quadrant, whose cells each stand for four.
 """
@@ -33,7 +33,7 @@ class GridSolution:
 
     Attributes:
         pressure: p [Pa], shape (m, m).
-        displacement: u = K p [m], evaluated afresh from the final pressure.
+        displacement: u = K p [m], right to a few roundings.
         indentation_depth: delta [m].
         iterations: Conjugate gradient steps.
         residual: What was asked to fall below the tolerance.
@@ -119,9 +119,9 @@ def solve_contact(
     p = _first_guess(height, depth, load) if start is None else np.maximum(start, 0.0)
     if load is not None:
         p = p * (load / p.sum())
+    u = operator.displacement(p)
     r_before = z_before = v = np.zeros(height.shape)
     for iteration in range(max_iterations + 1):
-        u = operator.displacement(p)
         delta = depth if depth is not None else _mean_depth(u + height, p)
         gap = u + height - delta
         residual = complementarity_residual(p, gap, delta)
@@ -135,10 +135,14 @@ def solve_contact(
         v = z + _polak_ribiere(r, z, r_before, z_before) * _restricted(v, contact)
         if load is not None:
             v = _restricted(v - v.sum() / np.count_nonzero(contact), contact)
-        step = float(np.vdot(r, v)) / float(np.vdot(v, operator.displacement(v)))
-        p = np.maximum(p + step * v, 0.0)
-        if load is not None:
-            p = p * (load / p.sum())
+        q = operator.displacement(v)
+        step = float(np.vdot(r, v)) / float(np.vdot(v, q))
+        p, u = p + step * v, u + step * q
+        if p.min() < 0.0:
+            p = np.maximum(p, 0.0)
+            if load is not None:
+                p = p * (load / p.sum())
+            u = operator.displacement(p)
         r_before, z_before = r, z
     raise _not_converged(residual, tolerance, max_iterations)
 

@@ -13,7 +13,7 @@ from bem.grid.calibrated_disc import FILL as DISC_FILL
 from bem.grid.conjugate_gradients import GridSolution, solve_contact
 from bem.grid.contact_edge import STEP, area_radius, slope
 from bem.grid.error_model import DIRECT
-from bem.grid.flat_punch import contact_stiffness, radius_of_stiffness, stiffness_exponent
+from bem.grid.flat_punch import StiffnessNearby, contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
 from bem.grid.quadrant import COARSE_CELLS, QuadrantGrid, grid_sequence, prolonged, refuse_thin_layer
 from bem.kernels.moduli import contact_modulus
@@ -29,6 +29,9 @@ COARSE_TOLERANCE: Final = 1e-5
 # The first coarse box holds a contact of this times the radius where f equals the depth. Not round on purpose: a cell
 # centre exactly on that radius would let rounding decide whether it touches.
 FIRST_BOX: Final = 1.0973
+# Tolerance of the states beside a contact over the scatter that is stated for their slope: the radius then lost less
+# than a tenth of that scatter (12 contacts on 128 and 256 cells, 2026-11-22).
+BESIDE_SHARE: Final = 0.05
 # Contact radius over half the box, and its largest value in a coarse box, which leaves room for a deeper contact.
 FILL: Final = 0.88
 LARGEST_FILL: Final = 0.92
@@ -53,6 +56,18 @@ LEAST_RADIUS: Final = 3.0
 RAGGED: Final = 2.0
 # The indenter is continued beyond its end by its slope over this last part of its radius.
 END_SHARE: Final = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Beside:
+    """Pressures [Pa] a little less deep and a little deeper, between which the slope of force over depth is taken."""
+
+    less: FloatArray
+    more: FloatArray
+
+    def prolonged(self) -> Beside:
+        """On a grid of half the cell size."""
+        return Beside(prolonged(self.less), prolonged(self.more))
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,11 +105,19 @@ class IndenterOnGrid:
         """F_N [N]; the quadrant stands for four."""
         return 4.0 * self.grid.cell_size**2 * float(state.pressure.sum())
 
-    def stiffness(self, state: GridSolution) -> float:
+    def beside(self, state: GridSolution, start: Beside | None = None) -> Beside:
+        """A little less deep and a little deeper than this state, from other such states or from this one."""
+        depth, first = state.indentation_depth, start or Beside(state.pressure, state.pressure)
+        scatter = DIRECT.slope_scatter * self.grid.cell_size / area_radius(state.pressure, self.grid.cell_size)
+        on_grid = replace(self, tolerance=max(self.tolerance, BESIDE_SHARE * scatter))
+        less = on_grid.at_depth(depth * exp(-STEP), first.less)
+        return Beside(less.pressure, on_grid.at_depth(depth * exp(STEP), first.more).pressure)
+
+    def stiffness(self, state: GridSolution, beside: Beside) -> float:
         """dF/d(delta) [N/m] about this state."""
-        depth = state.indentation_depth
-        less, more = (self.force(self.at_depth(depth * exp(step), state.pressure)) for step in (-STEP, STEP))
-        return slope(depth, self.force(state), less, more)
+        cells = 4.0 * self.grid.cell_size**2
+        less, more = cells * float(beside.less.sum()), cells * float(beside.more.sum())
+        return slope(state.indentation_depth, self.force(state), less, more)
 
     def _counted(self, answer: GridSolution) -> GridSolution:
         self.log.count("iterations", answer.iterations)
@@ -169,6 +192,8 @@ class GridContactSearch:
             guess = self._near_force(value) if prescribed == "force" else self._coarse(value)
         radius = area_radius(guess.answer.pressure, guess.on_grid.grid.cell_size)
         start: FloatArray | None = None
+        beside: Beside | None = None
+        known: StiffnessNearby | None = None
         states: list[CircularContact] = []
         box = radius
         for cells in grid_sequence(points):
@@ -176,10 +201,14 @@ class GridContactSearch:
             with self.log.stage("contact"):
                 solve = on_grid.at_depth if prescribed == "depth" else on_grid.under_force
                 answer = solve(value, start)
-            start = prolonged(answer.pressure)
+            with self.log.stage("contact_stiffness"):
+                beside = on_grid.beside(answer, beside)
+                stiffness = on_grid.stiffness(answer, beside)
+            start, beside = prolonged(answer.pressure), beside.prolonged()
             if cells >= points // 2:
-                states.append(self._measured(on_grid, answer, radius))
-                radius = states[-1].contact_radius
+                with self.log.stage("contact_stiffness"):
+                    radius, known = self._radius(stiffness, radius, cells, known)
+                states.append(self._state(on_grid, answer, radius, stiffness))
         return states[1], states[0]
 
     def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[CircularContact, CircularContact]:
@@ -188,29 +217,33 @@ class GridContactSearch:
             stiffness = contact_stiffness(self.layer, radius, self._punch_cells(points, radius))
         with self.log.stage("first_guess"):
             guess, exponent = self._coarse_root(FirstGuess.stiffness, stiffness, self._depth_scale(radius))
-        depth, start = guess.answer.indentation_depth, None
+        depth, start, beside = guess.answer.indentation_depth, None, None
         states: list[CircularContact] = []
         for cells in grid_sequence(points):
             on_grid = self._on_grid(radius, cells)
             with self.log.stage("contact"):
-                answer, exponent = self._as_stiff(on_grid, stiffness, on_grid.at_depth(depth, start), exponent)
-            depth, start = answer.indentation_depth, prolonged(answer.pressure)
+                answer, beside, exponent = self._as_stiff(
+                    on_grid, stiffness, on_grid.at_depth(depth, start), beside, exponent
+                )
+            depth, start, beside = answer.indentation_depth, prolonged(answer.pressure), beside.prolonged()
             states.append(self._state(on_grid, answer, radius, stiffness))
         with self.log.stage("contact_stiffness"):
             coarse = contact_stiffness(self.layer, radius, self._punch_cells(points, radius) // 2)
         return states[-1], replace(states[-2], contact_stiffness=coarse)
 
     def _as_stiff(
-        self, on_grid: IndenterOnGrid, stiffness: float, answer: GridSolution, exponent: float
-    ) -> tuple[GridSolution, float]:
+        self, on_grid: IndenterOnGrid, stiffness: float, answer: GridSolution, start: Beside | None, exponent: float
+    ) -> tuple[GridSolution, Beside, float]:
         """Secant method in ln(depth) over ln(k_N), which grows like a power of the depth; and that power's inverse."""
-        miss = log(stiffness / on_grid.stiffness(answer))
+        beside = on_grid.beside(answer, start)
+        miss = log(stiffness / on_grid.stiffness(answer, beside))
         for _ in range(12):
             step = float(np.clip(exponent * miss, -0.5, 0.5))
             answer = on_grid.at_depth(answer.indentation_depth * exp(step), answer.pressure)
             if abs(miss) < CLOSE:
-                return answer, exponent
-            before, miss = miss, log(stiffness / on_grid.stiffness(answer))
+                return answer, beside, exponent
+            beside = on_grid.beside(answer, beside)
+            before, miss = miss, log(stiffness / on_grid.stiffness(answer, beside))
             exponent = _updated(exponent, step, before - miss)
         raise NotConvergedError(
             "the prescribed contact radius was not met; use more points or prescribe depths", {"stiffness": abs(miss)}
@@ -256,12 +289,11 @@ class GridContactSearch:
             radius *= 1.3
         raise NotConvergedError(f"the contact at a depth of {depth:g} m outgrew every box")
 
-    def _measured(self, on_grid: IndenterOnGrid, answer: GridSolution, near: float) -> CircularContact:
-        """With the radius of the flat punch that is as stiff."""
-        with self.log.stage("contact_stiffness"):
-            stiffness = on_grid.stiffness(answer)
-            radius = radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(on_grid.grid.cells, near))
-        return self._state(on_grid, answer, radius, stiffness)
+    def _radius(
+        self, stiffness: float, near: float, cells: int, known: StiffnessNearby | None
+    ) -> tuple[float, StiffnessNearby]:
+        """That of the flat punch that is as stiff."""
+        return radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(cells, near), known)
 
     def _state(self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float) -> CircularContact:
         self._check_inside(answer, on_grid.grid, radius)
@@ -357,7 +389,7 @@ class FirstGuess:
 
     def stiffness(self) -> float:
         """dF/d(delta) [N/m]."""
-        return self.on_grid.stiffness(self.answer)
+        return self.on_grid.stiffness(self.answer, self.on_grid.beside(self.answer))
 
 
 def _updated(exponent: float, step: float, moved: float) -> float:

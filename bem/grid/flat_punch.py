@@ -2,28 +2,41 @@
 
 from __future__ import annotations
 
-from math import log
+from dataclasses import dataclass, replace
+from math import exp, log
+from typing import Final, Self
 
 import numpy as np
 
-from bem.grid.calibrated_disc import THIN, PixelDisc, PunchSolution, measured_disc
+from bem.grid.calibrated_disc import THIN, TOLERANCE, PixelDisc, PunchSolution, measured_disc
 from bem.grid.error_model import DIRECT
 from bem.kernels.moduli import contact_modulus
 from contact import ElasticLayer, Layer, NotConvergedError
 from contact.records.validation import FloatArray
 
+# Tolerance of punches whose stiffness alone counts: it is stationary, so that 1e-12 of it is lost at most (64 and
+# 256 cells, bonded and unbonded, nu = 0.3 to 0.5, a/h = 0.1 to 20, 2026-11-22).
+STIFFNESS_TOLERANCE: Final = 1e-6
+# How wrong d ln(k_N)/d ln(a) may be as the edge of a disc of cells tells it: 0.043 at most (64 to 256 cells, bonded and
+# unbonded, nu = 0.3 to 0.5, a/h = 0.1 to 10, 2026-11-22).
+EDGE_DOUBT: Final = 0.05
+# To which ln(k_N) of the contact radius is met.
+RADIUS_TOLERANCE: Final = 1e-7
 
-def grid_punch(layer: ElasticLayer, radius: float, cells: int) -> tuple[PunchSolution, PixelDisc]:
+
+def grid_punch(
+    layer: ElasticLayer, radius: float, cells: int, tolerance: float = TOLERANCE
+) -> tuple[PunchSolution, PixelDisc]:
     """The flat punch of this radius [m], and the grid disc it was computed with."""
     # The ratio is zero on a half-space.
     ratio = radius / layer.thickness
     if not isinstance(layer, Layer):
         disc = measured_disc(cells, False)
-        return disc.on_layer(layer.in_own_units().stretched(disc.radius / ratio), ratio, None), disc
+        return disc.on_layer(layer.in_own_units().stretched(disc.radius / ratio), ratio, None, tolerance), disc
     disc = measured_disc(cells, bool(ratio > THIN))
     if layer.is_half_space:
         return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
-    return disc.solve(ratio, layer.support, layer.poissons_ratio, None), disc
+    return disc.solve(ratio, layer.support, layer.poissons_ratio, None, tolerance), disc
 
 
 def stiffness_exponent(ratio: float) -> float:
@@ -33,7 +46,7 @@ def stiffness_exponent(ratio: float) -> float:
 
 def contact_stiffness(layer: ElasticLayer, radius: float, cells: int) -> float:
     """k_N(a) [N/m], Eq. (10)."""
-    punch, _ = grid_punch(layer, radius, cells)
+    punch, _ = grid_punch(layer, radius, cells, STIFFNESS_TOLERANCE)
     return punch_stiffness(layer, radius, punch)
 
 
@@ -47,19 +60,64 @@ def cell_pressure(layer: ElasticLayer, depth: float, cell_size: float, punch: Pu
     return np.asarray(punch.pressure * (contact_modulus(layer) * depth / cell_size))
 
 
-def radius_of_stiffness(layer: ElasticLayer, stiffness: float, near: float, cells: int) -> float:
-    """The radius a [m] with k_N(a) = stiffness to 1e-7, by the secant method in logarithms.
+@dataclass(frozen=True)
+class StiffnessNearby:
+    """k_N about one radius as a power of the radius.
+
+    Attributes:
+        radius: a [m].
+        stiffness: k_N(a) [N/m], of discs of so many `cells`.
+        cells: Cells across the grid.
+        exponent: d ln(k_N)/d ln(a).
+        doubt: How wrong the exponent may be.
+    """
+
+    radius: float
+    stiffness: float
+    cells: int
+    exponent: float
+    doubt: float
+
+    @classmethod
+    def at(cls, layer: ElasticLayer, radius: float, cells: int) -> Self:
+        """With the exponent that the pressure at the edge tells, a/k_N dk_N/da = 4 k_bar q(1)^2."""
+        punch, _ = grid_punch(layer, radius, cells, STIFFNESS_TOLERANCE)
+        exponent = 4.0 * punch.stiffness * float(punch.shape.sum()) ** 2
+        return cls(radius, punch_stiffness(layer, radius, punch), cells, exponent, EDGE_DOUBT * exponent)
+
+    def moved(self, layer: ElasticLayer, step: float) -> Self:
+        """About the radius exp(step) times as large, with the exponent between the two."""
+        there = type(self).at(layer, self.radius * exp(step), self.cells)
+        between = log(there.stiffness / self.stiffness) / step
+        return replace(there, exponent=between, doubt=abs(between - self.exponent))
+
+    def step(self, stiffness: float) -> float:
+        """ln of the radius with this stiffness [N/m] over the one here."""
+        return log(stiffness / self.stiffness) / self.exponent
+
+    def leaves(self, stiffness: float) -> float:
+        """What that step misses of ln(stiffness) [N/m], since the exponent is in doubt."""
+        return abs(self.step(stiffness)) * self.doubt
+
+
+def radius_of_stiffness(
+    layer: ElasticLayer, stiffness: float, near: float, cells: int, known: StiffnessNearby | None
+) -> tuple[float, StiffnessNearby]:
+    """The radius a [m] with k_N(a) = stiffness to 1e-7, by the secant method in logarithms; and what is known there.
+
+    Args:
+        layer: The layer.
+        stiffness: k_N [N/m].
+        near: A radius near it [m].
+        cells: Cells across the grid of the flat punch.
+        known: The answer for a stiffness nearby.
 
     Raises:
         NotConvergedError: If it was not met.
     """
-    radius, exponent = near, 1.0
-    miss = log(stiffness / contact_stiffness(layer, radius, cells))
+    here = known if known is not None and known.cells == cells else StiffnessNearby.at(layer, near, cells)
     for _ in range(20):
-        if abs(miss) < 1e-7:
-            return radius
-        step = miss / exponent
-        radius *= float(np.exp(step))
-        before, miss = miss, log(stiffness / contact_stiffness(layer, radius, cells))
-        exponent = float(np.clip((before - miss) / step, 0.5, DIRECT.largest_exponent + 0.5))
-    raise NotConvergedError(f"no radius has the stiffness {stiffness:g} N/m", {"stiffness": abs(miss)})
+        if here.leaves(stiffness) < RADIUS_TOLERANCE:
+            return here.radius * exp(here.step(stiffness)), here
+        here = here.moved(layer, here.step(stiffness))
+    raise NotConvergedError(f"no radius has the stiffness {stiffness:g} N/m", {"stiffness": here.leaves(stiffness)})

@@ -13,12 +13,12 @@ from math import ceil
 from typing import Final
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from bem.grid.influence import rectangle_influence
 from bem.kernels.of_layer import surface_kernel
 from bem.kernels.protocol import SurfaceKernel
 from bem.layer_equation.any_layer.point_kernel import PointKernel
+from bem.polynomials.cubics import PiecewiseCubic
 from bem.polynomials.gauss import legendre_rule
 from contact import ElasticLayer
 from contact.records.validation import FloatArray
@@ -37,7 +37,7 @@ FAR: Final = 2.0**12
 class PointCorrection:
     """V of one layer, lengths in thicknesses of its surface material."""
 
-    spline: CubicSpline
+    spline: PiecewiseCubic
 
     @classmethod
     def of_surface(cls, kernel: SurfaceKernel) -> PointCorrection:
@@ -52,7 +52,7 @@ class PointCorrection:
         beta = low + (np.pi / 2 - low) * (1 + x) / 2
         inner = N(np.multiply.outer(rho, share)) @ (weight / np.sqrt(1 - share**2))
         outer = N(np.multiply.outer(rho, np.sin(beta))) @ ((np.pi / 2 - low) / 2 * w)
-        return cls(CubicSpline(u, -2 / np.pi * (inner + outer)))
+        return cls(PiecewiseCubic.spline(u, -2 / np.pi * (inner + outer)))
 
     def __call__(self, rho: FloatArray) -> FloatArray:
         """V(rho); beyond FAR it falls like 1/rho."""

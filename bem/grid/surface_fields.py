@@ -9,21 +9,22 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final, Protocol
+from typing import TYPE_CHECKING, Final, Protocol
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from bem.grid.equilibrium import CircularContact
 from bem.grid.influence import REACH, correction_function
 from bem.grid.other_layers import point_response
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.inside.from_pressure import density_of_pressure
-from bem.layer_equation.inside.interior import ContactInterior
+from bem.polynomials.cubics import PiecewiseCubic
 from contact import Adhesion, ElasticLayer, FlatPunch, Layer, Profile, Scene
 from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.layer_equation.inside.interior import ContactInterior
 
 # Radii summed at a time beyond the box, which bounds the memory.
 CHUNK: Final = 64
@@ -68,6 +69,10 @@ class FieldSequence:
 
     def inside(self, step: int, known: KnownContact) -> ContactInterior:
         """The body under one step, from its pressure."""
+        # Half of what an answer would import otherwise, for those who look inside.
+        from bem.layer_equation.inside.from_pressure import density_of_pressure  # noqa: PLC0415
+        from bem.layer_equation.inside.interior import ContactInterior  # noqa: PLC0415
+
         adhesion = self.scene.effect(Adhesion)
         singular = isinstance(self.scene.indenter, FlatPunch) or (
             adhesion is not None and adhesion.work_of_adhesion > 0.0
@@ -112,7 +117,7 @@ class SmoothIndenterFields:
         return float(self.state.grid.cell_size * (self.state.grid.cells / 2 - 1))
 
     @cached_property
-    def _pressure_over_root(self) -> PchipInterpolator:
+    def _pressure_over_root(self) -> PiecewiseCubic:
         state = self.state
         a, s = state.contact_radius, state.grid.cell_size
         inside = state.grid.radius < max(a - EDGE_CELLS * s, 0.6 * a)
@@ -121,13 +126,13 @@ class SmoothIndenterFields:
         return ring_interpolator(r, ratio, s)
 
     @cached_property
-    def _beside(self) -> PchipInterpolator:
+    def _beside(self) -> PiecewiseCubic:
         state = self.state
         a, s = state.contact_radius, state.grid.cell_size
         ring = (state.grid.radius > a + s) & (state.grid.radius < self._box + s)
         mean = ring_interpolator(state.grid.radius[ring], state.equilibrium.displacement[ring], s)
         edge = state.indentation_depth - float(self.indenter.height(np.array([a]))[0])
-        return PchipInterpolator(np.concatenate([[a], mean.x]), np.concatenate([[edge], mean(mean.x)]))
+        return PiecewiseCubic.monotone(np.concatenate([[a], mean.x]), np.concatenate([[edge], mean(mean.x)]))
 
 
 @dataclass(frozen=True, eq=False)
@@ -215,11 +220,11 @@ def _point_response(layer: ElasticLayer, distance: FloatArray) -> FloatArray:
     return np.where(rho < REACH, 1.0 / distance + smooth(np.minimum(rho, REACH)) / layer.thickness, 0.0)
 
 
-def ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PchipInterpolator:
+def ring_interpolator(radius: FloatArray, values: FloatArray, cell_size: float) -> PiecewiseCubic:
     """Means over rings as wide as a cell, interpolated in r and continued as they end."""
     ring = np.floor(radius / cell_size).astype(np.intp)
     count = np.bincount(ring)
     kept = count > 0
     mean_radius = np.bincount(ring, radius)[kept] / count[kept]
     mean_value = np.bincount(ring, values)[kept] / count[kept]
-    return PchipInterpolator(mean_radius, mean_value, extrapolate=True)
+    return PiecewiseCubic.monotone(mean_radius, mean_value)

@@ -24,10 +24,10 @@ class Record:
     """Base of all records: equality, hash and change by copying, by content (arrays included)."""
 
     def _content(self) -> tuple[Any, ...]:
-        # Every subclass is made a dataclass by `record`.
-        fields = dataclasses.fields(self)  # type: ignore[arg-type]
-        values = (getattr(self, field.name) for field in fields)
-        return type(self), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values)
+        # A class is hashable, whatever its instances are.
+        names = _names(type(self))  # type: ignore[arg-type]
+        values = [getattr(self, name) for name in names]
+        return type(self), *[value.tobytes() if isinstance(value, np.ndarray) else value for value in values]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Record) and self._content() == other._content()
@@ -38,6 +38,13 @@ class Record:
     def replace(self, **changes: Any) -> Self:
         """A copy with some fields changed, validated like a new one."""
         return dataclasses.replace(self, **changes)  # type: ignore[type-var]  # see _content
+
+
+@functools.cache
+def _names(cls: type[Record]) -> tuple[str, ...]:
+    """Of a record's fields."""
+    # Every subclass is made a dataclass by `record`.
+    return tuple(field.name for field in dataclasses.fields(cls))  # type: ignore[arg-type]
 
 
 R = TypeVar("R", bound=Record)

@@ -14,7 +14,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 from scipy.linalg.lapack import dposv
-from scipy.optimize import nnls
 
 from contact import NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
@@ -84,6 +83,9 @@ def _equality(compliance: FloatArray, approach: FloatArray, active: BoolArray) -
 
 def _non_negative_least_squares(compliance: FloatArray, approach: FloatArray) -> FloatArray:
     lower = cholesky(compliance, lower=True)
+    # It takes 0.15 s to import, and few contacts ask for it.
+    from scipy.optimize import nnls  # noqa: PLC0415
+
     pressure, _ = nnls(lower.T, solve_triangular(lower, approach, lower=True), maxiter=30 * len(approach))
     active = pressure > 0
     # The same set is solved again without the squared condition number.

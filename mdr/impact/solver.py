@@ -132,8 +132,10 @@ def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: floa
     flat = [i for i, scene in enumerate(scenes) if is_flat(scene)]
     shaped = {i: table_of(scene, flat_punch) for i, scene in enumerate(scenes) if not is_flat(scene)}
 
-    def kind(i: int) -> tuple[int, int]:
-        return id(shaped[i][1]) if i in shaped else 0, relaxation_of(scenes[i]).moduli.size
+    kinds = [
+        (id(shaped[i][1]) if i in shaped else 0, relaxation_of(scene).moduli.size) for i, scene in enumerate(scenes)
+    ]
+    kind = kinds.__getitem__
 
     def shaped_results(chunk: list[int]) -> ImpactResults:
         """Results of scenes on one table, advanced together; one by one where the table proves too short."""

@@ -62,6 +62,8 @@ def relaxation_of(scene: Scene) -> Relaxation:
             long_term_modulus=shear_modulus(scene.layer), moduli=np.empty(0), times=np.empty(0), viscosity=0.0
         )
     relaxation = model.relaxation
+    if relaxation.moduli.size == 1 and relaxation.moduli[0] > 0.0:
+        return relaxation
     order = np.lexsort((relaxation.moduli, relaxation.times))
     order = order[relaxation.moduli[order] > 0.0]
     times, first = np.unique(relaxation.times[order], return_index=True)

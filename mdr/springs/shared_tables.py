@@ -23,6 +23,8 @@ from mdr.springs.table import SpringTable, spring_table
 
 # Most spring tables that are kept in memory; chosen.
 _KEPT = 64
+# Newton steps to a typical radius: six end within a rounding for r/h from 1e-6 to 1e9 (n = 0.5 to 100, 2026-11-22).
+_SCALE_STEPS = 6
 # Trial radii double up to this share of the radius of an upright rim; chosen.
 _NEAR_RIM = 0.7
 
@@ -62,10 +64,19 @@ def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> SharedTab
         return SharedTable(layer, indenter, 1.0, 1.0, 1.0)
     coefficient, exponent = law
     length = scale if layer.is_half_space else layer.thickness
-    unit_indenter = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
     return SharedTable(
-        layer.in_own_units(), unit_indenter, length, coefficient * length**exponent, contact_modulus(layer) * length
+        layer.in_own_units(),
+        _unit_power(exponent),
+        length,
+        coefficient * length**exponent,
+        contact_modulus(layer) * length,
     )
+
+
+@lru_cache(maxsize=_KEPT)
+def _unit_power(exponent: float) -> PowerLaw:
+    """f = r^n."""
+    return PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
 
 
 def power_law(indenter: Profile) -> tuple[float, float] | None:
@@ -83,10 +94,18 @@ def power_law(indenter: Profile) -> tuple[float, float] | None:
 def contact_scale(layer: ElasticLayer, indenter: Profile, energy: float) -> float:
     """A typical contact radius [m], where E* r f(r)^2 (1 + r/h) equals the energy [J]."""
     law, volume = power_law(indenter), energy / contact_modulus(layer)
-    if law is not None and layer.is_half_space:
-        coefficient, exponent = law
-        return float((volume / coefficient**2) ** (1.0 / (2.0 * exponent + 1.0)))
-    return radius_of_energy(indenter, volume, layer.thickness)
+    if law is None:
+        return radius_of_energy(indenter, volume, layer.thickness)
+    coefficient, exponent = law
+    power = 2.0 * exponent + 1.0
+    if layer.is_half_space:
+        return float((volume / coefficient**2) ** (1.0 / power))
+    # ln(1 + r/h) makes the equation convex in ln r, so that Newton's steps from the half-space's radius end soon.
+    start = end = (math.log(volume) - 2.0 * math.log(coefficient)) / power
+    for _ in range(_SCALE_STEPS):
+        share = math.exp(end) / layer.thickness
+        end -= (power * (end - start) + math.log1p(share)) / (power + share / (1.0 + share))
+    return math.exp(end)
 
 
 @lru_cache(maxsize=_KEPT)

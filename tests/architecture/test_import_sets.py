@@ -42,3 +42,28 @@ def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra()
     run = "from typer.testing import CliRunner; from reports.command_line import app; "
     run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"
     assert not loaded_after(run) & {"h5py", "matplotlib", "skfem", "scipy.linalg", "scipy.sparse", "scipy.optimize"}
+
+
+def test_an_answer_of_boundary_elements_loads_compiled_files_alone():
+    loaded = loaded_after("from bem import Bem; Bem(points=96).solve(scene)")
+    assert {name for name in loaded if name.partition(".")[0] == "scipy"} == {LAPACK, "scipy.special._special_ufuncs"}
+    assert {name for name in loaded if name.partition(".")[0] in {"pyfftw", "dask"}} == {"pyfftw.pyfftw"}
+    assert not loaded & ({*FAR, "bem.layer_equation.inside.interior"} - {"pyfftw"})
+
+
+def test_packages_load_after_their_compiled_files():
+    told = "import scipy.special, pyfftw; assert scipy.special.jv(0, 0.0) == 1.0 and pyfftw.interfaces"
+    assert "pyfftw.interfaces" in loaded_after(f"from bem import Bem; Bem(points=96).solve(scene); {told}")
+
+
+def test_an_answer_of_finite_elements_loads_no_optimiser():
+    loaded = loaded_after("from fem_reference import Fem; Fem(accuracy=1e-2).solve(scene)")
+    assert not loaded & {
+        "scipy.optimize",
+        "scipy.interpolate",
+        "scipy.fft",
+        "scipy.special",
+        "matplotlib",
+        "h5py",
+        "bem",
+    }

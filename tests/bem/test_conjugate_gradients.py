@@ -133,3 +133,14 @@ def test_a_nearly_incompressible_layer_takes_no_more_iterations(gap, thickness):
     operator = FreeSpaceOperator(layer, cell_size=2.3 / 64, cells=64, quarter=True)
     answer = solve_contact(operator, quadrant_radius(64, 2.3) ** 2 / 2, depth=0.6)
     assert answer.iterations <= 40
+
+
+@pytest.mark.parametrize("prescribed", [{"depth": 0.5}, {"load": 40.0}])
+def test_the_displacement_is_that_of_the_pressure(prescribed):
+    """It follows the steps of the iteration; what their roundings add up to is far below every tolerance."""
+    operator = FreeSpaceOperator(LAYER, cell_size=2.3 / 64, cells=64, quarter=True)
+    answer = solve_contact(operator, quadrant_radius(64, 2.3) ** 2 / 2, tolerance=1e-10, **prescribed)
+    afresh = operator.displacement(answer.pressure)
+    np.testing.assert_allclose(answer.displacement, afresh, rtol=0.0, atol=1e-14 * afresh.max())
+    if "load" in prescribed:
+        assert answer.pressure.sum() == pytest.approx(prescribed["load"], rel=1e-14, abs=0.0)

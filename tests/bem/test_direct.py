@@ -1,7 +1,9 @@
 import numpy as np
 import pytest
 
+from bem.grid.calibrated_disc import measured_disc
 from bem.grid.contact_edge import slope
+from bem.grid.transforms import QuarterTransform
 from bem.method import Bem
 from contact import (
     Adhesion,
@@ -287,3 +289,20 @@ def test_the_stiffness_at_a_given_radius_states_the_error_of_its_own_punch(layer
     error, stated = abs(path.contact_stiffness[0] / exact - 1.0), path.error_estimate["contact_stiffness"][0]
     assert error <= stated + 1e-12
     assert stated <= 100.0 * error + 1e-12
+
+
+@pytest.mark.parametrize(
+    ("prescribed", "most"), [(IndentationDepths([5e-5]), 290), (NormalForces([0.1]), 350), (ContactRadii([1e-3]), 420)]
+)
+def test_a_contact_takes_few_filters(monkeypatch, prescribed, most):
+    """They were 428, 502 and 510 as slopes began anew on each grid and every step took the displacement twice."""
+    filters = []
+    measured_disc(256, periodic=False)
+
+    def counted(*given, own=QuarterTransform.filter):
+        filters.append(1)
+        return own(*given)
+
+    monkeypatch.setattr(QuarterTransform, "filter", counted)
+    solve(PARABOLOID, prescribed, points=256)
+    assert len(filters) <= most
