@@ -193,7 +193,9 @@ class IntegralEquationSolution(FlatPunchSolution):
         ratios = np.concatenate([ends[1:], (ends[1:] + ends[:-1]) / 2])
         return float(self.spring_error(np.append(ratios[ratios < ratio], ratio)).max())
 
-    def _edge_error(self, ratio: FloatArray, own_share: float, kernel_share: float) -> FloatArray:
+    def _edge_error(
+        self, ratio: FloatArray, own_share: float | FloatArray, kernel_share: float | FloatArray
+    ) -> FloatArray:
         own, of_kernel = self._spring_truncation(ratio)
         rounded = 2 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return own_share * own + kernel_share * of_kernel + EPS * rounded

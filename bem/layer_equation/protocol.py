@@ -83,6 +83,27 @@ class FlatPunchSolution(Protocol):
         radius b `start` is b/a.
         """
 
+    def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
+        """The same of one profile, for data that tell how it matters.
+
+        Args:
+            ratio: x/h.
+            profile: g over the excess x - b, in thicknesses.
+            flat_radius: b, in thicknesses.
+        """
+        start = np.divide(flat_radius, ratio, out=np.zeros_like(ratio), where=ratio > flat_radius)
+        return self.profile_error(ratio, start)
+
+    def error_at_depth(self, stiffness: FloatArray, profile: FloatArray, spread: FloatArray) -> FloatArray:
+        """Relative error of the force under a given depth, F = k_N g - int g dk_N.
+
+        Args:
+            stiffness: relative error of k_N.
+            profile: relative error of g.
+            spread: k_N g/F.
+        """
+        return stiffness + profile * spread
+
     def kernel_errors(self, ratio: FloatArray) -> FloatArray:
         """The parts of `spring_error` and `profile_error` that one wrong kernel makes, shape (2, n); 0 if not known."""
         return np.zeros((2, *np.shape(ratio)))
