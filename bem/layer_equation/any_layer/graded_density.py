@@ -10,6 +10,7 @@ import numpy as np
 
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels
+from bem.layer_equation.protocol import LayerShare
 from bem.polynomials.chebyshev import chebyshev_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact.records.validation import FloatArray
@@ -80,7 +81,7 @@ class PanelSlopes:
 
 
 @dataclass(frozen=True, eq=False)
-class GradedDensity:
+class GradedDensity(LayerShare):
     """psi on [0, a]; it has the logarithm's kinks at both ends, towards which the panels are graded.
 
     Attributes:
