@@ -212,7 +212,11 @@ def _errors(
         }
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = contact_stiffness * depth / force
-    of_force = stiffness + errors["indentation_depth"] * spread + system.moment_truncation(radius) * np.abs(spread - 1)
+    of_depth, of_moment = errors["indentation_depth"], system.moment_truncation(radius) * np.abs(spread - 1)
+    of_force = stiffness + of_depth * spread + of_moment
+    if given != "ContactRadii":
+        at_depth = system.flat_punch.error_at_depth(stiffness, of_depth, spread) + of_moment
+        of_force, of_depth = np.minimum(of_force, at_depth), np.minimum(of_depth, at_depth / spread)
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
@@ -222,7 +226,7 @@ def _errors(
         growth = 2.0 * system.spring_stiffness(radius) * radius / contact_stiffness
     return {
         "contact_radius": moved,
-        "indentation_depth": exact if given == "IndentationDepths" else errors["indentation_depth"],
+        "indentation_depth": exact if given == "IndentationDepths" else of_depth,
         "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
         "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"]) + moved + rounding,

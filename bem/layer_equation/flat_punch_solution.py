@@ -198,11 +198,19 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def panel_error(self, ratio: float) -> float:
         """The largest `spring_error` at ends and middles of all panels up to a ratio, and there."""
+        ratios, errors = self._errors_of_panels
+        return float(np.append(errors[ratios < ratio], self.spring_error(np.array([ratio]))).max())
+
+    @cached_property
+    def _errors_of_panels(self) -> tuple[FloatArray, FloatArray]:
+        """Ends and middles of all panels, and `spring_error` there."""
         ends = self._panels.ends
         ratios = np.concatenate([ends[1:], (ends[1:] + ends[:-1]) / 2])
-        return float(self.spring_error(np.append(ratios[ratios < ratio], ratio)).max())
+        return ratios, self.spring_error(ratios)
 
-    def _edge_error(self, ratio: FloatArray, own_share: float, kernel_share: float) -> FloatArray:
+    def _edge_error(
+        self, ratio: FloatArray, own_share: float | FloatArray, kernel_share: float | FloatArray
+    ) -> FloatArray:
         own, of_kernel = self._spring_truncation(ratio)
         rounded = 2 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return own_share * own + kernel_share * of_kernel + EPS * rounded

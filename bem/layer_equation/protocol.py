@@ -49,6 +49,10 @@ class LayerShare(Protocol):
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance: the displacement's own Abel density outside the contact."""
 
+    def outside_quickly(self, distance: FloatArray) -> FloatArray:
+        """As `outside` but for roundings."""
+        return self.outside(distance)
+
 
 @runtime_checkable
 class FlatPunchSolution(Protocol):
@@ -82,6 +86,27 @@ class FlatPunchSolution(Protocol):
         Where it is an integral of q, Eqs. (11) and (12), that runs from rho = `start` to the edge; under a flat end of
         radius b `start` is b/a.
         """
+
+    def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
+        """The same of one profile, for data that tell how it matters.
+
+        Args:
+            ratio: x/h.
+            profile: g over the excess x - b, in thicknesses.
+            flat_radius: b, in thicknesses.
+        """
+        start = np.divide(flat_radius, ratio, out=np.zeros_like(ratio), where=ratio > flat_radius)
+        return self.profile_error(ratio, start)
+
+    def error_at_depth(self, stiffness: FloatArray, profile: FloatArray, spread: FloatArray) -> FloatArray:
+        """Relative error of the force under a given depth, F = k_N g - int g dk_N.
+
+        Args:
+            stiffness: relative error of k_N.
+            profile: relative error of g.
+            spread: k_N g/F.
+        """
+        return stiffness + profile * spread
 
     def kernel_errors(self, ratio: FloatArray) -> FloatArray:
         """The parts of `spring_error` and `profile_error` that one wrong kernel makes, shape (2, n); 0 if not known."""

@@ -145,7 +145,9 @@ class EquivalentSystem:
             return table_errors.relative_errors(self, contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + SPRING_ROUNDING
         springs = self.flat_punch.spring_error(ratio) + SPRING_ROUNDING
-        data = self.flat_punch.profile_error(ratio, self._flat_share(contact_radius)) + SPRING_ROUNDING
+        data = (
+            self.flat_punch.error_of_profile(ratio, self.profile, self.flat_radius / self.length_unit) + SPRING_ROUNDING
+        )
         # Within the flat end g is zero.
         data = np.where(np.asarray(contact_radius) >= self.flat_radius, data, SPRING_ROUNDING)
         own = self.profile_truncation(contact_radius) + self.position_rounding(np.asarray(contact_radius))
@@ -174,11 +176,6 @@ class EquivalentSystem:
     def moment_truncation(self, contact_radius: FloatArray) -> FloatArray:
         """The same of the moment 2 int c_N g, relative to it."""
         return self.moment.relative_error(self._beyond(contact_radius - self.flat_radius))
-
-    def _flat_share(self, contact_radius: FloatArray) -> FloatArray:
-        """b/a: beside the flat end, only flat-punch pressures near the edge count."""
-        a = np.asarray(contact_radius, dtype=float)
-        return np.asarray(np.divide(self.flat_radius, a, out=np.zeros_like(a), where=a > self.flat_radius))
 
     @property
     def _force_unit(self) -> float:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from benchmarks.stacked_scenes import random_stack
 from contact import (
     ContactRadii,
     ElasticBase,
@@ -178,3 +179,18 @@ def test_displacements_far_below_rounding_are_no_failure():
     layer = stack((0.86, 9.2, 0.0), (0.14, 5.0, 0.45), interfaces=("unbonded",))
     scene = Scene(layer=layer, indenter=FlatPunch(radius=1.38), loading=IndentationDepths([0.01]))
     assert Fem(growth=0.8, edge_cell=1e-4).solve(scene).normal_force[0] > 0
+
+
+def test_no_triangle_turns_over_between_faces_that_bend_and_the_end_of_a_base():
+    """The end of the base bent with the faces 1e4 radii above it; a triangle over a bend has no area (two of these)."""
+    rng = np.random.default_rng(7)
+    for number in range(48):
+        layer = random_stack(rng, contrast=1e4 if number % 5 == 0 else 100.0)
+        radius, flat = float(np.exp(rng.uniform(np.log(0.1), np.log(5.0)))), float(rng.uniform(0.05, 0.95))
+        if number < 24 or not isinstance(layer.support, ElasticBase):
+            continue
+        cone = ScaledIndenter(TruncatedCone(flat_radius=flat * radius, slope=0.1), radius)
+        mesh = contact_mesh(layer, cone, Discretisation(growth=0.8, edge_cell=1e-2)).mesh
+        (r0, r1, r2), (z0, z1, z2) = mesh.p[:, mesh.t]
+        area = (r1 - r0) * (z2 - z0) - (r2 - r0) * (z1 - z0)
+        assert np.abs(area).sum() == pytest.approx(2 * np.prod(mesh.p.max(axis=1)), rel=1e-9, abs=0.0)

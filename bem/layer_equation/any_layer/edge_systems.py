@@ -52,9 +52,9 @@ class EdgeSystems:
     count: int
     known: dict[float, EdgeState] = field(default_factory=dict)
 
-    def panels(self, x: float) -> RelativePanels:
-        """The panels for an edge."""
-        return relative_panels(self.count, max(1, int(np.ceil(MIDDLE * x / WIDEST))))
+    def panels(self, x: float, count: int | None = None) -> RelativePanels:
+        """The panels for an edge, with the nodes of its own systems or more."""
+        return relative_panels(count or self.count, max(1, int(np.ceil(MIDDLE * x / WIDEST))))
 
     def matrix(self, x: float, panels: RelativePanels) -> FloatArray:
         """M, and kappa as its last row, shape (n + 1, n)."""

@@ -10,18 +10,20 @@ import numpy as np
 
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels
+from bem.layer_equation.protocol import LayerShare
 from bem.polynomials.chebyshev import chebyshev_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact.records.validation import FloatArray
 
 # Share of the contact radius below which panels are too narrow to tell slopes, whose roundings grow like 1/t^2. With
-# 1e-3 the pressure on the axis is 1e-9 off on E = 4^z, where panels down to the axis made it 1 % (2026-11-22).
-AXIS: Final = 1e-3
+# 3e-3 and four terms pressures beside the axis are up to 9e-9 off, with 1e-3 and three terms 2e-8, and with 1e-2 8e-8
+# (E = 100^z and 4^z, nu = 0.5, a paraboloid and a cone, against the direct equation, 2026-11-22).
+AXIS: Final = 3e-3
 
 
 def _beside_axis(share: FloatArray) -> FloatArray:
-    """The terms of psi'/t beside the axis, the logarithm from the tip of a cone, shape (n, 3)."""
-    return np.stack([np.ones_like(share), np.log(share), share], axis=-1)
+    """The terms of psi'/t beside the axis, the logarithm from the tip of a cone, shape (n, 4)."""
+    return np.stack([np.ones_like(share), np.log(share), share, share**2], axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +51,7 @@ class PanelSlopes:
     @cached_property
     def _axis_coefficients(self) -> FloatArray:
         """Of psi'/t beside the axis."""
-        share = np.array([1.0, 2.0, 4.0])
+        share = np.array([1.0, 2.0, 4.0, 8.0])
         t = AXIS * self.ratio * share
         return np.asarray(np.linalg.solve(_beside_axis(share), self._panel_slope(t) / t))
 
@@ -80,7 +82,7 @@ class PanelSlopes:
 
 
 @dataclass(frozen=True, eq=False)
-class GradedDensity:
+class GradedDensity(LayerShare):
     """psi on [0, a]; it has the logarithm's kinks at both ends, towards which the panels are graded.
 
     Attributes:

@@ -22,6 +22,7 @@ from bem.layer_equation.one_factorisation import (
     edge_resolvents,
     schur_kernels,
 )
+from bem.layer_equation.profiles.edge_values import filled_panels
 from bem.layer_equation.triangular import equation_factor
 from bem.polynomials.gauss_panels import (
     chebyshev_from_nodes,
@@ -29,6 +30,7 @@ from bem.polynomials.gauss_panels import (
     lagrange_matrix,
     partial_panel_interpolation,
 )
+from bem.polynomials.mapped import MappedFunction
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
@@ -39,6 +41,13 @@ FIRST_SHARE: Final = 1.0
 FULLY: Final = 1e-20
 # Halvings of the first panel in any case, since edge values change over a part of the thickness on every layer.
 LEAST_HALVINGS: Final = 2
+
+# Of the error of y1 by its polynomials, what is left in g where g is known at their nodes; and the same of the kernel,
+# over the resolvent, where a piece ends inside a panel. 98 and 99 of 100 true errors are covered with these (60 random
+# stacks, moduli e^-4 to e^4, four profiles, 3 241 radii, 8 to 12 nodes, seed 5), and so are those of a sheet ten
+# thousand times as stiff as an incompressible layer, whose resolvent is 3.5 (2026-11-22).
+FILLED_OWN: Final = 0.1
+CUT_KERNEL: Final = 0.3
 
 
 @dataclass(frozen=True)
@@ -164,3 +173,31 @@ class AnyLayerSolution(IntegralEquationSolution):
         """Of the factor's panels."""
         inner = self.factor.ends[1:-1]
         return inner[inner < ratio]
+
+    def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
+        """Relative error of g = yg/y1, whose kernel errs in the contact's density alone.
+
+        A kernel that is wrong by K' moves g y1 by the integral of phi_1(t) K'(t, s) phi(s), phi the density under the
+        depth g: what it does to yg and y1 in proportion cancels. phi vanishes at the edge with the slope -g' y1 and
+        K' goes with P_m(s), so that of the error of y1 there is left what phi, over g y1, gains in half a wave of P_m.
+        Where a piece of the profile fills no panel, polynomials take yg and y1 between nodes in two ways, and half is
+        left, or all where the resolvent of the panel is large; there y1 is interpolated, too.
+        """
+        panel, filled = filled_panels(self.factor, profile.grid, flat_radius)
+        excess = np.maximum(ratio - flat_radius, 0.0)
+        piece, _ = profile.grid.locate(excess)
+        before = np.maximum(excess - self.factor.widths(panel[-1] + 1)[panel[piece]] / (2 * self.nodes), 0.0)
+        value = profile(excess)
+        gain = np.abs(np.divide(value - profile(before), value, out=np.ones_like(value), where=value != 0.0))
+        whole, left = filled[piece], np.clip(CUT_KERNEL * self._resolvent[panel[piece]], 0.5, 1.0)
+        own = np.where(whole, FILLED_OWN, 0.5)
+        return self._edge_error(self._covered(ratio), own, np.where(whole, np.minimum(gain, 1.0), left))
+
+    @cached_property
+    def _resolvent(self) -> FloatArray:
+        """The largest G of each panel times its width."""
+        return np.asarray(np.abs(self.factor.resolvent).max(axis=(1, 2)) * self.factor.widths(self.factor.panels))
+
+    def error_at_depth(self, stiffness: FloatArray, profile: FloatArray, spread: FloatArray) -> FloatArray:
+        """A wrong kernel K' moves F by <phi_1, K' phi> and k_N by <phi_1, K' phi_1>, where phi <= g phi_1."""
+        return stiffness * spread

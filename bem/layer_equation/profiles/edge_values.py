@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
-from bem.polynomials.mapped import MappedFunction
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact.records.validation import FloatArray
 
 # Relative difference that rounding may make between the width of a piece that fills its panel and the panel's.
@@ -35,12 +35,9 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
         Values at the nodes of the load's grid, shape (q, m).
     """
     grid = load.grid
-    panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
+    panel, whole = filled_panels(factor, grid, flat_radius)
     position = factor.position(grid.nodes + flat_radius, panel[:, None])
     widths = factor.widths(panel[-1] + 1)
-    whole = (grid.power == 1) & np.isclose(grid.width, widths[panel], rtol=WHOLE, atol=0.0)
-    # Values near first touch are tiny and keep their relative accuracy only if integrated by themselves.
-    whole[0] = False
     averages = panel_averages(load, panel, position, widths)
     # By moments, a width that is off by e would cost e over the last Gauss weight.
     averages[panel[whole]] = load.node_values[whole]
@@ -52,6 +49,17 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
         smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
         values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece)
     return values
+
+
+def filled_panels(
+    factor: VolterraFactor, grid: MappedGrid, flat_radius: float
+) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """The panel that each piece of a grid lies in, and whether the piece fills it, shape (q,) each."""
+    panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
+    whole = (grid.power == 1) & np.isclose(grid.width, factor.widths(panel[-1] + 1)[panel], rtol=WHOLE, atol=0.0)
+    # Values near first touch are tiny and keep their relative accuracy only if integrated by themselves.
+    whole[0] = False
+    return panel, whole
 
 
 def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:

@@ -62,7 +62,7 @@ class PressedShape(PerMethod):
         pressed = Pressed(rings, np.array(curves[0].y), singular=isinstance(indenter, FlatPunch))
         radius = COMPARED * rings.edges[-1]
         largest = max(self.waves / layer.surface.thickness, self.radial_waves / rings.edges[-1])
-        found = pressed.displacement(layer, self.compliance, radius, largest)
+        found = pressed.displacement(layer, self.compliance, radius, largest, tapered=self.radial_waves > 0)
         depth = run.quantity("indentation_depth").values[-1]
         height = indenter.height(radius)
         return judge_invariant(float(np.max(np.abs(found - depth + height))) / depth, tolerance=tolerance)
@@ -98,13 +98,19 @@ class Pressed:
         return total
 
     def displacement(
-        self, layer: ElasticLayer, compliance: Compliance, radius: FloatArray, largest: float
+        self, layer: ElasticLayer, compliance: Compliance, radius: FloatArray, largest: float, *, tapered: bool = False
     ) -> FloatArray:
-        """w [m] at radii inside: as on the half-space, and what the layer answers otherwise up to k = largest [1/m]."""
+        """w [m] at radii inside: as on the half-space, and what the layer answers otherwise up to k = largest [1/m].
+
+        An answer that falls like 1/k swings about its limit with the last wavenumber, by cos(k a): tapered over the
+        upper half, so that the swings cancel, it is the limit.
+        """
         x, w = legendre_rule(NODES)
         sine = np.sin(np.pi / 4 * (x + 1))
         k, dk = self._wavenumbers(largest)
         softer = compliance(layer, k) - 2 / layer.contact_modulus
+        if tapered:
+            softer *= np.cos(np.pi / 2 * np.maximum(2 * k / largest - 1, 0.0)) ** 2
         whole = [np.pi / 4 * w @ self._inner(r * sine) for r in radius]
         t, dt = self._positions(float(k[-1]))
         transform = np.cos(np.multiply.outer(k, t)) @ (dt * self._inner(t))

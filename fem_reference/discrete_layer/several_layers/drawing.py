@@ -94,12 +94,18 @@ class Drawing:
 
     @cached_property
     def drawn(self) -> FloatArray:
-        """Drawn thickness of each part at the stations, shape (part, station)."""
+        """Drawn thickness of each part at the stations, shape (part, station).
+
+        The end of an elastic base is straight: bends of the faces far above it are much smaller than its cells, and a
+        triangle over one of them has no area once it is moved back.
+        """
         wedge = SLOPE_PER_GROWTH * self.growth * self.distance(self.stations)
         drawn = np.maximum(self._finite[:, None], wedge)
-        if self.body.base_modulus:
-            drawn = np.vstack([drawn, np.full_like(wedge, self.body.thicknesses[-1])])
-        return drawn
+        if not self.body.base_modulus:
+            return drawn
+        top = drawn.sum(axis=0)
+        end = np.interp(self.stations, self.stations[[0, -1]], top[[0, -1]] + self.body.thicknesses[-1])
+        return np.vstack([drawn, end - top])
 
     @cached_property
     def levels(self) -> FloatArray:
@@ -108,8 +114,9 @@ class Drawing:
 
     @property
     def lines(self) -> list[FloatArray]:
-        """Mesh lines as gmsh gets them, x counted from the origin, each (2, station)."""
-        return [np.vstack([self.stations - self.origin, level]) for level in self.levels]
+        """Mesh lines as gmsh gets them, x counted from the origin, each (2, station); the end of a base by its ends."""
+        lines = [np.vstack([self.stations - self.origin, level]) for level in self.levels]
+        return [*lines[:-1], lines[-1][:, [0, -1]]] if self.body.base_modulus else lines
 
     @property
     def size_expression(self) -> str:
