@@ -243,7 +243,7 @@ def test_the_base_carries_the_force():
 @pytest.mark.slow
 @pytest.mark.parametrize("ratio", [0.5, 1.0])
 def test_hydrostatic_pressure_is_as_accurate_at_nu_of_one_half(ratio):
-    """On one mesh its error is 1.6 to 2.7 times as large, root mean squares that scatter by a half from mesh to mesh."""
+    """On one mesh its error is 1.6 to 2.7 times as large, in root mean squares that scatter by a half."""
     r, z = np.meshgrid(np.linspace(0.05, 1.45, 12) * ratio, np.linspace(0.15, 0.9, 8) * min(ratio, 1.0))
     fem, errors, meshes = Fem(growth=0.4, outer_distance=10.0), [], set()
     for nu in (0.3, 0.5):
