@@ -99,7 +99,7 @@ def in_turn(name: str, values: Iterable[float], **fixed: float) -> tuple[Mapping
     return tuple({**fixed, name: value} for value in values)
 
 
-def neighbours(name: str, groups: Iterable[Iterable[int]], **fixed: float) -> tuple[Grids, ...]:
+def neighbours(name: str, groups: Iterable[Iterable[float]], **fixed: float) -> tuple[Grids, ...]:
     """Return groups of settings: each group is one refinement."""
     return tuple(in_turn(name, group, **fixed) for group in groups)
 

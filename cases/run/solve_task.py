@@ -14,10 +14,11 @@ from cases.results.records.field_types import Scalar
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
 from cases.run.empty_caches import forget
+from cases.run.inside.points import fields_at
 from cases.run.recording import cost_record, curves, quantities, stage_records
 from cases.run.time_limit import TimeLimitReached, time_limited
 from cases.run.timing import timed_warm
-from contact import NotConvergedError, Solution, UnsupportedSceneError
+from contact import ContactPath, NotConvergedError, Solution, UnsupportedSceneError
 from contact.records.errors import printable
 
 
@@ -54,9 +55,9 @@ def _solved(task: Task, key: str, *, estimates: bool) -> SceneRun:
         task.solver.solve(task.problem)
         forget()
     start = time.perf_counter()
-    solutions = deque([task.solver.solve(task.problem)], maxlen=1)
+    solutions = deque([_answer(task)], maxlen=1)
     cold = time.perf_counter() - start
-    samples = timed_warm(lambda: solutions.append(task.solver.solve(task.problem))).samples if task.timed else ()
+    samples = timed_warm(lambda: solutions.append(_answer(task))).samples if task.timed else ()
     # The row of a timing run shows the stages of a warm solve.
     solution = solutions[0]
     if estimates and not task.timed and task.method in registered():
@@ -77,6 +78,14 @@ def _solved(task: Task, key: str, *, estimates: bool) -> SceneRun:
         cold_seconds=cold if task.timed else None,
         notes=tuple(solution.notes),
     )
+
+
+def _answer(task: Task) -> Solution:
+    """The answer; where its time counts, the fields inside that are kept of it count too."""
+    solution = task.solver.solve(task.problem)
+    if task.timed and task.sampling.inside and isinstance(solution, ContactPath):
+        fields_at(solution, task.sampling)
+    return solution
 
 
 def _estimated(task: Task, solution: Solution) -> Solution:

@@ -9,35 +9,42 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.colors import LogNorm, Normalize
+from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure as Drawing
+from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from contact import ContactPath, InvalidInput, Solution
 from contact.answer.inside import InsideFields
+from contact.files.layer_table import kind_of
 from contact.records.validation import FloatArray
 from reports.figures.style import BLACK, GREY, figure_style, svg_text
 from reports.words.method_names import display_name
-from reports.words.numbers import prefix_for
+from reports.words.numbers import prefix_for, with_prefix
 
 # Points along r and z of the half-section.
 POINTS = (200, 100)
 # Width of the picture and height of a map [inches]: narrow enough for a telephone.
-WIDTH, LEAST_HEIGHT, MOST_HEIGHT, BESIDE_MAP = 5.6, 0.95, 2.4, 0.75
+WIDTH, LEAST_HEIGHT, MOST_HEIGHT, BESIDE_MAP = 5.6, 0.95, 2.4, 0.85
 # The largest displacement is drawn as about this share of the section's depth.
 DRAWN_SHARE = 0.12
 # Colours end at this share of all values, since stresses may be infinite at rims.
 SHARE_OF_COLOURS = 0.995
-# Decades of the differences.
-DECADES = 5
+# Decades of the differences: further down only zeros of the difference would be seen.
+DECADES = 3
 # Arrows along r and z.
 ARROWS = (8, 6)
 # Lightness of this map falls evenly, so that it reads in grey and with any colour vision.
 COLOURS = "cividis_r"
+
+# Words on the maps have a light rim, since colours below them may be dark.
+RIM = [withStroke(linewidth=2.0, foreground="white")]
 
 Value = Callable[[InsideFields], FloatArray]
 
@@ -93,12 +100,10 @@ def draw_inside(solution: Solution, other: Solution | None) -> Drawing:
     drawing = Drawing(figsize=(WIDTH, rows * (height + BESIDE_MAP) + 0.4), layout="constrained")
     maps = list(drawing.subplots(rows, 1, squeeze=False).flat)
     _draw_map(maps[0], halves, lambda found: found.von_mises, "von Mises stress")
-    _draw_map(maps[1], halves, lambda found: found.hydrostatic_pressure, "hydrostatic pressure, arrows along its fall")
-    _draw_arrows(maps[1], halves)
-    if compared:
-        _draw_differences(maps[2], halves)
-    for axes in maps:
-        _draw_frame(axes, halves)
+    _draw_map(maps[1], halves, lambda found: found.hydrostatic_pressure, "hydrostatic pressure")
+    notes = ["", _draw_arrows(maps[1], halves), *([_draw_differences(maps[2], halves)] if compared else [])]
+    for axes, note in zip(maps, notes, strict=True):
+        _draw_frame(axes, halves, note)
     for axes in maps[:2] if compared else ():
         _name_sides(axes, halves)
     drawing.suptitle(_headline(halves, compared=compared), fontsize=8.0, x=0.01, ha="left")
@@ -139,7 +144,7 @@ def _headline(halves: Sequence[Half], *, compared: bool) -> str:
         for half in ((left, right) if compared else (left,))
     ]
     return (
-        f"{type(scene.indenter).__name__} on a {scene.layer.title}, {radius}\n"
+        f"{kind_of(type(scene.indenter)).replace('_', ' ')} on a {scene.layer.title}, {radius}\n"
         f"error over the largest stress, as stated: {', '.join(stated)}\n"
         f"thick line: contact; displacements drawn {size}"
     )
@@ -156,9 +161,26 @@ def _draw_map(axes: Axes, halves: Sequence[Half], value: Value, title: str) -> N
         mesh = _coloured(axes, half, one / factor, norm)
         lines = axes.contour(*half.places, one / factor, levels=steps, colors=BLACK, linewidths=0.5)
         if half.side < 0:
-            axes.clabel(lines, fontsize=6.5, fmt="%g")
+            _label(axes, lines, half)
     axes.set_title(title)
     _bar(axes, mesh, f"[{prefix}Pa]")
+
+
+def _label(axes: Axes, lines: QuadContourSet, half: Half) -> None:
+    """Numbers where lines cross a diagonal of the section for the last time: there neighbours stand apart."""
+    size = np.array([half.radius.max(), half.depth.max()]) / half.unit
+    places: list[FloatArray] = []
+    for segments in lines.allsegs:
+        points = np.concatenate([np.empty((0, 2)), *segments]) * [-1.0, 1.0] / size
+        sums = points.sum(axis=1)
+        crossing = points[(np.abs(points[:, 0] - points[:, 1]) < 0.04) & (sums > 0.2) & (sums < 1.7)]
+        if crossing.size:
+            place = crossing[np.argmax(crossing.sum(axis=1))]
+            if all(np.abs(place - other).sum() > 0.2 for other in places):
+                places.append(place)
+    marks = [(-x * size[0], z * size[1]) for x, z in places]
+    for text in axes.clabel(lines, manual=marks, fontsize=7.5, fmt="%g") if marks else ():
+        text.set(path_effects=RIM, rotation=0.0)
 
 
 def _coloured(axes: Axes, half: Half, values: FloatArray, norm: Normalize) -> QuadMesh:
@@ -166,13 +188,18 @@ def _coloured(axes: Axes, half: Half, values: FloatArray, norm: Normalize) -> Qu
     return axes.pcolormesh(x, y, values, norm=norm, cmap=COLOURS, shading="gouraud", rasterized=True)
 
 
-def _bar(axes: Axes, mesh: QuadMesh, label: str) -> None:
+def _bar(axes: Axes, mesh: QuadMesh, label: str, extend: Literal["max", "both"] = "max") -> None:
     """As tall as its map."""
-    axes.figure.colorbar(mesh, cax=axes.inset_axes((1.03, 0.0, 0.03, 1.0)), label=label, extend="max")
+    axes.figure.colorbar(mesh, cax=axes.inset_axes((1.03, 0.0, 0.03, 1.0)), label=label, extend=extend)
 
 
-def _draw_arrows(axes: Axes, halves: Sequence[Half]) -> None:
-    """Where a fluid would be driven: against the gradient, lengths by its root, since it is steep beside rims."""
+def _draw_arrows(axes: Axes, halves: Sequence[Half]) -> str:
+    """Where a fluid would be driven: against the gradient, lengths by its root, since it is steep beside rims.
+
+    Returns:
+        What they show, for readers.
+    """
+    steepest = 0.0
     rows = np.linspace(0, POINTS[1] - 1, ARROWS[1] + 2).astype(int)[1:-1]
     columns = np.linspace(0, POINTS[0] - 1, 2 * ARROWS[0] + 1).astype(int)[1::2]
     for half in halves:
@@ -180,31 +207,40 @@ def _draw_arrows(axes: Axes, halves: Sequence[Half]) -> None:
         slope = [half.fields.pressure_gradient_radial, half.fields.pressure_gradient_axial]
         along, down = (-one[np.ix_(rows, columns)] for one in slope)
         size = np.sqrt(np.hypot(along, down))
+        steepest = max(steepest, float(size.max()) ** 2)
         across = half.side * np.divide(along, size, out=np.zeros_like(size), where=size > 0)
         deeper = np.divide(down, size, out=np.zeros_like(size), where=size > 0)
         axes.quiver(
             x, y, across, deeper, angles="xy", scale=14.0 * float(size.max()), width=3.5e-3, color="white",
             edgecolor=BLACK, linewidth=0.5,
         )  # fmt: skip
+    return f"arrows: where it falls, lengths by the root of the gradient, at most {with_prefix(steepest, 'Pa/m')}"
 
 
-def _draw_differences(axes: Axes, halves: Sequence[Half]) -> None:
+def _draw_differences(axes: Axes, halves: Sequence[Half]) -> str:
+    """Distance of the two answers.
+
+    Returns:
+        Its size in words.
+    """
     left, right = halves
-    values = [
-        np.abs(getattr(left.fields, name) - getattr(right.fields, name))
-        for name in ("von_mises", "hydrostatic_pressure")
-    ]
-    factor, prefix = prefix_for(np.array([max(float(np.quantile(one, SHARE_OF_COLOURS)) for one in values)]))
-    top = 10.0 ** math.ceil(math.log10(max(float(np.quantile(one, SHARE_OF_COLOURS)) for one in values) / factor))
+    names = ("von_mises", "hydrostatic_pressure")
+    values = [np.abs(getattr(left.fields, name) - getattr(right.fields, name)) for name in names]
+    shown = [float(np.quantile(one, SHARE_OF_COLOURS)) for one in values]
+    factor, prefix = prefix_for(np.array(shown))
+    top = 10.0 ** math.ceil(math.log10(max(shown) / factor))
     norm = LogNorm(top / 10.0**DECADES, top)
     for half, one in zip(halves, values, strict=True):
         mesh = _coloured(axes, half, np.maximum(one / factor, norm.vmin or 0.0), norm)
     axes.set_title("difference: von Mises left, pressure right")
-    _bar(axes, mesh, f"[{prefix}Pa]")
+    _bar(axes, mesh, f"[{prefix}Pa]", extend="both")
+    whole = [float(np.quantile(np.abs(getattr(left.fields, name)), SHARE_OF_COLOURS)) for name in names]
+    sizes = [f"{one / most:.0e}" for one, most in zip(shown, whole, strict=True)]
+    return f"at 99.5 % of points below {sizes[0]} (left) and {sizes[1]} (right) of the darkest above"
 
 
-def _draw_frame(axes: Axes, halves: Sequence[Half]) -> None:
-    """Deformed surface, contact, indenter and axes."""
+def _draw_frame(axes: Axes, halves: Sequence[Half], note: str) -> None:
+    """Deformed surface, contact, indenter and axes, with a note below."""
     half = halves[0]
     unit, end = half.unit, half.radius.max() / half.unit
     for one in halves:
@@ -222,7 +258,11 @@ def _draw_frame(axes: Axes, halves: Sequence[Half]) -> None:
     axes.set(xlim=(-end, end), ylim=(half.depth.max() / unit, highest))
     _, prefix = prefix_for(np.array([half.radius.max()]))
     stretched = _stretched(half)
-    axes.set_xlabel(f"r [{prefix}m]" + (f", depth drawn {stretched:.1f} times larger" if stretched > 1.05 else ""))
+    along = f"r [{prefix}m]" + (f", depth drawn {stretched:.1f} times larger" if stretched > 1.05 else "")
+    axes.set_xlabel(along)
+    axes.annotate(
+        note, (0.0, 0.0), xytext=(0, -36), xycoords="axes fraction", textcoords="offset points", fontsize=7.5
+    )  # fmt: skip
     axes.set_ylabel(f"z [{prefix}m]")
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _position: f"{abs(value):g}"))
     axes.yaxis.set_major_locator(MaxNLocator(4))
@@ -233,7 +273,7 @@ def _draw_frame(axes: Axes, halves: Sequence[Half]) -> None:
 def _name_sides(axes: Axes, halves: Sequence[Half]) -> None:
     for half in halves:
         axes.text(0.5 + 0.48 * half.side, 0.04, display_name(half.path.method), transform=axes.transAxes,
-            ha="right" if half.side > 0 else "left", fontsize=8.0, weight="bold")  # fmt: skip
+            ha="right" if half.side > 0 else "left", fontsize=8.0, weight="bold", path_effects=RIM)  # fmt: skip
 
 
 def _stretched(half: Half) -> float:

@@ -133,7 +133,9 @@ def calibrate(
 def campaign(
     family: Annotated[
         str,
-        typer.Argument(help="elastic, pressure, displacement, adhesive, impact, history (of depth) or creep (force)."),
+        typer.Argument(
+            help="elastic, pressure, displacement, inside, adhesive, impact, history (of depth) or creep (force)."
+        ),
     ] = "elastic",
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
     count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
@@ -144,11 +146,12 @@ def campaign(
     from cases.measurements import measurement  # noqa: PLC0415
     from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.displacements import displacement_campaign  # noqa: PLC0415
+    from cases.measurements.campaigns.inside.campaign import inside_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.pressures import pressure_campaign  # noqa: PLC0415
     from cases.measurements.campaigns.random_scenes import FAMILIES, Family  # noqa: PLC0415
     from contact import InvalidInput  # noqa: PLC0415
 
-    of_fields = {"pressure": pressure_campaign, "displacement": displacement_campaign}
+    of_fields = {"pressure": pressure_campaign, "displacement": displacement_campaign, "inside": inside_campaign}
     if family not in (*FAMILIES, *of_fields):
         raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, *of_fields))}")
     if family in of_fields:

@@ -49,6 +49,12 @@ def test_displacements_have_a_door(capsys):
     assert "displacement" in capsys.readouterr().out
 
 
+def test_a_campaign_of_fields_inside_has_a_door(capsys):
+    """Seen to fail: the campaign was no family."""
+    assert run(["campaign", "inside", "--count", "1", "--seed", "19101"]) == 0
+    assert "within: 1, refused: 0, beyond: 0, crashed: 0" in capsys.readouterr().out
+
+
 def test_an_unknown_family_names_those_there_are(capsys):
     assert run(["campaign", "plastic"]) == 4
     assert "elastic, adhesive, impact, history, creep" in capsys.readouterr().err.replace("\n", " ")

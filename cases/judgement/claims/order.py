@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, TypeAlias
 
+import numpy as np
+
 from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
 from cases.declare.task import Answers, Task
@@ -14,9 +16,10 @@ from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.order import judge_digits, judge_order
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.convergence import ConvergenceStudy
-from cases.results.records.scene_run import SceneRun
+from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 from contact import Scene
+from contact.records.validation import FloatArray
 
 # The settings of one grid, or of several grids that make one refinement.
 Grids: TypeAlias = Mapping[str, Any] | tuple[Mapping[str, Any], ...]
@@ -24,7 +27,9 @@ Grids: TypeAlias = Mapping[str, Any] | tuple[Mapping[str, Any], ...]
 
 @dataclass(frozen=True, kw_only=True)
 class Order(DeclaredClaim):
-    """On a sequence of grids the quantity's last step converges at its formal order.
+    """On a sequence of grids the quantity's last step, or a field at points, converges at its formal order.
+
+    Fields count by root mean squares over their points.
 
     Attributes:
         method: label of the method in the case.
@@ -103,24 +108,24 @@ class Order(DeclaredClaim):
     def _study(self, case: Case, scene: CaseScene, answers: Answers) -> ConvergenceStudy:
         levels = [[answers.of(task) for task in level] for level in self._levels(case, scene)][::-1]
         runs = [level[0] for level in levels]
-        quantity = runs[0].quantity(self.quantity)
+        found = [_sampled(run, self.quantity) for run in runs]
         reference, uncertainty = self._reference(case, scene, answers)
         sequence = Refinements(
             lengths=tuple(self.ratio**-level for level in range(len(runs)))[::-1],
-            values=tuple(self._last(run) for run in runs),
+            values=tuple(_size(one.values) for one in found),
             unknowns=tuple(run.cost.unknowns if run.cost else 0 for run in runs),
             seconds=tuple(run.cost.cpu_seconds if run.cost else 0.0 for run in runs),
             errors=tuple(self._distance(level, reference) for level in levels) if reference is not None else (),
-            stated=tuple((run.quantity(self.quantity).uncertainty or (None,))[-1] for run in runs),
+            stated=tuple((one.uncertainty or (None,))[-1] for one in found),
         )
         return study_of(
             sequence,
             scene=scene.name,
             method=self.method,
-            quantity=quantity,
+            quantity=found[0],
             formal_order=self.formal_order,
             mesh_family=self.mesh_family,
-            reference=reference,
+            reference=None if reference is None else _size(reference),
             reference_uncertainty=uncertainty,
             reference_source=self._referee_name or self.reason.source,
             floor=self.floor,
@@ -130,20 +135,18 @@ class Order(DeclaredClaim):
     def _referee_name(self) -> str:
         return self.against.label if isinstance(self.against, MethodUse) else self.against
 
-    def _reference(self, case: Case, scene: CaseScene, answers: Answers) -> tuple[float | None, float]:
-        """The value at vanishing length, and its relative uncertainty."""
+    def _reference(self, case: Case, scene: CaseScene, answers: Answers) -> tuple[FloatArray | None, float]:
+        """The value or field at vanishing length, and its relative uncertainty."""
         for task in self._referee(case, scene):
-            found = answers.of(task).quantity(self.quantity)
+            found = _sampled(answers.of(task), self.quantity)
             stated = (found.uncertainty or (0.0,))[-1] / found.scale
-            return found.values[-1], self.reference_uncertainty or stated
-        return self.reference(scene.scene) if self.reference else None, self.reference_uncertainty
+            return np.array(found.values), self.reference_uncertainty or stated
+        return np.array([self.reference(scene.scene)]) if self.reference else None, self.reference_uncertainty
 
-    def _last(self, run: SceneRun) -> float:
-        return run.quantity(self.quantity).values[-1]
-
-    def _distance(self, level: Sequence[SceneRun], reference: float) -> float:
-        """Root mean square distance of the grids of one refinement."""
-        return math.sqrt(sum((self._last(run) - reference) ** 2 for run in level) / len(level))
+    def _distance(self, level: Sequence[SceneRun], reference: FloatArray) -> float:
+        """Root mean square distance of the grids of one refinement, at all points of a field."""
+        squares = [np.mean((np.array(_sampled(run, self.quantity).values) - reference) ** 2) for run in level]
+        return math.sqrt(sum(map(float, squares)) / len(level))
 
     def _judged(self, study: ConvergenceStudy) -> Judgement:
         if self.formal_order is not None:
@@ -151,3 +154,18 @@ class Order(DeclaredClaim):
         if study.digits_per_refinement is None:
             return nothing_compared(Status.INCONCLUSIVE, "every grid is at the floor: start coarser")
         return judge_digits(study.digits_per_refinement, self.least_digits)
+
+
+def _sampled(run: SceneRun, name: str) -> Quantity:
+    """The last value of a quantity alone, or a field at points, which is kept over its scale."""
+    if any(quantity.name == name for quantity in run.quantities):
+        found = run.quantity(name)
+        return replace(found, values=found.values[-1:], uncertainty=found.uncertainty[-1:])
+    field = run.curve(name)
+    stated = () if field.relative_uncertainty is None else (field.relative_uncertainty,) * len(field.y)
+    return Quantity(name=name, unit=field.unit, scale=1.0, values=field.y, uncertainty=stated)
+
+
+def _size(values: Sequence[float] | FloatArray) -> float:
+    """One value itself, or the root mean square of a field."""
+    return float(values[0]) if len(values) == 1 else float(np.sqrt(np.mean(np.square(values))))

@@ -6,9 +6,14 @@ finite elements recover them from their own solution. At twelve points away from
 the fifth digit of the depth, stresses in the third of the mean pressure, and the hydrostatic pressure at nu = 1/2 as
 well as at 0.3, where it no longer follows from the strain. Each answer also obeys the laws of elastic bodies: the force
 passes every depth, volume changes with the pressure, the gradient adds up to the pressure, the base holds, and just
-below the surface the pressure of the contact comes back. In a thin incompressible layer the pressure reaches from top
-to base as in a lubricating film: 3 G a^4/(32 R h^3) in the middle.
+below the surface the pressure of the contact comes back. With finer cells of degree k displacements converge with
+order k + 1, stresses and pressure with k, the gradient with k - 1. Ladders lead to nu = 1/2 and to contacts a hundred
+thicknesses wide, where the direct equation gives MDR's fields as well. In a thin incompressible layer the pressure
+reaches from top to base as in a lubricating film: 3 G a^4/(32 R h^3) in the middle.
 """
+
+import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -18,10 +23,13 @@ from cases.declare.task import Sampling
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.field_agreement import FieldAgreement, Norm
 from cases.judgement.claims.residual import Residual
+from cases.library._claims import names_of
+from cases.library._convergence import ROOT_TWO, Refinement, neighbours, studies
 from cases.library._layers import LAYERS, THICKNESS, layer, scene_name
-from cases.library._methods import MDR
+from cases.library._methods import EQUATION, MDR
 from cases.library._reasons import reasons
-from contact import ContactRadii, Paraboloid, Profile, Scene, TruncatedCone
+from cases.measurements.cost.settings import inside_costs
+from contact import ContactRadii, Layer, Paraboloid, Profile, Scene, TruncatedCone
 
 WHY = reasons("inside_layer")
 
@@ -72,6 +80,55 @@ THIN = tuple(
     )
     for ratio in THIN_RATIOS
 )
+# Hard parameters: nu towards 1/2, and contacts of many thicknesses, beside which a mesh ends soon.
+GAPS_TO_HALF = (1e-2, 1e-4, 1e-6)
+WIDE_RATIOS = (10.0, 30.0, 100.0)
+BELOW_CONTACT = tuple((r, z) for r, z in POINTS if r < 1.0)
+
+
+def on_ladder(nu: float, ratio: float) -> CaseScene:
+    """Return a paraboloid pressed to a contact radius of ``ratio`` h on a bonded layer, solved by three methods."""
+    own = Layer(thickness=THICKNESS, youngs_modulus=layer("bonded nu=0.5").youngs_modulus, poissons_ratio=nu)
+    a = ratio * THICKNESS
+    return CaseScene(
+        name=f"paraboloid, bonded nu={nu:g} a/h={ratio:g}",
+        parameters={"profile": "paraboloid", "layer": f"bonded nu={nu:g}", "a_over_h": ratio},
+        scene=Scene(
+            layer=own,
+            indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE),
+            loading=ContactRadii(values=np.array([a])),
+        ),
+        sampling=Sampling(inside=BELOW_CONTACT, laws=False),
+        methods=(MDR, MESH, EQUATION),
+        nightly=("mdr", "fem", "integral_equation") if ratio > WIDE_RATIOS[1] else ("fem",),
+    )
+
+
+LADDER = (
+    *(on_ladder(0.5 - gap, 1.0) for gap in GAPS_TO_HALF),
+    *(on_ladder(nu, ratio) for nu in (0.3, 0.5) for ratio in WIDE_RATIOS),
+)
+# Away from rims and faces; the cost of the last is measured.
+GRID = (*((r, z) for r in np.linspace(0.05, 1.45, 8).tolist() for z in np.linspace(0.15, 0.9, 8).tolist()), (0.5, 0.5))
+REFINED = tuple(
+    replace(one, name=f"{one.name}, refined", sampling=Sampling(inside=GRID, laws=False), nightly=("fem",))
+    for one in (pressed("paraboloid", label, 1.0) for label in ("bonded nu=0.3", "bonded nu=0.5"))
+)
+# Two neighbouring meshes count by their root mean square: where points lie in their triangles scatters errors.
+CELLS = Refinement(
+    name="P3 cells inside, two meshes a refinement",
+    method="fem",
+    ladder=neighbours(
+        "growth",
+        ([math.expm1(0.35 * ROOT_TWO**-level * near) for near in (0.97, 1.03)] for level in range(4)),
+        order=3,
+        edge_cell=1e-9,
+        truncation=1e-12,
+    ),
+    reason=WHY["order"],
+    ratio=ROOT_TWO,
+)
+ORDERS = {"displacement_inside": 4.0, "stress_inside": 3.0, "pressure_inside": 3.0, "gradient_inside": 2.0}
 
 
 def film_pressure(scene: Scene) -> float:
@@ -91,6 +148,12 @@ FIELDS: dict[str, tuple[Norm, float]] = {
     "pressure_inside": ("root mean square", 1e-3),
     "gradient_inside": ("root mean square", 2e-2),
 }
+EXACT_FIELDS: dict[str, float] = {
+    "displacement_inside": 1e-8,
+    "stress_inside": 1e-9,
+    "pressure_inside": 1e-9,
+    "gradient_inside": 1e-9,
+}
 LAWS = {
     "the force passes every depth": ("force_balance_inside", 1e-4),
     "volume changes with the pressure": ("dilatation_inside", 1e-5),
@@ -105,14 +168,14 @@ CASE = Case(
     question="Do two methods agree on displacement, stress and pressure inside, and do both obey the laws?",
     equations=("Eq. (9)", "Eq. (14)"),
     text=text_of(__doc__),
-    scenes=(*COMPARED, *THIN),
+    scenes=(*COMPARED, *LADDER, *REFINED, *THIN),
     methods=(MDR, MESH),
     claims=(
         *(
             FieldAgreement(
                 name=f"{quantity.replace('_', ' ')}: MDR and fem",
                 quantity=quantity,
-                scenes=tuple(scene.name for scene in COMPARED),
+                scenes=names_of((*COMPARED, *LADDER)),
                 norm=norm,
                 fast="mdr",
                 reference="fem",
@@ -120,6 +183,19 @@ CASE = Case(
                 reason=WHY["two methods"],
             )
             for quantity, (norm, tolerance) in FIELDS.items()
+        ),
+        *(
+            FieldAgreement(
+                name=f"{quantity.replace('_', ' ')}: MDR and the direct equation",
+                quantity=quantity,
+                scenes=names_of(LADDER),
+                norm="largest",
+                fast="mdr",
+                reference="integral_equation",
+                tolerance=tolerance,
+                reason=WHY["two densities"],
+            )
+            for quantity, tolerance in EXACT_FIELDS.items()
         ),
         *(
             Residual(
@@ -132,6 +208,7 @@ CASE = Case(
             )
             for name, (quantity, tolerance) in LAWS.items()
         ),
+        *studies(REFINED, CELLS, ORDERS, against="mdr", nightly=True),
         Approach(
             name="thin limit of the pressure inside",
             quantity="axial_stress_inside",
@@ -143,4 +220,5 @@ CASE = Case(
             reason=WHY["film"],
         ),
     ),
+    work=inside_costs(REFINED[0].name),
 )

@@ -75,6 +75,12 @@ def elastic_costs(
     return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *grids, *tables), FINEST_EQUATION, cheap)
 
 
+def inside_costs(scene: str) -> tuple[WorkStudy, ...]:
+    """What stresses inside cost at the last of a scene's points, with the fields at all of them in the time."""
+    quantities = ("von_mises_inside", "axial_stress_inside")
+    return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *BEM[:2]), FINEST_EQUATION, MDR[2:3])
+
+
 def detachment_costs(scene: str) -> tuple[WorkStudy, ...]:
     """What the pull-off costs."""
     # A branch by finite elements takes a second, ten times over.

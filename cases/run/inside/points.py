@@ -21,7 +21,8 @@ GROUPS = {
 STRESSES = ("radial_stress", "axial_stress", "von_mises")
 
 
-def _found(path: ContactPath, sampling: Sampling) -> InsideFields:
+def fields_at(path: ContactPath, sampling: Sampling) -> InsideFields:
+    """Fields of the last step at a scene's points."""
     a, h = float(path.contact_radius[-1]), path.scene.layer.thickness
     r, z = np.transpose(sampling.inside)
     return path.inside(-1).at(a * r, min(a, h) * z)
@@ -29,7 +30,7 @@ def _found(path: ContactPath, sampling: Sampling) -> InsideFields:
 
 def inside_curves(path: ContactPath, sampling: Sampling) -> Iterator[Curve]:
     """Fields of the last step at all points, over depth, mean pressure and that over the smaller of a and h."""
-    found, mean = _found(path, sampling), float(path.scale("pressure")[-1])
+    found, mean = fields_at(path, sampling), float(path.scale("pressure")[-1])
     length = min(float(path.contact_radius[-1]), path.scene.layer.thickness)
     depth = abs(float(path.indentation_depth[-1]))
     scales = dict(zip(GROUPS, (depth, mean, mean, mean / length), strict=True))
@@ -49,7 +50,7 @@ def inside_curves(path: ContactPath, sampling: Sampling) -> Iterator[Curve]:
 
 def inside_quantities(path: ContactPath, sampling: Sampling) -> Iterator[Quantity]:
     """Stresses of the last step at all points, and residuals of the laws of elastic bodies."""
-    found = _found(path, sampling)
+    found = fields_at(path, sampling)
     error = found.error_estimate["stress"] * _largest(found)
     for name in STRESSES:
         values: FloatArray = getattr(found, name)

@@ -11,6 +11,7 @@ import numpy as np
 from contact import InvalidInput
 from contact.answer.inside import InsideFields
 from contact.records.validation import FloatArray
+from fem_reference.discrete_layer.assembly import node_positions
 from fem_reference.elastic.inside.places import places_of
 from fem_reference.elastic.inside.section import NAMES, MeridianSection
 from fem_reference.error_model import INSIDE
@@ -56,6 +57,8 @@ class FemInterior:
         values = self.section.at(places)
         error = self._error_of_triangles[places.triangles]
         error[:, 2:7] += np.abs(values[:, 2:6]).max(initial=0.0) * self._share_at_edge(points)[:, None]
+        error[:, _GROUPS["pressure_gradient"]] += self._gradient_at_edge(points)[:, None]
+        error += self._from_the_end(points[0])
         return InsideFields(
             **dict(zip(NAMES, (values * self._units).T, strict=True)), error_estimate=self._stated(values, error)
         )
@@ -82,6 +85,30 @@ class FemInterior:
         away = np.hypot(points[0] - 1.0, points[1]) + self.missed
         return np.asarray(np.sqrt(self.missed) * (self.missed / np.maximum(away, np.finfo(float).tiny)) ** 1.5)
 
+    def _gradient_at_edge(self, points: FloatArray) -> FloatArray:
+        """What the same contact changes in the gradient: its share over the distance, but no more than all of it.
+
+        The gradient of sqrt(2 rho) is 1/sqrt(2 rho); the pressure's root is that of Hertz, 3/2 of the mean pressure.
+        """
+        contact, depth = self.section.contact, self.section.depth
+        away = np.maximum(np.hypot(points[0] - 1.0, points[1]), np.finfo(float).tiny)
+        change = np.minimum(np.sqrt(2.0) * self._share_at_edge(points) / away, 1.0 / np.sqrt(2.0 * away))
+        return np.asarray(1.5 * abs(contact.force(depth)) / np.pi * (change if self.missed else np.zeros_like(away)))
+
+    def _from_the_end(self, radius: FloatArray) -> FloatArray:
+        """What the mesh's outer edge throws back, shape (n, 9): the fields there, decaying inwards like all ends do.
+
+        A layer that slides on its base moves there as a whole, which the spring on that edge carries exactly.
+        """
+        contact = self.section.contact
+        rate, end = contact.decay / 2, contact.layer_mesh.outer_radius
+        r, z = node_positions(self.section.space)
+        nodal, beside = self.section.nodal, r >= end - 0.5 / rate
+        whole = np.zeros(len(NAMES))
+        whole[0] = nodal[beside & (z == z.max()), 0].mean()
+        thrown = np.abs(nodal[beside] - whole).max(axis=0)
+        return np.asarray(np.exp(-rate * (end - radius))[:, None] * thrown)
+
     def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
         """Largest error of each group over its scale: the depth, the largest stress and gradient."""
         mesh, depth = self.section.contact.layer_mesh, abs(self.section.depth)
@@ -104,6 +131,9 @@ class FemInterior:
         nodes = self.section.local_nodes
         change = np.abs(self.section.at_local(nodes) - self.other.at_local(nodes)).max(axis=1)
         change[:, _GROUPS["pressure_gradient"]] *= INSIDE.gradient
+        mesh = self.section.contact.layer_mesh.mesh
+        on_axis = (mesh.p[0, mesh.t] == 0.0).any(axis=0)
+        change[np.ix_(on_axis, range(2, 9))] *= INSIDE.on_axis
         return np.asarray(INSIDE.share_of_change[self.section.contact.pair.degree] * change)
 
     def write(self, path: str | Path) -> None:

@@ -27,6 +27,8 @@ NAMES = (
     "pressure_gradient_radial",
     "pressure_gradient_axial",
 )
+# Fields that change sign across the axis.
+ODD = [NAMES.index(name) for name in ("radial_displacement", "shear_stress", "pressure_gradient_radial")]
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,11 @@ class MeridianSection:
         numbers, local = self.node_numbers, self._at_nodes_of_triangles
         total = np.zeros((int(self.space.displacement_dofs.N), local.shape[-1]))
         np.add.at(total, numbers, local)
-        return total / np.bincount(numbers.ravel())[:, None]
+        total /= np.bincount(numbers.ravel())[:, None]
+        # On the axis half of the triangles that meet at a node are mirror images, in which these are opposite.
+        on_axis = node_positions(self.space)[0] == 0.0
+        total[np.ix_(on_axis, ODD)] = 0.0
+        return total
 
     def at(self, places: Places) -> FloatArray:
         """Values at points, shape (n, 9)."""

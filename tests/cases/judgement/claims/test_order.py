@@ -56,3 +56,14 @@ def test_claims_about_two_quantities_share_their_grids():
 def test_an_unknown_method_of_reference_is_refused():
     with pytest.raises(InvalidInput, match="'fats'"):
         dataclasses.replace(fake_case(), claims=(order(against="fats"),))
+
+
+def test_a_field_counts_by_the_root_mean_square_over_its_points():
+    """Its last point alone had no quantity of that name: KeyError."""
+    claims, (study, _) = judged(order(quantity="pressure", against="fast"), fake_case())
+    assert {claim.status for claim in claims} == {Status.PASS}
+    values = [grid.value for grid in study.grids]
+    assert study.reference == pytest.approx(values[0], rel=0.1, abs=0)
+    errors = [abs(value - study.reference) for value in values]
+    # All points of this method err by the same share.
+    assert [grid.error for grid in study.grids] == pytest.approx(errors, rel=1e-9, abs=0)
