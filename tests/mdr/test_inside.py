@@ -16,7 +16,6 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
-    DepthHistory,
     ExponentialDepth,
     FlatPunch,
     GradedLayer,
@@ -256,16 +255,6 @@ def test_graded_layers_are_refused_by_name():
     path = pressed(layer, Paraboloid(radius_of_curvature=10.0), 0.5)
     with pytest.raises(UnsupportedSceneError, match="uniform layers and stacks, not of a GradedLayer"):
         path.inside().at(0.1, 0.2)
-
-
-def test_histories_are_refused_by_name():
-    scene = Scene(
-        layer=unit_layer(0.5),
-        indenter=Paraboloid(radius_of_curvature=10.0),
-        loading=DepthHistory(time=np.array([0.0, 1.0]), depth=np.array([0.0, 0.01])),
-    )
-    with pytest.raises(InvalidInput, match="HistoryPath: fields inside are those of equilibria"):
-        Mdr().solve(scene).inside()
 
 
 def test_adhering_contacts_have_an_inside():
