@@ -234,6 +234,9 @@ def density_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray) -
         return None
     ratio = radius / system.length_unit
     if isinstance(scene.indenter, FlatPunch):
+        if not scene.layer.is_piecewise_uniform:
+            # What slopes of panels that shrink towards the edge miss counts as in the pressure.
+            return PRESSURE_ROUNDING + system.flat_punch.punch_pressure_error(ratio)
         return PRESSURE_ROUNDING + system.flat_punch.spring_error(ratio)
     depth_error = system.relative_errors(radius)["indentation_depth"]
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING

@@ -5,19 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import DepthHistory, ForceHistory, Scene
+from contact.answer.solution import InstantInterior
 from mdr.history.contact_edge import SpringBed
 from mdr.history.force_control import Ramp, pressed_at_once, to_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
-
-if TYPE_CHECKING:
-    from mdr.history.inside import HistoryInterior
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,7 +37,7 @@ class FollowedHistory:
     substeps: NDArray[np.intp]
     known: float
 
-    def inside(self, step: int) -> HistoryInterior:
+    def inside(self, step: int) -> InstantInterior:
         """The body at one instant of contact.
 
         Raises:

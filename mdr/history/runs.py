@@ -42,7 +42,7 @@ class Run(NamedTuple):
 
 def runs_to(bed: SpringBed, values: FloatArray, end: float, at_end: float) -> list[Run]:
     """Springs up to a front at y = end, with the value there."""
-    runs = []
+    runs: list[Run] = []
     for number, own in enumerate(bed.sections()):
         y = bed.y[own]
         if y[0] >= end and runs:

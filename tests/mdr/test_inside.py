@@ -16,9 +16,7 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
-    ExponentialDepth,
     FlatPunch,
-    GradedLayer,
     InvalidInput,
     Layer,
     LayerStack,
@@ -30,7 +28,6 @@ from contact import (
     Sublayer,
     Tabulated,
     TruncatedCone,
-    UnsupportedSceneError,
 )
 from mdr import Mdr
 
@@ -246,15 +243,6 @@ def test_refusals_by_name():
         path.inside().largest("shear")
     with pytest.raises(InvalidInput, match="this path has steps 0 to 0"):
         path.inside(3)
-
-
-def test_graded_layers_are_refused_by_name():
-    layer = GradedLayer(
-        thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3, support="bonded"
-    )
-    path = pressed(layer, Paraboloid(radius_of_curvature=10.0), 0.5)
-    with pytest.raises(UnsupportedSceneError, match="uniform layers and stacks, not of a GradedLayer"):
-        path.inside().at(0.1, 0.2)
 
 
 def test_adhering_contacts_have_an_inside():
