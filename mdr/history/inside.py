@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
+from bem.layer_equation.inside.compared import DISPLACEMENTS, change, scales_of
 from bem.layer_equation.inside.density import Piece
 from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.inside.superposed import SpringForces, density_of_springs
@@ -29,9 +30,6 @@ from mdr.springs.error_model import HISTORY_SAFETY, PRESSURE_ROUNDING, SPRING_SH
 # second 95 % of 650 fields were covered and those missed by up to twice, with the first bars are 20 times the error
 # (60 depth histories, seed 77, against four times as many springs, 2026-11-22).
 _ORDER = 1.5
-_DISPLACEMENTS = ("radial_displacement", "axial_displacement")
-_SLOPES = ("pressure_gradient_radial", "pressure_gradient_axial")
-_STRESSES = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress", "hydrostatic_pressure")
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,17 +54,10 @@ class HistoryInterior:
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
         fine, *coarse = (_together(one.at(radius, depth), two.at(radius, depth)) for one, two in self.bodies)
-        largest = _largest(fine, _STRESSES[:-1])
-        scales = {
-            "displacement": (_DISPLACEMENTS, abs(self.depth)),
-            "stress": (_STRESSES, largest),
-            "hydrostatic_pressure": (_STRESSES, largest),
-            "pressure_gradient": (_SLOPES, max(_largest(fine, _SLOPES), largest / self.length)),
-        }
         error = dict(fine.error_estimate)
-        for kind, (names, scale) in scales.items():
+        for kind, (names, scale) in scales_of(fine, self.length, self.depth).items():
             more = (share**-_ORDER - 1.0 for share in SPRING_SHARES[1:])
-            changes = (_change(fine, other, names) / excess for other, excess in zip(coarse, more, strict=False))
+            changes = (change(fine, other, names) / excess for other, excess in zip(coarse, more, strict=False))
             error[kind] += HISTORY_SAFETY * max(changes) / (scale or math.inf)
         return replace(fine, error_estimate=error)
 
@@ -85,17 +76,9 @@ def interior_at(history: FollowedHistory, step: int) -> HistoryInterior:
 
 def _together(stressed: InsideFields, moved: InsideFields) -> InsideFields:
     """Stresses of the one, displacements of the other."""
-    displacements = {name: getattr(moved, name) for name in _DISPLACEMENTS}
+    displacements = {name: getattr(moved, name) for name in DISPLACEMENTS}
     error = {**stressed.error_estimate, "displacement": moved.error_estimate["displacement"]}
     return replace(stressed, **displacements, error_estimate=error)
-
-
-def _largest(found: InsideFields, names: tuple[str, ...]) -> float:
-    return max(float(np.abs(getattr(found, name)).max(initial=0.0)) for name in names)
-
-
-def _change(one: InsideFields, other: InsideFields, names: tuple[str, ...]) -> float:
-    return max(float(np.abs(getattr(one, name) - getattr(other, name)).max(initial=0.0)) for name in names)
 
 
 def _interior(history: FollowedHistory, springs: SpringForces, depth: float) -> ContactInterior:
