@@ -38,8 +38,8 @@ from mdr.springs.table_pressure import pressure_errors
 if TYPE_CHECKING:
     from bem.layer_equation.inside.interior import ContactInterior
 
-# Relative errors of density and radius together from which on fields inside are compared with those of finer data:
-# below, roundings count as much.
+# Relative errors of density and radius together, over k_bar, from which on fields inside are compared with those of
+# finer data: below, roundings count as much, and no finer data have less of them.
 _EXACT = 1e-12
 
 
@@ -142,7 +142,8 @@ class PathFields:
     def inside(self, step: int, known: KnownContact) -> InteriorFields:
         """The body under one step; where its data are coarse, compared with finer ones."""
         own = self.body(step, known)
-        if self.finer is None or own.known.density_error + own.known.radius_error < _EXACT:
+        rounded = _EXACT * max(1.0, float(self.flat_punch.normalized_contact_stiffness(own.density.radius)))
+        if self.finer is None or own.known.density_error + own.known.radius_error < rounded:
             return own
         # As below.
         from bem.layer_equation.inside.compared import ComparedInterior  # noqa: PLC0415
