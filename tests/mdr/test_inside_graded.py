@@ -117,7 +117,11 @@ LAYERS = {
 
 
 @pytest.mark.parametrize("name", [*list(LAYERS)[:3], pytest.param("nu over depth", marks=pytest.mark.slow)])
-@pytest.mark.parametrize("indenter", [ROUND, TruncatedCone(flat_radius=0.3, slope=0.1)], ids=lambda x: type(x).__name__)
+@pytest.mark.parametrize(
+    "indenter",
+    [ROUND, pytest.param(TruncatedCone(flat_radius=0.3, slope=0.1), marks=pytest.mark.slow)],
+    ids=lambda x: type(x).__name__,
+)
 def test_equilibrium_hookes_law_and_gradient(name, indenter):
     layer = LAYERS[name]
     for residual, scale in laws(layer, pressed(layer, indenter).inside(), 0.4, 0.35):
@@ -171,7 +175,7 @@ def largest(found, names):
         pytest.param(ROUND, 1.0, marks=pytest.mark.slow),
         pytest.param(ROUND, 0.1, marks=pytest.mark.slow),
         pytest.param(TruncatedCone(flat_radius=0.3, slope=0.1), 1.0, marks=pytest.mark.slow),
-        (FlatPunch(radius=0.7), 0.7),
+        pytest.param(FlatPunch(radius=0.7), 0.7, marks=pytest.mark.slow),
     ],
 )
 def test_the_direct_equation_and_more_waves_change_nothing_beyond_what_is_stated(indenter, radius, monkeypatch):

@@ -58,7 +58,9 @@ def largest(found, names=STRESSES):
     return max(float(np.abs(getattr(found, name)).max()) for name in names)
 
 
-@pytest.mark.parametrize("layer", [SOFT, HALF, STACK], ids=["layer", "half-space", "stack"])
+@pytest.mark.parametrize(
+    "layer", [SOFT, HALF, pytest.param(STACK, marks=pytest.mark.slow)], ids=["layer", "half-space", "stack"]
+)
 @pytest.mark.parametrize("indenter", INDENTERS, ids=lambda one: type(one).__name__)
 def test_a_held_depth_relaxes_stresses_and_moves_nothing(layer, indenter):
     """Pressed in at once and held, every stress is psi(t) times that of the elastic layer; displacements stay."""
@@ -116,7 +118,11 @@ def force_at(path, step, inside):
 
 
 @pytest.mark.parametrize("step", [1, 3, 5])
-@pytest.mark.parametrize("indenter", [INDENTERS[0], INDENTERS[1], Cone(slope=0.1)], ids=lambda one: type(one).__name__)
+@pytest.mark.parametrize(
+    "indenter",
+    [INDENTERS[0], *(pytest.param(one, marks=pytest.mark.slow) for one in (INDENTERS[1], Cone(slope=0.1)))],
+    ids=lambda one: type(one).__name__,
+)
 def test_the_surface_follows_the_indenter_whatever_went_before(indenter, step):
     """Loading, unloading, reloading: displacements meet the indenter, stresses its force."""
     path = followed(SOFT, indenter, TIME, DEPTH)

@@ -36,8 +36,7 @@ class ComparedInterior:
             kind: change(found, finer, names) / (scale or np.inf) + finer.error_estimate[kind]
             for kind, (names, scale) in scales.items()
         }
-        # No more than what is known of these data alone.
-        return replace(found, error_estimate={kind: min(e, found.error_estimate[kind]) for kind, e in error.items()})
+        return replace(found, error_estimate=error)
 
 
 def scales_of(found: InsideFields, length: float, depth: float) -> dict[str, tuple[tuple[str, ...], float]]:
