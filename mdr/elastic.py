@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -11,9 +11,18 @@ import numpy as np
 
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
-from contact import ContactPath, ContactRadii, ElasticLayer, FlatPunch, IndentationDepths, Scene, StageLog
+from contact import (
+    ContactPath,
+    ContactRadii,
+    ElasticLayer,
+    FlatPunch,
+    IndentationDepths,
+    NormalForces,
+    Scene,
+    StageLog,
+)
 from contact.answer.friction import told_of_friction
-from contact.answer.inside import KnownContact
+from contact.answer.inside import InteriorFields, KnownContact
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import SeveralContacts, contact_fields
@@ -28,6 +37,10 @@ from mdr.springs.table_pressure import pressure_errors
 
 if TYPE_CHECKING:
     from bem.layer_equation.inside.interior import ContactInterior
+
+# Relative errors of density and radius together, over k_bar, from which on fields inside are compared with those of
+# finer data: below, roundings count as much, and no finer data have less of them.
+_EXACT = 1e-12
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -48,6 +61,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         stiffness = system.contact_stiffness(radius)
         force = system.force(radius, depth, stiffness)
     fields = PathFields(scene, system.flat_punch, excess, depth, partial(density_errors, system, scene, radius))
+    fields = replace(fields, finer=by_finer_data(solve_elastic, scene, flat_punch, settings))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
     errors = _errors(system, scene, radius, depth, force, contact_stiffness=stiffness)
@@ -99,6 +113,7 @@ class PathFields:
             shape (n,); if unknown the pressure's error.
         edge_error: Error of the density's value at the edge [m], shape (n,).
         singular_edge: Whether the pressure may be singular at the edge; by default only under a flat punch.
+        finer: The body under one step by refined flat punches; what fields differ then tells their errors.
     """
 
     scene: Scene
@@ -108,6 +123,7 @@ class PathFields:
     density_error: Callable[[], FloatArray | None] | None = None
     edge_error: FloatArray | None = None
     singular_edge: bool | None = None
+    finer: Callable[[int], ContactInterior] | None = None
     _contacts: dict[int, ContactFields] = field(default_factory=dict)
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
@@ -123,8 +139,19 @@ class PathFields:
         density = self.contact(step).density
         return self.scene.indenter.is_convex and density is not None and density.falls
 
-    def inside(self, step: int, known: KnownContact) -> ContactInterior:
-        """The body under one step."""
+    def inside(self, step: int, known: KnownContact) -> InteriorFields:
+        """The body under one step; where its data are coarse, compared with finer ones."""
+        own = self.body(step, known)
+        rounded = _EXACT * max(1.0, float(self.flat_punch.normalized_contact_stiffness(own.density.radius)))
+        if self.finer is None or own.known.density_error + own.known.radius_error < rounded:
+            return own
+        # As below.
+        from bem.layer_equation.inside.compared import ComparedInterior  # noqa: PLC0415
+
+        return ComparedInterior(own, self.finer(step))
+
+    def body(self, step: int, known: KnownContact) -> ContactInterior:
+        """The body under one step, as the density of the contact alone makes it."""
         # Half of what an answer would import otherwise, for those who look inside.
         from bem.layer_equation.inside.interior import ContactInterior  # noqa: PLC0415
         from mdr.springs.inside import density_of  # noqa: PLC0415
@@ -155,6 +182,30 @@ class PathFields:
                 edge=is_punch if self.singular_edge is None else self.singular_edge,
             )
         return self._contacts[step]
+
+
+def by_finer_data(
+    solve: Callable[[Scene, FlatPunchSource, Mapping[str, Setting]], ContactPath],
+    scene: Scene,
+    flat_punch: FlatPunchSource,
+    settings: Mapping[str, Setting],
+) -> Callable[[int], ContactInterior] | None:
+    """Solves for the body under one step with refined flat punches, where panels refine them."""
+    layer, loading = scene.layer, scene.loading
+    refines = layer.is_piecewise_uniform and not layer.is_half_space
+    if not (refines and isinstance(loading, ContactRadii | IndentationDepths | NormalForces)):
+        return None
+
+    def finer(step: int) -> ContactInterior:
+        """The body under that step."""
+        alone = scene.replace(loading=type(loading)(loading.values[[step]]))
+        path = solve(alone, flat_punch.refined(), settings)
+        assert isinstance(path.fields, PathFields)
+        names = ("contact_radius", "pressure")
+        errors = (float(np.broadcast_to(path.error_estimate[name], 1)[0]) for name in names)
+        return path.fields.body(0, KnownContact(float(path.contact_radius[0]), *errors))
+
+    return finer
 
 
 def _system(scene: Scene, source: LoggedSource) -> tuple[EquivalentSystem, FloatArray | None]:
@@ -242,6 +293,9 @@ def density_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray) -
         return None
     ratio = radius / system.length_unit
     if isinstance(scene.indenter, FlatPunch):
+        if not scene.layer.is_piecewise_uniform:
+            # What slopes of panels that shrink towards the edge miss counts as in the pressure.
+            return PRESSURE_ROUNDING + system.flat_punch.punch_pressure_error(ratio)
         return PRESSURE_ROUNDING + system.flat_punch.spring_error(ratio)
     depth_error = system.relative_errors(radius)["indentation_depth"]
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING

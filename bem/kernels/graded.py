@@ -72,7 +72,7 @@ class GradedKernel:
     @property
     def edge_slope(self) -> float:
         """c1 in chi = 1 + c1/k + ...: -[(2 - nu) E'/E ...]/(2 (1 - nu)) at the surface, in terms of G."""
-        nu, g = float(self.layer.ratio_at(0.0)), float(_logarithmic_slope(self.layer, np.zeros(1))[0])
+        nu, g = float(self.layer.ratio_at(0.0)), float(logarithmic_slope(self.layer, np.zeros(1))[0])
         return -((2 - nu) * g + float(self.layer.ratio_slope(0.0))) / (2 * (1 - nu))
 
     def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
@@ -91,24 +91,38 @@ class GradedKernel:
         return values.reshape(np.shape(wavenumber))
 
     def _above_base(self, k: NDArray[Any]) -> NDArray[Any]:
+        slips, base = self.below
+        return self._mixed(k, base) if slips else self._difference(k, np.ones(k.shape), base, on_base=True)
+
+    @property
+    def below(self) -> tuple[bool, ElasticBase | None]:
+        """Whether the layer slides on its base, and the base where it is elastic."""
         support = self.layer.support
         slips = support.interface == "unbonded" if isinstance(support, ElasticBase) else support == "unbonded"
-        base = support if isinstance(support, ElasticBase) else None
-        return self._mixed(k, base) if slips else self._difference(k, np.ones(k.shape), base, on_base=True)
+        return slips, support if isinstance(support, ElasticBase) else None
 
     def _difference(
         self, k: NDArray[Any], start: NDArray[Any], base: ElasticBase | None, *, on_base: bool = False
     ) -> NDArray[Any]:
         """-D_WW/(2 (1 - nu) k) at the surface, from the local half-space, or from the base, at depths `start`."""
-        nu, beta0 = self.layer.ratio_at(start), 1 - float(self.layer.ratio_at(0.0))
-        D = np.zeros((3, k.size), dtype=k.dtype)
-        if on_base:
-            below = np.zeros((3, k.size)) if base is None else _half_space(base.poissons_ratio, k) * self._softer(base)
-            D = k * (below - _half_space(nu, k))
+        beta0 = 1 - float(self.layer.ratio_at(0.0))
+        D = self.difference_on(k, base) if on_base else np.zeros((3, k.size), dtype=k.dtype)
+        top = _integrated(self.difference_rates(k), D, start)
+        return np.asarray(-top[2] / (2 * beta0 * k))
+
+    def difference_on(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
+        """D at a bonded base."""
+        below = (
+            np.zeros((3, k.size)) if base is None else uniform_compliance(base.poissons_ratio, k) * self._softer(base)
+        )
+        return np.asarray(k * (below - uniform_compliance(self.layer.ratio_at(np.ones(k.shape)), k)))
+
+    def difference_rates(self, k: NDArray[Any]) -> Rates:
+        """Of D = k (C - C_0)."""
 
         def rates(z: NDArray[Any], D: NDArray[Any]) -> NDArray[Any]:
             """Slope dD/dz of the scaled excess over the half-space, by Riccati's equation."""
-            nu, slope, g = self.layer.ratio_at(z), self.layer.ratio_slope(z), _logarithmic_slope(self.layer, z)
+            nu, slope, g = self.layer.ratio_at(z), self.layer.ratio_slope(z), logarithmic_slope(self.layer, z)
             beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
             uu, uw, ww = D
             drive = k * np.stack([2 * beta * g + 2 * slope, -eta * g - 2 * slope, 2 * beta * g + 2 * slope])
@@ -123,19 +137,27 @@ class GradedKernel:
             square = np.stack([uu * uu, uu * uw, uw * uw]) / beta
             return np.asarray(drive + linear + g * D + square)
 
-        top = _integrated(rates, D, start)
-        return np.asarray(-top[2] / (2 * beta0 * k))
+        return rates
 
     def _mixed(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
         """1 - C_WW/(2 (1 - nu)) by the mixed form, from a frictionless base upwards."""
         beta0 = 1 - float(self.layer.ratio_at(0.0))
+        qu, qp, wu, wp = _integrated(self.mixed_rates(k), self.mixed_on(k, base), np.ones(k.shape))
+        return np.asarray(1 - (wp - qp * wu / qu) / (2 * beta0))
+
+    def mixed_on(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
+        """M at a frictionless base."""
         M = np.zeros((4, k.size), dtype=k.dtype)
         if base is not None:
-            M[3] = _half_space(base.poissons_ratio, k)[2] * self._softer(base)
+            M[3] = uniform_compliance(base.poissons_ratio, k)[2] * self._softer(base)
+        return M
+
+    def mixed_rates(self, k: NDArray[Any]) -> Rates:
+        """Of the mixed form (Q, W) = M (U, P)."""
 
         def rates(z: NDArray[Any], M: NDArray[Any]) -> NDArray[Any]:
             """Slope dM/dz of the mixed form, displacements beside tractions."""
-            nu, g = self.layer.ratio_at(z), _logarithmic_slope(self.layer, z)
+            nu, g = self.layer.ratio_at(z), logarithmic_slope(self.layer, z)
             beta, eta, m = 1 - nu, 1 - 2 * nu, nu / (1 - nu)
             qu, qp, wu, wp = M
             # M B with B = [[-2k, k], [-k, 0]].
@@ -152,8 +174,7 @@ class GradedKernel:
             stretched = np.stack([-g * qu, 0 * qp, 0 * wu, g * wp])
             return np.asarray(k * (drive - product) + stretched)
 
-        qu, qp, wu, wp = _integrated(rates, M, np.ones(k.shape))
-        return np.asarray(1 - (wp - qp * wu / qu) / (2 * beta0))
+        return rates
 
     def _softer(self, base: ElasticBase) -> float:
         """G at the bottom of the layer over the base's."""
@@ -161,13 +182,13 @@ class GradedKernel:
         return bottom / (base.youngs_modulus / (2 * (1 + base.poissons_ratio)))
 
 
-def _half_space(nu: NDArray[Any] | float, k: NDArray[Any]) -> NDArray[Any]:
+def uniform_compliance(nu: NDArray[Any] | float, k: NDArray[Any]) -> NDArray[Any]:
     """UU, UW, WW of a half-space times 2Gk."""
     one = np.ones(k.size)
     return np.stack([2 * (1 - nu) * one, -(1 - 2 * nu) * one, 2 * (1 - nu) * one])
 
 
-def _logarithmic_slope(layer: GradedLayer, depth: NDArray[Any]) -> NDArray[Any]:
+def logarithmic_slope(layer: GradedLayer, depth: NDArray[Any]) -> NDArray[Any]:
     """G'/G at depths, G = E/(2 (1 + nu))."""
     modulus = layer.youngs_modulus
     slope = modulus.slope(depth, 1.0) / modulus.at(depth, 1.0)

@@ -214,14 +214,17 @@ class DirectDensity:
         def slope(piece: Piece, offset: FloatArray) -> FloatArray:
             """phi' = psi' - g_hs'."""
             t = np.minimum(piece.start + offset, self.contact_radius)
-            total = t * smooth(t)
-            if piece.start >= self.flat and self._stretches:
-                past = (piece.start - self.flat) + offset
-                total -= self._slope_at(past, self._stretches[-1].room + self.excess - past)
-            return np.asarray(total)
+            return np.asarray(t * smooth(t) + self.slope_of_load(piece, offset))
 
         edge = float(self.edge_values @ under(depth)) if singular_edge else 0.0
         return Density(self.contact_radius, edge, pieces_of(self.indenter, self.unit, self._stretches), slope, 1.0)
+
+    def slope_of_load(self, piece: Piece, offset: FloatArray) -> FloatArray:
+        """-g_hs' at offsets from where a piece begins."""
+        if piece.start < self.flat or not self._stretches:
+            return np.zeros_like(offset)
+        past = (piece.start - self.flat) + offset
+        return -self._slope_at(past, self._stretches[-1].room + self.excess - past)
 
     @cached_property
     def _smooth_slopes(self) -> FloatArray:

@@ -107,11 +107,13 @@ class Inside:
         fields: Of the method that solved it.
         scene: What was solved.
         contact_radius: a [m] of the equilibrium.
+        singular_edge: Whether its pressure is infinite at the edge though the scene does not say so.
     """
 
     fields: InteriorFields
     scene: Scene
     contact_radius: float
+    singular_edge: bool = False
 
     @one_thread
     def at(self, radius: ArrayLike, depth: ArrayLike) -> InsideFields:
@@ -184,7 +186,8 @@ class Inside:
         adhesion = self.scene.effect(Adhesion)
         tip = [0.0] if float(indenter.slope_at(0.0)) > 0.0 else []
         rims = [*tip, *(kink for kink in indenter.kinks if kink < a)]
-        singular = isinstance(indenter, FlatPunch) or (adhesion is not None and adhesion.work_of_adhesion > 0.0)
+        adheres = adhesion is not None and adhesion.work_of_adhesion > 0.0
+        singular = isinstance(indenter, FlatPunch) or adheres or self.singular_edge
         return [*rims, a] if singular else rims
 
     def _refuse_infinite_maximum(self) -> None:

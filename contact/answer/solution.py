@@ -9,7 +9,7 @@ from typing import ClassVar, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contact.answer.inside import Inside, KnownContact
+from contact.answer.inside import Inside, InteriorFields, KnownContact
 from contact.answer.one_thread import one_thread
 from contact.answer.stages import Cost, StageRecord
 from contact.answer.summary import quantity_line, scene_line
@@ -53,6 +53,21 @@ class Fields(Protocol):
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m], positive into the layer."""
+
+
+class InstantInterior(InteriorFields, Protocol):
+    """Fields inside at one instant of a history."""
+
+    @property
+    def singular_edge(self) -> bool:
+        """Whether the pressure is infinite at the edge of contact."""
+
+
+class InstantFields(Protocol):
+    """What a method knows of the body at the instants of a history."""
+
+    def inside(self, step: int) -> InstantInterior:
+        """At one of them, at which something touches."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -215,8 +230,7 @@ class ContactPath(Solution):
         inside = getattr(self.fields, "inside", None)
         if inside is None:
             raise InvalidInput(f"{self.method} gives no fields inside the body; ask mdr or fem")
-        if not -len(self) <= step < len(self):
-            raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
+        _refuse_step(step, len(self))
         if "pressure" not in self.error_estimate:
             raise InvalidInput(
                 f"{self.method} states no error of this pressure, and so none of the fields it makes inside"
@@ -231,8 +245,7 @@ class ContactPath(Solution):
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:
         if self.fields is None:
             raise InvalidInput(f"{self.method} gave no surface fields; ask a method that does")
-        if not -len(self) <= step < len(self):
-            raise InvalidInput(f"step = {step}: this path has steps 0 to {len(self) - 1}")
+        _refuse_step(step, len(self))
         r = np.asarray(radius, dtype=np.float64)
         if not np.all(np.isfinite(r) & (r >= 0.0)):
             raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
@@ -329,6 +342,7 @@ class HistoryPath(Solution):
         indentation_depth: delta [m], shape (n,).
         normal_force: F_N [N], shape (n,).
         contact_radius: a [m], shape (n,); zero where the indenter is free.
+        fields: What is inside the body at one instant, where the method gives it.
     """
 
     ARRAYS: ClassVar[tuple[str, ...]] = ("time", "indentation_depth", "normal_force", "contact_radius")
@@ -338,6 +352,25 @@ class HistoryPath(Solution):
     indentation_depth: FloatArray
     normal_force: FloatArray
     contact_radius: FloatArray
+    fields: InstantFields | None = None
+
+    def inside(self, step: int = 0) -> Inside:
+        """The body at one instant: `.at(radius, depth)` and `.largest("von_mises")`.
+
+        Stresses follow from the pressure of the instant, displacements from the whole history.
+
+        Raises:
+            InvalidInput: If the path has no such step, nothing touches then, or the method gives no fields inside.
+        """
+        if self.fields is None:
+            raise InvalidInput(f"{self.method} gives no fields inside the body under a history; ask mdr")
+        _refuse_step(step, len(self))
+        radius, instant = float(self.contact_radius[step]), float(self.time[step])
+        if radius <= 0.0:
+            raise InvalidInput(f"step = {step}: nothing touches at t = {instant:g} s; ask for an instant of contact")
+        fields = self.fields.inside(step % len(self))
+        singular = fields.singular_edge
+        return Inside(fields=fields, scene=self.scene, contact_radius=radius, singular_edge=singular)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
@@ -411,3 +444,8 @@ def _frozen(name: str, values: ArrayLike, method: str) -> FloatArray:
         raise NotConvergedError(f"{method}: {name} is {array[tuple(bad)]} at entry ({place}); refused as an answer")
     array.setflags(write=False)
     return array
+
+
+def _refuse_step(step: int, count: int) -> None:
+    if not -count <= step < count:
+        raise InvalidInput(f"step = {step}: this path has steps 0 to {count - 1}")

@@ -35,7 +35,7 @@ from mdr.adhesion.branch import adhesive_branch, critical_elongation
 from mdr.adhesion.errors import RADIUS, BranchErrors, errors_at_radius
 from mdr.adhesion.own_panels import state_again
 from mdr.adhesion.pressure_errors import pressure_errors
-from mdr.elastic import PathFields, density_errors, solve_elastic
+from mdr.elastic import PathFields, by_finer_data, density_errors, solve_elastic
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_beside
 from mdr.springs.equivalent_system import EquivalentSystem
@@ -143,7 +143,8 @@ def solve_adhesive(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[
         # An elongation that is off by so much [m] moves the density's value at the edge by y1 = sqrt(c_bar) of it.
         at_edge = found.edge * np.sqrt(system.flat_punch.normalized_spring_stiffness(radius / system.length_unit))
         known_inside = partial(density_errors, system, scene, radius)
-        fields = PathFields(scene, system.flat_punch, found.excess, depth, known_inside, at_edge, True)
+        finer = by_finer_data(solve_adhesive, scene, flat_punch, settings)
+        fields = PathFields(scene, system.flat_punch, found.excess, depth, known_inside, at_edge, True, finer)
         pressure = pressure_errors(system, fields, radius, edge=found.edge, moved=errors[RADIUS])
     relative = system.relative_errors(radius)["contact_stiffness"]
     return ContactPath(

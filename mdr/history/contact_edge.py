@@ -65,7 +65,7 @@ def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArr
     if last - start < _NEEDED - 1 and start:
         return _by_radius(bed, last, (start - 2, last), forces)
     inner = forces[max(last - 2, start) : last + 1][::-1]
-    return float(bed.y[last] + _way_to_zero(inner, bed.step(last)))
+    return float(bed.y[last] + way_to_zero(inner, bed.step(last)))
 
 
 def touched_front(bed: SpringBed, state: BedState) -> float:
@@ -75,7 +75,7 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
         return float(bed.y[-1])
     gaps, stop = state.surface + bed.profile - state.depth, bed.section(first).stop
     if stop - first >= _NEEDED or stop == bed.y.size:
-        return float(bed.y[first] - _way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
     # Where nothing has been pressed, the gap goes on inside the contact.
     if not state.surface[first:stop].any():
         last = slice(stop - _NEEDED, stop)
@@ -100,7 +100,7 @@ def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatAr
     return float(bed.y[start] + (np.sqrt(max(way, 0.0)) if bed.radius[start] > 0.0 else way))  # see `SpringTable`
 
 
-def _way_to_zero(values: FloatArray, step: float) -> float:
+def way_to_zero(values: FloatArray, step: float) -> float:
     """How far before the first of up to three equidistant values their polynomial vanishes, at most one step."""
     # Beyond a flat punch's rim the gap is infinite.
     if not np.isfinite(values).all():
@@ -146,6 +146,14 @@ def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: flo
     return float(load[last] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
+def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
+    """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves."""
+    if law.viscosity == 0.0 or speed <= 0.0:
+        return released_front(bed, state.touching, forces), 0.0
+    y = touched_front(bed, state)
+    return y, _continued(bed, state.touching, forces, y)
+
+
 def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tuple[float, float]:
     """Force [N] and front coordinate, which is negative where nothing touches."""
     if not state.touching.any():
@@ -153,11 +161,8 @@ def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tu
     forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:
         return bed.core * float(forces[0]), 0.0
-    if law.viscosity == 0.0 or speed <= 0.0:
-        y = released_front(bed, state.touching, forces)
-        return total_force(bed, state.touching, forces, y, 0.0), y
-    y = touched_front(bed, state)
-    return total_force(bed, state.touching, forces, y, _continued(bed, state.touching, forces, y)), y
+    y, at_front = front(law, bed, state, forces, speed)
+    return total_force(bed, state.touching, forces, y, at_front), y
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:

@@ -5,7 +5,7 @@ Loading, unloading with a receding front, and reloading over a surface that has 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -28,8 +28,8 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
-from mdr.history.force_control import Ramp, pressed_at_once, to_force
-from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
+from mdr.history.followed import FollowedHistory, states_at
+from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.impact.units import is_flat, relaxation_of
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
@@ -107,7 +107,8 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         with log.stage("equivalent_system"):
             table, beds, springs = _beds(scene, loading, law, flat_punch, times * gaps)
         with log.stage("history"):
-            found = _followed(law, beds, loading, _substeps(loading, fineness))
+            substeps = _substeps(loading, fineness)
+            found = _followed(law, beds, loading, substeps)
         if found.error <= LARGEST_HISTORY_ERROR:
             break
     with log.stage("history"):
@@ -128,6 +129,7 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         indentation_depth=found.track.depth,
         normal_force=found.track.force,
         contact_radius=radius,
+        fields=FollowedHistory(scene, flat_punch, law, beds, _finest(loading, law, substeps), found.in_time + springs),
     )
 
 
@@ -187,6 +189,16 @@ class _FoundHistory:
     by_steps: list[tuple[_Track, _Track]]
     error: float
 
+    @property
+    def in_time(self) -> float:
+        """The part of the depth's error that the steps in time make."""
+        return max((_change(one.depth, other.depth) for one, other in self.by_steps), default=0.0)
+
+
+def _finest(loading: DepthHistory | ForceHistory, law: SpringLaw, substeps: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The most substeps that a history is followed with."""
+    return np.ones_like(substeps) if isinstance(loading, DepthHistory) or law.is_elastic else _LEVELS[0] * substeps
+
 
 def _followed(
     law: SpringLaw, beds: list[SpringBed], loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]
@@ -197,7 +209,7 @@ def _followed(
     go with the second and fourth powers of their number, so three numbers of them have a limit (Romberg).
     """
     if isinstance(loading, DepthHistory) or law.is_elastic:
-        fine, *others = (_follow(law, bed, loading, np.ones_like(substeps)) for bed in beds)
+        fine, *others = (_follow(law, bed, loading, _finest(loading, law, substeps)) for bed in beds)
         pairs = [(fine, other) for other in others]
         return _FoundHistory(fine, pairs, [], _error_of_springs(pairs))
     fine, middle, coarse = (_follow(law, beds[0], loading, level * substeps) for level in _LEVELS)
@@ -321,12 +333,8 @@ def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHis
 
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
-    time = loading.time
-    states = (
-        _by_depth(law, bed, loading) if isinstance(loading, DepthHistory) else _by_force(law, bed, loading, substeps)
-    )
     records, bent = [], False
-    for (state, speed), instant in zip(states, time, strict=True):
+    for (state, speed), instant in zip(states_at(law, bed, loading, substeps), loading.time, strict=True):
         bent |= _check_circle(law, state, speed, float(instant))
         records.append((state.depth, *carried(law, bed, state, speed)))
     depth, force, y = np.array(records).T
@@ -335,29 +343,6 @@ def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory
     held = own > _HELD * own.max()
     force, y = np.where(held, own, 0.0) if own is force else own, np.where(held, y, -1.0)
     return _Track(depth, force, y, bent)
-
-
-def _by_depth(law: SpringLaw, bed: SpringBed, loading: DepthHistory) -> Iterator[tuple[BedState, float]]:
-    """The bed and the speed of the depth at each instant."""
-    state = undeformed(law, bed.profile, float(loading.depth[0]))
-    yield state, 0.0
-    for duration, depth in zip(np.diff(loading.time), loading.depth[1:], strict=True):
-        speed = float(depth - state.depth) / float(duration)
-        state = advance(law, bed.profile, state, float(depth), float(duration))
-        yield state, speed
-
-
-def _by_force(
-    law: SpringLaw, bed: SpringBed, loading: ForceHistory, substeps: NDArray[np.intp]
-) -> Iterator[tuple[BedState, float]]:
-    """The same under prescribed force."""
-    force, durations = loading.force, np.diff(loading.time)
-    state = pressed_at_once(law, bed, float(force[0])) if force[0] > 0.0 else undeformed(law, bed.profile, 0.0)
-    yield state, 0.0
-    for i, duration in enumerate(durations):
-        ramp = Ramp(float(force[i]), float(force[i + 1]), float(duration))
-        state, speed = to_force(law, bed, state, ramp, int(substeps[i]))
-        yield state, speed
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:

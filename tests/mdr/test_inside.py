@@ -16,10 +16,7 @@ from contact import (
     Adhesion,
     Cone,
     ContactRadii,
-    DepthHistory,
-    ExponentialDepth,
     FlatPunch,
-    GradedLayer,
     InvalidInput,
     Layer,
     LayerStack,
@@ -31,7 +28,6 @@ from contact import (
     Sublayer,
     Tabulated,
     TruncatedCone,
-    UnsupportedSceneError,
 )
 from mdr import Mdr
 
@@ -249,25 +245,6 @@ def test_refusals_by_name():
         path.inside(3)
 
 
-def test_graded_layers_are_refused_by_name():
-    layer = GradedLayer(
-        thickness=1.0, youngs_modulus=ExponentialDepth(surface=1.0, base=4.0), poissons_ratio=0.3, support="bonded"
-    )
-    path = pressed(layer, Paraboloid(radius_of_curvature=10.0), 0.5)
-    with pytest.raises(UnsupportedSceneError, match="uniform layers and stacks, not of a GradedLayer"):
-        path.inside().at(0.1, 0.2)
-
-
-def test_histories_are_refused_by_name():
-    scene = Scene(
-        layer=unit_layer(0.5),
-        indenter=Paraboloid(radius_of_curvature=10.0),
-        loading=DepthHistory(time=np.array([0.0, 1.0]), depth=np.array([0.0, 0.01])),
-    )
-    with pytest.raises(InvalidInput, match="HistoryPath: fields inside are those of equilibria"):
-        Mdr().solve(scene).inside()
-
-
 def test_adhering_contacts_have_an_inside():
     scene = Scene(
         layer=unit_layer(0.3),
@@ -359,7 +336,10 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
 
 @pytest.mark.parametrize("nodes", [8, 12])
 def test_a_radius_that_was_found_moves_what_is_beside_the_edge(nodes):
-    """A stress that vanishes like a root at the edge moves by half the radius's error over its distance."""
+    """A stress that vanishes like a root at the edge moves by half the radius's error over its distance.
+
+    The whole bar of the radius was stated, 5 and 60 times what it is off.
+    """
     prescribed = pressed(unit_layer(0.3), Paraboloid(radius_of_curvature=10.0), 1.3)
     scene = prescribed.scene.replace(loading=NormalForces([float(prescribed.normal_force[0])]))
     path = build("mdr", {"nodes": nodes}).solve(scene)
@@ -368,6 +348,5 @@ def test_a_radius_that_was_found_moves_what_is_beside_the_edge(nodes):
     largest = max(abs(float(getattr(exact, name))) for name in ("radial_stress", "hoop_stress", "axial_stress"))
     error = abs(float(beside.axial_stress - exact.axial_stress)) / largest
     assert error <= beside.error_estimate["stress"] + exact.error_estimate["stress"]
-    moved = 0.5 * float(np.max(path.error_estimate["contact_radius"])) * a / 1.3e-6
-    moved *= abs(float(exact.axial_stress)) / largest
+    moved = 0.5 * abs(a - 1.3) / 1.3e-6 * abs(float(exact.axial_stress)) / largest
     assert 0.9 * moved < beside.error_estimate["stress"] < 3.0 * moved

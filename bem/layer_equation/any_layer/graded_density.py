@@ -116,7 +116,12 @@ class GradedDensity(LayerShare):
 
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a]."""
-        return PanelSlopes(self.panels, self.ratio, self.psi[:-1]).abel_integral(radius)
+        return self.slopes.abel_integral(radius)
+
+    @cached_property
+    def slopes(self) -> PanelSlopes:
+        """psi'."""
+        return PanelSlopes(self.panels, self.ratio, self.psi[:-1])
 
     def outside(self, distance: FloatArray) -> FloatArray:
         """-int_0^a K(s, t) phi(t) dt at s = a + distance."""

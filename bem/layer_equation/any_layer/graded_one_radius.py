@@ -17,6 +17,7 @@ from bem.layer_equation.any_layer.graded_density import PanelSlopes
 from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
 from bem.layer_equation.any_layer.relative_panels import EDGE_LEVELS, RATIO, RelativePanels, panels_with_bends
 from bem.layer_equation.any_layer.split_kernel import SplitKernel, split_kernel
+from bem.layer_equation.inside.density import Density, Piece, cut_at, pieces_of
 from bem.layer_equation.one_radius import DirectDensity, graded_pieces, half_space_load, under
 from bem.polynomials.abel_integral import arc_integral
 from bem.polynomials.mapped import MappedFunction, MappedGrid
@@ -86,6 +87,19 @@ class GradedDirectDensity(DirectDensity):
     def _smooth_integral(self, radius: FloatArray, depth: float) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt, panel by panel."""
         return PanelSlopes(self.panels, self.contact_radius, self.psi @ under(depth)).abel_integral(radius)
+
+    def inside(self, depth: float, *, singular_edge: bool) -> Density:
+        """phi under a depth, as the fields inside ask for it."""
+        a, smooth = self.contact_radius, PanelSlopes(self.panels, self.contact_radius, self.psi @ under(depth))
+
+        def slope(piece: Piece, offset: FloatArray) -> FloatArray:
+            """phi' = psi' - g_hs'."""
+            total = smooth.slope(np.minimum(piece.start + offset, a))
+            return total + self.slope_of_load(piece, offset)
+
+        edge = float(self.edge_values @ under(depth)) if singular_edge else 0.0
+        pieces = pieces_of(self.indenter, self.unit, self._stretches)
+        return Density(a, edge, cut_at(pieces, a * self.panels.ends), slope, 1.0)
 
     def displacement_outside(self, radius: FloatArray, depth: float) -> FloatArray:
         """w at radii r > a in length units: (2/pi) int W/sqrt(r^2 - s^2) ds, W continued beyond a by the equation."""

@@ -22,6 +22,8 @@ _TIP = 0.125
 # Longest piece of the density over the thickness: longer ones left 2e-10 of the stress at a/h = 10, where panels that
 # suit a depth span several thicknesses.
 _LONGEST = 1.0
+# Ends closer to another than this share of a piece are the same but for rounding.
+_CLOSE = 1e-9
 # Entries of a block of sin(kt): 32 MB.
 _BLOCK = 1 << 22
 
@@ -109,6 +111,17 @@ def pieces_of(indenter: Profile, unit: float, stretches: Sequence[Stretch]) -> t
             ends.insert(1, start + _TIP * (ends[1] - start))
         pieces += _no_longer([Piece(one, two - one, power if one == start else 1.0) for one, two in pairwise(ends)])
     return tuple(pieces)
+
+
+def cut_at(pieces: Sequence[Piece], ends: FloatArray) -> tuple[Piece, ...]:
+    """Pieces that end at these places too."""
+    parts = []
+    for piece in pieces:
+        share = (ends - piece.start) / piece.length
+        inner = piece.start + piece.length * share[(share > _CLOSE) & (share < 1.0 - _CLOSE)]
+        starts = [piece.start, *inner.tolist(), piece.start + piece.length]
+        parts += [Piece(a, b - a, piece.power if a == piece.start else 1.0) for a, b in pairwise(starts)]
+    return tuple(parts)
 
 
 def _no_longer(pieces: list[Piece]) -> list[Piece]:

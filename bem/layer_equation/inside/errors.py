@@ -40,6 +40,9 @@ _STEEP = 4e-13
 _TERM = 60.0
 
 
+LEFT_OUT = ("left_out", "gradient_left_out", "displacement_left_out")
+
+
 class Magnitudes(NamedTuple):
     """Of fields at n points, in the density's length unit and one unit of stress.
 
@@ -54,6 +57,9 @@ class Magnitudes(NamedTuple):
         length: The smaller of contact radius and thickness.
         thickness: Of the body, infinite for a half-space.
         depth: delta.
+        left_out: Of stresses, what is left out of integrals over waves, shape (n,).
+        gradient_left_out: The same of the gradient.
+        displacement_left_out: The same of displacements, times 2 G.
     """
 
     displacement: FloatArray
@@ -66,6 +72,9 @@ class Magnitudes(NamedTuple):
     length: float
     thickness: float
     depth: float
+    left_out: FloatArray | float = 0.0
+    gradient_left_out: FloatArray | float = 0.0
+    displacement_left_out: FloatArray | float = 0.0
 
 
 def stated_errors(
@@ -97,17 +106,18 @@ def stated_errors(
     felt = edge * _left_by(found.thickness, points)
     # A rigid base throws back what arrives, so that stresses there are up to twice those of the half-space.
     thrown = (1.0 + points.z / found.thickness) * felt
-    stress = (share + shifted) * found.stress + thrown * found.edge_stress + rounding * mean
+    stress = (share + shifted) * found.stress + thrown * found.edge_stress + rounding * mean + found.left_out
     gradient = (_ALIKE * share + _DERIVATIVE * shifted) * found.gradient + thrown * found.edge_gradient
     gradient += _STEEP * found.gradient + _DERIVATIVE * rounding * mean / found.length
     # A radius that is off moves all fields by as much over the length, those where the gradient passes zero as well.
     unlike = _UNLIKE * (share - grown) + grown / _DERIVATIVE + _DERIVATIVE * _QUADRATURE
     gradient += unlike * found.stress / found.length
-    gradient += _TERM * _EPS * found.gradient_terms
+    gradient += _TERM * _EPS * found.gradient_terms + found.gradient_left_out
     # A thin layer yields far less than a half-space would under the same force, and is computed as a difference of two
     # integrals, each of them rounded.
     condition = math.pi * a * mean / abs(found.depth)
     moved = (_MOVED * share * found.displacement + felt * found.edge_displacement) / abs(found.depth)
+    moved = moved + found.displacement_left_out / abs(found.depth)
     surface = float((lowest - z).max(initial=0.0)) / found.length
     steepest = max(float(found.gradient.max(initial=0.0)), largest / found.length)
     stresses = float(stress.max(initial=0.0)) / largest

@@ -8,13 +8,14 @@ from functools import cached_property
 
 import numpy as np
 
+from bem.kernels.graded import GradedKernel
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import stack_of
 from bem.layer_equation.inside.density import Density
-from bem.layer_equation.inside.errors import Magnitudes, stated_errors
+from bem.layer_equation.inside.errors import LEFT_OUT, Magnitudes, stated_errors
 from bem.layer_equation.inside.fields import Body
 from bem.layer_equation.inside.half_space_part import Points
-from contact import Scene
+from contact import GradedLayer, Scene
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
 
@@ -65,6 +66,7 @@ class ContactInterior:
             length=min(self.density.radius, layer.thickness / unit),
             thickness=layer.thickness / unit,
             depth=self.depth,
+            **{name: found[name] for name in LEFT_OUT if name in found},
         )
         return InsideFields(
             radial_displacement=modulus * found["hoop_strain"] * radius / (2.0 * shear),
@@ -77,9 +79,13 @@ class ContactInterior:
 
     @cached_property
     def _body(self) -> Body:
-        layer = self.scene.layer
-        kernel = None if layer.is_half_space else stack_of(layer)
-        return Body(kernel, layer.surface.poissons_ratio, self.density)
+        layer, nu = self.scene.layer, self.scene.layer.surface.poissons_ratio
+        if isinstance(layer, GradedLayer):
+            # Only graded layers pay for this import.
+            from bem.layer_equation.inside.graded_part import GradedBody  # noqa: PLC0415
+
+            return GradedBody(None, nu, self.density, surface=GradedKernel(layer.in_own_units()))
+        return Body(None if layer.is_half_space else stack_of(layer), nu, self.density)
 
     @cached_property
     def _ends(self) -> FloatArray:

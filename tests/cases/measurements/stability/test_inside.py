@@ -39,22 +39,14 @@ def on_few_nodes():
 QUANTITIES = ("stress", "displacement", "pressure_gradient")
 
 
-@pytest.mark.xfail(strict=True, reason="on 12 nodes errors are stated 18 times the true ones and more, in the median")
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_stated_errors_are_sharp_on_few_nodes(on_few_nodes, quantity):
-    """The requirement, which does not hold yet: 10 times the true error in the median, 100 times at nine of ten."""
-    told = [row.sharpness for row in on_few_nodes if row.quantity == quantity and row.sharpness is not None]
-    assert np.median(told) <= 10.0
-    assert np.quantile(told, 0.9) <= 100.0
-
-
-@pytest.mark.parametrize(("quantity", "median"), [*zip(QUANTITIES, (25.0, 100.0, 60.0), strict=True)])
-def test_stated_errors_on_few_nodes_follow_the_local_fields(on_few_nodes, quantity, median):
-    """Not the requirement: a share of the mean pressure was stated everywhere, 97 times the true error of stresses."""
+    """The requirement: 10 times the true error in the median, 100 times at nine of ten. It was 22, 92 and 54."""
     assert beyond(on_few_nodes) == []
     told = [row.sharpness for row in on_few_nodes if row.quantity == quantity and row.sharpness is not None]
     assert len(told) > 20
-    assert np.median(told) < median
+    assert np.median(told) <= 10.0
+    assert np.quantile(told, 0.9) <= 100.0
 
 
 @pytest.mark.parametrize(("nodes", "number"), [(8, 87), (12, 97), (12, 50)])
