@@ -134,7 +134,8 @@ def test_coulombs_law_holds_and_slip_goes_against_the_traction():
     r = np.linspace(0.0, 0.97, 50) * a
     p, q, slip = path.pressure(r), path.tangential_traction(r), path.slip(r)
     assert np.all(np.abs(q) <= 0.2 * p * (1.0 + 1e-9))
-    beyond, within = r > 1.05 * c, r < 0.95 * c
+    # The nodes within two cells of the end of the stick slid for a part of their step.
+    beyond, within = r > 1.05 * c, r < c - 0.03 * a
     assert q[beyond] == pytest.approx(-0.2 * p[beyond], rel=1e-9, abs=0.0)
     assert np.all(slip[beyond] > 0.0)
     assert slip[within] == pytest.approx(np.zeros(within.sum()), rel=0.0, abs=1e-12)

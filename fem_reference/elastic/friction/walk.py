@@ -88,8 +88,8 @@ def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
     """Radius, over the strip's, of the outermost point that sticks.
 
     Inside the end c of the stick ``1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick spreads and
-    like ``(c - r)^(1/2)`` where it shrinks: of the two laws, the one that makes the straighter line through three nodes.
-    The last node that sticks does not count, since it slid for a part of its step.
+    like ``(c - r)^(1/2)`` where it shrinks: of the two laws, the one that makes the straighter line of three nodes. The
+    last node that sticks does not count, since it slid for a part of its step.
     """
     radii: FloatArray = contact.surface.radii
     stuck = [i for i in range(state.active) if state.sliding[i] == 0]
