@@ -30,7 +30,7 @@ ELONGATIONS = {"0.5": "0.46", "0.45": "0.6", "0.4": "0.914"}
 THICKNESSES = ("0", "1", "2", "3")
 # Time steps to the largest depth: the restitution has ten digits.
 STEPS = 200
-# Poisson's ratio and c/a of paraboloids that stick in part: coefficient, delta R/a^2, F over Hertz's, heat over F delta.
+# Poisson's ratio and c/a of paraboloids that stick in part: mu, delta R/a^2, F over Hertz's, heat over F delta follow.
 PARTIAL_SLIPS = (("0", "0.3"), ("0", "0.9"), ("0.3", "0.3"), ("0.3", "0.7"), ("0.45", "0.5"), ("0.49", "0.6"))
 # Digits that are kept, and to how many a second computation on other nodes must agree.
 KEPT = 14

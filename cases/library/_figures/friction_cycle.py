@@ -88,10 +88,10 @@ def figure(scene: Scene) -> Figure:
         name="friction_cycle",
         title="A cycle with dry friction",
         caption=(
-            f"{_told(scene)}. The depth goes up and down between two values and is then taken back. The force is larger on the way in "
-            "and less on the way back, where slip turns, from the edge on. The heat never falls; over all it is "
-            f"{heat[-1]:.2g} % of the largest force times depth. Tractions: at the end of each branch. Finite elements, "
-            "frictionless force by MDR."
+            f"{_told(scene)}. The depth goes up and down between two values and is then taken back. The force is "
+            "larger on the way in and less on the way back, where slip turns, from the edge on. The heat never falls; "
+            f"over all it is {heat[-1]:.2g} % of the largest force times depth. Tractions: at the end of each branch. "
+            "Finite elements; frictionless force by MDR."
         ),
         panels=(
             Panel(
