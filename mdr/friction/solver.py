@@ -40,8 +40,8 @@ _UNKNOWNS = (20.0, 5.0)
 # More of them for the root of that span times how much longer than the film the longest length of its kernel is: 30
 # left 2e-7 at a/h = 1.9 over a base a hundred times as soft, 38 left 8e-10 at 3.7, ten times (seed 3, 2026-11-22).
 _UNKNOWNS_OF_LENGTH = 2.5
-# But no more than so many for that reason, since rounding grows with them: six more moved 9e-11 at 46, 5e-10 at 58, 5e-8
-# at 70 (cone, a/h = 1.6, nu = 0, over a base a hundred times as soft, 2026-11-22).
+# But no more than so many for that reason, since rounding grows with them: six more moved 9e-11 at 46, 5e-10 at 58 and
+# 5e-8 at 70 (cone, a/h = 1.6, nu = 0, over a base a hundred times as soft, 2026-11-22).
 _MOST_OF_LENGTH = 60.0
 # More unknowns, whose answer the one with fewer is compared with.
 _MORE = 6

@@ -151,7 +151,8 @@ def test_growth_on_a_film_over_a_soft_base_is_resolved_and_knows_its_error(modul
     growth_table.cache_clear()
     for name in ("indentation_depth", "normal_force", "contact_stiffness"):
         true = np.abs(getattr(path, name) / getattr(finer, name) - 1.0)
-        assert np.all(true <= path.error_estimate[name]), name
+        # Both tables round.
+        assert np.all(true <= path.error_estimate[name] + 1e-13), name
         assert np.all(path.error_estimate[name] <= 1e-8), name
 
 

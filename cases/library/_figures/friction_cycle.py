@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -61,7 +62,7 @@ class Cycle:
         for n, name in enumerate(self.names):
             own = np.arange(n * PER_BRANCH, (n + 1) * PER_BRANCH + 1)
             own = own[self.force[own] > 0.0] if pressed_only else own
-            lines.append(series(name, METHOD, name, x[own], y[own]))
+            lines.append(replace(series(name, METHOD, name, x[own], y[own]), style="solid"))
         return tuple(lines)
 
     def tractions(self) -> tuple[Series, ...]:
@@ -73,7 +74,8 @@ class Cycle:
             if self.force[step] > 0.0:
                 r = SHARES * self.found.contact_radius[step]
                 unit = friction.coefficient * self.found.pressure(0.0, step)
-                lines.append(series(name, METHOD, name, SHARES, self.found.tangential_traction(r, step) / unit))
+                shear = self.found.tangential_traction(r, step) / unit
+                lines.append(replace(series(name, METHOD, name, SHARES, shear), style="solid"))
         return tuple(lines)
 
 

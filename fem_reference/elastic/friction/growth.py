@@ -183,10 +183,10 @@ class GrowthRecord:
         return min(stick, 1.0), left + STICK_UNCERTAIN * cell
 
     def _order_defect(self, depth: float) -> float:
-        """How far the force's order of convergence in cells and steps is from two."""
+        """How much the force's order of convergence in cells and steps lacks of two."""
         fine, middle, coarse = (_force(strip, depth) for strip in self.strips)
         ratio = (coarse - middle) / (middle - fine) if middle != fine else 0.0
-        return abs(math.log2(ratio) - 2.0) if ratio > 0.0 else 2.0
+        return max(0.0, 2.0 - math.log2(ratio)) if ratio > 0.0 else 2.0
 
     @property
     def _cell(self) -> float:
