@@ -25,10 +25,9 @@ numbers were not at hand; limits of no coupling and of full stick are checked.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.special import ellipk, elliprd, sici
 
-Vector = NDArray[np.float64]
+from contact.records.validation import FloatArray
 
 # Distance of the points in the logarithm of their distance to k: with 0.25 and 0.3 thirteen digits are the same.
 STEP = 0.25
@@ -63,19 +62,19 @@ class PartialSlip:
 class _Points:
     """Points t on one stretch between its ends, with distances to both that have all their digits."""
 
-    t: Vector
-    left: Vector
-    right: Vector
-    weight: Vector
+    t: FloatArray
+    left: FloatArray
+    right: FloatArray
+    weight: FloatArray
 
     @classmethod
-    def between(cls, low: float, high: float, places: Vector, shift: float) -> "_Points":
+    def between(cls, low: float, high: float, places: FloatArray, shift: float) -> "_Points":
         """At logarithmic places, of which the one at ``shift`` lies in the middle."""
         z, length = places - shift, high - low
         left, right = length / (1.0 + np.exp(-z)), length / (1.0 + np.exp(z))
         return cls(np.where(z < 0.0, low + left, high - right), left, right, left * right / length)
 
-    def principal(self, step: float, z: Vector) -> NDArray[np.float64]:
+    def principal(self, step: float, z: FloatArray) -> FloatArray:
         """(1/pi) PV int f/(t - x) over the stretch itself: every second point, without cancelling differences."""
         there, here = z[None, :] / 2.0, z[:, None] / 2.0
         odd = (np.arange(z.size)[None, :] - np.arange(z.size)[:, None]) % 2 == 1
@@ -89,15 +88,15 @@ class HalfSpaceContact:
     def __init__(self, share: float, step: float) -> None:
         self.k, self.step = share, step
         count, shift = round(REACH / step), float(np.log((1.0 - share) / (2.0 * share)))
-        places = step * np.arange(-count, count + 1)
-        outer = step * np.arange(-count, count + 1 + max(0, round(shift / step)))
+        places: FloatArray = np.asarray(step * np.arange(-count, count + 1), dtype=np.float64)
+        outer = np.asarray(step * np.arange(-count, count + 1 + max(0, round(shift / step))), dtype=np.float64)
         self.stuck = _Points.between(-share, share, places, 0.0)
         # Shifted, so that both stretches have the same distances to k.
         self.slid = _Points.between(share, 1.0, outer, shift)
         self._transform_parts(places, outer - shift)
         self._slip_parts()
 
-    def _transform_parts(self, inner: Vector, outer: Vector) -> None:
+    def _transform_parts(self, inner: FloatArray, outer: FloatArray) -> None:
         """Matrices of H between stretches; ``mirrored`` ones belong to -1 < t < -k."""
         unit = self.step / np.pi
         stuck, slid, k = self.stuck, self.slid, self.k
@@ -126,7 +125,7 @@ class HalfSpaceContact:
         self.slip_of_one = 2.0 / np.pi * t * ellipk(1.0 - t**2)
         self.slip_of_one_at_k = 2.0 / np.pi * self.k * ellipk(1.0 - self.k**2)
 
-    def transform(self, stuck: Vector, slid: Vector, parity: int) -> tuple[Vector, Vector, float]:
+    def transform(self, stuck: FloatArray, slid: FloatArray, parity: int) -> tuple[FloatArray, FloatArray, float]:
         """H of a function that vanishes at k, on both stretches and at k."""
         return (
             self.stuck_to_stuck @ stuck + (self.slid_to_stuck + parity * self.mirrored_to_stuck) @ slid,
@@ -165,7 +164,12 @@ class HalfSpaceContact:
         raise ArithmeticError(f"partial slip at nu = {poissons_ratio:g}, c/a = {self.k:g} does not settle: {moved:.1g}")
 
     def _numbers(
-        self, beta: float, mu: float, phi: tuple[Vector, Vector], psi: tuple[Vector, Vector], moved: Vector
+        self,
+        beta: float,
+        mu: float,
+        phi: tuple[FloatArray, FloatArray],
+        psi: tuple[FloatArray, FloatArray],
+        moved: FloatArray,
     ) -> PartialSlip:
         """k_N is int phi; delta = a^2/(2 R I), I = 1/2 - (beta/pi) int psi (-ln(1-t^2)/t^3 - 1/t) dt.
 
@@ -181,7 +185,7 @@ class HalfSpaceContact:
         return PartialSlip(float(mu), 1.0 / (2.0 * total), stiffness * (2.0 * total) ** 0.5, stiffness, heat)
 
 
-def _beside(t: Vector, log: Vector) -> Vector:
+def _beside(t: FloatArray, log: FloatArray) -> FloatArray:
     """-ln(1-t^2)/t^3 - 1/t, by its series where that cancels."""
     small = t < 0.05
     away = np.where(small, 1.0, t)

@@ -14,6 +14,7 @@ the edge on, the force is less at each depth, and the loop between is heat; fric
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.integrate import quad
@@ -171,6 +172,11 @@ def of_spence(scene: Scene) -> tuple[float, float, float, float]:
     return float(solved.partition("c/a=")[2]) * a, a, force, heat * force * depth
 
 
+def one_of_spence(which: int, scene: Scene) -> list[float]:
+    """Return one of c, a, F and the heat."""
+    return [of_spence(scene)[which]]
+
+
 def stuck_on_half_space(scene: Scene) -> tuple[float, float]:
     """Return a and F of full stick: delta = a^2/(2 R I), F = int k_stick d delta."""
     nu, depth = scene.layer.poissons_ratio, float(scene.loading.values[0])  # type: ignore[attr-defined]
@@ -217,7 +223,7 @@ SPENCES = tuple(
     )
     for claim in exact(
         WHY["self-similar"],
-        {name: (quantity, lambda scene, i=i: [of_spence(scene)[i]])},
+        {name: (quantity, partial(one_of_spence, i))},
         scenes=SELF_SIMILAR if i else (*SELF_SIMILAR, ON_THICK),
         tolerance=tolerance,
     )
