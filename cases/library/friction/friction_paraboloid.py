@@ -41,6 +41,8 @@ WHY = reasons("friction_paraboloid")
 # 80, 40 and 20 cells; the finer grid has 240, 120 and 60.
 CELLS = MethodUse(label="fem", settings={"growth": 0.75})
 MORE_CELLS = MethodUse(label="fem, 240 cells", method="fem", settings={"growth": 0.25})
+# Where a tenth of the radius slides.
+NARROW = MethodUse(label="fem", settings=MORE_CELLS.settings)
 INDENTER = Paraboloid(radius_of_curvature=10 * THICKNESS)
 DEPTH = 0.12 * THICKNESS
 # The thick layer that stands for a half-space, in thicknesses of the others.
@@ -95,7 +97,7 @@ REFINED = tuple(
 
 def partly_stuck(name: str, layer: Layer, solved: str, depth: float) -> CaseScene:
     """Return a paraboloid with the coefficient that makes it stick, on a half-space, on a known share of its radius."""
-    scene = rubbed(name, layer, SPENCE[solved][0], CELLS, depth=depth)
+    scene = rubbed(name, layer, SPENCE[solved][0], NARROW if solved.endswith("=0.9") else CELLS, depth=depth)
     nu, share = (float(word.partition("=")[2]) for word in solved.split())
     return replace(scene, parameters={"poissons_ratio": nu, "friction": SPENCE[solved][0], "c_over_a": share})
 

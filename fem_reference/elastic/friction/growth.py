@@ -42,7 +42,7 @@ SHARE_OF_HEAT_LEFT = 0.1
 # 20 to 80 cells: 1.50 to 1.54 at nu = 1/2; 1.33 rising to 1.45 on half-spaces, where the heat is known and this power
 # leaves 0.1 to 0.9 % (four contacts, nu 0 to 0.45, 2026-11-22).
 HEAT_ORDER = 1.5
-# Cells that the stick must span on the finest strip: a stick radius takes four nodes of the next strip, which has half.
+# Cells that stick and that slide, at least, on the finest strip: a stick radius takes four nodes of the next strip.
 FEWEST_STUCK = 8
 # The end of the stick, extrapolated in the cells, is uncertain by so much of one: it was off by at most 0.19, and by
 # 0.05 in the median (17 paraboloids on half-spaces, nu 0, 0.3, 0.49, c/a 0.2 to 0.9, on 80 cells, against
@@ -172,12 +172,12 @@ class GrowthRecord:
     def _stick(self, depth: float, cell: float) -> tuple[float, float]:
         """Stick radius over a, with its error; ``cell`` is the finer strip's over a.
 
-        Where the strip with half the cells has too few nodes that stick, the end of the stick is known to a cell.
+        Where the strip with half the cells has too few nodes that stick, or that slide, its end is known to a cell.
         """
         fine, middle = (float(np.interp(depth, strip.depth, strip.stick)) for strip in self.strips[:2])
         if min(fine, middle) == 1.0:
             return 1.0, 0.0
-        if fine < FEWEST_STUCK * cell:
+        if min(fine, 1.0 - fine) < FEWEST_STUCK * cell:
             return fine, abs(fine - middle) + cell
         stick, left = self._extrapolated(_stuck, depth)
         return min(stick, 1.0), left + STICK_UNCERTAIN * cell
