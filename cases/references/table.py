@@ -7,7 +7,7 @@ from pathlib import Path
 
 from mpmath import mp, mpf
 
-from cases.references import layer_equation, sphere_impact
+from cases.references import layer_equation, partial_slip, sphere_impact
 
 PLACE = Path(__file__).with_name("numbers.toml")
 LAYERS: dict[str, str | None] = {f"bonded nu={nu}": nu for nu in ("0.3", "0.4", "0.45", "0.5")} | {"unbonded": None}
@@ -30,10 +30,13 @@ ELONGATIONS = {"0.5": "0.46", "0.45": "0.6", "0.4": "0.914"}
 THICKNESSES = ("0", "1", "2", "3")
 # Time steps to the largest depth: the restitution has ten digits.
 STEPS = 200
+# Poisson's ratio and c/a of paraboloids that stick in part: mu, delta R/a^2, F over Hertz's, heat over F delta follow.
+PARTIAL_SLIPS = (("0", "0.3"), ("0", "0.9"), ("0.3", "0.3"), ("0.3", "0.7"), ("0.45", "0.5"), ("0.49", "0.6"))
 # Digits that are kept, and to how many a second computation on other nodes must agree.
 KEPT = 14
 
 HEAD = """# Reference numbers, computed by `python -m cases.references.table` in extended precision; do not edit.
+# Those of partial slip come from double precision, which repeats twelve digits on other points.
 # What each list holds stands in `cases/references/table.py`.
 """
 
@@ -74,6 +77,8 @@ def entries() -> Iterator[Entry]:
     for thickness in THICKNESSES:
         name = f"h={thickness} mm" if thickness != "0" else "half-space"
         yield Entry("sphere_impact", name, partial(_impact, thickness), digits=8)
+    for nu, share in PARTIAL_SLIPS:
+        yield Entry("partial_slip", f"nu={nu} c/a={share}", partial(_partial_slip, nu, share), digits=11)
 
 
 def _entry(kind: str, label: str, ratio: str, compute: Callable[[int], list[mpf]]) -> Entry:
@@ -113,6 +118,12 @@ def _impact(thickness: str, more: int) -> list[mpf]:
             springs = sphere_impact.springs_of(mpf(thickness) / 1000, _springs())
         found = sphere_impact.impact(springs, steps)
     return [found.restitution, found.peak_force]
+
+
+def _partial_slip(nu: str, share: str, more: int) -> list[mpf]:
+    """In double precision, on points that lie farther apart by ``more`` hundredths."""
+    found = partial_slip.partial_slip(float(nu), float(share), partial_slip.STEP + more / 100)
+    return [mpf(value) for value in (found.coefficient, found.depth, found.force, found.heat)]
 
 
 @cache

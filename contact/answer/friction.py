@@ -8,7 +8,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact.answer.solution import ContactPath, HistoryPath
+from contact.answer.solution import ContactPath, Fields, HistoryPath, sampled
 from contact.records.validation import FloatArray
 from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.layer import Layer
@@ -70,12 +70,27 @@ class FrictionHistory(HistoryPath):
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).
         dissipated_energy: Turned into heat since the first touch [J], shape (n,).
+        fields: Tractions at the surface at each instant, where the method gives them.
     """
 
     ARRAYS: ClassVar[tuple[str, ...]] = (*HistoryPath.ARRAYS, "stick_radius", "dissipated_energy")
+    OFFERS: ClassVar[tuple[str, ...]] = (
+        *HistoryPath.OFFERS,
+        "pressure(radius, step)",
+        "tangential_traction(radius, step)",
+    )
 
     stick_radius: FloatArray
     dissipated_energy: FloatArray
+    fields: Fields | None = None
+
+    def pressure(self, radius: ArrayLike, step: int) -> FloatArray:
+        """Pressure p(r) [Pa] of one instant at radii [m], zero outside."""
+        return sampled(self, self.fields, "pressure", radius, step)
+
+    def tangential_traction(self, radius: ArrayLike, step: int) -> FloatArray:
+        """Traction q(r) [Pa] of one instant at radii [m], positive where it pushes the layer outward, zero outside."""
+        return sampled(self, self.fields, "tangential_traction", radius, step)
 
 
 def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]:

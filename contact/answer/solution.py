@@ -241,16 +241,25 @@ class ContactPath(Solution):
         fields = inside(step % len(self), KnownContact(radius, *map(float, errors)))
         return Inside(fields=fields, scene=self.scene, contact_radius=radius)
 
-    @one_thread
     def _field(self, name: str, radius: ArrayLike, step: int) -> FloatArray:
-        if self.fields is None:
-            raise InvalidInput(f"{self.method} gave no surface fields; ask a method that does")
-        _refuse_step(step, len(self))
-        r = np.asarray(radius, dtype=np.float64)
-        if not np.all(np.isfinite(r) & (r >= 0.0)):
-            raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
-        values: FloatArray = getattr(self.fields, name)(np.atleast_1d(r), step % len(self))
-        return _frozen(name, values, self.method).reshape(r.shape)
+        return sampled(self, self.fields, name, radius, step)
+
+
+@one_thread
+def sampled(answer: Solution, fields: Fields | None, name: str, radius: ArrayLike, step: int) -> FloatArray:
+    """A surface field of one step at radii [m].
+
+    Raises:
+        InvalidInput: The method gave no fields, the answer has no such step, or a radius is negative or not finite.
+    """
+    if fields is None:
+        raise InvalidInput(f"{answer.method} gave no surface fields; ask a method that does")
+    _refuse_step(step, len(answer))
+    r = np.asarray(radius, dtype=np.float64)
+    if not np.all(np.isfinite(r) & (r >= 0.0)):
+        raise InvalidInput(f"radius = {np.min(r) if r.size else r}: radii must be finite and not negative")
+    values: FloatArray = getattr(fields, name)(np.atleast_1d(r), step % len(answer))
+    return _frozen(name, values, answer.method).reshape(r.shape)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import sticking_kernel
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.layer_equation.stick.adhered_punch import adhered_punch
 from bem.layer_equation.stick.growth import growth_table
@@ -36,14 +37,21 @@ EPS = float(np.finfo(float).eps)
 # Unknowns of a stretch, at X = 0 and per thickness that the contact spans: errors then are below 1e-10 (paraboloids,
 # cones, spheres and power laws, a/h 0.1 to 10, seeds 5 and 90, 2026-11-22).
 _UNKNOWNS = (20.0, 5.0)
-# Fewer unknowns, whose answers tell how fast the errors fall.
-_FEWER = (12, 6)
+# More of them for the root of that span times how much longer than the film the longest length of its kernel is: 30
+# left 2e-7 at a/h = 1.9 over a base a hundred times as soft, 38 left 8e-10 at 3.7, ten times (seed 3, 2026-11-22).
+_UNKNOWNS_OF_LENGTH = 2.5
+# But no more than so many for that reason, since rounding grows with them: six more moved 9e-11 at 46, 5e-10 at 58 and
+# 5e-8 at 70 (cone, a/h = 1.6, nu = 0, over a base a hundred times as soft, 2026-11-22).
+_MOST_OF_LENGTH = 60.0
+# More unknowns, whose answer the one with fewer is compared with.
+_MORE = 6
 # Where the first trial radius does not reach the wanted depth or force, the next is this much larger.
 _FURTHER = 1.3
-# Safety factor on the error that is left, chosen on seed 5 (160 of 160 depths and forces covered). On seed 90 it covers
-# 95 of 96, the miss being 1.4e-13 where 8e-14 is stated (a/h 0.1 to 10, both supports, four kinds of profile, against
-# twice the unknowns and a larger table, 2026-11-22).
-_SAFETY = 5.0
+# Times what others move: one is the difference itself, which is up to a quarter less than the error where six unknowns
+# more leave a fifth of it (24 contacts of seed 3: 0.80 to 1.5 of the error, 2026-11-22).
+_SAFETY = 2.0
+# Roundings of depth and force (a/h 0.1 to 6, 2026-11-22).
+_ROUNDINGS = 50.0
 # Roundings of an adhered punch's stiffness over the condition number of its matrix: at most 8.1, against other nodes
 # and functions (nu = 0, 0.3, 0.45 and 1/2, a/h = 0.02 to 50, 2026-11-22).
 _PER_CONDITION = 10.0
@@ -57,7 +65,7 @@ class StickSystem:
 
     Attributes:
         unit: Thickness of the surface material, or the largest radius on a half-space [m].
-        growths: With all unknowns, and with fewer.
+        growths: The answer, that with more unknowns, and that from a table without its last coefficients.
     """
 
     unit: float
@@ -68,11 +76,11 @@ class StickSystem:
         return self.growths[0].depth_and_force(radius)[0]
 
     def errors(self, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Relative errors of depth and force: differences shrink by one factor with each six unknowns more."""
-        finest, fine, coarse = (np.array(g.depth_and_force(radius)) for g in self.growths)
-        last, before = np.abs(fine / finest - 1.0), np.abs(coarse / fine - 1.0)
-        rate = np.minimum(1.0, np.divide(last, before, out=np.ones_like(last), where=before > 0.0))
-        errors = _SAFETY * last * rate + self.growths[0].table.truncation + 50.0 * EPS
+        """Relative errors of depth and force: what more unknowns, and the table's last coefficients, move."""
+        answer, *others = (np.array(g.depth_and_force(radius)) for g in self.growths)
+        errors = sum(
+            (_SAFETY * np.abs(other / answer - 1.0) for other in others), np.full_like(answer, _ROUNDINGS * EPS)
+        )
         return errors[0], errors[1]
 
 
@@ -92,7 +100,9 @@ def solve_stick(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str
     """
     log = StageLog()
     with log.stage("stick"):
-        answer = _flat_punch(scene) if isinstance(scene.indenter, FlatPunch) else _growing(scene)
+        answer = (
+            _flat_punch(scene) if isinstance(scene.indenter, FlatPunch) else _growing(scene, _refinement(flat_punch))
+        )
     unknowns = int(answer.pop("unknowns"))
     return ContactPath(
         scene=scene, method="mdr", settings=settings, cost=log.cost(unknowns=unknowns), stages=log.records, **answer
@@ -125,7 +135,12 @@ def _flat_punch(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _growing(scene: Scene) -> dict[str, Any]:
+def _refinement(flat_punch: FlatPunchSource) -> float:
+    """Nodes of the integral equation over the usual ones: growth takes that many unknowns more."""
+    return flat_punch.nodes / IntegralEquation().nodes if isinstance(flat_punch, IntegralEquation) else 1.0
+
+
+def _growing(scene: Scene, refinement: float) -> dict[str, Any]:
     nu = scene.layer.surface.poissons_ratio
     if scene.indenter.flat_radius and nu < 0.5:
         raise UnsupportedSceneError(
@@ -133,10 +148,11 @@ def _growing(scene: Scene) -> dict[str, Any]:
             f"poissons_ratio = {nu:g}: its edge field oscillates, and growth from it has no "
             "stable answer; give Poisson's ratio 0.5, or a rounded edge"
         )
-    system, radius = _covering(scene)
+    system, radius = _covering(scene, refinement)
     depth, force = system.growths[0].depth_and_force(radius)
     table, modulus = system.growths[0].table, contact_modulus(scene.layer)
     stiffness = table.contact_stiffness(radius)
+    of_table = np.abs(table.shortened().contact_stiffness(radius) / stiffness - 1.0)
     of_depth, of_force = system.errors(radius)
     if not max(of_depth.max(), of_force.max()) <= _LARGEST_ERROR:
         raise NotConvergedError(
@@ -160,7 +176,7 @@ def _growing(scene: Scene) -> dict[str, Any]:
             "indentation_depth": exact if given is IndentationDepths else of_depth + of_force,
             "normal_force": exact if given not in (ContactRadii, IndentationDepths) else of_depth + of_force,
             # k_stick grows with the third power of the radius at most.
-            "contact_stiffness": 3.0 * moved + table.truncation + 50.0 * EPS,
+            "contact_stiffness": 3.0 * moved + _SAFETY * of_table + _ROUNDINGS * EPS,
         },
         "fields": StickFields(scene, system.growths[0], system.unit, modulus, radius, depth * system.unit),
     }
@@ -172,17 +188,17 @@ def _slope(system: StickSystem, radius: FloatArray) -> FloatArray:
     return (system.depth(radius) - system.depth(radius - step)) / step
 
 
-def _covering(scene: Scene) -> tuple[StickSystem, FloatArray]:
+def _covering(scene: Scene, refinement: float) -> tuple[StickSystem, FloatArray]:
     """The growth up to the largest radius of the loading, and all its radii."""
     layer, values = scene.layer, prescribed(scene)
     unit = layer.surface.thickness if not layer.is_half_space else _first_reach(scene)
     if isinstance(scene.loading, ContactRadii):
-        return _system(scene, unit, float(values.max())), values / unit
+        return _system(scene, unit, float(values.max()), refinement), values / unit
     by_depth = isinstance(scene.loading, IndentationDepths)
     wanted = values / unit if by_depth else values / (contact_modulus(layer) * unit**2)
     reach, end = min(_first_reach(scene), scene.indenter.max_radius), scene.indenter.max_radius
     while True:
-        system = _system(scene, unit, reach)
+        system = _system(scene, unit, reach, refinement)
         reached = system.growths[0].depth_and_force(np.array([reach / unit]))[0 if by_depth else 1][0]
         if reached >= wanted.max():
             return system, _radii(system.growths[0], wanted, reach / unit, 0 if by_depth else 1)
@@ -217,13 +233,15 @@ def _first_reach(scene: Scene) -> float:
     return indenter.flat_radius + math.exp(found)
 
 
-def _system(scene: Scene, unit: float, reach: float) -> StickSystem:
+def _system(scene: Scene, unit: float, reach: float, refinement: float) -> StickSystem:
     ratio = reach / unit
     table = growth_table(_rounded_up(ratio), sticking_kernel(scene.layer))
     span = 0.0 if table.is_half_space else ratio
-    count = math.ceil(_UNKNOWNS[0] + _UNKNOWNS[1] * span)
-    counts = (count, *(count - fewer for fewer in reversed(_FEWER)))
-    return StickSystem(unit, tuple(growth(scene.indenter, unit, ratio, table, n) for n in counts))
+    usual = _UNKNOWNS[0] + _UNKNOWNS[1] * span
+    more = _UNKNOWNS_OF_LENGTH * math.sqrt((table.kernel.longest - 1.0) * span)
+    count = math.ceil(refinement * max(usual, min(usual + more, _MOST_OF_LENGTH)))
+    solves = ((table, count), (table, count + _MORE), (table.shortened(), count))
+    return StickSystem(unit, tuple(growth(scene.indenter, unit, ratio, one, n) for one, n in solves))
 
 
 def _rounded_up(ratio: float) -> float:

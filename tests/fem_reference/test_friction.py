@@ -4,8 +4,8 @@ import math
 
 import numpy as np
 import pytest
-from scipy.special import ellipk
 
+from cases.references.partial_slip import partial_slip
 from contact import (
     Adhesion,
     Cone,
@@ -134,7 +134,8 @@ def test_coulombs_law_holds_and_slip_goes_against_the_traction():
     r = np.linspace(0.0, 0.97, 50) * a
     p, q, slip = path.pressure(r), path.tangential_traction(r), path.slip(r)
     assert np.all(np.abs(q) <= 0.2 * p * (1.0 + 1e-9))
-    beyond, within = r > 1.05 * c, r < 0.95 * c
+    # The nodes within two cells of the end of the stick slid for a part of their step.
+    beyond, within = r > 1.05 * c, r < c - 0.03 * a
     assert q[beyond] == pytest.approx(-0.2 * p[beyond], rel=1e-9, abs=0.0)
     assert np.all(slip[beyond] > 0.0)
     assert slip[within] == pytest.approx(np.zeros(within.sum()), rel=0.0, abs=1e-12)
@@ -151,16 +152,32 @@ def test_the_stick_radius_of_a_thick_layer_is_self_similar():
     assert share == pytest.approx(np.full(3, share[-1]), rel=0.0, abs=0.01)
 
 
-def test_the_stick_radius_of_a_thick_layer_with_weak_coupling():
-    """Spence 1975, uncoupled: (a/2c) ln((a + c)/(a - c)) = (mu/beta) K(sqrt(1 - c^2/a^2)).
-
-    Here 2 beta = (1 - 2 nu)/(1 - nu); the coupling that it leaves out is of the order of beta.
-    """
-    beta, body = 0.02 / (2.0 * 0.51), Layer(thickness=100.0, youngs_modulus=3.0, poissons_ratio=0.49)
-    path = COARSE.solve(rubbed(0.5 * beta, body, IndentationDepths([0.02])))
-    share = float(path.stick_radius[0] / path.contact_radius[0])
-    left = math.log((1.0 + share) / (1.0 - share)) / (2.0 * share)
-    assert left == pytest.approx(0.5 * float(ellipk(1.0 - share**2)), rel=2e-2, abs=0.0)
+@pytest.mark.parametrize(
+    ("nu", "share"),
+    [
+        (0.3, 0.7),
+        pytest.param(0.0, 0.3, marks=pytest.mark.slow),
+        pytest.param(0.45, 0.5, marks=pytest.mark.slow),
+        pytest.param(0.1, 0.9, marks=pytest.mark.slow),
+    ],
+)
+def test_partial_slip_on_the_half_space_is_that_of_the_coupled_equations(nu, share):
+    """Seen to fail with stick radii extrapolated by a root, 0.8 % of a short, and heat of second order, 1 % more."""
+    exact, depth = partial_slip(nu, share), 0.01
+    half = Layer.half_space(youngs_modulus=3.0, poissons_ratio=nu)
+    path = COARSE.solve(rubbed(exact.coefficient, half, IndentationDepths([depth])))
+    radius = math.sqrt(10.0 * depth / exact.depth)
+    force = exact.force * 4.0 / 3.0 * half.contact_modulus * math.sqrt(10.0) * depth**1.5
+    expected = {
+        "contact_radius": (radius, 1e-4),
+        "normal_force": (force, 1e-5),
+        "stick_radius": (share * radius, (1e-2 if share == 0.9 else 3e-3) / share),
+        "dissipated_energy": (exact.heat * force * depth, 5e-2 if share == 0.9 else 1e-2),
+    }
+    for name, (value, tolerance) in expected.items():
+        assert getattr(path, name) == pytest.approx([value], rel=tolerance, abs=0.0), name
+        assert np.all(np.abs(getattr(path, name) - value) <= path.uncertainty(name)), name
+    assert path.error_estimate["order_defect"][0] < 0.2
 
 
 @pytest.mark.slow

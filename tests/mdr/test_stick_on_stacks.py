@@ -10,7 +10,9 @@ from bem.kernels.tangential import beyond_half_space
 from bem.layer_equation.stick.adhered_fields import AdheredFields
 from bem.layer_equation.stick.adhered_punch import adhered_punch
 from bem.layer_equation.stick.all_radii import adhered_punches
+from bem.layer_equation.stick.growth import growth_table
 from contact import (
+    Cone,
     ContactRadii,
     ElasticBase,
     ExponentialDepth,
@@ -133,6 +135,25 @@ def test_coulomb_friction_by_finite_elements_is_within_the_bound(name):
     assert effect.lower[0] - error <= change <= effect.upper[0] + error
     if effect.one_direction[0]:
         assert abs(change - effect.first_order[0]) <= max(0.04, float(effect.upper[0]) ** 2) + error
+
+
+@pytest.mark.parametrize("modulus", [0.1, 0.01])
+def test_growth_on_a_film_over_a_soft_base_is_resolved_and_knows_its_error(modulus, monkeypatch):
+    """Seen to fail with 2e-4 stated and 4e-5 true over the softer base, where the table had 35 punches."""
+    film = stack((1.0, 1.0, 0.0), support=ElasticBase(youngs_modulus=modulus, poissons_ratio=0.3))
+    scene = scene_of(film, ContactRadii([0.5, 1.6]), Cone(slope=0.1))
+    path = Mdr().solve(scene)
+    monkeypatch.setattr("bem.layer_equation.stick.growth._PER_ROOT_OF_LENGTH", 11.0)
+    monkeypatch.setattr("mdr.friction.solver._UNKNOWNS_OF_LENGTH", 2.8)
+    monkeypatch.setattr("mdr.friction.solver._MOST_OF_LENGTH", 54.0)
+    growth_table.cache_clear()
+    finer = Mdr().solve(scene)
+    growth_table.cache_clear()
+    for name in ("indentation_depth", "normal_force", "contact_stiffness"):
+        true = np.abs(getattr(path, name) / getattr(finer, name) - 1.0)
+        # Both tables round.
+        assert np.all(true <= path.error_estimate[name] + 1e-13), name
+        assert np.all(path.error_estimate[name] <= 1e-8), name
 
 
 def test_a_flat_punch_sticks_to_a_stack():

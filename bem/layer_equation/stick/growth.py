@@ -11,7 +11,7 @@ through radii a by depths delta'(a) da follows the indenter if ``g_hs(x) = int_0
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -29,6 +29,10 @@ _CONTINUED = 1.005
 # coefficients are then 5e-15, 1e-12 and 1e-11 of the largest at X = 3, 11 and 18 (nu = 0, 0.3, 1/2, 2026-11-22).
 _PUNCHES = (26.0, 4.5)
 _POSITIONS = (28.0, 5.5)
+# At least so many of both for the root of X times the kernel's longest length, where a film on a soft base has that:
+# its punches soften over a = 1/length. With 35 at X = 1.9, 102 thicknesses, coefficients fell to 6e-5, with 45 at
+# X = 4.3, 10 thicknesses, to 2e-9; 1e-12 takes so many (2026-11-22).
+_PER_ROOT_OF_LENGTH = 9.0
 
 
 @dataclass(frozen=True)
@@ -79,13 +83,11 @@ class GrowthTable:
     def _unit(self, a: FloatArray | float) -> FloatArray:
         return np.asarray(2.0 * np.asarray(a) / self.max_ratio - 1.0)
 
-    @property
-    def truncation(self) -> float:
-        """Size of the last coefficients over the largest: what the table leaves out."""
+    def shortened(self) -> GrowthTable:
+        """The table without its last coefficients: what they move is at least what it leaves out."""
         if self.is_half_space:
-            return 0.0
-        size = np.abs(self.coefficients)
-        return float(max(size[-3:].max(), size[:, -3:].max()) / size.max())
+            return self
+        return replace(self, coefficients=self.coefficients[:-3, :-3], stiffness=self.stiffness[:-3])
 
 
 @lru_cache(maxsize=16)
@@ -96,7 +98,8 @@ def growth_table(max_ratio: float, kernel: StickingKernel) -> GrowthTable:
         return GrowthTable(
             punch.material, kernel, max_ratio, np.ones((1, 1), dtype=complex), np.array([punch.stiffness])
         )
-    punches, positions = (math.ceil(start + rate * max_ratio) for start, rate in (_PUNCHES, _POSITIONS))
+    least = _PER_ROOT_OF_LENGTH * math.sqrt(max_ratio * kernel.longest)
+    punches, positions = (math.ceil(max(start + rate * max_ratio, least)) for start, rate in (_PUNCHES, _POSITIONS))
     to_a, to_x = _to_coefficients(punches), _to_coefficients(positions)
     x = max_ratio * (1.0 + chebyshev.chebpts1(positions)) / 2.0
     values, stiffness = np.empty((positions, punches), dtype=complex), np.empty(punches)

@@ -53,8 +53,8 @@ TEXT: Final = """
 A paraboloid presses a layer. Each map shows the signed relative error of the force at a given depth, or of the depth at
 a given force, over a/h of the exact answer and Poisson's ratio; the unbonded layer, which does not see it, is a row of
 its own. Closed forms: the half-space (Hertz) and the thin layer, a bed of springs, Eqs. (17) and (22), or the
-incompressible film, Eq. (20). Methods: at coarse settings, so that their errors are seen. Friction: how much larger
-than the frictionless force, at most, that with dry friction of a coefficient is at the same depth,
+incompressible film, Eq. (20). Methods: at coarse settings, so that their errors are seen. Frictionless in place
+of friction: how much larger than the frictionless force, at most, that with dry friction of a coefficient is,
 F_0/(1 - mu max |u_r1|) by reciprocity; no number where that says nothing. `advise` tells the same of one scene.
 """
 
@@ -154,7 +154,7 @@ class MostFriction:
 FRICTION: Final = tuple(
     MapPlan(
         name=f"friction {mu:g}",
-        title=f"Friction of {mu:g} left out: at most",
+        title=f"Frictionless in place of friction {mu:g}",
         answer=MostFriction(mu),
         given=("depth",),
         ratios=FEW_RATIOS,

@@ -98,7 +98,7 @@ def _stated(scene: Scene, points: list[Point], settings: Discretisation) -> dict
     else:
         errors["indentation_depth"] = force / exponent
         errors["normal_force"] = np.zeros_like(force)
-    prescribed = {name for name, error in errors.items() if not error.any()} | {"base_force_defect"}
+    prescribed = {name for name, error in errors.items() if not error.any()} | {"base_force_defect", "order_defect"}
     return {name: error + (0.0 if name in prescribed else everywhere) for name, error in errors.items()}
 
 

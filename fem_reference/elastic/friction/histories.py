@@ -22,6 +22,8 @@ from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.elastic.contact_search import edge_radius
+from fem_reference.elastic.friction.fields import Blend, RubbedFields
+from fem_reference.elastic.friction.growth import Growing
 from fem_reference.elastic.friction.step import RubbedContact, RubbedState
 from fem_reference.elastic.friction.strips import StripMaker
 from fem_reference.elastic.friction.walk import followed, stick_radius
@@ -72,6 +74,7 @@ def rubbed_history(
         contact_radius=numbers["contact_radius"],
         stick_radius=numbers["stick_radius"],
         dissipated_energy=numbers["dissipated_energy"],
+        fields=RubbedFields(tuple(Blend(Growing(fine, states), state, state, 0.0, modulus) for state in states)),
     )
 
 

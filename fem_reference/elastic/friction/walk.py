@@ -6,7 +6,10 @@ or the last one leaves, or where a wanted depth or force is met before that.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+
+import numpy as np
 
 from contact import InvalidInput
 from contact.records.validation import FloatArray
@@ -84,18 +87,27 @@ def at_rest_again(contact: RubbedContact, state: RubbedState) -> RubbedState:
 def stick_radius(contact: RubbedContact, state: RubbedState) -> float:
     """Radius, over the strip's, of the outermost point that sticks.
 
-    Between the last node that sticks and the next, ``(1 - |q|/(mu p))^2`` falls to zero, linearly to first order.
+    Inside the end c of the stick ``1 - |q|/(mu p)`` falls to zero like ``(c - r)^(3/2)`` where the stick spreads and
+    like ``(c - r)^(1/2)`` where it shrinks: of the two laws, the one that makes the straighter line of three nodes. The
+    last node that sticks does not count, since it slid for a part of its step.
     """
     radii: FloatArray = contact.surface.radii
     stuck = [i for i in range(state.active) if state.sliding[i] == 0]
     last = stuck[-1] if stuck else 0
     if last == state.active - 1:
         return float(radii[state.active])
-    if last < 2:
+    # Three nodes off the axis are left beside the last one.
+    if last < 4:
         return float(radii[last])
-    spare = [
-        (1.0 - abs(float(state.shear[i])) / (contact.coefficient * float(state.pressure[i]))) ** 2
-        for i in (last - 1, last)
-    ]
-    share = spare[1] / (spare[0] - spare[1]) if spare[0] > spare[1] else 1.0
-    return float(radii[last] + min(share, 1.0) * (radii[last + 1] - radii[last]))
+    near = slice(last - 3, last)
+    spare = np.maximum(0.0, 1.0 - np.abs(state.shear[near]) / (contact.coefficient * state.pressure[near]))
+    _, beyond = min(_bend_and_root(spare**power) for power in (2.0 / 3.0, 2.0))
+    return float(radii[last - 1] + min(max(beyond, 1.0), 3.0) * (radii[last] - radii[last - 1]))
+
+
+def _bend_and_root(values: FloatArray) -> tuple[float, float]:
+    """How much three values at equal distances bend, and how many distances beyond the last the line is zero."""
+    before, middle, last = values
+    if not middle > last:
+        return math.inf, 1.0
+    return abs(before - 2.0 * middle + last) / (middle - last), last / (middle - last)
