@@ -70,7 +70,7 @@ class FrictionHistory(HistoryPath):
     Attributes:
         stick_radius: Radius of the outermost point that sticks [m], shape (n,).
         dissipated_energy: Turned into heat since the first touch [J], shape (n,).
-        fields: Tractions at the surface at each instant, where the method gives them.
+        surface: Tractions at the surface at each instant, where the method gives them.
     """
 
     ARRAYS: ClassVar[tuple[str, ...]] = (*HistoryPath.ARRAYS, "stick_radius", "dissipated_energy")
@@ -82,15 +82,15 @@ class FrictionHistory(HistoryPath):
 
     stick_radius: FloatArray
     dissipated_energy: FloatArray
-    fields: Fields | None = None
+    surface: Fields | None = None
 
     def pressure(self, radius: ArrayLike, step: int) -> FloatArray:
         """Pressure p(r) [Pa] of one instant at radii [m], zero outside."""
-        return sampled(self, self.fields, "pressure", radius, step)
+        return sampled(self, self.surface, "pressure", radius, step)
 
     def tangential_traction(self, radius: ArrayLike, step: int) -> FloatArray:
         """Traction q(r) [Pa] of one instant at radii [m], positive where it pushes the layer outward, zero outside."""
-        return sampled(self, self.fields, "tangential_traction", radius, step)
+        return sampled(self, self.surface, "tangential_traction", radius, step)
 
 
 def told_of_friction(layer: ElasticLayer, radius: FloatArray) -> tuple[str, ...]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal, Self, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, model_validator
 
 from contact.records.record import Record, record
-from contact.records.validation import PositiveLength, Vector, finite_vector, increasing_vector, positive
+from contact.records.validation import FloatArray, PositiveLength, Vector, finite_vector, increasing_vector, positive
 
 Controlled: TypeAlias = Literal["displacement", "force", "machine"]
 """What a detachment prescribes: depth, force, or the displacement of a machine that gives way."""
@@ -103,24 +103,7 @@ class Impact(Loading):
 
 
 @record
-class _History(Loading):
-    """Base of what is prescribed in time: instants, and one value for each."""
-
-    PRESCRIBED: ClassVar[str]
-
-    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        values = getattr(self, self.PRESCRIBED)
-        if self.time.shape != values.shape or self.time.size < 2:
-            sizes = f"got {self.time.size} instants and {values.size} values"
-            raise ValueError(f"a history needs at least two instants and one {self.PRESCRIBED} for each; {sizes}")
-        return self
-
-
-@record
-class DepthHistory(_History):
+class DepthHistory(Loading):
     """A prescribed depth in time, linear between the given instants.
 
     Attributes:
@@ -128,13 +111,17 @@ class DepthHistory(_History):
         depth: delta [m] at these instants, shape (n,).
     """
 
-    PRESCRIBED: ClassVar[str] = "depth"
-
+    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
     depth: Annotated[Vector, *finite_vector("give one depth in metres for each instant")]
+
+    @model_validator(mode="after")
+    def _check(self) -> DepthHistory:
+        _check_lengths(self.time, self.depth, "depth")
+        return self
 
 
 @record
-class ForceHistory(_History):
+class ForceHistory(Loading):
     """A prescribed normal force in time, linear between the given instants.
 
     Attributes:
@@ -142,9 +129,19 @@ class ForceHistory(_History):
         force: F_N [N] at these instants, shape (n,).
     """
 
-    PRESCRIBED: ClassVar[str] = "force"
-
+    time: Annotated[Vector, *increasing_vector("give instants in seconds that increase")]
     force: Annotated[Vector, *finite_vector("give one force in newtons for each instant")]
+
+    @model_validator(mode="after")
+    def _check(self) -> ForceHistory:
+        _check_lengths(self.time, self.force, "force")
+        return self
+
+
+def _check_lengths(time: FloatArray, values: FloatArray, name: str) -> None:
+    if time.shape != values.shape or time.size < 2:
+        sizes = f"got {time.size} instants and {values.size} values"
+        raise ValueError(f"a history needs at least two instants and one {name} for each; {sizes}")
 
 
 EquilibriumLoading: TypeAlias = ContactRadii | IndentationDepths | NormalForces

@@ -74,7 +74,7 @@ def rubbed_history(
         contact_radius=numbers["contact_radius"],
         stick_radius=numbers["stick_radius"],
         dissipated_energy=numbers["dissipated_energy"],
-        fields=RubbedFields(tuple(Blend(Growing(fine, states), state, state, 0.0, modulus) for state in states)),
+        surface=RubbedFields(tuple(Blend(Growing(fine, states), state, state, 0.0, modulus) for state in states)),
     )
 
 
