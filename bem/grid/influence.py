@@ -23,7 +23,7 @@ import numpy.typing as npt
 from bem.kernels.layer import one_minus_kernel, zero_mode
 from bem.polynomials.cubics import PiecewiseCubic
 from bem.polynomials.gauss import legendre_rule
-from contact.answer.lapack import compiled
+from contact.answer.compiled_files import compiled
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
 

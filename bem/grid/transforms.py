@@ -22,7 +22,7 @@ import numpy as np
 import numpy.typing as npt
 
 from contact import InvalidInput
-from contact.answer.lapack import compiled
+from contact.answer.compiled_files import compiled
 from contact.records.validation import FloatArray
 
 # The whole package brings dask, where that is installed, and interfaces that nobody asks for.

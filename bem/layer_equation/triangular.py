@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contact import NotConvergedError
-from contact.answer.lapack import lapack
+from contact.answer.compiled_files import lapack
 from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
 

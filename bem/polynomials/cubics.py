@@ -8,7 +8,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from contact.answer.lapack import lapack
+from contact.answer.compiled_files import lapack
 from contact.records.validation import FloatArray
 
 

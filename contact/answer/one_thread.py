@@ -10,7 +10,7 @@ from functools import cache
 from threading import Lock
 from typing import TYPE_CHECKING, Any
 
-from contact.answer.lapack import is_loaded
+from contact.answer.compiled_files import is_loaded
 
 if TYPE_CHECKING:
     from types import TracebackType

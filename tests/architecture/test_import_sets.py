@@ -34,7 +34,7 @@ def test_scipy_loads_after_its_compiled_file(later):
 
 
 def test_lapack_is_scipys_where_its_file_is_not_found_alone():
-    told = "from contact.answer.lapack import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
+    told = "from contact.answer.compiled_files import lapack; import importlib.util as u; u.find_spec = lambda *_: None"
     assert "scipy.linalg" in loaded_after(f"{told}; assert lapack().dpotrf([[4.0]])[0][0, 0] == 2.0")
 
 
