@@ -119,8 +119,9 @@ BEHIND_RIMS = {
 }
 
 
-@pytest.mark.parametrize("contact", ["cone, small", "flat punch", "truncated cone"])
+@pytest.mark.parametrize("contact", ["flat punch", "truncated cone"])
 def test_mdr_agrees(contact):
+    """Without and with a flat end that is left; all contacts on all layers are slow."""
     compared(LAYERS["softer below, elastic base"], *CONTACTS[contact], **BEHIND_RIMS.get(contact, {}))
 
 
@@ -141,21 +142,25 @@ def test_kinks_and_bends_on_a_uniform_table_are_those_of_one_layer(indenter):
     plain = Layer(thickness=2.0, youngs_modulus=3.0, poissons_ratio=0.4)
     table = TabulatedDepth(depths=[0.0, 1.0, 2.0], values=[3.0, 3.0, 3.0])
     graded = GradedLayer(thickness=2.0, youngs_modulus=table, poissons_ratio=0.4)
-    one, other = (solved(layer, indenter, ContactRadii([0.8, 1.2])) for layer in (plain, graded))
+    one, other = (solved(layer, indenter, ContactRadii([0.8])) for layer in (plain, graded))
     for quantity in QUANTITIES:
         np.testing.assert_allclose(getattr(other, quantity), getattr(one, quantity), rtol=1e-10)
     inside = np.array([0.1, 0.45, 0.55, 0.79])
     np.testing.assert_allclose(other.pressure(inside, 0), one.pressure(inside, 0), rtol=1e-7)
 
 
+@pytest.fixture(scope="module")
+def on_many_nodes():
+    return solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=20)
+
+
 @pytest.mark.parametrize("nodes", [10, 12])
-def test_fewer_nodes_stay_within_the_stated_errors(nodes):
+def test_fewer_nodes_stay_within_the_stated_errors(nodes, on_many_nodes):
     """Flat ends on a layer with a logarithm."""
     coarse = solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=nodes)
-    fine = solved(EXPONENTIAL, CONE, ContactRadii([0.6, 1.0]), nodes=20)
     for quantity in QUANTITIES[1:]:
-        change = np.abs(getattr(coarse, quantity) / getattr(fine, quantity) - 1)
-        assert np.all(change <= coarse.error_estimate[quantity] + fine.error_estimate[quantity]), quantity
+        change = np.abs(getattr(coarse, quantity) / getattr(on_many_nodes, quantity) - 1)
+        assert np.all(change <= coarse.error_estimate[quantity] + on_many_nodes.error_estimate[quantity]), quantity
         assert np.all(coarse.error_estimate[quantity] < 1e-8), quantity
 
 

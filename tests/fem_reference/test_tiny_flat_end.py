@@ -24,9 +24,22 @@ from mdr import Mdr
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 
 
-@pytest.mark.parametrize("loading", [IndentationDepths(values=[1e-5]), NormalForces(values=[1e-2])], ids=str)
-@pytest.mark.parametrize("flat_radius", [1e-9, 1e-8, 1e-7])
+BY_DEPTH, BY_FORCE = IndentationDepths(values=[1e-5]), NormalForces(values=[1e-2])
+
+
+@pytest.mark.parametrize(
+    ("flat_radius", "loading"),
+    [
+        (1e-9, BY_FORCE),
+        (1e-7, BY_DEPTH),
+        *(
+            pytest.param(*other, marks=pytest.mark.slow)
+            for other in ((1e-9, BY_DEPTH), (1e-8, BY_DEPTH), (1e-8, BY_FORCE), (1e-7, BY_FORCE))
+        ),
+    ],
+)
 def test_a_tiny_flat_end_is_no_ring(flat_radius, loading):
+    """The smallest end by force and the largest by depth; all pairs with the slow tests."""
     scene = Scene(layer=LAYER, indenter=TruncatedCone(flat_radius=flat_radius, slope=0.1), loading=loading)
     fem, mdr = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
     for name in fem.ARRAYS:

@@ -78,11 +78,12 @@ def test_impacts_of_every_size(size):
     assert_repeated(impacts(scenes(loading, (VISCOUS,), size), PUNCH), alone, size, tolerance=0.0)
 
 
-@pytest.mark.parametrize("seed", [5, 6])
+@pytest.mark.parametrize("seed", [pytest.param(5, marks=pytest.mark.slow), 6])
 def test_different_impacts_are_the_same_bits_together_and_alone(seed):
     """Two thirds of them relax, on nought to three branches; a third are flat punches.
 
-    Seen to fail on seed 6: a flat punch's first speed came out a rounding below the one prescribed.
+    Seen to fail on seed 6: a flat punch's first speed came out a rounding below the one prescribed.  The other seed,
+    which never failed, is slow.
     """
     draw, indenters = (
         np.random.default_rng(seed),

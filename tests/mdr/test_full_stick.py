@@ -76,9 +76,17 @@ def test_cone_on_a_half_space():
     assert path.indentation_depth == pytest.approx([exact], rel=1e-13, abs=0)
 
 
-@pytest.mark.parametrize(("nu", "support"), [(0.0, "bonded"), (0.3, "unbonded"), (0.5, "bonded")])
-@pytest.mark.parametrize("indenter", [PARABOLOID, Sphere(radius=20.0), Cone(slope=0.05)])
-def test_pressure_adds_up_to_the_force(nu, support, indenter):
+BODIES = ((0.0, "bonded"), (0.3, "unbonded"), (0.5, "bonded"))
+SHAPES = (PARABOLOID, Sphere(radius=20.0), Cone(slope=0.05))
+
+
+@pytest.mark.parametrize(
+    ("body", "shape"),
+    [pytest.param(i, j, marks=() if i == j else pytest.mark.slow) for i in range(3) for j in range(3)],
+)
+def test_pressure_adds_up_to_the_force(body, shape):
+    """Each layer and each indenter once; all pairs are slow."""
+    (nu, support), indenter = BODIES[body], SHAPES[shape]
     path = stuck(nu, indenter, ContactRadii([1.5]), support)
     nodes, weights = np.polynomial.legendre.leggauss(48)
     angle = (nodes + 1.0) * math.pi / 4.0
