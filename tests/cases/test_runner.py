@@ -286,8 +286,11 @@ run_cases([fake_case()], RunOptions(out=Path(sys.argv[1]), executor=serial, prog
 """
 
 
-@pytest.mark.parametrize("where", ["finished 4", "written, not yet renamed", "judged"])
+@pytest.mark.parametrize(
+    "where", [pytest.param("finished 4", marks=pytest.mark.slow), "written, not yet renamed", "judged"]
+)
 def test_kill_then_resume_gives_the_same_result_wherever_it_struck(where, tmp_path):
+    """In the middle of a file and at the end; between two files is slow."""
     process = subprocess.Popen([sys.executable, "-c", KILLED, str(tmp_path), where], stdout=subprocess.PIPE, text=True)
     with process:
         for line in process.stdout:

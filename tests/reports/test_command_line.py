@@ -124,8 +124,12 @@ def test_a_sound_run_passes_and_writes_everything(tmp_path, capsys):
     assert "report.html" in output
 
 
-@pytest.mark.parametrize("plant", ["nan", "not converged", "raise"])
+SLOW_PLANTS = [pytest.param(plant, marks=pytest.mark.slow) for plant in ("not converged", "raise")]
+
+
+@pytest.mark.parametrize("plant", ["nan", *SLOW_PLANTS])
 def test_a_broken_solver_fails_the_run_by_name(plant, library, tmp_path, capsys):
+    """Every way to break is a row in `tests/cases/test_runner.py`; by the command all but one are slow."""
     library(fake_case(slow=spoiled(SLOW, plant=plant)))
     assert run_here(tmp_path) == 1
     output = capsys.readouterr().out
@@ -362,19 +366,19 @@ def test_commands_compute_on_one_thread_unless_told_otherwise():
 
 
 @pytest.mark.usefixtures("library")
-@pytest.mark.parametrize("command", [["report"], ["gate"], ["run", "--executor", "serial", "--out"]])
-def test_a_folder_in_which_another_run_works_is_refused_in_one_line(command, tmp_path, capsys, monkeypatch):
+def test_a_folder_in_which_another_run_works_is_refused_in_one_line(tmp_path, capsys, monkeypatch):
     assert run_here(tmp_path) == 0
     before = (tmp_path / "out" / "results.json").read_bytes()
     accepted(tmp_path / "baselines")
     monkeypatch.chdir(tmp_path)
     capsys.readouterr()
     with other_process(tmp_path / "out"):
-        assert run([*command, str(tmp_path / "out")]) == 4
-    lines = capsys.readouterr().err.strip().splitlines()
-    assert len(lines) == 1
-    assert "another run works in" in lines[0]
-    assert (tmp_path / "out" / "results.json").read_bytes() == before
+        for command in (["report"], ["gate"], ["run", "--executor", "serial", "--out"]):
+            assert run([*command, str(tmp_path / "out")]) == 4, command
+            lines = capsys.readouterr().err.strip().splitlines()
+            assert len(lines) == 1, command
+            assert "another run works in" in lines[0], command
+            assert (tmp_path / "out" / "results.json").read_bytes() == before, command
 
 
 def test_the_report_of_a_run_without_cases_is_exit_code_5(library, tmp_path, capsys):

@@ -178,7 +178,7 @@ def test_a_picture_without_room_is_named_with_its_file(tmp_path):
 
 def test_processes_draw_the_same_pictures_in_the_same_order(tmp_path, monkeypatch):
     monkeypatch.setattr(folder_module, "FEW", 1)
-    drawings = figures_of(passing_case()) + figures_of(failing_case())
+    drawings = figures_of(passing_case())[:2] + figures_of(failing_case())[:2]
     drawn = []
     for jobs in (1, 2):
         folder = FigureFolder(tmp_path / str(jobs))
