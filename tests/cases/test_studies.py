@@ -13,7 +13,8 @@ from cases.run.executors import serial
 from tests.cases.example_run import example_run
 
 # The claims of `code_verification` are judged by tests/verification/test_fem_code_verification.py, too.
-SLOW = dict.fromkeys((studies.quick_ladders, studies.code_verification), pytest.mark.slow)
+# Suite ci runs the study of coverage itself; tests/cases/measurements/stability/test_coverage.py plants its faults.
+SLOW = dict.fromkeys((studies.quick_ladders, studies.quick_coverage, studies.code_verification), pytest.mark.slow)
 
 
 @pytest.mark.parametrize(

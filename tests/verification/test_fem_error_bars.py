@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -291,10 +293,16 @@ PULLED = Scene(
 PULL_OFF = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius")
 
 
+@cache
+def pulled(control):
+    """Two tests look at either of these."""
+    return Fem(accuracy=1e-3).solve(PULLED.replace(loading=Detachment(control=control)))
+
+
 @pytest.mark.parametrize("control", ["displacement", "force"])
 def test_errors_of_a_pull_off_follow_from_those_at_its_radius(control):
-    scene = PULLED.replace(loading=Detachment(control=control))
-    path, exact = Fem(accuracy=1e-3).solve(scene), Mdr().solve(scene)
+    path = pulled(control)
+    exact = Mdr().solve(path.scene)
     errors = [abs(getattr(path, name) / getattr(exact, name) - 1) for name in PULL_OFF]
     ratios = [path.error_estimate[name][0] / error for name, error in zip(PULL_OFF, errors, strict=True)]
     assert min(ratios) > 1
@@ -304,10 +312,7 @@ def test_errors_of_a_pull_off_follow_from_those_at_its_radius(control):
 
 def test_strongest_pull_is_the_extremum_whatever_is_controlled():
     """Under displacement control the force passes its extremum, where pull-off lies under force control."""
-    forces = [
-        Fem(accuracy=1e-2).solve(PULLED.replace(loading=Detachment(control=c))).pull_off_force
-        for c in ("displacement", "force")
-    ]
+    forces = [pulled(control).pull_off_force for control in ("displacement", "force")]
     assert forces[0] == pytest.approx(forces[1], rel=1e-10, abs=0.0)
 
 
