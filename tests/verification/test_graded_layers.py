@@ -73,8 +73,11 @@ def reference(kernel, x, panels):
     return moments[0] / x, depth, 2 * (depth * moments[0] - moments[1])
 
 
-@pytest.mark.parametrize("name", LAYERS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=() if n == "power law, unbonded" else pytest.mark.slow) for n in LAYERS]
+)
 def test_another_grading_of_panels_agrees_within_the_stated_errors(name, monkeypatch):
+    """The steepest grading, without bond; the others are slow."""
     layer, radii = LAYERS[name], np.array([0.05, 0.7, 1.9])
     path = solve(layer, PARABOLOID, ContactRadii(radii))
     monkeypatch.setattr(panels_module, "SINGULAR_NODES", 32)
@@ -97,8 +100,9 @@ def test_another_grading_of_panels_agrees_within_the_stated_errors(name, monkeyp
         assert np.all(stated < 1e-8), quantity
 
 
-@pytest.mark.parametrize("support", ["bonded", "unbonded"])
+@pytest.mark.parametrize("support", ["bonded", pytest.param("unbonded", marks=pytest.mark.slow)])
 def test_a_constant_modulus_is_one_layer(support):
+    """A layer without bond is slow, but graded in the test above."""
     plain = Layer(thickness=2.0, youngs_modulus=3.0, poissons_ratio=0.4, support=support)
     table = TabulatedDepth(depths=[0.0, 1.0, 2.0], values=[3.0, 3.0, 3.0])
     graded = GradedLayer(thickness=2.0, youngs_modulus=table, poissons_ratio=0.4, support=support)
