@@ -29,7 +29,7 @@ def scenes(stacks: int, seed: int) -> Iterator[tuple[str, Scene]]:
         yield from ((f"stack {number} {kind}", scene(layer, kind, radius)) for kind in KINDS)
     for number, graded in enumerate(GRADED if seed else ()):
         for radius in (0.1, 0.7, 5.0):
-            yield from ((f"graded {number} {kind}", scene(graded, kind, radius)) for kind in KINDS[:2])
+            yield from ((f"graded {number} {kind}", scene(graded, kind, radius)) for kind in KINDS)
 
 
 def answer(method: Fem | Mdr, problem: Scene) -> ContactPath | str:
