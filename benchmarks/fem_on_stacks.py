@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ KINDS = ("flat punch", "paraboloid", "truncated cone")
 QUANTITIES = ("indentation_depth", "normal_force", "contact_stiffness")
 
 
-def scenes(stacks: int, seed: int) -> Iterator[tuple[str, Scene]]:
+def scenes(stacks: int, seed: int) -> Iterator[tuple[str, Scene[Any, Any]]]:
     """Three contacts of one radius on each stack, and three radii on each graded layer."""
     rng = np.random.default_rng(seed)
     for number in range(stacks):
@@ -29,15 +30,16 @@ def scenes(stacks: int, seed: int) -> Iterator[tuple[str, Scene]]:
         yield from ((f"stack {number} {kind}", scene(layer, kind, radius)) for kind in KINDS)
     for number, graded in enumerate(GRADED if seed else ()):
         for radius in (0.1, 0.7, 5.0):
-            yield from ((f"graded {number} {kind}", scene(graded, kind, radius)) for kind in KINDS[:2])
+            yield from ((f"graded {number} {kind}", scene(graded, kind, radius)) for kind in KINDS)
 
 
-def answer(method: Fem | Mdr, problem: Scene) -> ContactPath | str:
+def answer(method: Fem | Mdr, problem: Scene[Any, Any]) -> ContactPath | str:
     """The path, or the first words of a refusal."""
     try:
-        return method.solve(problem)
+        path: ContactPath = method.solve(problem)
     except UnsupportedSceneError as refusal:
         return str(refusal)
+    return path
 
 
 def differences(ours: ContactPath, other: ContactPath) -> dict[str, tuple[float, float]]:
@@ -77,4 +79,5 @@ def main(stacks: int = 30, seed: int = 18, accuracy: float = 0.0) -> None:
 
 
 if __name__ == "__main__":
-    main(*(float(a) if "." in a or "e" in a else int(a) for a in sys.argv[1:]))
+    counts, accuracy = [int(argument) for argument in sys.argv[1:3]], [float(argument) for argument in sys.argv[3:]]
+    main(*counts, *accuracy)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 from collections import Counter
 from dataclasses import dataclass
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -39,6 +40,9 @@ EVERY = 25
 # as a cell, and a disc is found with 480 cells (2026-11-22).
 FINER = 4
 
+# A scene on any layer, under any loading.
+AnyScene: TypeAlias = Scene[Any, Any]
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -55,7 +59,7 @@ class Verdict:
     words: str = ""
 
 
-def random_scene(rng: np.random.Generator) -> Scene:
+def random_scene(rng: np.random.Generator) -> AnyScene:
     """A film on a soft base of total thickness 1, touched out to 0.1 to 5 by one of five profiles, by its depth."""
     layer = stiff_on_soft(rng)
     a = float(np.exp(rng.uniform(np.log(0.1), np.log(5.0))))
@@ -70,7 +74,7 @@ def random_scene(rng: np.random.Generator) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
 
 
-def unilateral(scene: Scene, depth: float, cells: int = STRIP_CELLS) -> FoundContact | None:
+def unilateral(scene: AnyScene, depth: float, cells: int = STRIP_CELLS) -> FoundContact | None:
     """What touches at the depth [m]; None where `find_contact` says that it is no disc."""
     settings, log = Discretisation(growth=0.8, edge_cell=1e-4), StageLog()
     indenter: Profile = scene.indenter
@@ -82,7 +86,7 @@ def unilateral(scene: Scene, depth: float, cells: int = STRIP_CELLS) -> FoundCon
         return None
 
 
-def judge(scene: Scene) -> Verdict:
+def judge(scene: AnyScene) -> Verdict:
     """MDR's answer beside the unilateral contact."""
     if not isinstance(scene.loading, IndentationDepths):
         raise TypeError("scenes of this campaign prescribe depths")

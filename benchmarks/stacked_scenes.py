@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from contact import (
@@ -86,7 +88,7 @@ GRADED = (
 )
 
 
-def scene(layer: ElasticLayer, kind: str, radius: float) -> Scene:
+def scene(layer: ElasticLayer, kind: str, radius: float) -> Scene[Any, Any]:
     """A contact of a radius with a body of thickness 1: a flat punch, a paraboloid, or a truncated cone."""
     indenter: Profile = {
         "flat punch": FlatPunch(radius=radius),

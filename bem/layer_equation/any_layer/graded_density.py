@@ -15,15 +15,26 @@ from bem.polynomials.chebyshev import chebyshev_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact.records.validation import FloatArray
 
-# Share of the contact radius below which panels are too narrow to tell slopes, whose roundings grow like 1/t^2. With
-# 3e-3 and four terms pressures beside the axis are up to 9e-9 off, with 1e-3 and three terms 2e-8, and with 1e-2 8e-8
-# (E = 100^z and 4^z, nu = 0.5, a paraboloid and a cone, against the direct equation, 2026-11-22).
-AXIS: Final = 3e-3
+# Reach of the series in t that stands beside the axis, of the stretch to the first rim and of two thicknesses, beyond
+# which the layer's images lie. It answers on the inner half, since panels there are too narrow to tell slopes. With
+# this reach and six terms pressures are even to 1.3e-9, with 0.1 and five to 1.5e-9, with 0.06 and four to 1.9e-9 (E =
+# 100^z and 4^z, nu = 0.3 and 0.5, a paraboloid at a/H = 0.1, 1 and 5, 2026-11-22).
+AXIS: Final = 0.2
+TERMS: Final = 6
 
 
-def _beside_axis(share: FloatArray) -> FloatArray:
-    """The terms of psi'/t beside the axis, the logarithm from the tip of a cone, shape (n, 4)."""
-    return np.stack([np.ones_like(share), np.log(share), share, share**2], axis=-1)
+def _beside_axis(share: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The terms of psi beside the axis and of psi'/t, shape (n, 11): even powers, and what the tip of a cone adds.
+
+    A cone's density is like t, and a kernel like ln t + t makes t^2 ln t of it, t^3, t^4 ln t and so on.
+    """
+    logarithm, even = np.log(share), range(0, 2 * TERMS, 2)
+    values = [share**n for n in even]
+    slopes = [np.zeros_like(share), *(n * share ** (n - 2) for n in even[1:])]
+    for n in range(2, TERMS + 1):
+        values.append(share**n * (1.0 if n % 2 else logarithm))
+        slopes.append(share ** (n - 2) * (n if n % 2 else n * logarithm + 1))
+    return np.stack(values, axis=-1), np.stack(slopes, axis=-1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,19 +52,29 @@ class PanelSlopes:
     values: FloatArray
 
     def slope(self, t: FloatArray) -> FloatArray:
-        """psi'(t) at points of [0, a]; beside the axis t times what psi'/t is a little further out."""
-        inner = t < AXIS * self.ratio
-        found = self._panel_slope(np.maximum(t, AXIS * self.ratio))
-        share = np.maximum(t[inner] / (AXIS * self.ratio), 1e-300)
-        found[inner] = t[inner] * (_beside_axis(share) @ self._axis_coefficients)
+        """psi'(t) at points of [0, a]; beside the axis from the series."""
+        inner = t < self._reach / 2
+        found = self._panel_slope(np.maximum(t, self._reach / 2))
+        share = np.maximum(t[inner] / self._reach, 1e-300)
+        found[inner] = t[inner] / self._reach**2 * (_beside_axis(share)[1] @ self._axis_coefficients)
         return found
+
+    @property
+    def _reach(self) -> float:
+        """Of the series, in thicknesses."""
+        return AXIS * min(self.panels.first_bend * self.ratio, 2.0)
 
     @cached_property
     def _axis_coefficients(self) -> FloatArray:
-        """Of psi'/t beside the axis."""
-        share = np.array([1.0, 2.0, 4.0, 8.0])
-        t = AXIS * self.ratio * share
-        return np.asarray(np.linalg.solve(_beside_axis(share), self._panel_slope(t) / t))
+        """Least squares in the panels' weights, without the first panel, where the logarithm of t + s is not resolved.
+
+        Values are 1e-9 off on it, which would make pressures uneven by 2e-7.
+        """
+        share = self.ratio * self.panels.nodes / self._reach
+        own = np.flatnonzero(share <= 1)[self.panels.count :]
+        root = np.sqrt(self.panels.weights[own])
+        terms = root[:, None] * _beside_axis(share[own])[0]
+        return np.asarray(np.linalg.lstsq(terms, root * self.values[own], rcond=None)[0])
 
     def _panel_slope(self, t: FloatArray) -> FloatArray:
         """psi'(t) as the panels have it."""

@@ -38,10 +38,12 @@ class RelativePanels:
     Attributes:
         ends: Shape (P + 1,).
         count: Nodes of each panel, m.
+        first_bend: Where the load first has a rim or bend, one without.
     """
 
     ends: FloatArray
     count: int
+    first_bend: float = 1.0
 
     @cached_property
     def widths(self) -> FloatArray:
@@ -152,4 +154,4 @@ def panels_with_bends(marks: tuple[float, ...], widest: float, count: int) -> Re
     coarse = np.append(np.concatenate(parts), 1.0)
     cuts = np.maximum(np.ceil(np.diff(coarse) / widest), 1).astype(int)
     fine = [np.linspace(a, b, n + 1)[1:] for a, b, n in zip(coarse[:-1], coarse[1:], cuts, strict=True)]
-    return RelativePanels(np.concatenate([coarse[:1], *fine]), count)
+    return RelativePanels(np.concatenate([coarse[:1], *fine]), count, points[1])
