@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Final, Literal, TypeAlias, TypeVar, get_args
 
@@ -139,13 +139,3 @@ def refusals(rows: Iterable[Measurement]) -> dict[str, int]:
     """How often each reason was given for a refusal, numbers left out, the most frequent first."""
     refused = (row.reason for row in rows if row.status is Status.INVALID)
     return dict(Counter(re.sub(r"[-+.\d]+(e[-+]?\d+)?", "..", reason) for reason in refused).most_common())
-
-
-def report(rows: Sequence[Measurement]) -> Iterator[str]:
-    """One line for the ends of all scenes, for each reason of a refusal, and for each quantity that was judged."""
-    yield ", ".join(f"{end}: {number}" for end, number in ends(rows).items())
-    yield from (f"refused {number} times: {reason}" for reason, number in refusals(rows).items())
-    for quantity, found in by_quantity(rows).items():
-        ratio = median(sharpness(found))
-        sharp = "" if ratio is None else f", stated over true error {ratio:.3g} in the median"
-        yield f"{quantity}: {100 * covered(found):.2f} % of {len(found)} covered{sharp}"

@@ -5,8 +5,10 @@ import multiprocessing
 import os
 import signal
 import threading
-from collections.abc import Callable
+import time
+from collections.abc import Callable, Iterator
 from concurrent.futures import BrokenExecutor, CancelledError, Executor, Future, ProcessPoolExecutor
+from contextlib import contextmanager
 from typing import Any, ParamSpec, TypeVar
 
 from contact import InvalidInput
@@ -80,6 +82,7 @@ class DaskExecutor(Executor):
         # What breaks is said once, by this class.
         logging.getLogger("distributed.client").setLevel(logging.CRITICAL)
         self._address, self._killed = address, KilledWorker
+        self._threads, self._counted = 0, -PATIENCE
         try:
             self._client = Client(address, set_as_default=False, timeout=PATIENCE)
         except (OSError, ValueError) as error:
@@ -103,6 +106,21 @@ class DaskExecutor(Executor):
         remote = self._client.submit(fn, *args, pure=False, retries=2, **kwargs)
         remote.add_done_callback(deliver)
         return future
+
+    @property
+    def threads(self) -> int:
+        """Threads of the workers that are there, asked for once in `PATIENCE` seconds: a cluster may grow.
+
+        Raises:
+            ClusterLost: if the scheduler does not answer any more.
+        """
+        if time.monotonic() - self._counted >= PATIENCE:
+            try:
+                self._threads = sum(self._client.nthreads().values())
+            except (CancelledError, OSError, RuntimeError, TypeError):
+                raise self._lost() from None
+            self._counted = time.monotonic()
+        return self._threads
 
     @property
     def _is_lost(self) -> bool:
@@ -132,6 +150,31 @@ def dask_cluster(address: str) -> ExecutorFactory:
         return DaskExecutor(address)
 
     return factory
+
+
+def places(executor: Executor, jobs: int) -> int:
+    """How many calls an executor of ``jobs`` jobs can carry out at a time; a cluster has as many places as threads."""
+    if isinstance(executor, SerialExecutor):
+        return 1
+    return max(jobs, executor.threads) if isinstance(executor, DaskExecutor) else jobs
+
+
+def ahead(executor: Executor, jobs: int) -> int:
+    """How many calls may be under way: two for each place, so that none stands idle and little is lost with one."""
+    # What runs in this process has ended when it is handed over.
+    return 1 if isinstance(executor, SerialExecutor) else 2 * places(executor, jobs)
+
+
+@contextmanager
+def closing(executor: Executor) -> Iterator[Executor]:
+    """Wait for the executor's own threads and processes to end, unless the run itself is over."""
+    try:
+        yield executor
+    except BaseException:
+        # This is mostly Ctrl-C.
+        executor.shutdown(wait=False, cancel_futures=True)
+        raise
+    executor.shutdown(wait=True, cancel_futures=True)
 
 
 def by_name(name: str) -> ExecutorFactory:

@@ -5,12 +5,11 @@ incomplete; timing tasks run after all others, one by one, so that they never sh
 """
 
 import time
-from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
+from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 from cases.declare.case import Case
@@ -21,9 +20,10 @@ from cases.results.files import write_run
 from cases.results.records.run import CaseResult, RunResult
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status
-from cases.run.executors import ClusterLost, ExecutorFactory, fresh_processes, process_pool, serial
+from cases.run.executors import ClusterLost, ExecutorFactory, ahead, closing, fresh_processes, process_pool, serial
 from cases.run.keys import content_key, key_parts
 from cases.run.lock import locked
+from cases.run.many.window import Window
 from cases.run.progress import Progress, ProgressEvent, silent
 from cases.run.solve_task import solve, without_numbers
 from cases.run.stamp import stamp
@@ -43,7 +43,7 @@ class RunOptions:
         out: folder of results; finished tasks lie in ``out/tasks``.
         suite: name of the suite, for the record.
         methods: that were chosen, for the record; empty for those of the cases.
-        jobs: tasks at a time.
+        jobs: tasks at a time; on a cluster as many as it has threads if that is more.
         executor: where they run.
         resume: use finished tasks of an earlier run in the same folder whose keys are equal.
         time_limit: seconds a task may take, zero for no limit; by default only methods of installed packages have one.
@@ -200,33 +200,11 @@ def _solve_in(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Pla
 
 def _solve_until_broken(run: _Run, factory: ExecutorFactory, jobs: int, planned: list[_Planned]) -> list[_Planned]:
     """Return the tasks that were under way when the executor broke; none if it did not."""
-    waiting, under_way = deque(planned), dict[Future[SceneRun], _Planned]()
-    # So few tasks are handed over at a time that little is repeated after a breakdown.
-    ahead = 1 if factory is serial else 2 * jobs
-    with _closing(factory(jobs)) as executor:
-        try:
-            while waiting or under_way:
-                while waiting and len(under_way) < ahead:
-                    next_one = waiting.popleft()
-                    under_way[_submit(executor, run, next_one)] = next_one
-                for future in wait(under_way, return_when=FIRST_COMPLETED).done:
-                    row = future.result()
-                    run.finish(under_way.pop(future), row)
-        except BrokenExecutor:
-            return list(under_way.values())
-    return []
-
-
-@contextmanager
-def _closing(executor: Executor) -> Iterator[Executor]:
-    """Wait for the executor's own threads and processes to end, unless the run itself is over."""
-    try:
-        yield executor
-    except BaseException:
-        # This is mostly Ctrl-C.
-        executor.shutdown(wait=False, cancel_futures=True)
-        raise
-    executor.shutdown(wait=True, cancel_futures=True)
+    with closing(factory(jobs)) as executor:
+        window = Window(partial(_submit, executor, run), partial(ahead, executor, jobs))
+        for solved, row in window.results(planned):
+            run.finish(solved, row)
+    return window.broken
 
 
 def _submit(executor: Executor, run: _Run, planned: _Planned) -> Future[SceneRun]:
@@ -241,7 +219,7 @@ def _limit(options: RunOptions, method: str) -> float:
 
 
 def _solve_apart(run: _Run, factory: ExecutorFactory, planned: _Planned) -> None:
-    with _closing(factory(1)) as executor:
+    with closing(factory(1)) as executor:
         try:
             row = _submit(executor, run, planned).result()
         except BrokenExecutor as error:

@@ -8,13 +8,16 @@ from __future__ import annotations
 import itertools
 import time
 from collections.abc import Callable
+from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, cast
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 if TYPE_CHECKING:
+    from cases.measurements.many_scenes import ManyScenes
     from cases.results.records.run import CaseResult
+    from cases.run.executors import ExecutorFactory
 
 FAILED = 1
 
@@ -140,30 +143,53 @@ def campaign(
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",
     count: Annotated[int, typer.Option(min=1, help="How many random scenes.")] = 100,
     seed: Seed = 1,
+    *,
+    jobs: Annotated[
+        int, typer.Option(min=1, help="Blocks of scenes at a time; on a cluster at least its threads.")
+    ] = 2,
+    executor: Annotated[
+        str, typer.Option(help="serial, processes, or the address of a Dask scheduler (tcp://host:port).")
+    ] = "serial",
+    out: Annotated[Path | None, typer.Option(help="Folder that keeps finished scenes.")] = None,
+    resume: Annotated[bool, typer.Option("--resume", help="Go on with the scenes that OUT keeps.")] = False,
 ) -> int:
     """Solve random scenes and check each answer: within its stated error of an independent one, or refused by name."""
-    from cases.declare.guarded_method import build_guarded  # noqa: PLC0415
-    from cases.measurements import measurement  # noqa: PLC0415
-    from cases.measurements.campaigns.campaign import campaign as run_campaign  # noqa: PLC0415
-    from cases.measurements.campaigns.displacements import displacement_campaign  # noqa: PLC0415
-    from cases.measurements.campaigns.inside.campaign import inside_campaign  # noqa: PLC0415
-    from cases.measurements.campaigns.pressures import pressure_campaign  # noqa: PLC0415
-    from cases.measurements.campaigns.random_scenes import FAMILIES, Family  # noqa: PLC0415
+    from cases.declare.guarded_method import build_guarded  # noqa: PLC0415 - see the first lines of this module
+    from cases.measurements.many_scenes import ManyScenes, campaign_of  # noqa: PLC0415
+    from cases.run.executors import by_name  # noqa: PLC0415
     from contact import InvalidInput  # noqa: PLC0415
 
-    of_fields = {"pressure": pressure_campaign, "displacement": displacement_campaign, "inside": inside_campaign}
-    if family not in (*FAMILIES, *of_fields):
-        raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, *of_fields))}")
-    if family in of_fields:
-        found = of_fields[family](build_guarded(method, {}), seed=seed, count=count)
-    else:
-        found = run_campaign(build_guarded(method, {}), seed=seed, count=count, family=cast("Family", family))
-    for line in measurement.report(found):
+    if resume and out is None:
+        raise InvalidInput("--resume goes on with the scenes that a folder keeps; name it by --out")
+    scenes = ManyScenes(
+        campaign=campaign_of(family), family=family, method=build_guarded(method, {}), seed=seed, count=count
+    )
+    return _counted_out(scenes, by_name(executor), jobs, out, resume=resume)
+
+
+def _counted_out(scenes: ManyScenes, executor: ExecutorFactory, jobs: int, out: Path | None, *, resume: bool) -> int:
+    """Carry a campaign out, count its scenes, and say what was found; 2 if the cluster was lost."""
+    from cases.measurements.kept_scenes import KeptScenes  # noqa: PLC0415
+    from cases.measurements.tally import Tally  # noqa: PLC0415
+    from cases.results.status import ExitCode  # noqa: PLC0415
+    from cases.run.executors import ClusterLost  # noqa: PLC0415
+    from cases.run.lock import locked  # noqa: PLC0415
+
+    tally = Tally()
+    try:
+        with nullcontext() if out is None else locked(out):
+            kept = None if out is None else KeptScenes(out, scenes.key, resume=resume)
+            for rows in scenes.rows(scenes.in_blocks(executor, jobs), kept):
+                tally.add(rows)
+    except ClusterLost as error:
+        remedy = "name a folder by --out to keep finished scenes" if out is None else "go on with --resume"
+        _say(f"{error}; {tally.scenes} of {scenes.count} scenes are finished, {remedy}")
+        return ExitCode.INTERRUPTED
+    for line in tally.report():
         _say(line)
-    wrong = measurement.defects(found)
-    for scene, end, why in wrong:
-        _say(f"scene {scene} of seed {seed}: {end}: {why}")
-    return FAILED if wrong else 0
+    for scene, end, why in tally.defects:
+        _say(f"scene {scene} of seed {scenes.seed}: {end}: {why}")
+    return FAILED if tally.defects else 0
 
 
 COMMANDS: tuple[Callable[..., Any], ...] = (advise, ladders, coverage, accuracy, scaling, maps, calibrate, campaign)

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cases.declare.quantities import IMPACT_NUMBERS, single_numbers, values_of
-from cases.measurements.campaigns.random_scenes import RATIO, Family, random_scenes
+from cases.measurements.campaigns.random_scenes import RATIO, Family, scene_of
 from cases.measurements.campaigns.referee import LARGEST_RATIO, adhesive_states, second_opinion
 from cases.measurements.campaigns.restated import changes_when_restated
 from cases.measurements.campaigns.spring_by_spring import spring_by_spring
@@ -80,8 +80,7 @@ def campaign(
         referee: Another method that checks what the second opinion cannot; the refined method itself if None.
         other_units: Whether each scene is solved in other units as well.
     """
-    scenes = random_scenes(seed, count, family, ratio)
-    chosen = ((n, scenes[n]) for n in (range(count) if numbers is None else numbers))
+    chosen = ((n, scene_of(seed, n, family, ratio)) for n in (range(count) if numbers is None else numbers))
     of = Measurement(method=method.name, parameters={"family": family}, seed=seed)
     return list(answered(method, chosen, partial(_judged, method, other=referee, restated=other_units), of))
 

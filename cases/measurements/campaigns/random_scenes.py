@@ -6,7 +6,7 @@ around a contact radius, so that every drawn scene is one a user could mean; the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from typing import Literal, TypeAlias, get_args
 
 import numpy as np
@@ -64,11 +64,12 @@ def random_scenes(seed: int, count: int, family: Family = "elastic", ratio: tupl
             or "reloading" (depth histories of several strokes on layers with extreme relaxation spectra).
         ratio: Range of contact radius over thickness.
     """
-    return [random_scene(draw, family, ratio) for draw in _streams(seed, count)]
+    return [scene_of(seed, n, family, ratio) for n in range(count)]
 
 
-def _streams(seed: int, count: int) -> Iterator[Draw]:
-    return (np.random.default_rng([seed, n]) for n in range(count))
+def scene_of(seed: int, number: int, family: Family = "elastic", ratio: tuple[float, float] = RATIO) -> Scene:
+    """Draw one of the scenes of a seed alone."""
+    return random_scene(np.random.default_rng([seed, number]), family, ratio)
 
 
 def random_scene(draw: Draw, family: Family = "elastic", ratio: tuple[float, float] = RATIO) -> Scene:

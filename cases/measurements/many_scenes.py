@@ -1,0 +1,111 @@
+"""A campaign of any size: scenes in blocks on an executor, rows passed on as they come and kept in a file if asked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import partial
+from typing import TypeAlias
+
+from cases.measurements.campaigns.campaign import campaign
+from cases.measurements.campaigns.displacements import displacement_campaign
+from cases.measurements.campaigns.inside.campaign import inside_campaign
+from cases.measurements.campaigns.pressures import pressure_campaign
+from cases.measurements.campaigns.random_scenes import FAMILIES
+from cases.measurements.kept_scenes import KeptScenes
+from cases.measurements.measurement import Measurement
+from cases.results.status import Status
+from cases.run.executors import ExecutorFactory
+from cases.run.keys import content_key, import_closure, plain
+from cases.run.many.blocks import InBlocks
+from contact import InvalidInput, Method
+
+# Gives the rows of the scenes with these numbers: campaign(method, seed=.., count=.., numbers=..).
+CampaignOf: TypeAlias = Callable[..., list[Measurement]]
+
+
+def campaign_of(family: str) -> CampaignOf:
+    """What draws and judges the scenes of a family.
+
+    Raises:
+        InvalidInput: If there is no such family.
+    """
+    of_fields = {"pressure": pressure_campaign, "displacement": displacement_campaign, "inside": inside_campaign}
+    if family in FAMILIES:
+        return partial(campaign, family=family)
+    if family in of_fields:
+        return of_fields[family]
+    raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, *of_fields))}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManyScenes:
+    """What is solved, with numbered scenes that can each be drawn alone.
+
+    Attributes:
+        campaign: Gives the rows of the scenes of given numbers; it can be pickled.
+        family: Kind of scenes that it draws.
+        method: Who answers.
+        seed: Of the scenes.
+        count: How many.
+    """
+
+    campaign: CampaignOf
+    family: str
+    method: Method
+    seed: int
+    count: int
+
+    @property
+    def key(self) -> str:
+        """Of everything that the rows of a scene depend on; not of the number of scenes."""
+        solver = type(self.method)
+        closures = [import_closure(place) for place in (solver.__module__, "cases.measurements.campaigns.campaign")]
+        return content_key(
+            {
+                "family": self.family,
+                "seed": self.seed,
+                "method": f"{solver.__module__}.{solver.__qualname__}",
+                "settings": plain(self.method),
+                "source": [dict(closure.sources) for closure in closures],
+                "versions": [dict(closure.versions) for closure in closures],
+            }
+        )
+
+    def in_blocks(self, factory: ExecutorFactory, jobs: int) -> InBlocks[list[Measurement]]:
+        """What solves blocks of these scenes."""
+        return InBlocks(partial(_of_scene, self), factory, jobs, self._died)
+
+    def rows(self, blocks: InBlocks[list[Measurement]], kept: KeptScenes | None = None) -> Iterator[list[Measurement]]:
+        """The rows of each scene: those that are kept, then the others as soon as their block is finished.
+
+        Raises:
+            ClusterLost: If the scheduler of a cluster does not answer any more; what came before is kept.
+        """
+        done = set()
+        for number, rows in kept.read() if kept is not None else ():
+            if number < self.count:
+                done.add(number)
+                yield rows
+        left = [number for number in range(self.count) if number not in done] if done else range(self.count)
+        for number, rows in blocks.results(left):
+            if kept is not None:
+                kept.add(number, rows)
+            yield rows
+
+    def _died(self, number: int, words: str) -> list[Measurement]:
+        reason = f"the process that solved it died: {words}"
+        return [
+            Measurement(
+                method=self.method.name,
+                scene=f"{number}",
+                parameters={"family": self.family},
+                seed=self.seed,
+                status=Status.FAIL,
+                reason=reason,
+            )
+        ]
+
+
+def _of_scene(of: ManyScenes, number: int) -> list[Measurement]:
+    return of.campaign(of.method, seed=of.seed, count=number + 1, numbers=[number])
