@@ -2,9 +2,10 @@
 
     python -m benchmarks.cluster [SCENES] [WORKERS]
 
-Scheduler, workers and this program are processes of their own. Every scene is a random elastic contact, solved by MDR
-and written down as a campaign does it; the referee, which costs many times more, is left out: short scenes are the hard
-ones for a cluster. In the middle of the campaign one worker is killed.
+Scheduler, workers and this program are processes of their own. Every scene is a random contact of a paraboloid or a
+cone at up to four radii, on a layer of one of four Poisson's ratios, solved by MDR and written down as a campaign does
+it. The referee, which costs many times more, is left out: short scenes are the hard ones for a cluster. In the middle
+of the campaign one worker is killed.
 """
 
 from __future__ import annotations
@@ -25,24 +26,27 @@ from pathlib import Path
 from threading import Event, Thread
 from typing import Any
 
+import numpy as np
 import psutil
 
 from cases.measurements.campaigns.campaign import answered
-from cases.measurements.campaigns.random_scenes import scene_of
+from cases.measurements.campaigns.random_scenes import SLOPE, UNITS, log_uniform
 from cases.measurements.kept_scenes import NAME, KeptScenes
-from cases.measurements.many_scenes import ManyScenes
+from cases.measurements.many_scenes import ManyScenes, SolvedScenes
 from cases.measurements.measurement import Measurement
 from cases.measurements.tally import Tally
 from cases.run.executors import ahead, by_name, closing
 from cases.run.many.blocks import InBlocks, carried_out, usual_seconds
 from cases.run.many.window import Window
-from contact import Method
+from contact import Cone, ContactRadii, Layer, Method, Paraboloid, Scene
 from mdr import Mdr
 
 SEED = 22
-# Largest contact radius over thickness: such scenes take milliseconds.
+# Range of the contact radius over the thickness.
 RATIO = (1e-3, 1.0)
-# So many scenes tell how large results are on the wire.
+# Of the layers, whose flat-punch data a worker keeps.
+POISSONS_RATIOS = (0.0, 0.3, 0.45, 0.5)
+# A block of so many scenes tells how large results are on the wire.
 SAMPLE = 200
 # Empty blocks that tell what one costs.
 EMPTY = 2000
@@ -60,8 +64,24 @@ COUNT = {"solved": 0}
 def solved(method: Method, *, seed: int, count: int, numbers: Sequence[int]) -> list[Measurement]:
     """Rows of scenes whose answers nobody judges."""
     COUNT["solved"] += len(numbers)
-    scenes = ((n, scene_of(seed, n, ratio=RATIO)) for n in numbers)
+    scenes = ((n, cheap_scene(seed, n)) for n in numbers)
     return list(answered(method, scenes, _unjudged, Measurement(method=method.name, seed=seed)))
+
+
+def cheap_scene(seed: int, number: int) -> Scene:
+    """A random contact, in random units, that takes MDR about a millisecond."""
+    draw = np.random.default_rng([seed, number])
+    thickness, modulus = (log_uniform(draw, *UNITS[name]) for name in ("length", "stress"))
+    layer = Layer(
+        thickness=thickness,
+        youngs_modulus=modulus,
+        poissons_ratio=draw.choice(POISSONS_RATIOS),
+        support=("bonded", "unbonded")[draw.integers(2)],
+    )
+    largest, slope = thickness * log_uniform(draw, *RATIO), log_uniform(draw, *SLOPE)
+    round_one, sharp_one = Paraboloid(radius_of_curvature=largest / slope), Cone(slope=slope)
+    radii = ContactRadii(largest * np.sort(draw.uniform(0.1, 1.0, draw.integers(1, 5))))
+    return Scene(layer=layer, indenter=round_one if draw.random() < 0.5 else sharp_one, loading=radii)
 
 
 def _unjudged(_: object, number: int) -> tuple[Measurement, ...]:
@@ -187,7 +207,7 @@ def used(client: Any) -> Seconds:
 def overhead(address: str, client: Any, blocks: int) -> Seconds:
     """Seconds a block of processor time, from empty blocks that are sent as a campaign sends its own."""
     with closing(by_name(address)(2)) as executor:
-        window = Window(partial(executor.submit, carried_out, abs), partial(ahead, executor, 2))
+        window = Window(partial(executor.submit, carried_out, len), partial(ahead, executor, 2))
         # The first blocks load what they need.
         list(window.results([[0]] * 20))
         before = used(client)
@@ -227,32 +247,27 @@ class Carried:
         blocks: What solved them.
         tally: What came out.
         killed: The worker that was killed half way.
-        sent: Bytes of results on the wire for each of the first scenes.
         kept: Bytes of the file of results for each scene.
     """
 
     scenes: int
     seconds: float
-    blocks: InBlocks[list[Measurement]]
+    blocks: InBlocks[SolvedScenes]
     tally: Tally
-    killed: Killed
-    sent: float
+    killed: Killed | None
     kept: float
 
 
-def carry_out(count: int, address: str, workers: int, client: Any) -> Carried:
+def carry_out(scenes: ManyScenes, address: str, workers: int, client: Any) -> Carried:
     """Carry a campaign out and kill a worker half way."""
-    scenes = ManyScenes(campaign=solved, family="elastic", method=Mdr(), seed=SEED, count=count)
+    count = scenes.count
     blocks, tally, start = scenes.in_blocks(by_name(address), workers), Tally(), time.perf_counter()
-    first: list[list[Measurement]] = []
-    killed = Killed(address="", solved=0, blocks=0)
+    killed = None
     with tempfile.TemporaryDirectory() as folder:
         kept = KeptScenes(Path(folder), scenes.key, resume=False)
-        for rows in scenes.rows(blocks, kept):
-            tally.add(rows)
-            if tally.scenes <= SAMPLE:
-                first.append(rows)
-            if tally.scenes == count // 2:
+        for found in scenes.tallies(blocks, kept):
+            tally.join(found)
+            if killed is None and tally.scenes >= count // 2:
                 killed = kill_one(client)
         seconds, size = time.perf_counter() - start, (Path(folder) / NAME).stat().st_size
     return Carried(
@@ -261,20 +276,21 @@ def carry_out(count: int, address: str, workers: int, client: Any) -> Carried:
         blocks=blocks,
         tally=tally,
         killed=killed,
-        sent=len(pickle.dumps(first)) / len(first),
         kept=size / count,
     )
 
 
 def main(count: int = 2000, workers: int = 2) -> None:
     """Measure and print."""
+    scenes = ManyScenes(campaign=solved, family="elastic", method=Mdr(), seed=SEED, count=count)
+    sent = len(pickle.dumps(scenes.solved(range(SAMPLE)))) / SAMPLE
     with cluster(workers) as (address, client):
         each = overhead(address, client, min(EMPTY, count))
         begin, own = used(client), psutil.Process().memory_info().rss
         before = Watched()
         before.look(client)
         with watching(client) as watched:
-            found = carry_out(count, address, workers, client)
+            found = carry_out(scenes, address, workers, client)
         client.wait_for_workers(workers, timeout=120)
         watched.look(client)
         again = sum(solved for _, solved in client.run(_pid_and_count).values())
@@ -293,9 +309,10 @@ def main(count: int = 2000, workers: int = 2) -> None:
     _say(f"  memory of the scheduler {_growth(watched.memory)}, of this program {own / 1e6:+.1f} MB")
     for name, memory in watched.workers.items():
         _say(f"  memory of worker {name} {_growth(memory)}")
-    _say(f"  results: {found.sent:.0f} bytes a scene on the wire, {found.kept:.0f} in the file")
-    lost = again + found.killed.solved - count
-    _say(f"  a worker killed half way held {found.killed.blocks} blocks; {lost} scenes were solved twice")
+    _say(f"  results: {sent:.0f} bytes a scene on the wire, {found.kept:.0f} in the file")
+    if found.killed is not None:
+        lost = again + found.killed.solved - count
+        _say(f"  a worker killed half way held {found.killed.blocks} blocks; {lost} scenes were solved twice")
     _say(f"an empty block costs {_ms(each.scheduler)} of the scheduler, {_ms(each.program)} of this program, ")
     _say(f"  {_ms(each.workers)} of a worker (processor time)")
     for line in estimate(each):

@@ -52,13 +52,10 @@ class KeptScenes:
                     words = f"{self._path}, line {place}, holds no scene ({type(error).__name__})"
                     raise InvalidInput(f"{words}; delete that line") from None
 
-    def add(self, number: int, rows: Sequence[Measurement]) -> None:
-        """Keep a finished scene."""
-        whole, *quantities = rows
-        trees = _differences(whole, Measurement(method="")), [_differences(row, whole) for row in quantities]
-        line = json.dumps([number, *trees], separators=(",", ":"), default=float)
+    def add(self, lines: str) -> None:
+        """Keep finished scenes, as `as_line` writes them."""
         with self._path.open("a", encoding="utf-8") as file:
-            file.write(f"{line}\n")
+            file.write(lines)
 
     def _without_torn_line(self) -> None:
         """Cut off the line that was being written when the program was killed."""
@@ -69,6 +66,13 @@ class KeptScenes:
         with self._path.open(encoding="utf-8") as file:
             if file.readline() != json.dumps({"key": key}) + "\n":
                 raise InvalidInput(f"{self._path} is of another campaign or other code; leave out --resume")
+
+
+def as_line(number: int, rows: Sequence[Measurement]) -> str:
+    """A finished scene as one line of the file."""
+    whole, *quantities = rows
+    trees = _differences(whole, Measurement(method="")), [_differences(row, whole) for row in quantities]
+    return json.dumps([number, *trees], separators=(",", ":"), default=float) + "\n"
 
 
 def _differences(row: Measurement, other: Measurement) -> dict[str, Any]:

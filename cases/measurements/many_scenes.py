@@ -1,8 +1,8 @@
-"""A campaign of any size: scenes in blocks on an executor, rows passed on as they come and kept in a file if asked."""
+"""A campaign of any size: scenes in blocks on an executor, summed up where they are solved, kept in a file if asked."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import TypeAlias
@@ -12,8 +12,9 @@ from cases.measurements.campaigns.displacements import displacement_campaign
 from cases.measurements.campaigns.inside.campaign import inside_campaign
 from cases.measurements.campaigns.pressures import pressure_campaign
 from cases.measurements.campaigns.random_scenes import FAMILIES
-from cases.measurements.kept_scenes import KeptScenes
+from cases.measurements.kept_scenes import KeptScenes, as_line
 from cases.measurements.measurement import Measurement
+from cases.measurements.tally import Tally
 from cases.results.status import Status
 from cases.run.executors import ExecutorFactory
 from cases.run.keys import content_key, import_closure, plain
@@ -36,6 +37,28 @@ def campaign_of(family: str) -> CampaignOf:
     if family in of_fields:
         return of_fields[family]
     raise InvalidInput(f"family = {family!r}: must be one of {', '.join((*FAMILIES, *of_fields))}")
+
+
+@dataclass(frozen=True, kw_only=True)
+class SolvedScenes:
+    """What a block of scenes came to, summed up where it was solved: little is sent, and nothing is left to be counted.
+
+    Attributes:
+        tally: Of its scenes.
+        lines: Their rows as they are kept.
+    """
+
+    tally: Tally
+    lines: str
+
+
+def summed_up(scenes: Iterable[tuple[int, Sequence[Measurement]]]) -> SolvedScenes:
+    """Count numbered scenes and write their rows down."""
+    tally, lines = Tally(), []
+    for number, rows in scenes:
+        tally.add(rows)
+        lines.append(as_line(number, rows))
+    return SolvedScenes(tally=tally, lines="".join(lines))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,40 +95,36 @@ class ManyScenes:
             }
         )
 
-    def in_blocks(self, factory: ExecutorFactory, jobs: int) -> InBlocks[list[Measurement]]:
+    def in_blocks(self, factory: ExecutorFactory, jobs: int) -> InBlocks[SolvedScenes]:
         """What solves blocks of these scenes."""
-        return InBlocks(partial(_of_scene, self), factory, jobs, self._died)
+        return InBlocks(self.solved, factory, jobs, self._died)
 
-    def rows(self, blocks: InBlocks[list[Measurement]], kept: KeptScenes | None = None) -> Iterator[list[Measurement]]:
-        """The rows of each scene: those that are kept, then the others as soon as their block is finished.
+    def solved(self, numbers: Sequence[int]) -> SolvedScenes:
+        """Solve and judge the scenes of these numbers."""
+        judge = partial(self.campaign, self.method, seed=self.seed, count=self.count)
+        return summed_up((number, judge(numbers=[number])) for number in numbers)
+
+    def tallies(self, blocks: InBlocks[SolvedScenes], kept: KeptScenes | None = None) -> Iterator[Tally]:
+        """What the kept scenes came to, then each block as soon as it is finished.
 
         Raises:
             ClusterLost: If the scheduler of a cluster does not answer any more; what came before is kept.
         """
-        done = set()
-        for number, rows in kept.read() if kept is not None else ():
-            if number < self.count:
-                done.add(number)
-                yield rows
-        left = [number for number in range(self.count) if number not in done] if done else range(self.count)
-        for number, rows in blocks.results(left):
+        found = {number: rows for number, rows in kept.read() if number < self.count} if kept is not None else {}
+        yield summed_up(found.items()).tally
+        left = [number for number in range(self.count) if number not in found] if found else range(self.count)
+        for solved in blocks.results(left):
             if kept is not None:
-                kept.add(number, rows)
-            yield rows
+                kept.add(solved.lines)
+            yield solved.tally
 
-    def _died(self, number: int, words: str) -> list[Measurement]:
-        reason = f"the process that solved it died: {words}"
-        return [
-            Measurement(
-                method=self.method.name,
-                scene=f"{number}",
-                parameters={"family": self.family},
-                seed=self.seed,
-                status=Status.FAIL,
-                reason=reason,
-            )
-        ]
-
-
-def _of_scene(of: ManyScenes, number: int) -> list[Measurement]:
-    return of.campaign(of.method, seed=of.seed, count=number + 1, numbers=[number])
+    def _died(self, number: int, words: str) -> SolvedScenes:
+        row = Measurement(
+            method=self.method.name,
+            scene=f"{number}",
+            parameters={"family": self.family},
+            seed=self.seed,
+            status=Status.FAIL,
+            reason=f"the process that solved it died: {words}",
+        )
+        return summed_up([(number, [row])])

@@ -66,6 +66,17 @@ class Tally:
             judged.covered += len(found) * covered(found)
             judged.ratios.extend(sharpness(found))
 
+    def join(self, other: Tally) -> None:
+        """Add the counts of other scenes."""
+        self.ends.update(other.ends)
+        self.refusals.update(other.refusals)
+        self.defects += other.defects
+        for quantity, found in other._quantities.items():
+            judged = self._quantities[quantity]
+            judged.rows += found.rows
+            judged.covered += found.covered
+            judged.ratios.extend(found.ratios)
+
     def report(self) -> Iterator[str]:
         """One line for the ends of all scenes, for each reason of a refusal, and for each quantity that was judged."""
         yield ", ".join(f"{end}: {self.ends[end]}" for end in ENDS)

@@ -179,8 +179,8 @@ def _counted_out(scenes: ManyScenes, executor: ExecutorFactory, jobs: int, out: 
     try:
         with nullcontext() if out is None else locked(out):
             kept = None if out is None else KeptScenes(out, scenes.key, resume=resume)
-            for rows in scenes.rows(scenes.in_blocks(executor, jobs), kept):
-                tally.add(rows)
+            for found in scenes.tallies(scenes.in_blocks(executor, jobs), kept):
+                tally.join(found)
     except ClusterLost as error:
         remedy = "name a folder by --out to keep finished scenes" if out is None else "go on with --resume"
         _say(f"{error}; {tally.scenes} of {scenes.count} scenes are finished, {remedy}")

@@ -76,7 +76,7 @@ class Cutter:
 class Finished(Generic[T]):
     """What a block came to, and how long it took [s]."""
 
-    results: list[T]
+    result: T
     seconds: float
 
 
@@ -84,35 +84,35 @@ class Finished(Generic[T]):
 _ALONE = Lock()
 
 
-def carried_out(work: Callable[[int], T], block: Block) -> Finished[T]:
-    """Call ``work`` for each number, on one thread."""
+def carried_out(work: Callable[[Block], T], block: Block) -> Finished[T]:
+    """Call ``work`` with the block, on one thread."""
     with _ALONE, threadpool_limits(limits=1):
         start = perf_counter()
-        return Finished([work(number) for number in block], perf_counter() - start)
+        return Finished(work(block), perf_counter() - start)
 
 
 @dataclass
 class InBlocks(Generic[T]):
-    """Calls with numbers, in blocks on an executor; a process that dies costs its block only, which is repeated.
+    """Numbers worked off in blocks on an executor; a process that dies costs its block only, which is repeated.
 
     Attributes:
-        work: what is called with each number; it can be pickled.
+        work: what is called with each block; it can be pickled.
         factory: of executors.
         jobs: blocks at a time; on a cluster as many as it has threads if that is more.
-        died: result for a number whose process died whenever it was solved alone, by the words of the error.
+        died: result of a single number whose process dies also when it is alone, by the words of the error.
         blocks: how many are finished.
         seconds: that they took, added up [s].
     """
 
-    work: Callable[[int], T]
+    work: Callable[[Block], T]
     factory: ExecutorFactory
     jobs: int
     died: Callable[[int, str], T]
     blocks: int = field(default=0, init=False)
     seconds: float = field(default=0.0, init=False)
 
-    def results(self, numbers: Block) -> Iterator[tuple[int, T]]:
-        """Each number with its result, block by block, first come first.
+    def results(self, numbers: Block) -> Iterator[T]:
+        """The result of each block, first come first.
 
         Raises:
             ClusterLost: if the scheduler of a cluster does not answer any more.
@@ -124,16 +124,16 @@ class InBlocks(Generic[T]):
                 cutter.places = partial(places, executor, self.jobs)
                 for block, finished in window.results(cutter):
                     cutter.learn(len(block), finished.seconds)
-                    yield from self._told(block, finished)
+                    yield self._counted(finished)
             for block in window.broken:
                 yield from self._apart(block)
 
-    def _told(self, block: Block, finished: Finished[T]) -> Iterator[tuple[int, T]]:
+    def _counted(self, finished: Finished[T]) -> T:
         self.blocks += 1
         self.seconds += finished.seconds
-        return zip(block, finished.results, strict=True)
+        return finished.result
 
-    def _apart(self, block: Block) -> Iterator[tuple[int, T]]:
+    def _apart(self, block: Block) -> Iterator[T]:
         """A block whose process died, alone in an executor; in halves if it dies again, down to a single number."""
         with closing(self.factory(1)) as executor:
             try:
@@ -141,10 +141,9 @@ class InBlocks(Generic[T]):
             except BrokenExecutor as error:
                 finished, words = None, str(error)
         if finished is not None:
-            yield from self._told(block, finished)
-            return
-        if len(block) == 1:
-            yield block[0], self.died(block[0], words)
-            return
-        for half in (block[: len(block) // 2], block[len(block) // 2 :]):
-            yield from self._apart(half)
+            yield self._counted(finished)
+        elif len(block) == 1:
+            yield self.died(block[0], words)
+        else:
+            for half in (block[: len(block) // 2], block[len(block) // 2 :]):
+                yield from self._apart(half)
