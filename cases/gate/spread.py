@@ -9,6 +9,7 @@ import math
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +17,8 @@ from cases.declare.case import Case
 from cases.declare.task import Task
 from cases.judgement.rules.tolerance import relative_spread
 from cases.results.records.scene_run import Quantity, SceneRun
-from cases.run.executors import process_pool
+from cases.run.executors import ahead, closing, process_pool
+from cases.run.many.window import Window
 from cases.run.solve_task import solve
 from contact import (
     ContactRadii,
@@ -67,12 +69,13 @@ def measured_spreads(case: Case, runs: Mapping[tuple[str, str], SceneRun], *, jo
 
 def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[tuple[Task, SceneRun]]:
     """Solve each task's nudged scene, in fresh processes."""
-    with process_pool(jobs) as executor:
-        nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
-        futures = [
-            (task, repetition, executor.submit(solve, repetition, "", estimates=False)) for task, repetition in nudged
-        ]
-        return [(task, _numbers(repetition, future.result())) for task, repetition, future in futures]
+    nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
+    with closing(process_pool(jobs)) as executor:
+        window = Window(lambda pair: executor.submit(solve, pair[1], ""), partial(ahead, executor, jobs))
+        rows = {task.identity: row for (task, _), row in window.results(nudged)}
+    for _, repetition in window.broken:
+        raise InvalidInput(f"{repetition.label}: the process that repeated it died; accept nothing from such a run")
+    return [(task, _numbers(repetition, rows[task.identity])) for task, repetition in nudged]
 
 
 def _numbers(repetition: Task, row: SceneRun) -> SceneRun:

@@ -114,10 +114,12 @@ class DaskExecutor(Executor):
         Raises:
             ClusterLost: if the scheduler does not answer any more.
         """
+        if self._is_lost:
+            raise self._lost()
         if time.monotonic() - self._counted >= PATIENCE:
             try:
                 self._threads = sum(self._client.nthreads().values())
-            except (CancelledError, OSError, RuntimeError, TypeError):
+            except (CancelledError, OSError):
                 raise self._lost() from None
             self._counted = time.monotonic()
         return self._threads

@@ -1,5 +1,6 @@
 """The spread between solutions that should be equal."""
 
+import dataclasses
 import os
 
 import numpy as np
@@ -23,6 +24,7 @@ from contact import (
     Tabulated,
 )
 from tests.cases.fake_case import FAST, SLOW, fake_case, spoiled
+from tests.cases.in_flight import recording
 
 
 @pytest.fixture
@@ -36,6 +38,19 @@ def methods_executor(jobs):
 
     assert "fake" in methods.BUILT_IN
     return serial(jobs)
+
+
+def test_few_repetitions_are_under_way_at_a_time(monkeypatch):
+    """Seen to fail: all were handed over at once."""
+    made = []
+    monkeypatch.setattr(spread, "process_pool", recording(made))
+    case = fake_case()
+    several = dataclasses.replace(
+        case, scenes=tuple(dataclasses.replace(case.scenes[0], name=f"{n}") for n in range(5))
+    )
+    tasks = [several.task(scene, use) for scene in several.scenes for use in several.methods]
+    measured_spreads(several, {(task.scene, task.method): solve(task, "") for task in tasks}, jobs=1)
+    assert max(executor.largest for executor in made) <= 2 < made[0].submitted
 
 
 def spreads_of(case):
