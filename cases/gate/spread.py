@@ -71,7 +71,9 @@ def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[tuple[Task, 
     """Solve each task's nudged scene, in fresh processes."""
     nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
     with closing(process_pool(jobs)) as executor:
-        window = Window(lambda pair: executor.submit(solve, pair[1], ""), partial(ahead, executor, jobs))
+        window: Window[tuple[Task, Task], SceneRun] = Window(
+            lambda pair: executor.submit(solve, pair[1], ""), partial(ahead, executor, jobs)
+        )
         rows = {task.identity: row for (task, _), row in window.results(nudged)}
     for _, repetition in window.broken:
         raise InvalidInput(f"{repetition.label}: the process that repeated it died; accept nothing from such a run")

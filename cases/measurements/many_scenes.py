@@ -83,7 +83,7 @@ class ManyScenes:
     def key(self) -> str:
         """Of everything that the rows of a scene depend on; not of the number of scenes."""
         solver = type(self.method)
-        closures = [import_closure(place) for place in (solver.__module__, "cases.measurements.campaigns.campaign")]
+        closures = [import_closure(place) for place in (solver.__module__, __name__)]
         return content_key(
             {
                 "family": self.family,

@@ -117,10 +117,10 @@ class InBlocks(Generic[T]):
         Raises:
             ClusterLost: if the scheduler of a cluster does not answer any more.
         """
-        cutter = Cutter(numbers, lambda: self.jobs)
+        cutter, call = Cutter(numbers, lambda: self.jobs), partial(carried_out, self.work)
         while cutter.numbers:
             with closing(self.factory(self.jobs)) as executor:
-                window = Window(partial(executor.submit, carried_out, self.work), partial(ahead, executor, self.jobs))
+                window = Window(partial(executor.submit, call), partial(ahead, executor, self.jobs))
                 cutter.places = partial(places, executor, self.jobs)
                 for block, finished in window.results(cutter):
                     cutter.learn(len(block), finished.seconds)
@@ -137,7 +137,7 @@ class InBlocks(Generic[T]):
         """A block whose process died, alone in an executor; in halves if it dies again, down to a single number."""
         with closing(self.factory(1)) as executor:
             try:
-                finished = executor.submit(carried_out, self.work, block).result()
+                finished = executor.submit(partial(carried_out, self.work), block).result()
             except BrokenExecutor as error:
                 finished, words = None, str(error)
         if finished is not None:
