@@ -72,7 +72,7 @@ def _repeated(tasks: list[Task], towards: float, jobs: int) -> list[tuple[Task, 
     nudged = [(task, task.changed("one ulp away", nudged_scene(task.problem, towards))) for task in tasks]
     with closing(process_pool(jobs)) as executor:
         window: Window[tuple[Task, Task], SceneRun] = Window(
-            lambda pair: executor.submit(solve, pair[1], ""), partial(ahead, executor, jobs)
+            lambda pair: executor.submit(solve, pair[1], "", estimates=False), partial(ahead, executor, jobs)
         )
         rows = {task.identity: row for (task, _), row in window.results(nudged)}
     for _, repetition in window.broken:
