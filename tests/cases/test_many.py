@@ -18,11 +18,9 @@ from tests.cases.in_flight import Fragile, InFlight, recording
 JOBS = 3
 
 
-@pytest.fixture
-def short_blocks(monkeypatch):
-    """Blocks of a few numbers, so that many are needed."""
-    monkeypatch.setattr(many_blocks, "SHORTEST", 1e-5)
-    monkeypatch.setattr(many_blocks, "FOR_EACH_PLACE", 0.0)
+def in_blocks_of(size, monkeypatch):
+    """Whatever a number costs, a block holds so many."""
+    monkeypatch.setattr(Cutter, "_next_size", lambda self: size)
 
 
 def test_a_window_stays_small_however_many_calls_there_are():
@@ -51,12 +49,13 @@ def test_a_window_follows_a_cluster_that_grows():
         assert executor.largest == 8
 
 
-def test_a_campaign_has_few_blocks_under_way(short_blocks):
+def test_a_campaign_has_few_blocks_under_way(monkeypatch):
+    in_blocks_of(4, monkeypatch)
     made = []
-    found = list(InBlocks(list, recording(made), JOBS, None).results(range(1000)))
-    assert sorted(chain(*found)) == list(range(1000))
+    found = list(InBlocks(list, recording(made), JOBS, None).results(range(400)))
+    assert sorted(chain(*found)) == list(range(400))
     assert made[0].largest <= 2 * JOBS
-    assert made[0].submitted > 10 * JOBS
+    assert made[0].submitted == 100
 
 
 def test_a_run_has_few_tasks_under_way(tmp_path):
@@ -106,7 +105,8 @@ def test_a_number_that_cost_nothing_makes_no_huge_block():
 
 
 @pytest.mark.parametrize("pool", [True, False], ids=["all calls are lost", "one call is lost"])
-def test_what_dies_is_found_and_costs_nothing_else(short_blocks, pool):
+def test_what_dies_is_found_and_costs_nothing_else(monkeypatch, pool):
+    in_blocks_of(30, monkeypatch)
     deadly, solved = {5, 63, 64}, Counter()
 
     def work(block):

@@ -43,6 +43,20 @@ def test_a_small_campaign_counts_its_ends(capsys):
     assert "beyond: 0, crashed: 0" in capsys.readouterr().out
 
 
+def test_a_campaign_that_is_kept_goes_on(tmp_path, capsys):
+    words = ["campaign", "displacement", "--seed", "5", "--out", str(tmp_path)]
+    assert run([*words, "--count", "2"]) == 0
+    begun = (tmp_path / "scenes.jsonl").read_text(encoding="utf-8")
+    assert run([*words, "--count", "3", "--resume"]) == 0
+    assert (tmp_path / "scenes.jsonl").read_text(encoding="utf-8").startswith(begun)
+    assert [line.split(",")[0] for line in capsys.readouterr().out.splitlines() if "beyond" in line] == [
+        "within: 2",
+        "within: 3",
+    ]
+    assert run(["campaign", "elastic", "--resume"]) == 4
+    assert "name it by --out" in capsys.readouterr().err
+
+
 def test_displacements_have_a_door(capsys):
     """Seen to fail: the campaign was no family."""
     assert run(["campaign", "displacement", "--count", "1"]) == 0
