@@ -44,7 +44,7 @@ def test_a_small_campaign_counts_its_ends(capsys):
 
 
 def test_a_campaign_that_is_kept_goes_on(tmp_path, capsys):
-    words = ["campaign", "displacement", "--seed", "5", "--out", str(tmp_path)]
+    words = ["campaign", "elastic", "--seed", "5", "--out", str(tmp_path)]
     assert run([*words, "--count", "2"]) == 0
     begun = (tmp_path / "scenes.jsonl").read_text(encoding="utf-8")
     assert run([*words, "--count", "3", "--resume"]) == 0
