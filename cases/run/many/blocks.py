@@ -21,7 +21,7 @@ Block: TypeAlias = Sequence[int]
 # Seconds that a block takes at least, however few places there are. An empty block cost a worker 4 to 6 ms
 # (`python -m benchmarks.cluster`, seed 22, 2026-11-22), so that 0.1 s would do for 95 %; ten times that is chosen.
 SHORTEST = 1.0
-# Seconds of a block for each place where blocks run: one scheduler serves all of them. An empty one cost it 2.1 to 2.8 ms
+# Seconds of a block for each place where blocks run: one scheduler serves all. An empty one cost it 2.1 to 2.8 ms
 # (measured as above), so that it works a quarter of the time; from a half on blocks would begin to wait for it.
 FOR_EACH_PLACE = 0.01
 # Towards the end blocks get shorter, down to this share, so that the last ones end together. Chosen.
