@@ -143,7 +143,7 @@ class HistoryCoefficients:
     # heavily damped rebounds was longer than computed by 5.5 and 1.1 times the last of them (same impacts).
     slowest_end: float = 0.9
     # Forces below so many roundings do not tell the end of contact.  A contact time was off by 0.055 with 616 steps,
-    # where the force stood below ten roundings for 0.1 of it (impact 9201:26 of ``contact-verify coverage``, 2026-11-22).
+    # where the last 0.07 of it passed below ten roundings (impact 9201:26 of ``contact-verify coverage``, 2026-11-22).
     roundings_of_end: float = 10.0
     # Factor on the truncation.  Chosen, and far on the safe side: a truncation of 1e-5 moved stiffness, depth and force
     # by at most 1.1e-5 (nu = 0.3 to 1/2, a/h = 0.2 to 300, 2026-11-22); at the usual 1e-7 the term adds 4e-6.

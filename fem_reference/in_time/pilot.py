@@ -7,7 +7,6 @@ then, and a rounded indenter creeps out for a long time after a short stop. Step
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
@@ -45,11 +44,16 @@ def pilot(
     Raises:
         NotConvergedError: equal steps that follow the stop are too many, or hardly any velocity is left.
     """
+
+    def simulated(step: float) -> tuple[float, HistorySamples]:
+        """On a strip that fits, with steps [s]."""
+        return setup.fitted_radius(guess, lambda condensed: simulate(condensed, step))
+
     step = span / STEPS
-    radius, record = setup.fitted_radius(guess, partial(simulate, duration=step))
+    radius, record = simulated(step)
     while len(record.time) <= STEPS // 2 or _largest_change(record) > LARGEST_CHANGE:
         step /= 4
-        radius, record = setup.fitted_radius(guess, partial(simulate, duration=step))
+        radius, record = simulated(step)
         _more_steps(record, step)
     contact, left = record.time[-1], abs(record.velocity[-1] / record.velocity[0])
     if left < LEAST_LEFT:
