@@ -142,6 +142,9 @@ class HistoryCoefficients:
     # Those times grow at most by this from one to the next, or else the series has no end.  The contact time of two
     # heavily damped rebounds was longer than computed by 5.5 and 1.1 times the last of them (same impacts).
     slowest_end: float = 0.9
+    # Forces below so many roundings do not tell the end of contact.  A contact time was off by 0.055 with 616 steps,
+    # where the last 0.07 of it passed below ten roundings (impact 9201:26 of ``contact-verify coverage``, 2026-11-22).
+    roundings_of_end: float = 10.0
     # Factor on the truncation.  Chosen, and far on the safe side: a truncation of 1e-5 moved stiffness, depth and force
     # by at most 1.1e-5 (nu = 0.3 to 1/2, a/h = 0.2 to 300, 2026-11-22); at the usual 1e-7 the term adds 4e-6.
     outer_edge_safety: float = 40.0

@@ -7,6 +7,7 @@ wavenumber. So the two check each other.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated, ClassVar, Self
@@ -28,6 +29,7 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
+    Profile,
     Scene,
     StageLog,
     Supported,
@@ -50,6 +52,8 @@ LARGEST_GRADED_RATIO = 16.0
 RADIUS_TOLERANCE = 1e-13
 # Radii on each smooth stretch of the profile at which the pressure is compared and must not pull.
 PRESSURES = 12
+# Radii over the contact's at which displacements on two sets of panels are compared.
+BESIDE = 1.0 + 2.0 ** np.arange(-6.0, 3.0)
 # A contact pulls where its pressure is below minus this part of the largest; rounding leaves 1e-9 in the centre.
 LEAST_TENSION = 1e-6
 
@@ -107,7 +111,9 @@ class IntegralEquationMethod(Record):
                 _refuse_tension(contact)
         with log.stage("error_estimate"):
             fewer = [_Solver(scene, self.panel_width, self.nodes * quarters // 4, log) for quarters in (3, 2)]
-            errors = _errors(contacts, [[coarse.at_radius(c) for c in contacts] for coarse in fewer], scene)
+            others = [[coarse.at_radius(c) for c in contacts] for coarse in fewer]
+            errors = _errors(contacts, others, scene)
+            errors["surface_displacement"] = _displacement_errors(errors, contacts, others, scene)
         answers = np.array([contact.answer for contact in contacts])
         path = ContactPath(
             scene=scene,
@@ -168,6 +174,15 @@ class DirectContact:
         offsets = (ends[:-1, None] + np.diff(ends)[:, None] * gauss_nodes(PRESSURES)[0]).ravel()
         return offsets, self.pressure(offsets)
 
+    def displacement(self, radius: FloatArray, indenter: Profile) -> FloatArray:
+        """w(r) [m]: delta - f(r) inside, Eq. (13) outside."""
+        unit, a = self.density.unit, self.density.contact_radius
+        inside = radius <= a * unit
+        w = np.empty_like(radius)
+        w[inside] = self.depth * unit - indenter.height(radius[inside])
+        w[~inside] = unit * self.density.displacement_outside(radius[~inside] / unit, self.depth)
+        return w
+
 
 @dataclass(frozen=True, eq=False)
 class DirectFields:
@@ -196,13 +211,7 @@ class DirectFields:
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]: delta - f(r) inside, Eq. (13) outside."""
-        contact = self.contacts[step]
-        unit, a = contact.density.unit, contact.density.contact_radius
-        inside = radius <= a * unit
-        w = np.empty_like(radius)
-        w[inside] = contact.depth * unit - self.scene.indenter.height(radius[inside])
-        w[~inside] = unit * contact.density.displacement_outside(radius[~inside] / unit, contact.depth)
-        return w
+        return self.contacts[step].displacement(radius, self.scene.indenter)
 
     def inside(self, step: int, known: KnownContact) -> ContactInterior:
         """The body under one step."""
@@ -324,6 +333,28 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
         case _:
             radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + missed, missed
     return dict(zip((*ARRAYS, "pressure"), (radius, depth, force, stiffness, pressure + radius), strict=True))
+
+
+def _displacement_errors(
+    errors: Mapping[str, FloatArray], fine: list[DirectContact], fewer: list[list[DirectContact]], scene: Scene
+) -> FloatArray:
+    """Of the depth: what the nodes leave beside the contact, as in `_errors`, and what is not known of the depth.
+
+    Each change is the largest beside the edge, since changes pass zero there. An error of the radius moves the surface
+    of smooth contact to second order only.
+    """
+    e, f = (np.array([_moved(*pair, scene.indenter) for pair in zip(fine, coarse, strict=True)]) for coarse in fewer)
+    least = 0.0 if scene.layer.is_piecewise_uniform else ONE_RADIUS.graded_fall
+    left = e * np.clip(np.divide(e, f, out=np.ones_like(e), where=f > 0.0), least, 1.0)
+    rounding = ONE_RADIUS.rounding + np.array([_rounding(contact.density) for contact in fine])
+    return np.asarray(ONE_RADIUS.safety * left + rounding + errors["indentation_depth"])
+
+
+def _moved(fine: DirectContact, coarse: DirectContact, profile: Profile) -> float:
+    """Largest change of the displacement beside the contact, over the depth."""
+    radius, depth, *_ = fine.answer
+    beside = radius * BESIDE
+    return float(np.abs(fine.displacement(beside, profile) - coarse.displacement(beside, profile)).max() / depth)
 
 
 def _rounding(density: DirectDensity) -> float:

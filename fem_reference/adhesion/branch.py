@@ -77,10 +77,18 @@ class BranchPiece:
 
     def tilts(self, radius: float) -> FloatArray:
         """Slope per ln a at a radius [m] of the interpolant that is one at one solved radius and zero at the others."""
-        count = len(self.contacts)
-        coefficients = chebfit(2 * chebyshev_points(count) - 1, np.eye(count), count - 1)
         inner, s = self.parameter(radius * np.array([1 - 1e-6, 1.0]))
-        return np.asarray(chebval(2 * s - 1, chebder(coefficients)) * 2 * (s - inner) / 1e-6)
+        return np.asarray(chebval(2 * s - 1, chebder(self._cardinals)) * 2 * (s - inner) / 1e-6)
+
+    def weights(self, radius: float) -> FloatArray:
+        """Value there of the same interpolants: what each solved radius counts."""
+        return np.asarray(chebval(2 * self.parameter(np.asarray(radius)) - 1, self._cardinals))
+
+    @cached_property
+    def _cardinals(self) -> FloatArray:
+        """Chebyshev coefficients of the interpolants that are one at one solved radius and zero at the others."""
+        count = len(self.contacts)
+        return np.asarray(chebfit(2 * chebyshev_points(count) - 1, np.eye(count), count - 1))
 
     @cached_property
     def far(self) -> dict[str, float]:

@@ -14,7 +14,7 @@ import numpy as np
 
 from contact import CriticalPoint
 from contact.records.validation import FloatArray
-from fem_reference.adhesion.branch import InterpolatedBranch
+from fem_reference.adhesion.branch import BranchPiece, InterpolatedBranch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
 from fem_reference.adhesion.equilibria import adhesive_equilibrium
 from fem_reference.error_model import ON_BRANCH
@@ -76,10 +76,7 @@ class Extremum:
         if self.is_at_end:
             return 0.0
         piece = self.branch.piece_around(self.radius)
-        low, high = (self.load(self.branch.at_degree(k), piece.radii) for k in sorted(piece.contacts[0].levels)[-2:])
-        rates = np.array([contact.rate_at_load for contact in piece.contacts])
-        tilts = ON_BRANCH.slope_scatter * rates * (high - low) * piece.tilts(self.radius)
-        return float(np.linalg.norm(tilts)) / abs(self.curvature)
+        return _scatter(self.branch, self.load, piece, piece.tilts(self.radius)) / abs(self.curvature)
 
     def shift_between(self, error: float) -> float:
         """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii.
@@ -92,6 +89,25 @@ class Extremum:
         if self.branch.piece_around(self.radius).is_rough:
             return float(2 * np.sqrt(error / abs(self.curvature)))
         return self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
+
+
+def _scatter(branch: InterpolatedBranch, load: Load, piece: BranchPiece, counts: FloatArray) -> float:
+    """Root mean square of what the solved radii of a piece add to a number, each erring by itself.
+
+    The number takes each of their loads `counts` times.
+    """
+    low, high = (load(branch.at_degree(degree), piece.radii) for degree in sorted(piece.contacts[0].levels)[-2:])
+    rates = np.array([contact.rate_at_load for contact in piece.contacts])
+    return float(np.linalg.norm(ON_BRANCH.slope_scatter * rates * (high - low) * counts))
+
+
+def value_scatter(branch: InterpolatedBranch, load: Load, radius: float) -> float:
+    """Error of a load between solved radii [m] because each of these has a mesh and an error of its own.
+
+    Their signs alternate, so that what the change of the degree says passes zero in between.
+    """
+    piece = branch.piece_around(radius)
+    return _scatter(branch, load, piece, piece.weights(radius))
 
 
 def is_end(branch: InterpolatedBranch, radius: float) -> bool:
@@ -140,7 +156,16 @@ def pull_off_errors(
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
     # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
-    depth, force, place, lost = np.hypot(by_degree, moved) + edge_error(branch, numbers)
+    scattered = np.array(
+        [
+            value_scatter(branch, InterpolatedBranch.depth, here[0]),
+            value_scatter(branch, InterpolatedBranch.force, there[0]),
+            0.0,
+            value_scatter(branch, InterpolatedBranch.force, here[0]),
+        ]
+    )
+    independent = np.sqrt(by_degree**2 + moved**2 + scattered**2)
+    depth, force, place, lost = independent + edge_error(branch, numbers)
     depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
     force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
     lost += branch.errors_far(here)[1, 0] + between[1] + shift * abs(lost_slope)

@@ -12,10 +12,13 @@ from contact.answer.friction import told_of_friction
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
+from fem_reference.elastic.prescribed_radius import PrescribedContact
 from fem_reference.elastic.surface_fields import FemFields, SurfaceState
 
 # Residuals that are published beside the error estimates.
 OWN_CHECKS = ("energy_defect", "patch_defect")
+# Radii over the contact's at which displacements of two degrees are compared.
+BESIDE = 1.0 + 2.0 ** np.arange(-6.0, 3.0)
 # Solves the contact of a given radius [m].
 ContactSolver = Callable[[float], ContactWithErrors]
 
@@ -54,6 +57,7 @@ def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
         "normal_force": error["smooth_force"],
         "contact_stiffness": error["stiffness"],
         "pressure": contact.pressure_error,
+        "surface_displacement": error["smooth_depth"] + moved_beside(contact, lambda level: level.smooth_depth),
     }
     return FemEquilibrium(
         contact=contact,
@@ -64,6 +68,16 @@ def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
     )
 
 
+def moved_beside(contact: ContactWithErrors, depth: Callable[[PrescribedContact], float]) -> float:
+    """Error of the surface beside the contact by interpolation, over the depth / a that each degree has.
+
+    A flat punch has no depth of smooth contact: nothing is stated then, since that state is not the answer.
+    """
+    over = abs(depth(contact.answer))
+    moved = contact.changes_of(lambda level: level.surface_displacement(BESIDE, depth(level)))
+    return float(contact.rate * moved.max() / over) if over > 0.0 else 0.0
+
+
 def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquilibrium:
     """A flat punch at depth / a; its pressure error is measured with the weight (1 - r^2/a^2), which its edge needs."""
     reported = {
@@ -72,6 +86,7 @@ def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquil
         "normal_force": contact.error["stiffness"],
         "contact_stiffness": contact.error["stiffness"],
         "pressure": contact.pressure_error,
+        "surface_displacement": contact.error["stiffness"] + moved_beside(contact, lambda _: 1.0),
     }
     return FemEquilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
 

@@ -77,6 +77,8 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
     time |= {name: _scalar_change(half_cells, half_both, name) for name in scalars}
     judged = [name for name in ("indentation_depth", "normal_force", *scalars) if name not in _OF_THE_EDGE]
     typical = IN_TIME.share_of_mean * float(np.mean([space[name] for name in judged if name not in known.exact]))
+    if isinstance(fine, ImpactHistory):
+        time["contact_time"] += _time_in_rounding(fine)
     error = {}
     for name in (*channels, *scalars):
         floor = IN_TIME.share_of_mean * space[CHANNELS[name]] if name in CHANNELS else typical
@@ -123,6 +125,20 @@ def _time_after_last_cell(history: ImpactHistory, cell: float) -> float:
         return 0.0
     ratio = min(last / before, IN_TIME.slowest_end)
     return float(last * ratio / (1.0 - ratio) / history.contact_time)
+
+
+def _time_in_rounding(history: ImpactHistory) -> float:
+    """The time in which the force is as small as its roundings, over the contact time: contact may end anywhere there.
+
+    A dashpot that stops the body takes the largest force over the first velocity; it turns a rounding of the depth
+    within one step into a force.
+    """
+    per_velocity = history.peak_force / history.velocity[0]
+    step = history.time[1] - history.time[0]
+    rounding = np.finfo(float).eps * per_velocity * abs(history.indentation_depth[-1]) / step
+    small = history.normal_force[1:] <= IN_TIME.roundings_of_end * rounding
+    # The last step ends without a force on any layer.
+    return float(np.diff(history.time)[:-1][small[:-1]].sum() / history.contact_time)
 
 
 def _steep_end(history: ImpactHistory, time_error: float) -> float:

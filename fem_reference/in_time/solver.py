@@ -19,6 +19,7 @@ from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import with_errors
 from fem_reference.in_time.impact import FallingBody, HistorySamples, simulate_impact
+from fem_reference.in_time.pilot import pilot
 from fem_reference.in_time.prescribed import simulate_depths, simulate_forces
 from fem_reference.in_time.setup import HistorySetup
 
@@ -41,8 +42,8 @@ def impact_history(setup: HistorySetup, loading: Impact, shown: Settings) -> Imp
         return record
 
     guess, span = _impact_scales(scene, loading)
-    radius, pilot = setup.fitted_radius(1.6 * guess, lambda condensed: simulate(condensed, span / 60))
-    duration = pilot.time[-1] / setup.resolution.steps
+    radius, span = pilot(setup, 1.6 * guess, span, simulate)
+    duration = span / setup.resolution.steps
     histories = []
     for cells, steps in ((2, 2), (2, 1), (1, 1)):
         condensed = setup.condensed(radius, setup.resolution.cells // cells)

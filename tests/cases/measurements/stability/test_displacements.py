@@ -13,6 +13,8 @@ from mdr.springs import surface_fields
 # Of the scenes with seed 1: layers, a stack, and a graded layer.
 LAYERS, GRADED = (0, 1, 4), 5
 
+OTHERS = [("integral_equation", {"nodes": 8}), ("fem", {"growth": 1.0})]
+
 
 def beyond(rows):
     assert all(row.status is not Status.FAIL for row in rows)
@@ -35,6 +37,16 @@ def test_mdr_states_an_error_of_displacements_by_itself():
     assert beyond(rows) == set()
     # Of wide bars this one number of a few scenes would tell at once: depth and force err by as much.
     assert np.median(sharpness(row for row in rows if row.quantity == "displacement")) < 30.0
+
+
+@pytest.mark.parametrize(("method", "settings"), OTHERS)
+def test_other_methods_state_an_error_of_displacements_by_themselves(method, settings):
+    """Once the largest error of any number stood for it."""
+    scene = random_body(np.random.default_rng([1, LAYERS[0]]))
+    path, exact = build(method, settings).solve(scene), build("mdr", {}).solve(scene)
+    radius = path.contact_radius[0] * np.array([0.5, 1.01, 1.3, 3.0])
+    error = np.abs(path.surface_displacement(radius) - exact.surface_displacement(radius)).max()
+    assert error <= path.uncertainty("surface_displacement")[0] < 1e-2 * path.indentation_depth[0]
 
 
 def test_every_body_that_may_be_drawn_is_a_scene():
