@@ -259,7 +259,7 @@ FAULTS = (
     SharedFault(
         "laws and points of fields inside",
         "points",
-        swap("cases.run.inside.points:_found", shrunk_points),
+        swap("cases.run.inside.points:fields_at", shrunk_points),
         ("inside half-space",),
     ),
     SharedFault(
