@@ -130,6 +130,13 @@ def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
     return float((depth * state.error["indentation_depth"], force * state.error["normal_force"])[row])
 
 
+def _scattered(branch: InterpolatedBranch, lost: float, strongest: float) -> FloatArray:
+    """Scatter of depth, largest tension, ln a and force, where contact is lost and where the force is largest [m]."""
+    depth, force = InterpolatedBranch.depth, InterpolatedBranch.force
+    loads = ((depth, lost), (force, strongest), (force, lost))
+    return np.insert([value_scatter(branch, load, radius) for load, radius in loads], 2, 0.0)
+
+
 def pull_off_errors(
     branch: InterpolatedBranch, pull_off: CriticalPoint, strongest: CriticalPoint
 ) -> dict[str, FloatArray]:
@@ -156,14 +163,7 @@ def pull_off_errors(
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
     # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
-    scattered = np.array(
-        [
-            value_scatter(branch, InterpolatedBranch.depth, here[0]),
-            value_scatter(branch, InterpolatedBranch.force, there[0]),
-            0.0,
-            value_scatter(branch, InterpolatedBranch.force, here[0]),
-        ]
-    )
+    scattered = _scattered(branch, here[0], there[0])
     independent = np.sqrt(by_degree**2 + moved**2 + scattered**2)
     depth, force, place, lost = independent + edge_error(branch, numbers)
     depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
