@@ -58,7 +58,8 @@ def draw(work: WorkPrecision) -> Drawing:
     measured = [point for point in work.points if point.bound]
     if measured:
         # There is a decade of room on both sides because a single point has no range of its own.
-        bounds = [*(_bound(point) for point in measured), work.reference_uncertainty or _bound(measured[0])]
+        marked = (work.reference_uncertainty, work.crossover)
+        bounds = [*(_bound(point) for point in measured), *(value for value in marked if value)]
         axes.set_ylim(min(bounds) / 10.0, 10.0 * max(bounds))
     for method in dict.fromkeys(point.method for point in work.points):
         _draw_method(axes, method, [point for point in measured if point.method == method])
