@@ -65,3 +65,13 @@ def test_settings_that_failed_have_no_time_and_spoil_no_figure():
     drawing.draw_without_rendering()  # a picture that collapsed warns, and a warning is an error
     (axes,) = drawing.axes
     assert axes.get_window_extent().width > drawing.bbox.width / 2
+
+
+def test_a_chart_holds_the_mark_of_where_one_method_is_faster():
+    """One that lay outside took the room of the axes."""
+    alone = tuple(point for point in WORK.points if point.bound)[:1]
+    drawing = draw(dataclasses.replace(WORK, points=alone, crossover=1e3 * alone[0].bound))
+    low, high = drawing.axes[0].get_ylim()
+    assert low < alone[0].bound < 1e3 * alone[0].bound < high
+    drawing.get_layout_engine().execute(drawing)
+    assert min(drawing.axes[0].get_position().size) > 0.5
