@@ -119,7 +119,7 @@ def test_values_on_few_nodes_are_right_on_the_parts_of_the_first_panel():
 
 
 def test_errors_of_adhering_contacts_tell_what_cancels_as_well():
-    """A wrong kernel counted against the whole density, though most cancels in g: 90 % below 107 true errors, now 19."""
+    """A wrong kernel counted against the whole density, though most cancels in g: 90 % below 107 true ones, now 19."""
     rng, stated, true = np.random.default_rng(5), [], []
     for _ in range(6):
         layer = random_stack(rng)
