@@ -31,6 +31,6 @@ def area_radius(pressure: FloatArray, cell_size: float) -> float:
     return cell_size * (2.0 * sqrt(np.count_nonzero(pressure > 0.0) / pi) - AREA_SHIFT)
 
 
-def slope(depth: float, force: float, less: float, more: float) -> float:
-    """dF/d(delta) [N/m] from the forces at depth and at exp(-STEP) and exp(STEP) times it; exact for power laws."""
-    return force / depth * log(more / less) / (2.0 * STEP)
+def slope(depth: float, force: float, less: float, more: float, step: float = STEP) -> float:
+    """dF/d(delta) [N/m] from the forces at depth and at exp(-step) and exp(step) times it; exact for power laws."""
+    return force / depth * log(more / less) / (2.0 * step)

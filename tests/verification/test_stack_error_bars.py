@@ -7,6 +7,7 @@ import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
+    Adhesion,
     Cone,
     ContactRadii,
     ElasticBase,
@@ -115,3 +116,19 @@ def test_values_on_few_nodes_are_right_on_the_parts_of_the_first_panel():
         x = np.array([0.3, 0.6, 1.1, 1.7])
         errors.append(coarse.normalized_contact_stiffness(x) / fine.normalized_contact_stiffness(x) - 1)
     assert np.median(np.abs(errors)) < 3e-8
+
+
+def test_errors_of_adhering_contacts_tell_what_cancels_as_well():
+    """A wrong kernel counted against the whole density, though most cancels in g: 90 % below 107 true ones, now 19."""
+    rng, stated, true = np.random.default_rng(5), [], []
+    for _ in range(6):
+        layer = random_stack(rng)
+        radii = ContactRadii(np.linspace(6.0, 9.6, 6) * layer.surface.thickness)
+        scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=radii, effects=(Adhesion(work_of_adhesion=1e-3),))
+        fine, coarse = (Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene) for nodes in (24, 12))
+        stated.append(coarse.error_estimate["indentation_depth"])
+        true.append(np.abs(coarse.indentation_depth - fine.indentation_depth) / np.abs(fine.indentation_depth).max())
+    stated, true = np.concatenate(stated), np.concatenate(true)
+    ratio = (stated / np.maximum(true, 1e-300))[true > 2e-14]
+    assert np.mean(ratio >= 1) >= 0.95
+    assert np.quantile(ratio, 0.9) < 40.0

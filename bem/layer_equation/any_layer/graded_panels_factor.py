@@ -198,6 +198,10 @@ class AnyLayerSolution(IntegralEquationSolution):
         """The largest G of each panel times its width."""
         return np.asarray(np.abs(self.factor.resolvent).max(axis=(1, 2)) * self.factor.widths(self.factor.panels))
 
+    def kernel_errors(self, ratio: FloatArray) -> FloatArray:
+        """None: `error_of_profile` tells already that most of it cancels in g, and an edge that hangs has all of it."""
+        return np.zeros((2, *np.shape(ratio)))
+
     def error_at_depth(self, stiffness: FloatArray, profile: FloatArray, spread: FloatArray) -> FloatArray:
         """A wrong kernel K' moves F by <phi_1, K' phi> and k_N by <phi_1, K' phi_1>, where phi <= g phi_1."""
         return stiffness * spread
