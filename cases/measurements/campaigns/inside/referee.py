@@ -131,14 +131,23 @@ class InsideReferee:
         for start, stop in pairwise(self._ends):
             # Differences in metres are exact, those of quotients are not.
             away, length = (np.longdouble(start) - radius) / unit, (np.longdouble(stop) - np.longdouble(start)) / unit
+            last = (np.longdouble(stop) - radius) / unit
             room = (self.indenter.max_radius - stop) / self.density.unit
             centres = [(np.longdouble(0.0), _FIRST * length), (-away, np.longdouble(nearest))]
             if 0.0 < room < math.inf and stop == self.contact_radius:
                 centres.append((length, np.longdouble(room / 4.0)))
-            offset, weight = _panel_nodes(length, centres, longest)
-            within = np.minimum((offset * unit).astype(float), stop - start)
+            # Nodes are counted from whichever is nearer, the piece's beginning or the radius: their distances from the
+            # radius, of which some are far below a rounding of it, keep all digits.
+            cut = min(-away, length) / 2 if away < 0 else length
+            offset, weight = _panel_nodes(np.longdouble(0.0), cut, centres, longest)
             beyond.append(away + offset)
-            weighted.append(weight * self._slopes(start, within))
+            weighted.append(weight * self._slopes(start, (offset * unit).astype(float)))
+            if cut < length:
+                shifted = [(last if centre == length else centre + away, near) for centre, near in centres]
+                from_radius, weight = _panel_nodes(away + cut, last, shifted, longest)
+                within = np.clip(((from_radius - away) * unit).astype(float), 0.0, stop - start)
+                beyond.append(from_radius)
+                weighted.append(weight * self._slopes(start, within))
         return np.concatenate(beyond), np.concatenate(weighted)
 
     def _half_space(self, radius: np.longdouble, z: np.longdouble) -> dict[str, np.longdouble]:
@@ -169,7 +178,9 @@ class InsideReferee:
         """Transfer functions, wavenumbers, and weights times k p^."""
         a = self.contact_radius / self.density.unit
         width = min(1.5, 4.0 * math.pi / (3.0 * a))
-        nodes, weight = _panel_nodes(np.longdouble(_LARGEST), [(np.longdouble(0.0), np.longdouble(0.02))], width)
+        nodes, weight = _panel_nodes(
+            np.longdouble(0.0), np.longdouble(_LARGEST), [(np.longdouble(0.0), np.longdouble(0.02))], width
+        )
         k = nodes.astype(np.float64)
         beyond, weighted = self._nodes(np.longdouble(0.0), 1.0, min(_LONGEST, 4.0 * math.pi / _LARGEST))
         load = self._edge_value * np.sin(k * a) - np.sin(np.multiply.outer(k, beyond.astype(np.float64))) @ weighted
@@ -205,15 +216,15 @@ def _kernels(r: np.longdouble, z: np.longdouble, beyond: NDArray[np.longdouble])
 
 
 def _panel_nodes(
-    length: np.longdouble, centres: list[tuple[np.longdouble, np.longdouble]], longest: float
+    first: np.longdouble, last: np.longdouble, centres: list[tuple[np.longdouble, np.longdouble]], longest: float
 ) -> tuple[NDArray[np.longdouble], FloatArray]:
-    """Nodes on [0, length] and weights, on panels that double from each centre, given with its nearest panel end."""
-    ends = {np.longdouble(0.0), length}
+    """Nodes on [first, last] and weights, on panels that double from each centre, given with its nearest panel end."""
+    ends = {first, last}
     for centre, nearest in centres:
         away = nearest
-        ends.update(end for end in [centre] if 0 < end < length)
-        while away < length + abs(centre):
-            ends.update(end for end in (centre - away, centre + away) if 0 < end < length)
+        ends.update(end for end in [centre] if first < end < last)
+        while away < max(abs(first - centre), abs(last - centre)):
+            ends.update(end for end in (centre - away, centre + away) if first < end < last)
             away = 2 * away
     x, w = np.polynomial.legendre.leggauss(_NODES)
     nodes, weights = [np.empty(0, np.longdouble)], [np.empty(0)]
