@@ -12,6 +12,9 @@ from contact.records.validation import FloatArray
 
 STRESSES = ("radial_stress", "hoop_stress", "axial_stress", "shear_stress", "hydrostatic_pressure")
 SLOPES = ("pressure_gradient_radial", "pressure_gradient_axial")
+# The share of the change that finer data may still be off by beside what they state: four times what was seen (0.014,
+# 8 nodes, `campaign inside`, seed 9, scene 22 of 100, 4e-5 thicknesses below the free surface; 2026-11-22).
+LEFT = 1.0 / 16.0
 DISPLACEMENTS = ("radial_displacement", "axial_displacement")
 
 
@@ -33,7 +36,7 @@ class ComparedInterior:
         length = self.own.unit * min(self.own.density.radius, self.own.scene.layer.thickness / self.own.unit)
         scales = scales_of(finer, length, self.own.unit * self.own.depth)
         error = {
-            kind: change(found, finer, names) / (scale or np.inf) + finer.error_estimate[kind]
+            kind: (1.0 + LEFT) * change(found, finer, names) / (scale or np.inf) + finer.error_estimate[kind]
             for kind, (names, scale) in scales.items()
         }
         return replace(found, error_estimate=error)

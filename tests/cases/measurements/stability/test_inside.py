@@ -50,9 +50,12 @@ def test_stated_errors_are_sharp_on_few_nodes(on_few_nodes, quantity):
     assert np.quantile(told, 0.9) <= 100.0
 
 
-@pytest.mark.parametrize(("nodes", "number"), [(8, 87), (12, 97), (12, 50)])
+@pytest.mark.parametrize(("nodes", "number"), [(8, 22), (8, 87), (12, 97), (12, 50)])
 def test_stated_errors_hold_where_gradients_pass_zero_and_at_the_base(nodes, number):
-    """A found radius moved a gradient by 4.9e-7 where 3.8e-7 was stated; a base doubles what a wrong edge makes."""
+    """A found radius moved a gradient by 4.9e-7 where 3.8e-7 was stated; a base doubles what a wrong edge makes.
+
+    Finer data err by a hundredth of what they differ by, just below a free surface.
+    """
     assert beyond(inside_campaign(build("mdr", {"nodes": nodes}), seed=9, count=100, numbers=[number])) == []
 
 
