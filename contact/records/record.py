@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 import functools
+import inspect
 from typing import Any, Self, TypeVar, dataclass_transform
 
 import numpy as np
 import pydantic
 import pydantic.dataclasses
+from pydantic.fields import FieldInfo
+from pydantic_core import PydanticUndefined
 
 from contact.records.errors import InvalidInput, printable
 
@@ -69,17 +72,43 @@ def record(cls: type[R]) -> type[R]:
         except pydantic.ValidationError as error:
             raise InvalidInput(describe(error, made)) from None
 
-    made.__init__ = checked
+    made.__init__, made.__signature__ = checked, _Signature()
     # pydantic returns the class that it was given.
     return made  # type: ignore[no-any-return]
 
 
 def complete(cls: type[Record]) -> None:
-    """Build the validator of a record's class if that has not happened yet; pydantic replaces its constructor then."""
+    """Build the validator of a record's class if that has not happened yet.
+
+    pydantic replaces the class's constructor and signature then, and both are put back.
+    """
     if not cls.__pydantic_complete__:  # type: ignore[attr-defined]  # every record is a pydantic dataclass
         constructor = cls.__init__
         pydantic.dataclasses.rebuild_dataclass(cls)  # type: ignore[arg-type]  # as above
         cls.__init__ = constructor  # type: ignore[method-assign]  # as above
+        cls.__signature__ = _Signature()  # type: ignore[attr-defined]  # as above
+
+
+class _Signature:
+    """What `help`, editors and notebooks show of a record's constructor: its fields, by name, without validators."""
+
+    def __get__(self, instance: object, owner: type[Any]) -> inspect.Signature:
+        return inspect.Signature([_parameter(field) for field in dataclasses.fields(owner)])
+
+
+def _parameter(field: dataclasses.Field[Any]) -> inspect.Parameter:
+    given = field.default
+    default, by_name = (given.default, given.kw_only) if isinstance(given, FieldInfo) else (given, True)
+    kind = inspect.Parameter.POSITIONAL_OR_KEYWORD if by_name is False else inspect.Parameter.KEYWORD_ONLY
+    # As written, and without what checks it.
+    written, checked = str(field.type), "Annotated["
+    none = default in (dataclasses.MISSING, PydanticUndefined)
+    return inspect.Parameter(
+        field.name,
+        kind,
+        default=inspect.Parameter.empty if none else default,
+        annotation=written.removeprefix(checked).partition(", ")[0] if written.startswith(checked) else written,
+    )
 
 
 def describe(error: pydantic.ValidationError, cls: type[Any]) -> str:

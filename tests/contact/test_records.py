@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import dataclasses
+import inspect
 import pickle
 
 import numpy as np
 import pytest
 
 from contact import Adhesion, ContactRadii, InvalidInput, Layer, Paraboloid, Scene
+from contact.records.record import Record, record
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 SCENE = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=1e-2), loading=ContactRadii([1e-3, 2e-3]))
@@ -60,3 +62,19 @@ def test_moduli_of_a_layer():
     assert soft.contact_modulus == pytest.approx(4e6, rel=1e-15, abs=0.0)  # E* = 4 G at nu = 1/2
     assert soft.confined_modulus == np.inf
     assert Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3).is_half_space
+
+
+@record
+class _Plate(Record):
+    width: float
+    height: float = 2.0
+
+
+def test_help_and_editors_show_the_fields_of_a_constructor():
+    before = inspect.signature(_Plate)
+    assert _Plate(width=1.0).height == 2.0
+    assert before == inspect.signature(_Plate)
+    assert str(before).replace("'", "") == "(*, width: float, height: float = 2.0)"
+    layer = str(inspect.signature(Layer)).replace("'", "")
+    assert layer == "(*, thickness: float, youngs_modulus: float, poissons_ratio: float, support: Support = bonded)"
+    assert str(inspect.signature(ContactRadii)).replace("'", "") == "(values: Vector)"
