@@ -76,6 +76,12 @@ class ContactWithErrors:
         parts = (self._interpolation_error, self._edge_error, self.far_error, self._narrowing_error)
         return {name: sum(part[name] for part in parts) for name in QUANTITIES}
 
+    @property
+    def coarse_edge_error(self) -> Mapping[str, float]:
+        """The part of `error` that a higher degree on the same mesh does not show."""
+        parts = (self._edge_error, self.far_error, self._narrowing_error)
+        return {name: sum(part[name] for part in parts) for name in QUANTITIES}
+
     @cached_property
     def far_error(self) -> Mapping[str, float]:
         """The part of `error` that cells have nothing to do with: outer edge, half-space and rounding."""

@@ -8,13 +8,27 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from contact import Cone, CriticalPoint, Paraboloid, Profile, Spheroconical, Tabulated, TruncatedCone
+from contact import (
+    Adhesion,
+    Cone,
+    ContactRadii,
+    CriticalPoint,
+    Layer,
+    Paraboloid,
+    Profile,
+    Scene,
+    Spheroconical,
+    Tabulated,
+    TruncatedCone,
+)
 from contact.records.validation import FloatArray
+from fem_reference import Fem
 from fem_reference.adhesion.branch import BranchPiece, InterpolatedBranch, chebyshev_points
 from fem_reference.adhesion.half_space import half_space_parts
 from fem_reference.adhesion.pull_off_errors import pull_off_errors
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.error_model import ON_BRANCH
+from mdr import Mdr
 
 RADII = np.array([0.3, 0.7, 1.3])
 # Rate at which changes fall in the made-up contacts below.
@@ -110,3 +124,26 @@ def test_a_pull_off_states_the_scatter_of_meshes_where_the_degree_changes_nothin
     stated = pull_off_errors(branch, lost, lost)["pull_off_depth"][0]
     scatter = ON_BRANCH.slope_scatter * RATE * np.linalg.norm(uneven * exact.weights(place)) / abs(depth)
     assert stated == pytest.approx(scatter, rel=0.05, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    ("layer", "indenter"),
+    [
+        (Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4), Paraboloid(radius_of_curvature=3.0)),
+        (Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5), TruncatedCone(flat_radius=0.3, slope=0.2)),
+    ],
+)
+def test_the_surface_beside_an_adhering_contact_keeps_its_stated_error(layer: Layer, indenter: Profile) -> None:
+    """Close to the edge, too, where it rises like a root; no error of its own was stated once."""
+    scene = Scene(
+        layer=layer,
+        indenter=indenter,
+        loading=ContactRadii(values=np.array([0.4, 2.0])),
+        effects=(Adhesion(work_of_adhesion=1e-3),),
+    )
+    answer, exact = Fem(accuracy=1e-2).solve(scene), Mdr().solve(scene)
+    stated = answer.uncertainty("surface_displacement")
+    for step, a in enumerate(answer.contact_radius):
+        radii = a * np.array([1.0 + 1e-9, 1.0 + 1e-6, 1.0001, 1.001, 1.01, 1.1, 2.0, 5.0])
+        error = np.abs(answer.surface_displacement(radii, step) - exact.surface_displacement(radii, step))
+        assert error.max() < stated[step] < 10 * error.max(), (a, error, stated[step])
