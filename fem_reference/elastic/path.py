@@ -187,5 +187,22 @@ def _surface_state(state: FemEquilibrium, modulus: float) -> SurfaceState:
         contact_modulus=modulus,
         other=contact.levels[order - 1 if order - 1 in contact.levels else order + 1],
         error=max(state.error[name] for name in ContactPath.ARRAYS),
-        missed=abs(state.radius_factor - 1),
+        unshown=_unshown_error(state),
+        missed=missed_radius(state),
     )
+
+
+def _unshown_error(state: FemEquilibrium) -> float:
+    """The part of the depth's relative error that a higher degree does not show; with adhesion all of it."""
+    contact, smooth = state.contact, state.contact.answer.smooth_depth
+    if smooth == 0.0:
+        return max(contact.coarse_edge_error["stiffness"], state.error["indentation_depth"])
+    pulled = abs(state.depth / smooth - 1.0)
+    if state.radius_factor == contact.answer.radius and pulled > 0.0:
+        return max(state.error[name] for name in ContactPath.ARRAYS)
+    return contact.coarse_edge_error["smooth_depth"] + pulled * root_at_edge(contact, missed_radius(state))
+
+
+def missed_radius(state: FemEquilibrium) -> float:
+    """Share of the radius by which the solved contact may miss the true one: known, uncertain, and by its edge cell."""
+    return abs(state.radius_factor - 1) + max(state.error["contact_radius"], state.contact.edge_shift)
