@@ -100,12 +100,6 @@ class BranchCoefficients:
     # The error by the degree passes zero now and then along a piece of a branch: at least this share of its root mean
     # square there is stated.
     share_of_mean: float = 0.7
-    # Where the profile has breakpoints inside a piece, Chebyshev coefficients fall like a power of their number, and
-    # more is left than the last two say: this times as much.
-    rough_profile: float = 3.0
-    # Factor on the former where an error is stated, because the error between the solved radii of two tabulated
-    # profiles was up to 1.25 times as large.
-    rough_profile_stated: float = 1.5
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,13 @@ The energy release rate ``G = k_N' (delta - delta_0)^2 / (4 pi a)`` equals the w
     delta(a) = delta_0(a) - dl(a),   dl(a) = sqrt(4 pi a dgamma / k_N'(a)),      F(a) = k_N delta + F_2.
 
 k_N, k_N', delta_0 and F_2 are solved at Chebyshev points and interpolated; between the kinks of the profile they are
-smooth, next to a flat end in the square root of a - b.  Units: SI for lengths, stresses by E*.
+smooth, next to a flat end in the square root of a - b.  Where a profile has breakpoints between solved radii, what it
+does on a half-space is known at every radius, and only the rest is interpolated.  With ``phi^2 = k_N' / 2``, the edge
+value of the flat punch's density, and the half-space's depth g and half force V,
+
+    delta_0 = (g + smooth) / phi,   F_2 = smooth - 2 phi V.
+
+Units: SI for lengths, stresses by E*.
 """
 
 from __future__ import annotations
@@ -21,8 +27,9 @@ from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 
 from contact.records.validation import FloatArray
 from contact.scene.loading import Controlled
+from fem_reference.adhesion.half_space import half_space_parts
 from fem_reference.elastic.error_estimate import ContactWithErrors
-from fem_reference.error_model import FIXED_RADIUS, ON_BRANCH
+from fem_reference.error_model import FIXED_RADIUS
 
 # What is interpolated along the branch, with the power of the contact radius that turns it into SI lengths.
 POWERS = {"stiffness": 1, "stiffness_slope": 0, "smooth_depth": 1, "profile_force": 2}
@@ -62,13 +69,27 @@ class BranchPiece:
         radii = self.radii
         solutions = [contact.levels[self.degree or contact.settings.order] for contact in self.contacts]
         values = np.array([getattr(solution, name) for solution in solutions])
-        scaled = np.log(values) if name.startswith("stiffness") else values * radii ** POWERS[name]
-        return np.asarray(scaled)
+        if name.startswith("stiffness"):
+            return np.asarray(np.log(values))
+        factor, known = self._known(name, radii, np.array([solution.stiffness_slope for solution in solutions]))
+        return np.asarray(values * radii ** POWERS[name] * factor - known)
 
     def evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         """A quantity [powers of m, E* = 1] at radii within the piece."""
         value = self._interpolants[name](self.parameter(radius))
-        return np.asarray(np.exp(value) * radius ** POWERS[name] if name.startswith("stiffness") else value)
+        if name.startswith("stiffness"):
+            return np.asarray(np.exp(value) * radius ** POWERS[name])
+        slope = self.evaluate("stiffness_slope", radius) if self.is_rough else np.ones_like(radius)
+        factor, known = self._known(name, radius, slope)
+        return np.asarray((value + known) / factor)
+
+    def _known(self, name: str, radius: FloatArray, slope: FloatArray) -> tuple[FloatArray | float, FloatArray | float]:
+        """Factor on delta_0 or F_2, and its known part on a half-space, at radii [m] and slopes k_N'."""
+        if not self.is_rough:
+            return 1.0, 0.0
+        depth, half_force = half_space_parts(self.contacts[-1].indenter.profile, radius)
+        edge = np.sqrt(slope / 2.0)
+        return (edge, depth) if name == "smooth_depth" else (1.0, -2.0 * edge * half_force)
 
     @property
     def radii(self) -> FloatArray:
@@ -98,25 +119,23 @@ class BranchPiece:
 
     @cached_property
     def last_coefficients(self) -> dict[str, float]:
-        """Size of the last Chebyshev coefficients: relative for k_N and k_N', in [m] for delta_0 and [m^2] for F_2.
-
-        Those of a profile that is not analytic fall like a power of their number: more is left than the last two.
-        """
-        left = ON_BRANCH.rough_profile if self.is_rough else 1.0
-        return {name: left * float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
+        """Size of the last Chebyshev coefficients: relative for k_N and k_N', in [m] for delta_0 and [m^2] for F_2."""
+        return {name: float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
 
     @cached_property
     def between(self) -> dict[str, float]:
         """Errors between the solved radii, in units of `last_coefficients`, less what these owe to the meshes.
 
         Every radius has a mesh of its own, whose error differs from the next one's: that is no error of interpolation.
+        Between many breakpoints coefficients fall too slowly to tell the two apart.
         """
+        if self.is_rough:
+            return self.last_coefficients
         degrees = sorted(self.contacts[0].levels)[-2:]
         low, high = (replace(self, degree=degree)._interpolants for degree in degrees)
         share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
         meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in POWERS}
-        more = ON_BRANCH.rough_profile_stated if self.is_rough else 1.0
-        return {name: max(0.0, more * size - meshes[name]) for name, size in self.last_coefficients.items()}
+        return {name: max(0.0, size - meshes[name]) for name, size in self.last_coefficients.items()}
 
     @property
     def is_rough(self) -> bool:

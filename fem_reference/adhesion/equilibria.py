@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -24,8 +24,16 @@ from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus
-from fem_reference.elastic.error_estimate import ContactWithErrors
-from fem_reference.elastic.path import ContactSolver, FemEquilibrium
+from fem_reference.elastic.error_estimate import ContactWithErrors, relative_size
+from fem_reference.elastic.path import (
+    BESIDE_ROOT,
+    ContactSolver,
+    FemEquilibrium,
+    moved_beside,
+    pressed_punch_error,
+    root_at_edge,
+)
+from fem_reference.elastic.prescribed_radius import PrescribedContact
 
 # Chebyshev points of a piece: the first number that meets the accuracy is taken.
 NODES = (11, 17, 25, 41)
@@ -45,13 +53,26 @@ def work_of_adhesion(scene: Scene) -> float:
 
 def adhesive_equilibrium(contact: ContactWithErrors, work: float) -> FemEquilibrium:
     """The state in which the energy release rate equals the work of adhesion dgamma / E* [m]."""
-    answer, error = contact.answer, contact.error
     scaled_work = work / contact.indenter.contact_radius
-    elongation = np.sqrt(4 * np.pi * scaled_work / answer.stiffness_slope)
-    depth = float(answer.smooth_depth - elongation)
-    return fixed_radius_equilibrium(
-        contact, depth, error["smooth_depth"] * answer.smooth_depth + 0.5 * error["stiffness_slope"] * elongation
+
+    def elongation(level: PrescribedContact) -> float:
+        return float(np.sqrt(4 * np.pi * scaled_work / level.stiffness_slope))
+
+    def depth(level: PrescribedContact) -> float:
+        return level.smooth_depth - elongation(level)
+
+    def depth_error(error: Mapping[str, float]) -> float:
+        pulled = 0.5 * error["stiffness_slope"] * elongation(contact.answer)
+        return float(error["smooth_depth"] * contact.answer.smooth_depth + pulled)
+
+    found = depth(contact.answer)
+    state = fixed_radius_equilibrium(contact, found, depth_error(contact.error))
+    # Beside the edge the surface is that of a flat punch, too, pulled out by the elongation.
+    absolute = depth_error(contact.coarse_edge_error) + elongation(contact.answer) * root_at_edge(
+        contact, contact.edge_shift
     )
+    beside = moved_beside(contact, depth, BESIDE_ROOT) + relative_size(absolute, found)
+    return replace(state, error=dict(state.error) | {"surface_displacement": beside})
 
 
 def fixed_radius_equilibrium(contact: ContactWithErrors, depth: float, depth_error: float) -> FemEquilibrium:
@@ -69,6 +90,7 @@ def fixed_radius_equilibrium(contact: ContactWithErrors, depth: float, depth_err
         "normal_force": force_error / abs(force) if force else 0.0,
         "contact_stiffness": error["stiffness"],
         "pressure": contact.pressure_error,
+        "surface_displacement": pressed_punch_error(contact),
     }
     return FemEquilibrium(contact=contact, depth=depth, force=force, error=reported)
 
@@ -112,8 +134,11 @@ def _state_at(
     slope = branch.slope(load, np.array([radius]))[0]
     on_branch = errors_along(branch, np.array([radius]))[0 if by_depth else 1, 0]
     solved = state.error[name] * abs(found) * radius ** (1 if by_depth else 2)
-    moved = (solved + on_branch) / radius / abs(slope)
-    return replace(state, error=dict(state.error) | {"contact_radius": float(moved)})
+    moved = float((solved + on_branch) / radius / abs(slope))
+    elongation = abs(state.depth - state.contact.answer.smooth_depth)
+    rises = relative_size(elongation * root_at_edge(state.contact, moved), state.depth)
+    beside = state.error["surface_displacement"] + rises
+    return replace(state, error=dict(state.error) | {"contact_radius": moved, "surface_displacement": beside})
 
 
 def stable_radius(branch: InterpolatedBranch, load: Callable[[FloatArray], FloatArray], target: float) -> float:

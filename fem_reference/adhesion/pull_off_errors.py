@@ -16,7 +16,7 @@ from contact import CriticalPoint
 from contact.records.validation import FloatArray
 from fem_reference.adhesion.branch import BranchPiece, InterpolatedBranch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
-from fem_reference.adhesion.equilibria import adhesive_equilibrium
+from fem_reference.elastic.prescribed_radius import PrescribedContact
 from fem_reference.error_model import ON_BRANCH
 
 Load = Callable[[InterpolatedBranch, FloatArray], FloatArray]
@@ -79,15 +79,9 @@ class Extremum:
         return _scatter(self.branch, self.load, piece, piece.tilts(self.radius)) / abs(self.curvature)
 
     def shift_between(self, error: float) -> float:
-        """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii.
-
-        Between the points of a table it oscillates faster than any polynomial there.  An error e of any shape moves an
-        extremum at most to where the load differs by 2 e from it.
-        """
+        """How far an error of interpolation of the load [its unit] moves it: it oscillates between the solved radii."""
         if self.is_at_end:
             return 0.0
-        if self.branch.piece_around(self.radius).is_rough:
-            return float(2 * np.sqrt(error / abs(self.curvature)))
         return self.branch.tilt_of_last_polynomial(self.radius) * error / abs(self.curvature)
 
 
@@ -119,15 +113,28 @@ def is_end(branch: InterpolatedBranch, radius: float) -> bool:
 def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
     """Error of depth [m] or force / E* [m^2], row 0 or 1, at the end of a piece; zero elsewhere.
 
-    That is one solved contact.  Stiffness and its slope may err against each other at every degree there, so that a
-    change of the load between two degrees is small by accident: their errors are added up, as at any given radius.
+    That is one solved contact.  Smooth load, stiffness and what adhesion takes away may err against each other at every
+    degree, so that the load changes little by accident: what each of them alone changes is added up, which hardly ever
+    happens at once.
     """
     if not is_end(branch, radius):
         return 0.0
     contact = min(branch.contacts, key=lambda contact: abs(contact.indenter.contact_radius - radius))
-    state = adhesive_equilibrium(contact, branch.work)
-    depth, force = abs(state.depth) * radius, abs(state.force) * radius**2
-    return float((depth * state.error["indentation_depth"], force * state.error["normal_force"])[row])
+    here, answer = np.array([radius]), contact.answer
+
+    def elongation(level: PrescribedContact) -> float:
+        return float(np.sqrt(4 * np.pi * branch.work / radius / level.stiffness_slope))
+
+    def terms(level: PrescribedContact) -> FloatArray:
+        if row == 0:
+            return np.array([level.smooth_depth, elongation(level)])
+        pulled = level.stiffness * elongation(answer), answer.stiffness * elongation(level)
+        return np.array([level.smooth_force, *pulled])
+
+    changed = contact.rate_of_several * contact.changes_of(terms).sum() * radius ** (1 + row)
+    load = (InterpolatedBranch.depth, InterpolatedBranch.force)[row]
+    edge = edge_error(branch, lambda other: load(other, here))[0]
+    return float(changed + edge + branch.errors_far(here)[row, 0])
 
 
 def _scattered(branch: InterpolatedBranch, lost: float, strongest: float) -> FloatArray:
@@ -159,7 +166,7 @@ def pull_off_errors(
     of_load = {"displacement": between[0], "force": between[1], "machine": between[0] + branch.machine * between[1]}
     shift = extremum.shift_between(of_load[pull_off.control])
     moved = extremum.shift_by_scatter * np.array([abs(depth_slope), abs(force_slope), 1.0, abs(lost_slope)])
-    by_degree = degree_error(branch, numbers)
+    by_degree = degree_error(branch, numbers, "rate_of_several")
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
     # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.

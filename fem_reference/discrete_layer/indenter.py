@@ -188,6 +188,6 @@ class ScaledIndenter:
 
     @property
     def has_sharp_tip(self) -> bool:
-        """Whether the curvature grows without bound at the axis, as that of a cone does."""
+        """Whether the curvature grows without bound at the axis, as that of a cone does and, slowly, that of r^1.98."""
         near, far = self.slope(np.array([1e-6, 1e-3])) / [1e-6, 1e-3]
-        return bool(near > 1.5 * far)
+        return bool(near > 1.05 * far)

@@ -13,7 +13,7 @@ import numpy as np
 
 from contact.records.validation import FloatArray
 from fem_reference.elastic.error_estimate import ContactWithErrors, pressure_difference
-from fem_reference.elastic.path import FemEquilibrium, moved_beside
+from fem_reference.elastic.path import FemEquilibrium, moved_beside, root_at_edge
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 from fem_reference.error_model import AT_LOAD
 
@@ -59,9 +59,11 @@ class LoadedContact:
             "normal_force": force_error if self.by_depth else 0.0,
             "contact_stiffness": stiffness_error + correction * answer.stiffness_slope / answer.stiffness,
             "pressure": contact.pressure_error + radius_error + singular,
-            # The solved radius is left by as much of a flat punch as the load is beyond its smooth contact.
+            # The solved edge is left by as much of a flat punch as the load is beyond its smooth contact.
             "surface_displacement": float(
-                depth_error + moved_beside(contact, self._depth) + abs(depth / answer.smooth_depth - 1.0)
+                depth_error
+                + moved_beside(contact, self._depth)
+                + abs(depth / answer.smooth_depth - 1.0) * root_at_edge(contact, correction)
             ),
         }
         return FemEquilibrium(

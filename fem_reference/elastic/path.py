@@ -14,11 +14,14 @@ from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 from fem_reference.elastic.surface_fields import FemFields, SurfaceState
+from fem_reference.error_model import INSIDE
 
 # Residuals that are published beside the error estimates.
 OWN_CHECKS = ("energy_defect", "patch_defect")
 # Radii over the contact's at which displacements of two degrees are compared.
 BESIDE = 1.0 + 2.0 ** np.arange(-6.0, 3.0)
+# The same beside an edge where the surface rises like a root; nearer ones lie in the cell that `root_at_edge` is for.
+BESIDE_ROOT = 1.0 + 2.0 ** np.arange(-16.0, 3.0)
 # Solves the contact of a given radius [m].
 ContactSolver = Callable[[float], ContactWithErrors]
 
@@ -57,7 +60,8 @@ def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
         "normal_force": error["smooth_force"],
         "contact_stiffness": error["stiffness"],
         "pressure": contact.pressure_error,
-        "surface_displacement": error["smooth_depth"] + moved_beside(contact, lambda level: level.smooth_depth),
+        "surface_displacement": contact.coarse_edge_error["smooth_depth"]
+        + moved_beside(contact, lambda level: level.smooth_depth),
     }
     return FemEquilibrium(
         contact=contact,
@@ -68,14 +72,26 @@ def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
     )
 
 
-def moved_beside(contact: ContactWithErrors, depth: Callable[[PrescribedContact], float]) -> float:
+def moved_beside(
+    contact: ContactWithErrors, depth: Callable[[PrescribedContact], float], points: FloatArray = BESIDE
+) -> float:
     """Error of the surface beside the contact by interpolation, over the depth / a that each degree has.
 
-    A flat punch has no depth of smooth contact: nothing is stated then, since that state is not the answer.
+    Displacements at points err by the same share of their changes on the surface as inside; that of the depth is among
+    them.  A flat punch has no depth of smooth contact: nothing is stated then, since that state is not the answer.
     """
     over = abs(depth(contact.answer))
-    moved = contact.changes_of(lambda level: level.surface_displacement(BESIDE, depth(level)))
-    return float(contact.rate * moved.max() / over) if over > 0.0 else 0.0
+    moved = contact.changes_of(lambda level: level.surface_displacement(points, depth(level)))
+    return float(INSIDE.share_of_change[contact.settings.order] * moved.max() / over) if over > 0.0 else 0.0
+
+
+def root_at_edge(contact: ContactWithErrors, shift: float) -> float:
+    """Error of the surface close to a flat punch's edge, over its depth: that of a contact smaller by a relative shift.
+
+    There the surface follows ``1 - 2 / pi phi sqrt(2 (r - a) / a)``, phi^2 = k_N' / 2 the release rate over that of a
+    half-space.
+    """
+    return float(2 / np.pi * np.sqrt(contact.answer.stiffness_slope * shift))
 
 
 def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquilibrium:
@@ -86,9 +102,15 @@ def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquil
         "normal_force": contact.error["stiffness"],
         "contact_stiffness": contact.error["stiffness"],
         "pressure": contact.pressure_error,
-        "surface_displacement": contact.error["stiffness"] + moved_beside(contact, lambda _: 1.0),
+        "surface_displacement": pressed_punch_error(contact),
     }
     return FemEquilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
+
+
+def pressed_punch_error(contact: ContactWithErrors) -> float:
+    """Error of the surface beside a flat punch over its depth: one solution, scaled."""
+    by_degree = moved_beside(contact, lambda _: 1.0, BESIDE_ROOT)
+    return contact.coarse_edge_error["stiffness"] + by_degree + root_at_edge(contact, contact.edge_shift)
 
 
 def equilibria_at_radii(radii: FloatArray, solve: ContactSolver) -> list[FemEquilibrium]:
@@ -134,7 +156,8 @@ def contact_path(
     own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
     # With adhesion depth and force may cross zero: their errors refer to the largest value along the path.
     if scene.effect(Adhesion) is not None:
-        errors["indentation_depth"] *= np.abs(depth) / np.abs(depth).max()
+        for name in ("indentation_depth", "surface_displacement"):
+            errors[name] *= np.abs(depth) / np.abs(depth).max()
         errors["normal_force"] *= np.abs(force) / np.abs(force).max()
     elif not scene.effects:
         notes = (*notes, *told_of_friction(scene.layer, radius))
@@ -164,5 +187,22 @@ def _surface_state(state: FemEquilibrium, modulus: float) -> SurfaceState:
         contact_modulus=modulus,
         other=contact.levels[order - 1 if order - 1 in contact.levels else order + 1],
         error=max(state.error[name] for name in ContactPath.ARRAYS),
-        missed=abs(state.radius_factor - 1),
+        unshown=_unshown_error(state),
+        missed=missed_radius(state),
     )
+
+
+def _unshown_error(state: FemEquilibrium) -> float:
+    """The part of the depth's relative error that a higher degree does not show; with adhesion all of it."""
+    contact, smooth = state.contact, state.contact.answer.smooth_depth
+    if smooth == 0.0:
+        return max(contact.coarse_edge_error["stiffness"], state.error["indentation_depth"])
+    pulled = abs(state.depth / smooth - 1.0)
+    if state.radius_factor == contact.answer.radius and pulled > 0.0:
+        return max(state.error[name] for name in ContactPath.ARRAYS)
+    return contact.coarse_edge_error["smooth_depth"] + pulled * root_at_edge(contact, missed_radius(state))
+
+
+def missed_radius(state: FemEquilibrium) -> float:
+    """Share of the radius by which the solved contact may miss the true one: known, uncertain, and by its edge cell."""
+    return abs(state.radius_factor - 1) + max(state.error["contact_radius"], state.contact.edge_shift)

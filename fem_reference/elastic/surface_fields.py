@@ -22,7 +22,8 @@ class SurfaceState:
         contact_modulus: E* [Pa].
         other: that of the neighbouring degree on the same mesh.
         error: relative error of depth, force, radius and stiffness, the largest of them.
-        missed: share of the radius by which the solved contact misses that of the state.
+        unshown: the part of the depth's relative error that a higher degree does not show.
+        missed: share of the radius by which the solved contact misses that of the state, edge cell included.
     """
 
     contact: PrescribedContact
@@ -31,6 +32,7 @@ class SurfaceState:
     contact_modulus: float
     other: PrescribedContact
     error: float
+    unshown: float
     missed: float
 
 
@@ -55,6 +57,7 @@ class FemFields:
             contact_radius=state.contact_radius,
             contact_modulus=state.contact_modulus,
             own_error=state.error,
+            unshown_error=state.unshown,
             missed=state.missed,
         )
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,9 @@ from contact import (
     Layer,
     NotConvergedError,
     Paraboloid,
+    PowerLaw,
     Profile,
+    PronySeries,
     Scene,
 )
 from fem_reference import Fem
@@ -58,8 +62,8 @@ def rebound(end: float, radius: float = 1e-3) -> ImpactHistory:
     )
 
 
-def stated(fine: ImpactHistory, coarse: ImpactHistory) -> dict[str, float]:
-    known = KnownErrors(everywhere=0.0, radius=1e-3, exact=frozenset(), cell=1e-5, space=1.0)
+def stated(fine: ImpactHistory, coarse: ImpactHistory, exact: frozenset[str] = frozenset()) -> dict[str, float]:
+    known = KnownErrors(everywhere=0.0, radius=1e-3, exact=exact, cell=1e-5, space=1.0)
     found = with_errors(fine, coarse, coarse, known).error_estimate
     return {name: float(found[name][0]) for name in (*PEAKS, "contact_time", "peak_contact_radius")}
 
@@ -76,6 +80,34 @@ def test_a_peak_radius_states_how_readings_change_beside_it_and_at_least_one_rea
     quiet, jumpy = (stated(rebound(2.0), rebound(2.0, radius))["peak_contact_radius"] for radius in (1e-3, 0.98e-3))
     assert quiet == 1e-3
     assert 0.5 * 0.02 <= jumpy < 0.0101
+
+
+def test_a_flat_punch_states_what_its_stiffness_changes() -> None:
+    """It has no contact set that two meshes could agree in by accident: times were stated 130 times too large."""
+    fine = rebound(2.0)
+    other = replace(fine, indentation_depth=1.1 * fine.indentation_depth)
+    found = stated(fine, other, exact=frozenset({"contact_radius", "peak_contact_radius"}))
+    assert found["contact_time"] == found["peak_force"] == 0.0
+
+
+def test_a_restitution_states_the_energy_that_is_missing_in_the_end() -> None:
+    """Its first and last steps do not keep the energy: 5.6e-6 was missed where 4.2e-6 was stated."""
+    branches = PronySeries(
+        long_term_shear_modulus=512.875888173739,
+        shear_moduli=[26.95241492, 269.1912232, 57.13820234],
+        relaxation_times=[90.0033535, 1600.82933617, 765.78880575],
+    )
+    scene = Scene(
+        layer=Layer(thickness=0.016273237713404852, youngs_modulus=2598.4731858971895, poissons_ratio=0.5),
+        indenter=PowerLaw(
+            exponent=1.3005196104276775, reference_radius=0.020541170348901544, reference_height=7.085982377279361e-06
+        ),
+        loading=Impact(mass=710.2825218887706, velocity=9.010702373954647e-07),
+        effects=(branches,),
+    )
+    answer, exact = Fem(growth=1.0).solve(scene), Mdr().solve(scene)
+    error = abs(answer.coefficient_of_restitution / exact.coefficient_of_restitution - 1.0)
+    assert error < answer.error_estimate["coefficient_of_restitution"][0] < 3.0 * error
 
 
 PUNCH, ROUND = FlatPunch(radius=1e-3), Paraboloid(radius_of_curvature=1e-2)

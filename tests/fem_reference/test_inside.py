@@ -137,6 +137,24 @@ HARD_SCENES = [
 ]
 
 
+@pytest.mark.parametrize(
+    ("seed", "number"),
+    [
+        # At found edges stresses are small and change by shares of the pressure beside, and the radius is not exact.
+        pytest.param(19301, 23, id="cone at a force"),
+        pytest.param(19105, 19, id="power law at a force", marks=pytest.mark.slow),
+        # The tip of r^1.94 is no smooth one, though its curvature hardly grows.
+        pytest.param(19301, 13, id="hardly sharp tip"),
+    ],
+)
+def test_errors_hold_close_to_found_edges_and_tips(seed, number):
+    """Stresses and gradients were off by 1.1 to 2.1 times what was stated."""
+    rows = inside_campaign(Fem(), seed=seed, count=number + 1, numbers=[number])
+    judged = [row for row in rows if row.quantity]
+    assert len(judged) == 15
+    assert [(row.quantity, row.error, row.stated) for row in judged if not row.holds] == []
+
+
 @pytest.mark.parametrize(("number", "quantities"), HARD_SCENES)
 def test_errors_hold_beside_found_edges_the_end_of_the_mesh_and_on_the_axis(number, quantities):
     """Against a referee of single points in extended precision."""

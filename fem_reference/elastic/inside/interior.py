@@ -35,6 +35,7 @@ class FemInterior:
         contact_radius: a [m].
         contact_modulus: E* [Pa].
         own_error: relative error of the state's depth, force, radius and stiffness, the largest of them.
+        unshown_error: the part of the depth's relative error that a higher degree does not show.
         missed: share of the radius by which the mesh's contact misses that of the state.
     """
 
@@ -43,6 +44,7 @@ class FemInterior:
     contact_radius: float
     contact_modulus: float
     own_error: float
+    unshown_error: float
     missed: float
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
@@ -56,7 +58,7 @@ class FemInterior:
         places = places_of(mesh.p, mesh.t, points)
         values = self.section.at(places)
         error = self._error_of_triangles[places.triangles]
-        error[:, 2:7] += np.abs(values[:, 2:6]).max(initial=0.0) * self._share_at_edge(points)[:, None]
+        error[:, 2:7] += np.sqrt(2.0) * self._edge_pressure * self._share_at_edge(points)[:, None]
         error[:, _GROUPS["pressure_gradient"]] += self._gradient_at_edge(points)[:, None]
         error += self._from_the_end(points[0])
         return InsideFields(
@@ -88,12 +90,20 @@ class FemInterior:
     def _gradient_at_edge(self, points: FloatArray) -> FloatArray:
         """What the same contact changes in the gradient: its share over the distance, but no more than all of it.
 
-        The gradient of sqrt(2 rho) is 1/sqrt(2 rho); the pressure's root is that of Hertz, 3/2 of the mean pressure.
+        The gradient of sqrt(2 rho) is 1/sqrt(2 rho).
         """
-        contact, depth = self.section.contact, self.section.depth
         away = np.maximum(np.hypot(points[0] - 1.0, points[1]), np.finfo(float).tiny)
         change = np.minimum(np.sqrt(2.0) * self._share_at_edge(points) / away, 1.0 / np.sqrt(2.0 * away))
-        return np.asarray(1.5 * abs(contact.force(depth)) / np.pi * (change if self.missed else np.zeros_like(away)))
+        return np.asarray(self._edge_pressure * (change if self.missed else np.zeros_like(away)))
+
+    @property
+    def _edge_pressure(self) -> float:
+        """Over E*, the pressure beside the edge of smooth contact over sqrt(2 rho): phi delta_0' / pi, phi^2 = k_N'/2.
+
+        It grows by the edge value phi of the flat punch for every unit that smooth depth grows.
+        """
+        contact = self.section.contact
+        return float(np.sqrt(contact.stiffness_slope / 2.0) * abs(contact.smooth_depth_slope) / np.pi)
 
     def _from_the_end(self, radius: FloatArray) -> FloatArray:
         """What the mesh's outer edge throws back, shape (n, 9): the fields there, decaying inwards like all ends do.
@@ -110,14 +120,21 @@ class FemInterior:
         return np.asarray(np.exp(-rate * (end - radius))[:, None] * thrown)
 
     def _stated(self, values: FloatArray, error: FloatArray) -> dict[str, float]:
-        """Largest error of each group over its scale: the depth, the largest stress and gradient."""
+        """Largest error of each group over its scale: the depth, the largest stress and gradient.
+
+        The latter two scales are known to that error, too.
+        """
         mesh, depth = self.section.contact.layer_mesh, abs(self.section.depth)
         stress = np.abs(values[:, 2:7]).max(initial=np.finfo(float).tiny)
         steepest = max(np.abs(values[:, 7:]).max(initial=0.0), stress / min(1.0, mesh.thickness))
         scales = (max(depth, np.finfo(float).tiny), stress, stress, steepest)
-        return {
-            name: float(error[:, group].max(initial=0.0)) / scale + self.own_error
+        shares = {
+            name: float(error[:, group].max(initial=0.0)) / scale
             for (name, group), scale in zip(_GROUPS.items(), scales, strict=True)
+        }
+        moved = shares.pop("displacement") + self.unshown_error
+        return {"displacement": moved} | {
+            name: share / (1.0 - min(share, 0.5)) + self.own_error for name, share in shares.items()
         }
 
     @property
