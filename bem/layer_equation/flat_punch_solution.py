@@ -13,6 +13,7 @@ from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.error_model import FACTOR, FactorCoefficients
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
+from bem.layer_equation.profiles.at_radii import RadiusWeights
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
@@ -24,6 +25,8 @@ from contact.records.validation import FloatArray
 EPS = float(np.finfo(float).eps)
 # By this much, relative, the last panel reaches beyond the radius at which it ends, so that rounding takes no further.
 BEYOND = 4.0 * EPS
+# Nodes on a panel of data to find radii with: the kernel is known to 8^-8 = 6e-8 on panels of one thickness.
+COARSE_NODES = 8
 
 
 @dataclass(frozen=True)
@@ -157,6 +160,17 @@ class IntegralEquationSolution(FlatPunchSolution):
             return self.density(ratio, np.full((self.factor.panels_to(ratio), self.factor.count), depth))
         averages = depth - contact_averages(self.factor, load, flat_radius)
         return self.density(ratio, averages)
+
+    @cached_property
+    def at_radii(self) -> RadiusWeights:
+        """Of its factor."""
+        return RadiusWeights(self.factor)
+
+    def coarse(self, ratio: float) -> IntegralEquationSolution:
+        """On panels of `COARSE_NODES`."""
+        width = self.factor.panel_width
+        factor = VolterraFactor.of_kernel(self.kernel, int(np.ceil(ratio / width)), width, COARSE_NODES)
+        return IntegralEquationSolution(self.kernel, factor)
 
     def ending_at(self, ratio: float) -> IntegralEquationSolution | None:
         """Made anew, with as many nodes a panel."""

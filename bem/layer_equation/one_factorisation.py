@@ -139,7 +139,7 @@ class VolterraFactor:
         Args:
             values: Load plus inheritance at the nodes, shape (q, m).
         """
-        edge: FloatArray = (self._edge_matrix[: len(values)] @ values[..., None])[..., 0]
+        edge: FloatArray = (self.edge_matrix[: len(values)] @ values[..., None])[..., 0]
         return edge
 
     def resolvent_at(self, panel: int, edge: FloatArray, points: FloatArray) -> FloatArray:
@@ -174,7 +174,8 @@ class VolterraFactor:
         return left_out
 
     @cached_property
-    def _edge_matrix(self) -> FloatArray:
+    def edge_matrix(self) -> FloatArray:
+        """From a load and what is inherited at a panel's nodes to edge values there, shape (P, m, m)."""
         tau, omega = gauss_nodes(self.count)
         weights = self.panel_width * np.multiply.outer(tau, omega)
         E = partial_panel_interpolation(self.count)
