@@ -118,14 +118,14 @@ class EquivalentSystem:
     def excess_at_depth(self, indentation_depth: ArrayLike) -> FloatArray:
         """a - b [m] with g(a) = delta, Eq. (3); 0 <= delta <= g(max_radius)."""
         depth = np.asarray(indentation_depth, dtype=float) / self.length_unit
-        curve = _Curve(self.profile.at, self.profile.slope_at, self.profile.lead)
+        curve = _Curve(self.profile.at, self.profile.with_slope_at, self.profile.lead)
         return self._invert(depth, curve, "indentation_depth", self.length_unit)
 
     def excess_at_force(self, normal_force: ArrayLike) -> FloatArray:
         """a - b [m] of the elastic contact with this force F_N; 0 <= F_N <= elastic_force(max_radius)."""
         force = np.asarray(normal_force, dtype=float) / self._force_unit
         lead = self.profile.lead + (0.0 if self.flat_radius else float(self.profile.grid.power[0]))
-        return self._invert(force, _Curve(self._force_at, self._force_slope_at, lead), "normal_force", self._force_unit)
+        return self._invert(force, _Curve(self._force_at, self._force_with_slope_at, lead), "normal_force", self._force_unit)
 
     @cached_property
     def relative_error(self) -> Mapping[str, float]:
@@ -201,15 +201,13 @@ class EquivalentSystem:
         return self.flat_radius / self.length_unit + grid.left[piece] + grid.width[piece] * u ** grid.power[piece]
 
     def _force_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
-        x = self._position(piece, u)
-        stiffness = 2 * x * self.flat_punch.normalized_contact_stiffness(np.minimum(x, self._last))
-        return stiffness * self.profile.at(piece, u) - self.moment.at(piece, u)
+        return self._force_with_slope_at(piece, u)[0]
 
-    def _force_slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
-        """dF = k_N dg, Eq. (5)."""
-        x = self._position(piece, u)
+    def _force_with_slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """F and its derivative by u: dF = k_N dg, Eq. (5)."""
+        x, (g, g_u) = self._position(piece, u), self.profile.with_slope_at(piece, u)
         stiffness = 2 * x * self.flat_punch.normalized_contact_stiffness(np.minimum(x, self._last))
-        return stiffness * self.profile.slope_at(piece, u)
+        return stiffness * g - self.moment.at(piece, u), stiffness * g_u
 
     @property
     def _last(self) -> float:
@@ -234,10 +232,10 @@ class EquivalentSystem:
 
 @dataclass(frozen=True)
 class _Curve:
-    """An increasing function of the position u in a piece, its slope by u, and the power of u it begins with."""
+    """An increasing function of the position u in a piece, with its slope by u, and the power of u it begins with."""
 
     value: Callable[[NDArray[np.intp], FloatArray], FloatArray]
-    slope: Callable[[NDArray[np.intp], FloatArray], FloatArray]
+    with_slope: Callable[[NDArray[np.intp], FloatArray], tuple[FloatArray, FloatArray]]
     lead: float
 
 
@@ -249,7 +247,8 @@ def _safeguarded_newton(curve: _Curve, piece: NDArray[np.intp], target: FloatArr
     low, high, u = np.zeros_like(start), np.ones_like(start), start
     size = np.where(piece > 0, 1.0, 0.0)
     for _ in range(MOST_STEPS):
-        residual, slope = curve.value(piece, u) - target, curve.slope(piece, u)
+        value, slope = curve.with_slope(piece, u)
+        residual = value - target
         low, high = np.where(residual <= 0, u, low), np.where(residual >= 0, u, high)
         step = u - np.divide(residual, slope, out=np.full_like(u, np.inf), where=slope > 0)
         new = np.where((step >= low) & (step <= high), step, (low + high) / 2)

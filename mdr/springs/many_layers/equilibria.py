@@ -132,7 +132,7 @@ def _finished(
 def _secant(rise: FloatArray, power: FloatArray) -> FloatArray:
     """The power between two points from their differences of logarithms; the one before where there are no two."""
     known = np.abs(rise[0]) > 0.0
-    return np.clip(np.divide(rise[1], rise[0], out=power.copy(), where=known), *POWERS)
+    return np.asarray(np.clip(np.divide(rise[1], rise[0], out=power.copy(), where=known), *POWERS))
 
 
 def _load(indenter: Profile, end: float) -> MappedFunction:
