@@ -58,13 +58,14 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         system, chosen = _system(scene, source)
     with log.stage("force"):
         values = getattr(scene.loading, "values", np.empty(0))
-        found = _in_blocks(partial(_equilibria, system, scene), values, chosen)
+        found = _in_blocks(partial(_equilibria, system, scene), values=values, chosen=chosen)
         excess, radius, depth, force, stiffness = (found[name] for name in ("excess", *ContactPath.ARRAYS))
     fields = PathFields(scene, system.flat_punch, excess, depth, partial(density_errors, system, scene, radius))
     fields = replace(fields, finer=by_finer_data(solve_elastic, scene, flat_punch, settings))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
-    errors = _in_blocks(partial(_errors, system, scene), radius, depth, force, stiffness)
+    state = {"radius": radius, "depth": depth, "force": force, "contact_stiffness": stiffness}
+    errors = _in_blocks(partial(_errors, system, scene), **state)
     refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
@@ -216,13 +217,13 @@ def _system(scene: Scene, source: LoggedSource) -> tuple[EquivalentSystem, Float
         return beyond_falls(scene, source, ring)
 
 
-def _in_blocks(compute: Callable[..., dict[str, FloatArray]], *values: FloatArray | None) -> dict[str, FloatArray]:
+def _in_blocks(compute: Callable[..., dict[str, FloatArray]], **values: FloatArray | None) -> dict[str, FloatArray]:
     """What is computed of each value by itself, so many at a time that all intermediate arrays stay in the cache."""
-    blocks = -(-max(one.size for one in values if one is not None) // BLOCK)
+    blocks = -(-max(one.size for one in values.values() if one is not None) // BLOCK)
     if blocks <= 1:
-        return compute(*values)
-    parts = [[None] * blocks if one is None else np.array_split(one, blocks) for one in values]
-    found = [compute(*block) for block in zip(*parts, strict=True)]
+        return compute(**values)
+    parts = [[None] * blocks if one is None else np.array_split(one, blocks) for one in values.values()]
+    found = [compute(**dict(zip(values, block, strict=True))) for block in zip(*parts, strict=True)]
     return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
 
 
@@ -259,6 +260,7 @@ def _errors(
     system: EquivalentSystem,
     scene: Scene,
     radius: FloatArray,
+    *,
     depth: FloatArray,
     force: FloatArray,
     contact_stiffness: FloatArray,
@@ -266,7 +268,7 @@ def _errors(
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
     if system.variants:
         return _table_errors(system, scene, radius, depth, force)
-    errors = system.relative_errors(radius)
+    errors = system.relative_errors(radius, of_springs=False)
     stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
     ratio = radius / system.length_unit
     exact = np.zeros_like(radius)
@@ -316,7 +318,7 @@ def density_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray) -
             # What slopes of panels that shrink towards the edge miss counts as in the pressure.
             return PRESSURE_ROUNDING + system.flat_punch.punch_pressure_error(ratio)
         return PRESSURE_ROUNDING + system.flat_punch.spring_error(ratio)
-    depth_error = system.relative_errors(radius)["indentation_depth"]
+    depth_error = system.relative_errors(radius, of_springs=False)["indentation_depth"]
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     return rounding + system.position_rounding(radius) + system.flat_punch.contact_density_error(ratio, depth_error)
 

@@ -186,12 +186,12 @@ class IntegralEquationSolution(FlatPunchSolution):
         nodes are not even, so what they leave of the slope is not as small.
         """
         share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return self.contact_density_error(ratio, depth_error) + share * self._slope_truncation(ratio)
+        return _of_density(share, ratio, depth_error) + share * self._slope_truncation(ratio)
 
     def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
         """The same without what polynomials lose of the slope."""
         share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return np.asarray(share * ratio**2 / (1 + ratio**2) * depth_error)
+        return _of_density(share, ratio, depth_error)
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
@@ -269,3 +269,8 @@ class IntegralEquationSolution(FlatPunchSolution):
         partial = grid.width[:, None] * tau * (inside**2 @ omega)
         full = np.concatenate([[0.0], np.cumsum(grid.width * (y**2 @ omega))[:-1]])
         return MappedFunction(grid, (full[:, None] + partial) / grid.nodes - 1, 1.0)  # Eqs. (6), (10)
+
+
+def _of_density(share: FloatArray, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+    """Error of the pressure from that of the density, of which psi is this share."""
+    return np.asarray(share * ratio**2 / (1 + ratio**2) * depth_error)

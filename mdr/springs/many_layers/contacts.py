@@ -112,4 +112,6 @@ class _Group:
     def against(self, weights: FloatArray) -> FloatArray:
         """int w g_hs dt over each contact, the weights by Chebyshev coefficients on panels, shape (n, panels, m)."""
         values = chebyshev_sum(weights[self._contact, self._panel][:, None], self._place)
-        return np.asarray(np.bincount(self._contact, np.sum(values * self._mass, axis=1), self._count), dtype=np.float64)
+        return np.asarray(
+            np.bincount(self._contact, np.sum(values * self._mass, axis=1), self._count), dtype=np.float64
+        )
