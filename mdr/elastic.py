@@ -33,8 +33,6 @@ from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
 from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import beyond_falls, covering_system
 from mdr.springs.surface_fields import ContactFields
-from mdr.springs.table_errors import elastic_errors
-from mdr.springs.table_pressure import pressure_errors
 
 if TYPE_CHECKING:
     from bem.layer_equation.inside.interior import ContactInterior
@@ -327,6 +325,10 @@ def _table_errors(
     system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
 ) -> dict[str, FloatArray]:
     """As `_errors`, from the table's own variants."""
+    # Other flat-punch data do not need these modules.
+    from mdr.springs.table_errors import elastic_errors  # noqa: PLC0415
+    from mdr.springs.table_pressure import pressure_errors  # noqa: PLC0415
+
     is_punch = isinstance(scene.indenter, FlatPunch)
     errors = elastic_errors(system, scene.loading, radius, depth, is_punch=is_punch)
     values = (radius, depth, force, system.contact_stiffness(radius))
