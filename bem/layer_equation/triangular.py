@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 
 from contact import NotConvergedError
@@ -14,6 +16,8 @@ from contact.records.validation import FloatArray
 _LAPACK = lapack()
 # Side of the squares that a matrix is mirrored by: two of them take 64 kB; chosen.
 _SQUARE = 64
+# Largest section of a factor that is copied for LAPACK, 2 MB; larger ones are solved in blocks of this size. Chosen.
+_COPIED = 512
 
 
 def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> FloatArray:
@@ -58,6 +62,8 @@ def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = Fals
     """
     if not right.size:
         return np.zeros_like(right)
+    if len(lower) > _COPIED and not lower.flags.forc:
+        return _solve_in_blocks(lower, right, transposed=transposed)
     # LAPACK counts in columns: a matrix that lies in memory row by row is its own transpose there.
     by_columns = lower.flags.f_contiguous
     with one_thread:
@@ -67,6 +73,19 @@ def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = Fals
     if failed:
         raise NotConvergedError(f"the factor is singular in row {failed - 1}")
     return np.asarray(solution)
+
+
+def _solve_in_blocks(lower: FloatArray, right: FloatArray, *, transposed: bool) -> FloatArray:
+    """The same block by block, since LAPACK would copy a section of a factor: a hundred megabytes at a/h = 159."""
+    solution, ends = right.copy(), [*range(0, len(lower), _COPIED), len(lower)]
+    blocks = [slice(*pair) for pair in pairwise(ends)]
+    for block in reversed(blocks) if transposed else blocks:
+        if transposed:
+            solution[block] -= lower[block.stop :, block].T @ solution[block.stop :]
+        else:
+            solution[block] -= lower[block, : block.start] @ solution[: block.start]
+        solution[block] = solve_lower(lower[block, block], solution[block], transposed=transposed)
+    return solution
 
 
 def positive_factor(matrix: FloatArray) -> FloatArray:
