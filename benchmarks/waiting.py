@@ -76,6 +76,7 @@ def pressed(h):
     return Scene(layer=layer.replace(thickness=float(h)), indenter=indenter, loading=prescribed)
 scenes = [pressed(h) for h in np.geomspace(2e-4, 1e-2, 1000)]
 solve = lambda source=IntegralEquation(): equilibria(scenes, source)
+equilibria(scenes[::50], IntegralEquation())
 forces = lambda found: np.concatenate([found.normal_force, found.contact_radius, found.indentation_depth]).tolist()
 """
 CONE, SPHERE = "indenter = TruncatedCone(flat_radius=5e-4, slope=0.1)\n", "indenter = Sphere(radius=0.01)\n"
@@ -115,10 +116,10 @@ ROWS = {
     "warm, 20 impacts one by one": IMPACTS + ONE + WARM,
     "warm, 20 impacts one by one to 1e-9": IMPACTS + ONE.replace("1e-6", "1e-9") + WARM,
     "warm, 20 impacts one by one, one Prony branch": IMPACTS + PRONY + ONE + WARM,
-    "warm, 1 000 thicknesses, truncated cone by depth": CONE + DEEP + THICKNESSES + WARM,
-    "warm, 1 000 thicknesses, truncated cone by radius": CONE + WIDE + THICKNESSES + WARM,
-    "warm, 1 000 thicknesses, sphere by depth": SPHERE + DEEP + THICKNESSES + WARM,
-    "warm, 1 000 thicknesses, sphere by radius": SPHERE + WIDE + THICKNESSES + WARM,
+    "warm, 1 000 thicknesses, truncated cone by depth": CONE + DEEP + THICKNESSES + ONCE,
+    "warm, 1 000 thicknesses, truncated cone by radius": CONE + WIDE + THICKNESSES + ONCE,
+    "warm, 1 000 thicknesses, sphere by depth": SPHERE + DEEP + THICKNESSES + ONCE,
+    "warm, 1 000 thicknesses, sphere by radius": SPHERE + WIDE + THICKNESSES + ONCE,
     "data, a million depths": MILLION.format(loading="IndentationDepths(np.linspace(1e-7, 1e-4, 1_000_000))") + ONCE,
     "data, a million forces": MILLION.format(loading="NormalForces(np.linspace(1e-6, 0.3, 1_000_000))") + ONCE,
     **{f"data, first solve at a/h = {ratio}": DATA.format(ratio=ratio) + ONCE for ratio in (60, 159, 165, 900)},

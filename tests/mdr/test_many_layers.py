@@ -86,6 +86,16 @@ def test_scenes_that_must_be_solved_alone_are():
     assert np.isfinite(found[:, 1:]).all()
 
 
+def test_a_truncated_cone_on_thin_layers_is_not_left_over():
+    """Its excess is more than three times that on a half-space: at first such scenes were solved one by one."""
+    scene = Scene(
+        layer=Layer(thickness=2e-4, youngs_modulus=1e6, poissons_ratio=0.45),
+        indenter=TruncatedCone(flat_radius=5e-4, slope=0.1),
+        loading=IndentationDepths([5e-5]),
+    )
+    assert np.isfinite(equilibria_on_layers([scene] * 4, PUNCH)).all()
+
+
 def test_beyond_the_indenter_is_refused():
     beyond = scenes(INDENTERS[4], lambda share: IndentationDepths([1e-2]), poissons_ratio=0.45)
     with pytest.raises(InvalidInput, match="indenter ends"):

@@ -30,8 +30,9 @@ COARSE_STEP = 1e-6
 # Largest relative residual that the last step leaves: its slope between points 1e-6 apart is as exact.
 CLOSE = 1e-8
 # The profile is resolved up to so many times the largest excess on a half-space. Paraboloids touch twice as far on thin
-# incompressible layers, 2/1.41 as far on others; what reaches further is solved by itself.
-REACH = 3.0
+# incompressible layers; beside a flat end excesses go with the square of the depth: 3.1 times as far on a layer of
+# nu = 0.45, b = 2.5 h. What reaches further is solved by itself; chosen.
+REACH = 8.0
 # The profile is asked for up to its end but for this share, beside which a sphere is upright.
 SHORT_OF_END = 1e-6
 # Least and largest powers with which depth or force grow with the excess: of a rim and of the steepest tip.
