@@ -79,12 +79,13 @@ def _solve_in_blocks(lower: FloatArray, right: FloatArray, *, transposed: bool) 
     """The same block by block, since LAPACK would copy a section of a factor: a hundred megabytes at a/h = 159."""
     solution, ends = right.copy(), [*range(0, len(lower), _COPIED), len(lower)]
     blocks = [slice(*pair) for pair in pairwise(ends)]
-    for block in reversed(blocks) if transposed else blocks:
-        if transposed:
-            solution[block] -= lower[block.stop :, block].T @ solution[block.stop :]
-        else:
-            solution[block] -= lower[block, : block.start] @ solution[: block.start]
-        solution[block] = solve_lower(lower[block, block], solution[block], transposed=transposed)
+    with one_thread:
+        for block in reversed(blocks) if transposed else blocks:
+            if transposed:
+                solution[block] -= lower[block.stop :, block].T @ solution[block.stop :]
+            else:
+                solution[block] -= lower[block, : block.start] @ solution[: block.start]
+            solution[block] = solve_lower(lower[block, block], solution[block], transposed=transposed)
     return solution
 
 
