@@ -39,7 +39,7 @@ def test_blocks_are_short_loadings(indenter, kind, low, high):
 
 
 def test_a_long_loading_takes_little_more_memory_than_its_answer():
-    """A million depths took 630 MB once, of which the ten arrays of the answer are 80."""
+    """Without blocks it took 29 arrays as long as the loading, of which ten are the answer; with them 21."""
     depths = np.linspace(1e-7, 1e-4, 10 * BLOCK)
     scene = Scene(layer=LAYER, indenter=Paraboloid(radius_of_curvature=0.01), loading=IndentationDepths(depths))
     Mdr().solve(scene.replace(loading=IndentationDepths(depths[::100])))
@@ -47,4 +47,4 @@ def test_a_long_loading_takes_little_more_memory_than_its_answer():
     path = Mdr().solve(scene)
     _, peak = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert peak < 40 * path.normal_force.nbytes
+    assert peak < 25 * path.normal_force.nbytes
