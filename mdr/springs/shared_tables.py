@@ -65,15 +65,19 @@ def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> SharedTab
         return SharedTable(layer, indenter, 1.0, 1.0, 1.0)
     coefficient, exponent = law
     length = scale if layer.is_half_space else layer.thickness
-    plain = isinstance(layer, Layer)
-    own = _in_own_units(layer.support, layer.poissons_ratio, layer.is_half_space) if plain else layer.in_own_units()
     return SharedTable(
-        own,
+        _known_in_own_units(layer),
         _unit_power(exponent),
         length,
         coefficient * length**exponent,
         contact_modulus(layer) * length,
     )
+
+
+def _known_in_own_units(layer: ElasticLayer) -> ElasticLayer:
+    if isinstance(layer, Layer):
+        return _in_own_units(layer.support, layer.poissons_ratio, layer.is_half_space)
+    return layer.in_own_units()
 
 
 @lru_cache(maxsize=_KEPT)
