@@ -137,10 +137,11 @@ def _whole_turns() -> int:
 
 def _edge_derivatives(densities: FloatArray, width: float, orders: int) -> FloatArray:
     """Derivatives of each density at the edge, from itself to the highest order, shape (orders + 1, densities)."""
-    coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
+    derivatives = [densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T]
+    for _ in range(orders):
+        derivatives.append(chebyshev.chebder(derivatives[-1], axis=1))
     # Every Chebyshev polynomial is 1 at the edge.
-    found = [(2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(orders + 1)]
-    return np.array(found)
+    return np.array([(2 / width) ** n * derivative.sum(axis=1) for n, derivative in enumerate(derivatives)])
 
 
 def _pair(left: FloatArray, right: FloatArray) -> FloatArray:
