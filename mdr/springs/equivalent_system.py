@@ -28,6 +28,8 @@ NOISE_TOLERANCE = 1e-11
 # From so many targets on, a start between the curve's nodes, which saves three Newton steps of seven, costs less than
 # these steps; chosen.
 MANY = 1024
+# A position u beside the start of a piece at which a curve has a value and a slope; chosen.
+_BESIDE = 1e-6
 # Radii, beside the profile's nodes, at which the largest error is looked for: errors change from panel to panel.
 _SAMPLES = 96
 
@@ -240,13 +242,22 @@ class EquivalentSystem:
 
 
 def _between_nodes(curve: _Curve, grid: MappedGrid, piece: NDArray[np.intp], target: FloatArray) -> FloatArray:
-    """Positions u by straight lines between a curve's values at all nodes, to the power with which it begins."""
-    u = np.broadcast_to(gauss_nodes(grid.count)[0], grid.nodes.shape)
-    number = np.broadcast_to(np.arange(len(u))[:, None], u.shape)
+    """Positions u by inverse cubics between a curve's values and slopes, to the power with which it begins.
+
+    The values are those at all nodes and at the ends of the pieces, or close beside their starts.
+    """
+    u = np.concatenate([[_BESIDE], gauss_nodes(grid.count)[0], [1.0]])
+    number = np.repeat(np.arange(len(grid.left)), u.size)
+    value, slope = curve.with_slope(number, np.tile(u, len(grid.left)))
     power = 1.0 / max(curve.lead, 1.0)
-    values = np.maximum.accumulate(np.append(0.0, curve.with_slope(number, u)[0]))
-    place = np.interp(target**power, values**power, np.append(0.0, number + u))
-    return np.asarray(np.clip(place - piece, 0.0, 1.0))
+    w, place = np.maximum.accumulate(value**power), number + np.tile(u, len(grid.left))
+    inverse = np.divide(value ** (1.0 - power), power * slope, out=np.zeros_like(w), where=slope > 0.0)
+    i = np.clip(w.searchsorted(target**power) - 1, 0, w.size - 2)
+    h, way = w[i + 1] - w[i], place[i + 1] - place[i]
+    share = np.divide(target**power - w[i], h, out=np.zeros_like(h), where=h > 0.0)
+    first, last = h * inverse[i], h * inverse[i + 1]
+    cubic = share * (first + share * (3.0 * way - 2.0 * first - last + share * (first + last - 2.0 * way)))
+    return np.asarray(np.clip(place[i] + cubic - piece, 0.0, 1.0))
 
 
 @dataclass(frozen=True)
