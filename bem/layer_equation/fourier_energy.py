@@ -139,7 +139,7 @@ def _edge_derivatives(densities: FloatArray, width: float, orders: int) -> Float
     """Derivatives of each density at the edge, from itself to the highest order, shape (orders + 1, densities)."""
     derivatives = [densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T]
     for _ in range(orders):
-        derivatives.append(chebyshev.chebder(derivatives[-1], axis=1))
+        derivatives.append(np.asarray(chebyshev.chebder(derivatives[-1], axis=1), dtype=np.float64))
     # Every Chebyshev polynomial is 1 at the edge.
     return np.array([(2 / width) ** n * derivative.sum(axis=1) for n, derivative in enumerate(derivatives)])
 
