@@ -111,7 +111,10 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
 
 @one_thread
 def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> Equilibria:
-    """Elastic contacts at one prescribed radius, depth or force each, power laws together and others one by one.
+    """Elastic contacts at one prescribed radius, depth or force each.
+
+    Power laws on alike layers share one solution. Any other convex indenter on several plain layers is answered for all
+    of them at once; the rest one by one.
 
     Raises:
         InvalidInput: If a scene lists effects or prescribes more than one value.
