@@ -16,8 +16,8 @@ from contact.records.validation import FloatArray
 _LAPACK = lapack()
 # Side of the squares that a matrix is mirrored by: two of them take 64 kB; chosen.
 _SQUARE = 64
-# Largest section of a factor that is copied for LAPACK, 2 MB; larger ones are solved in blocks of this size. Chosen.
-_COPIED = 512
+# Largest section of a factor that is copied for LAPACK, 8 MB; larger ones are solved in blocks of this size. Chosen.
+_COPIED = 1024
 
 
 def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> FloatArray:
