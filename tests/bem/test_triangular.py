@@ -38,13 +38,12 @@ def test_triangular_solutions_are_scipys(order, transposed, shape):
 
 
 @pytest.mark.parametrize("transposed", [False, True])
-@pytest.mark.parametrize("columns", [(), (3,)])
-def test_sections_of_large_factors_are_solved_without_a_copy(transposed, columns):
+def test_sections_of_large_factors_are_solved_without_a_copy(transposed):
     """LAPACK copies a section of a matrix: at a/h = 159 that took 116 MB for each solution."""
     size = 2300
     whole = np.tril(kernel(size + 100)) + np.eye(size + 100)
     section = whole[:size, :size]
-    right = np.random.default_rng(2).normal(size=(size, *columns))
+    right = np.random.default_rng(2).normal(size=(size, 2))
     expected = scipy.linalg.solve_triangular(section, right, lower=True, trans=int(transposed))
     tracemalloc.start()
     found = solve_lower(section, right, transposed=transposed)
