@@ -17,6 +17,7 @@ from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, N
 from contact.answer.one_thread import one_thread
 from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
+from mdr.springs.many_layers.equilibria import equilibria_on_layers, takes_part
 from mdr.springs.shared_tables import power_law, reference
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ Progress: TypeAlias = Callable[[int, int], None]
 _PRESCRIBED = (ContactRadii, IndentationDepths, NormalForces)
 # Scenes between two reports of progress; chosen.
 _CHUNK = 512
+# From so many scenes with one indenter on, setting up what they share pays; chosen.
+_SEVERAL = 4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +111,10 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
 
 @one_thread
 def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress: Progress | None = None) -> Equilibria:
-    """Elastic contacts at one prescribed radius, depth or force each, power laws together and others one by one.
+    """Elastic contacts at one prescribed radius, depth or force each.
+
+    Power laws on alike layers share one solution. Any other convex indenter on several plain layers is answered for all
+    of them at once; the rest one by one.
 
     Raises:
         InvalidInput: If a scene lists effects or prescribes more than one value.
@@ -146,10 +152,11 @@ def _refuse(number: int, scene: Scene) -> None:
 
 
 def _kind(number: int, scene: Scene) -> Hashable:
-    """What scenes of one group have in common; a profile that is no power law is a group of its own."""
-    law = power_law(scene.indenter)
-    if law is None:
-        return number
+    """What scenes of one group have in common; who takes part in none is a group of its own."""
+    if power_law(scene.indenter) is None:
+        layer = scene.layer.surface
+        alike = type(scene.loading), layer.poissons_ratio, scene.layer.support, scene.indenter
+        return alike if takes_part(scene) else number
     shared = reference(scene.layer, scene.indenter, 1.0)
     return type(scene.loading), shared.layer, shared.indenter
 
@@ -157,8 +164,7 @@ def _kind(number: int, scene: Scene) -> Hashable:
 def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     """Radius, depth, force and stiffness of one group, shape (4, n), from one solution of the shared problem."""
     if power_law(scenes[0].indenter) is None:
-        path = solve_elastic(scenes[0], flat_punch, {})
-        return np.stack([path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness])
+        return _on_layers(scenes, flat_punch)
     units = [reference(scene.layer, scene.indenter, 1.0) for scene in scenes]
     length, depth, stiffness = (np.array([getattr(u, n) for u in units]) for n in ("length", "depth", "stiffness"))
     values = np.array([scene.loading.values[0] for scene in scenes if isinstance(scene.loading, _PRESCRIBED)])
@@ -169,3 +175,15 @@ def _together(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
     path = solve_elastic(shared, flat_punch, {})
     answers = np.stack([path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness])
     return np.asarray(answers[:, place] * np.stack([length, depth, stiffness * depth, stiffness]))
+
+
+def _on_layers(scenes: list[Scene], flat_punch: FlatPunchSource) -> FloatArray:
+    """The same of one indenter that is no power law, scenes that must be solved by themselves one by one."""
+    found = np.full((4, len(scenes)), np.nan)
+    if takes_part(scenes[0]) and len(scenes) >= _SEVERAL:
+        found = equilibria_on_layers(scenes, flat_punch)
+    for number in np.flatnonzero(np.isnan(found).any(axis=0)):
+        path = solve_elastic(scenes[number], flat_punch, {})
+        answers = path.contact_radius, path.indentation_depth, path.normal_force, path.contact_stiffness
+        found[:, number] = np.concatenate(answers)
+    return found

@@ -11,6 +11,7 @@ import numpy as np
 
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
+from bem.polynomials.chebyshev import BLOCK
 from contact import (
     ContactPath,
     ContactRadii,
@@ -32,8 +33,6 @@ from mdr.springs.error_model import PRESSURE_ROUNDING, SAMPLED_ROUNDING
 from mdr.springs.pulling import refuse_pulling
 from mdr.springs.reach import beyond_falls, covering_system
 from mdr.springs.surface_fields import ContactFields
-from mdr.springs.table_errors import elastic_errors
-from mdr.springs.table_pressure import pressure_errors
 
 if TYPE_CHECKING:
     from bem.layer_equation.inside.interior import ContactInterior
@@ -56,15 +55,15 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
     with log.stage("mdr_profile"):
         system, chosen = _system(scene, source)
     with log.stage("force"):
-        excess, depth = _excess_and_depth(system, scene, chosen)
-        radius = scene.loading.values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
-        stiffness = system.contact_stiffness(radius)
-        force = system.force(radius, depth, stiffness)
+        values = getattr(scene.loading, "values", np.empty(0))
+        found = _in_blocks(partial(_equilibria, system, scene), values=values, chosen=chosen)
+        excess, radius, depth, force, stiffness = (found[name] for name in ("excess", *ContactPath.ARRAYS))
     fields = PathFields(scene, system.flat_punch, excess, depth, partial(density_errors, system, scene, radius))
     fields = replace(fields, finer=by_finer_data(solve_elastic, scene, flat_punch, settings))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
-    errors = _errors(system, scene, radius, depth, force, contact_stiffness=stiffness)
+    state = {"radius": radius, "depth": depth, "force": force, "contact_stiffness": stiffness}
+    errors = _in_blocks(partial(_errors, system, scene), **state)
     refuse_pulling(scene, fields, radius, force, float(errors["pressure"].max()))
     return ContactPath(
         scene=scene,
@@ -216,11 +215,31 @@ def _system(scene: Scene, source: LoggedSource) -> tuple[EquivalentSystem, Float
         return beyond_falls(scene, source, ring)
 
 
+def _in_blocks(compute: Callable[..., dict[str, FloatArray]], **values: FloatArray | None) -> dict[str, FloatArray]:
+    """What is computed of each value by itself, so many at a time that all intermediate arrays stay in the cache."""
+    blocks = -(-max(one.size for one in values.values() if one is not None) // BLOCK)
+    if blocks <= 1:
+        return compute(**values)
+    parts = [[None] * blocks if one is None else np.array_split(one, blocks) for one in values.values()]
+    found = [compute(**dict(zip(values, block, strict=True))) for block in zip(*parts, strict=True)]
+    return {name: np.concatenate([part[name] for part in found]) for name in found[0]}
+
+
+def _equilibria(
+    system: EquivalentSystem, scene: Scene, values: FloatArray, chosen: FloatArray | None
+) -> dict[str, FloatArray]:
+    """a - b, a, the depth, the force and k_N for prescribed values."""
+    excess, depth = _excess_and_depth(system, scene, values, chosen)
+    radius = values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
+    stiffness = system.contact_stiffness(radius)
+    force = system.force(radius, depth, stiffness)
+    return {"excess": excess} | dict(zip(ContactPath.ARRAYS, (radius, depth, force, stiffness), strict=True))
+
+
 def _excess_and_depth(
-    system: EquivalentSystem, scene: Scene, chosen: FloatArray | None
+    system: EquivalentSystem, scene: Scene, values: FloatArray, chosen: FloatArray | None
 ) -> tuple[FloatArray, FloatArray]:
     """a - b and the depth, Eq. (3); a flat punch keeps its radius."""
-    values = getattr(scene.loading, "values", np.empty(0))
     if chosen is not None:
         by_depth = isinstance(scene.loading, IndentationDepths)
         return chosen, values if by_depth else system.profile_beyond(chosen)
@@ -239,15 +258,15 @@ def _errors(
     system: EquivalentSystem,
     scene: Scene,
     radius: FloatArray,
+    *,
     depth: FloatArray,
     force: FloatArray,
-    *,
     contact_stiffness: FloatArray,
 ) -> dict[str, FloatArray]:
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
     if system.variants:
         return _table_errors(system, scene, radius, depth, force)
-    errors = system.relative_errors(radius)
+    errors = system.relative_errors(radius, of_springs=False)
     stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
     ratio = radius / system.length_unit
     exact = np.zeros_like(radius)
@@ -297,7 +316,7 @@ def density_errors(system: EquivalentSystem, scene: Scene, radius: FloatArray) -
             # What slopes of panels that shrink towards the edge miss counts as in the pressure.
             return PRESSURE_ROUNDING + system.flat_punch.punch_pressure_error(ratio)
         return PRESSURE_ROUNDING + system.flat_punch.spring_error(ratio)
-    depth_error = system.relative_errors(radius)["indentation_depth"]
+    depth_error = system.relative_errors(radius, of_springs=False)["indentation_depth"]
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     return rounding + system.position_rounding(radius) + system.flat_punch.contact_density_error(ratio, depth_error)
 
@@ -306,6 +325,10 @@ def _table_errors(
     system: EquivalentSystem, scene: Scene, radius: FloatArray, depth: FloatArray, force: FloatArray
 ) -> dict[str, FloatArray]:
     """As `_errors`, from the table's own variants."""
+    # Other flat-punch data do not need these modules.
+    from mdr.springs.table_errors import elastic_errors  # noqa: PLC0415
+    from mdr.springs.table_pressure import pressure_errors  # noqa: PLC0415
+
     is_punch = isinstance(scene.indenter, FlatPunch)
     errors = elastic_errors(system, scene.loading, radius, depth, is_punch=is_punch)
     values = (radius, depth, force, system.contact_stiffness(radius))

@@ -13,6 +13,7 @@ from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.error_model import FACTOR, FactorCoefficients
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
+from bem.layer_equation.profiles.at_radii import RadiusWeights
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
@@ -24,6 +25,8 @@ from contact.records.validation import FloatArray
 EPS = float(np.finfo(float).eps)
 # By this much, relative, the last panel reaches beyond the radius at which it ends, so that rounding takes no further.
 BEYOND = 4.0 * EPS
+# Nodes on a panel of data to find radii with: the kernel is known to 8^-8 = 6e-8 on panels of one thickness.
+COARSE_NODES = 8
 
 
 @dataclass(frozen=True)
@@ -158,6 +161,17 @@ class IntegralEquationSolution(FlatPunchSolution):
         averages = depth - contact_averages(self.factor, load, flat_radius)
         return self.density(ratio, averages)
 
+    @cached_property
+    def at_radii(self) -> RadiusWeights:
+        """Of its factor."""
+        return RadiusWeights(self.factor)
+
+    def coarse(self, ratio: float) -> IntegralEquationSolution:
+        """On panels of `COARSE_NODES`."""
+        width = self.factor.panel_width
+        factor = VolterraFactor.of_kernel(self.kernel, int(np.ceil(ratio / width)), width, COARSE_NODES)
+        return IntegralEquationSolution(self.kernel, factor)
+
     def ending_at(self, ratio: float) -> IntegralEquationSolution | None:
         """Made anew, with as many nodes a panel."""
         panels = self.factor.panels_to(ratio)
@@ -172,12 +186,12 @@ class IntegralEquationSolution(FlatPunchSolution):
         nodes are not even, so what they leave of the slope is not as small.
         """
         share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return self.contact_density_error(ratio, depth_error) + share * self._slope_truncation(ratio)
+        return _of_density(share, ratio, depth_error) + share * self._slope_truncation(ratio)
 
     def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
         """The same without what polynomials lose of the slope."""
         share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return np.asarray(share * ratio**2 / (1 + ratio**2) * depth_error)
+        return _of_density(share, ratio, depth_error)
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
@@ -255,3 +269,8 @@ class IntegralEquationSolution(FlatPunchSolution):
         partial = grid.width[:, None] * tau * (inside**2 @ omega)
         full = np.concatenate([[0.0], np.cumsum(grid.width * (y**2 @ omega))[:-1]])
         return MappedFunction(grid, (full[:, None] + partial) / grid.nodes - 1, 1.0)  # Eqs. (6), (10)
+
+
+def _of_density(share: FloatArray, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+    """Error of the pressure from that of the density, of which psi is this share."""
+    return np.asarray(share * ratio**2 / (1 + ratio**2) * depth_error)

@@ -12,7 +12,7 @@ chi = 1, and phi^ is known from the density and its derivatives at the edge, by 
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -47,13 +47,22 @@ def energy_matrix(densities: FloatArray, width: float, support: Support, poisson
     size = 1 << int(np.ceil(np.log2(max(unit.shape[1], 64))))
     step = 2 * np.pi / size
     turns = _whole_turns()
-    k = step * np.arange(turns * size)
     offsets, weights = gauss_nodes(WAVENUMBERS)
     energy = np.zeros((len(densities), len(densities)))
-    for offset, weight in zip(step * offsets, step * weights, strict=True):
+    compliances = _compliances(size, support, poissons_ratio)
+    for offset, weight, chi in zip(step * offsets, step * weights, compliances, strict=True):
         transform = _transform(unit, offset, turns, size)
-        energy += weight * (transform * compliance_kernel(k + offset, support, poissons_ratio)) @ transform.T
-    return 2 / np.pi * (energy + _tail(densities, width, step * k.size))
+        energy += weight * (transform * chi) @ transform.T
+    return 2 / np.pi * (energy + _tail(densities, width, step * (turns * size)))
+
+
+# Densities of one layer come in four sizes, of which the largest takes 0.9 MB.
+@lru_cache(maxsize=4)
+def _compliances(size: int, support: Support, poissons_ratio: float) -> FloatArray:
+    """chi at all wavenumbers, a row for each offset."""
+    step = 2 * np.pi / size
+    k = step * np.arange(_whole_turns() * size)
+    return compliance_kernel(k + step * gauss_nodes(WAVENUMBERS)[0][:, None], support, poissons_ratio)
 
 
 def _on_unit_panels(densities: FloatArray, parts: int) -> FloatArray:
@@ -128,10 +137,11 @@ def _whole_turns() -> int:
 
 def _edge_derivatives(densities: FloatArray, width: float, orders: int) -> FloatArray:
     """Derivatives of each density at the edge, from itself to the highest order, shape (orders + 1, densities)."""
-    coefficients = densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T
+    derivatives = [densities[:, -1] @ chebyshev_from_nodes(densities.shape[2]).T]
+    for _ in range(orders):
+        derivatives.append(np.asarray(chebyshev.chebder(derivatives[-1], axis=1), dtype=np.float64))
     # Every Chebyshev polynomial is 1 at the edge.
-    found = [(2 / width) ** n * chebyshev.chebder(coefficients, n, axis=1).sum(axis=1) for n in range(orders + 1)]
-    return np.array(found)
+    return np.array([(2 / width) ** n * derivative.sum(axis=1) for n, derivative in enumerate(derivatives)])
 
 
 def _pair(left: FloatArray, right: FloatArray) -> FloatArray:

@@ -11,7 +11,7 @@ replace the rest.
 from __future__ import annotations
 
 from math import inf
-from typing import Protocol, Self, runtime_checkable
+from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,6 +19,9 @@ from numpy.typing import ArrayLike
 from bem.polynomials.mapped import MappedFunction
 from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.layer_equation.profiles.at_radii import RadiusWeights
 
 # Multiplies the relative error of the depth, and gives that of the pressure, where the profile is fitted. Against
 # refined data the pressure's error was at most 0.5 of the depth's beyond a/h = 160 and 1.6 with tables; the rest is a
@@ -177,6 +180,15 @@ class FlatPunchSolution(Protocol):
     def ending_at(self, ratio: float) -> FlatPunchSolution | None:
         """The same layer on panels that are no wider and of which the last ends at this ratio; None where none can."""
         return None
+
+    @property
+    def at_radii(self) -> RadiusWeights | None:
+        """What contacts of many profiles share; None where each profile needs a solution of its own."""
+        return None
+
+    def coarse(self, ratio: float) -> FlatPunchSolution:
+        """Less exact data of the same layer up to a ratio, at once there, to find radii with."""
+        return self
 
     def one_contact(self, ratio: float) -> FlatPunchSolution:
         """The solution that gives the pressure of one contact."""

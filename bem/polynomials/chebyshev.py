@@ -53,11 +53,16 @@ def piecewise_sum(coefficients: FloatArray, piece: NDArray[np.intp], s: FloatArr
 
 
 def _clenshaw(columns: FloatArray, piece: NDArray[np.intp], s: FloatArray) -> FloatArray:
-    """The sums from coefficients (m, q), each order looked up when it is added."""
-    older, newer = np.zeros_like(s), np.zeros_like(s)
+    """The sums from coefficients (m, q), each order looked up when it is added, or once if all are of one piece."""
+    twice, older, newer, term = 2 * s, np.zeros_like(s), np.zeros_like(s), np.empty_like(s)
+    alone = bool(piece.size) and piece[0] == piece[-1] and bool(np.all(piece == piece[0]))
+    added = columns[:, piece[0]] if alone else columns
     for k in range(len(columns) - 1, 0, -1):
-        older, newer = newer, 2 * s * newer - older + columns[k][piece]
-    return np.asarray(s * newer - older + columns[0][piece])
+        np.multiply(twice, newer, out=term)
+        term -= older
+        term += added[k] if alone else added[k].take(piece)
+        older, newer, term = newer, term, older
+    return np.asarray(s * newer - older + (added[0] if alone else added[0].take(piece)))
 
 
 @cache

@@ -81,7 +81,11 @@ class MappedGrid:
         """Number of the piece of each point, and u in it; a point between two pieces belongs to the left one."""
         piece = np.maximum(self.left.searchsorted(d) - 1, 0)
         s = np.minimum(np.maximum((d - self.left[piece]) / self.width[piece], 0.0), 1.0)
-        return piece, s ** (1 / self.power[piece])
+        return piece, s if self._plain else s ** (1 / self.power[piece])
+
+    @cached_property
+    def _plain(self) -> bool:
+        return bool(np.all(self.power == 1.0))
 
     def split(self, pieces: NDArray[np.bool_]) -> MappedGrid:
         """A copy with some pieces cut: in the middle, or, where a singularity is mapped, doubling away from it.
@@ -125,11 +129,17 @@ class MappedFunction:
 
     def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Derivative with respect to u at mapped positions."""
-        lead = np.where(piece == 0, self.lead, 0.0)
+        return self.with_slope_at(piece, u)[1]
+
+    def with_slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Values and derivatives with respect to u at mapped positions."""
         regular = piecewise_sum(self.coefficients, piece, 2 * u - 1)
         slope = piecewise_sum(self._slope_coefficients, piece, 2 * u - 1)
-        full: FloatArray = self._factor(piece, u) * slope + lead * u ** np.maximum(lead - 1, 0) * regular
-        return full
+        factor = self._factor(piece, u)
+        full = factor * slope
+        if np.any(first := piece == 0):
+            full = full + np.where(first, self.lead * u ** max(self.lead - 1.0, 0.0), 0.0) * regular
+        return regular * factor, np.asarray(full)
 
     def derivative_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Derivative with respect to d at mapped positions, infinite where it is."""
@@ -208,7 +218,8 @@ class MappedFunction:
         return np.asarray(ROUNDINGS * EPS * np.abs(self.coefficients).max(axis=1))
 
     def _factor(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
-        return np.where(piece == 0, u**self.lead, 1.0)
+        first = piece == 0
+        return np.where(first, u**self.lead, 1.0) if np.any(first) else np.ones(())
 
     @cached_property
     def coefficients(self) -> FloatArray:

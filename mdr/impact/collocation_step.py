@@ -294,7 +294,8 @@ def _corrected(
     task: StepTask, landing: Landing, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
     """Lengths nearer to the event, by Newton's method, and what the correction moves in units of the precision."""
-    change, at_end = np.moveaxis(_ENDS @ slopes, 1, 0)
+    both = _ENDS @ slopes
+    change, at_end = both[:, 0], both[:, 1]
     miss = (landing.span - size * landing.of(change)) / landing.of(at_end)
     miss = np.where(landing.due & moving, miss, 0.0)
     return _lengthened(size, miss), np.maximum.reduce(np.abs(at_end) / task.precision) * np.abs(miss)

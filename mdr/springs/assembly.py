@@ -67,7 +67,7 @@ def equivalent_system(
     solution = HalfSpaceFlatPunch() if layer.is_half_space else flat_punch.solution(layer, max_radius / unit)
     if not isinstance(indenter, FlatPunch):
         solution, max_radius = _for_profile(solution, indenter, unit, max_radius)
-    g_hs = _half_space_function(solution, indenter, unit, max_radius - indenter.flat_radius)
+    g_hs = half_space_function(solution, indenter, unit, max_radius - indenter.flat_radius)
     profile, moment, own_error = _curves(solution, indenter, unit, g_hs)
     if not may_fall:
         _refuse_rings(profile, indenter, unit, solution.noise(max_radius / unit))
@@ -121,7 +121,7 @@ def contact_fields(
     unit = contact_radius if layer.is_half_space else layer.surface.thickness
     ratio, delta, flat = contact_radius / unit, depth / unit, indenter.flat_radius / unit
     flat_punch = flat_punch.one_contact(ratio)
-    profile = _half_space_function(flat_punch, indenter, unit, excess)
+    profile = half_space_function(flat_punch, indenter, unit, excess)
     if flat_punch.superposed:
         profile, _ = _profile(flat_punch, indenter, unit, profile, _springs_at_nodes(flat_punch, profile, flat))
     density = flat_punch.contact_density(None if isinstance(indenter, FlatPunch) else profile, flat, ratio, delta)
@@ -194,7 +194,7 @@ def _rounding_near_equator(indenter: Profile, radius: FloatArray) -> FloatArray:
     return flat.reshape(none.shape)
 
 
-def _half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float) -> MappedFunction:
+def half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float) -> MappedFunction:
     """g_hs in units of `unit` up to an excess [m] over the flat radius, on pieces that suit the flat-punch data too."""
     count = solution.nodes
     # A flat punch's profile is zero wherever it is asked.

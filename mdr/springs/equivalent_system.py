@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bem.layer_equation.protocol import FlatPunchSolution
-from bem.polynomials.mapped import MappedFunction
+from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.root_steps import MOST_STEPS
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
@@ -24,6 +25,11 @@ from mdr.springs.error_model import SPRING_ROUNDING
 NEWTON_TOLERANCE = 2e-14
 # A relative bracket that is accepted after all steps, where rounding in the curve hides its root; chosen.
 NOISE_TOLERANCE = 1e-11
+# From so many targets on, a start between the curve's nodes, which saves three Newton steps of seven, costs less than
+# these steps; chosen.
+MANY = 1024
+# A position u beside the start of a piece at which a curve has a value and a slope; chosen.
+_BESIDE = 1e-6
 # Radii, beside the profile's nodes, at which the largest error is looked for: errors change from panel to panel.
 _SAMPLES = 96
 
@@ -118,14 +124,16 @@ class EquivalentSystem:
     def excess_at_depth(self, indentation_depth: ArrayLike) -> FloatArray:
         """a - b [m] with g(a) = delta, Eq. (3); 0 <= delta <= g(max_radius)."""
         depth = np.asarray(indentation_depth, dtype=float) / self.length_unit
-        curve = _Curve(self.profile.at, self.profile.slope_at, self.profile.lead)
+        curve = _Curve(self.profile.at, self.profile.with_slope_at, self.profile.lead)
         return self._invert(depth, curve, "indentation_depth", self.length_unit)
 
     def excess_at_force(self, normal_force: ArrayLike) -> FloatArray:
         """a - b [m] of the elastic contact with this force F_N; 0 <= F_N <= elastic_force(max_radius)."""
         force = np.asarray(normal_force, dtype=float) / self._force_unit
         lead = self.profile.lead + (0.0 if self.flat_radius else float(self.profile.grid.power[0]))
-        return self._invert(force, _Curve(self._force_at, self._force_slope_at, lead), "normal_force", self._force_unit)
+        return self._invert(
+            force, _Curve(self._force_at, self._force_with_slope_at, lead), "normal_force", self._force_unit
+        )
 
     @cached_property
     def relative_error(self) -> Mapping[str, float]:
@@ -136,15 +144,14 @@ class EquivalentSystem:
         )
         return {name: float(values.max()) for name, values in self.relative_errors(radii).items()}
 
-    def relative_errors(self, contact_radius: FloatArray) -> dict[str, FloatArray]:
-        """Bounds of the relative errors of an elastic contact's quantities, and of c_N, at each radius."""
+    def relative_errors(self, contact_radius: FloatArray, *, of_springs: bool = True) -> dict[str, FloatArray]:
+        """Bounds of the relative errors of an elastic contact's quantities, and if asked for of c_N, at each radius."""
         ratio = self._ratio(contact_radius)
         if self.variants:
             from mdr.springs import table_errors  # noqa: PLC0415 - other flat-punch data do not need it
 
             return table_errors.relative_errors(self, contact_radius)
         stiffness = self.flat_punch.relative_error(ratio) + SPRING_ROUNDING
-        springs = self.flat_punch.spring_error(ratio) + SPRING_ROUNDING
         data = (
             self.flat_punch.error_of_profile(ratio, self.profile, self.flat_radius / self.length_unit) + SPRING_ROUNDING
         )
@@ -153,13 +160,15 @@ class EquivalentSystem:
         own = self.profile_truncation(contact_radius) + self.position_rounding(np.asarray(contact_radius))
         depth = data + np.where(ratio > self.flat_punch.fitted_from, self.profile_error, 0.0) + own
         # That of the radius holds where depth or force are prescribed, since g rises at least about linearly.
-        return {
+        found = {
             "contact_radius": depth,
             "indentation_depth": depth,
             "normal_force": depth + stiffness,
             "contact_stiffness": stiffness,
-            "spring_stiffness": springs,
         }
+        return (
+            found | {"spring_stiffness": self.flat_punch.spring_error(ratio) + SPRING_ROUNDING} if of_springs else found
+        )
 
     def kernel_errors(self, contact_radius: FloatArray) -> FloatArray:
         """What of the relative errors of c_N and g comes from one wrong kernel, shape (2, n)."""
@@ -201,15 +210,13 @@ class EquivalentSystem:
         return self.flat_radius / self.length_unit + grid.left[piece] + grid.width[piece] * u ** grid.power[piece]
 
     def _force_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
-        x = self._position(piece, u)
-        stiffness = 2 * x * self.flat_punch.normalized_contact_stiffness(np.minimum(x, self._last))
-        return stiffness * self.profile.at(piece, u) - self.moment.at(piece, u)
+        return self._force_with_slope_at(piece, u)[0]
 
-    def _force_slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
-        """dF = k_N dg, Eq. (5)."""
-        x = self._position(piece, u)
+    def _force_with_slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """F and its derivative by u: dF = k_N dg, Eq. (5)."""
+        x, (g, g_u) = self._position(piece, u), self.profile.with_slope_at(piece, u)
         stiffness = 2 * x * self.flat_punch.normalized_contact_stiffness(np.minimum(x, self._last))
-        return stiffness * self.profile.slope_at(piece, u)
+        return stiffness * g - self.moment.at(piece, u), stiffness * g_u
 
     @property
     def _last(self) -> float:
@@ -228,16 +235,37 @@ class EquivalentSystem:
         before = np.append(0.0, ends)[piece]
         share = np.clip((target - before) / (ends[piece] - before), 0.0, 1.0)
         start = share ** np.where(piece == 0, 1 / max(curve.lead, 1.0), 1.0)
+        if target.size >= MANY:
+            start = _between_nodes(curve, grid, piece, target)
         u = _safeguarded_newton(curve, piece, target, start)
         return self.length_unit * (grid.left[piece] + grid.width[piece] * u ** grid.power[piece])
 
 
+def _between_nodes(curve: _Curve, grid: MappedGrid, piece: NDArray[np.intp], target: FloatArray) -> FloatArray:
+    """Positions u by inverse cubics between a curve's values and slopes, to the power with which it begins.
+
+    The values are those at all nodes and at the ends of the pieces, or close beside their starts.
+    """
+    u = np.concatenate([[_BESIDE], gauss_nodes(grid.count)[0], [1.0]])
+    number = np.repeat(np.arange(len(grid.left)), u.size)
+    value, slope = curve.with_slope(number, np.tile(u, len(grid.left)))
+    power = 1.0 / max(curve.lead, 1.0)
+    w, place = np.maximum.accumulate(value**power), number + np.tile(u, len(grid.left))
+    inverse = np.divide(value ** (1.0 - power), power * slope, out=np.zeros_like(w), where=slope > 0.0)
+    i = np.clip(w.searchsorted(target**power) - 1, 0, w.size - 2)
+    h, way = w[i + 1] - w[i], place[i + 1] - place[i]
+    share = np.divide(target**power - w[i], h, out=np.zeros_like(h), where=h > 0.0)
+    first, last = h * inverse[i], h * inverse[i + 1]
+    cubic = share * (first + share * (3.0 * way - 2.0 * first - last + share * (first + last - 2.0 * way)))
+    return np.asarray(np.clip(place[i] + cubic - piece, 0.0, 1.0))
+
+
 @dataclass(frozen=True)
 class _Curve:
-    """An increasing function of the position u in a piece, its slope by u, and the power of u it begins with."""
+    """An increasing function of the position u in a piece, with its slope by u, and the power of u it begins with."""
 
     value: Callable[[NDArray[np.intp], FloatArray], FloatArray]
-    slope: Callable[[NDArray[np.intp], FloatArray], FloatArray]
+    with_slope: Callable[[NDArray[np.intp], FloatArray], tuple[FloatArray, FloatArray]]
     lead: float
 
 
@@ -249,7 +277,8 @@ def _safeguarded_newton(curve: _Curve, piece: NDArray[np.intp], target: FloatArr
     low, high, u = np.zeros_like(start), np.ones_like(start), start
     size = np.where(piece > 0, 1.0, 0.0)
     for _ in range(MOST_STEPS):
-        residual, slope = curve.value(piece, u) - target, curve.slope(piece, u)
+        value, slope = curve.with_slope(piece, u)
+        residual = value - target
         low, high = np.where(residual <= 0, u, low), np.where(residual >= 0, u, high)
         step = u - np.divide(residual, slope, out=np.full_like(u, np.inf), where=slope > 0)
         new = np.where((step >= low) & (step <= high), step, (low + high) / 2)

@@ -127,13 +127,13 @@ def _first_radius(scene: Scene) -> float:
     # A little short of the end, where a sphere is upright.
     limit = min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.surface.thickness, 1.5 * flat)) - flat
     excess = np.minimum(scale * TRIAL_RADII, limit)
-    depth, force = _half_space_answer(scene.indenter, excess)
+    depth, force = half_space_answer(scene.indenter, excess)
     answer = contact_modulus(scene.layer) * force if is_force else depth
     guess = np.interp(wanted, answer, excess)
     return flat + max(min(1.02 * float(guess), limit), LEAST_EXCESS * flat)
 
 
-def _half_space_answer(indenter: Profile, excess: FloatArray) -> tuple[FloatArray, FloatArray]:
+def half_space_answer(indenter: Profile, excess: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Depth and force/E* on the half-space, the force by the trapezoidal rule: a guess needs no more."""
     depth = half_space_profile(indenter, excess)
     steps = np.diff(excess, prepend=0.0) * (depth + np.concatenate([[0.0], depth[:-1]])) / 2

@@ -15,9 +15,10 @@ import numpy as np
 
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import Cone, ElasticLayer, InvalidInput, Paraboloid, PowerLaw, Profile
+from contact import Cone, ElasticLayer, InvalidInput, Layer, Paraboloid, PowerLaw, Profile
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_energy
+from contact.scene.layer import Support
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.table import SpringTable, spring_table
 
@@ -65,12 +66,30 @@ def reference(layer: ElasticLayer, indenter: Profile, scale: float) -> SharedTab
     coefficient, exponent = law
     length = scale if layer.is_half_space else layer.thickness
     return SharedTable(
-        layer.in_own_units(),
+        _known_in_own_units(layer),
         _unit_power(exponent),
         length,
         coefficient * length**exponent,
         contact_modulus(layer) * length,
     )
+
+
+def _known_in_own_units(layer: ElasticLayer) -> ElasticLayer:
+    if isinstance(layer, Layer):
+        return _in_own_units(layer.support, layer.poissons_ratio, layer.is_half_space)
+    return layer.in_own_units()
+
+
+@lru_cache(maxsize=_KEPT)
+def _in_own_units(support: Support, poissons_ratio: float, is_half_space: bool) -> Layer:
+    """One record for all plain layers that are alike, so that caches know it at first sight."""
+    alike = Layer(
+        thickness=math.inf if is_half_space else 1.0,
+        youngs_modulus=1.0,
+        poissons_ratio=poissons_ratio,
+        support=support,
+    )
+    return alike.in_own_units()
 
 
 @lru_cache(maxsize=_KEPT)

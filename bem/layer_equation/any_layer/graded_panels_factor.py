@@ -123,7 +123,8 @@ class GradedFactor(VolterraFactor):
         return np.asarray(2 * widths * integrated(self.count) * beyond)
 
     @cached_property
-    def _edge_matrix(self) -> FloatArray:
+    def edge_matrix(self) -> FloatArray:
+        """From a load and what is inherited at a panel's nodes to edge values there, shape (P, m, m)."""
         tau, omega = gauss_nodes(self.count)
         weights = np.diff(self.ends)[:, None, None] * np.multiply.outer(tau, omega)
         E = partial_panel_interpolation(self.count)

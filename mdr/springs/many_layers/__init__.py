@@ -1,0 +1,1 @@
+"""Contacts of one indenter with many layers, solved at once."""
