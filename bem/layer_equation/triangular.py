@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from contact import NotConvergedError
 from contact.answer.compiled_files import lapack
 from contact.answer.one_thread import one_thread
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
 # Side of the squares that a matrix is mirrored by: two of them take 64 kB; chosen.

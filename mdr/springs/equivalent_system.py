@@ -24,6 +24,8 @@ from mdr.springs.error_model import SPRING_ROUNDING
 NEWTON_TOLERANCE = 2e-14
 # A relative bracket that is accepted after all steps, where rounding in the curve hides its root; chosen.
 NOISE_TOLERANCE = 1e-11
+# Least excess over a flat end, relative to its radius, of which a rounded radius still tells four digits.
+LEAST_EXCESS = 1e-12
 # Radii, beside the profile's nodes, at which the largest error is looked for: errors change from panel to panel.
 _SAMPLES = 96
 
