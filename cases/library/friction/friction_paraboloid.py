@@ -7,8 +7,8 @@ not hold it. MDR solves full stick without a mesh, and states for finite coeffic
 the radial displacement u_r1 under the frictionless unit punch, a bound, |F - F_0| <= mu max |u_r1| F at the true
 radius, and the first order in mu, F_0 mu int p_0 |u_r1| dA/F_0. On half-spaces and thick layers the stick radius is a
 fixed share of the contact radius that knows mu and nu only; radius, force, stick radius and heat there are those of
-Spence's coupled equations, solved by themselves (`cases.references.partial_slip`). On the way back slip reverses from
-the edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
+Spence's coupled equations, solved by themselves (`benchmarks.references.partial_slip`). On the way back slip reverses
+from the edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
 """
 
 import math
