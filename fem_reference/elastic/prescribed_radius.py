@@ -135,10 +135,6 @@ class PrescribedContact:
             radius=1 - lost,
         )
 
-    def release_rate(self, depth: float) -> float:
-        """Energy released per new free area, ``G = k_N' (delta - delta_0)^2 / (4 pi a)``."""
-        return self.stiffness_slope * (depth - self.smooth_depth) ** 2 / (4 * np.pi)
-
 
 def solve_prescribed_contact(problem: LayerProblem, indenter: ScaledIndenter, log: StageLog) -> PrescribedContact:
     """Solve the contact of radius one on a mesh with a vertex there.
