@@ -12,11 +12,9 @@ from numpy.typing import ArrayLike
 
 from bem.kernels.moduli import confined_modulus, contact_modulus
 from bem.polynomials.gauss_panels import gauss_nodes
+from bem.tables.published_transform import NODES
 from contact import InvalidInput, Layer, Profile
 from contact.records.validation import FloatArray
-
-# Gauss nodes between two breakpoints of the profile; chosen.
-NODES = 32
 
 
 def is_film(layer: Layer) -> bool:

@@ -71,7 +71,7 @@ GROUPS: Final = (
             "PROFILE_ROUNDING",
             "IMPACT_ROUNDING",
             "AGREEMENT_SHARES",
-            "FINEST_ACCURACY",
+            "DEFAULT_ACCURACY",
             "COARSER_POWER",
             "LEAVING_SHARE",
             "WITHIN_STEPS_SHARE",
