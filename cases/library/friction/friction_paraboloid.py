@@ -24,8 +24,8 @@ from cases.declare.methods import MethodUse
 from cases.declare.task import Answers
 from cases.judgement.claims.agreement import Agreement
 from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.never_below import NeverBelow
-from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.changed_scenes import NeverBelow
+from cases.judgement.claims.own_laws import Residual
 from cases.library._claims import agreements, exact, names_of
 from cases.library._convergence import FINEST_MDR, NODES, in_turn, studies
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer_of
