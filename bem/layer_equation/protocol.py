@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.polynomials.mapped import MappedFunction
-from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.profiles import Profile
 
 # Multiplies the relative error of the depth, and gives that of the pressure, where the profile is fitted. Against
 # refined data the pressure's error was at most 0.5 of the depth's beyond a/h = 160 and 1.6 with tables; the rest is a
