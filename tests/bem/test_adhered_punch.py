@@ -12,10 +12,10 @@ from bem.kernels.tangential import HalfSpaceKernel, beyond_half_space
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
-from bem.layer_equation.stick.all_radii import adhered_punches
 from bem.layer_equation.stick.coulomb import coulomb_functions
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch, rung_of
 from contact import Layer
+from tests.bem.adhered_punches import adhered_punches
 
 # nu, a/h, support, k_stick/(2 E* a), c_stick/E*, k/(2 E* a) without friction, Q/N, p and q at a/2 over the mean
 # pressure, u_r1 at a/2: another program's values, printed to twelve digits.
