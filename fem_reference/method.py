@@ -43,16 +43,17 @@ from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation, narrowest_radius
+from fem_reference.elastic.answer import contact_path
 from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
 from fem_reference.elastic.path import (
     ContactSolver,
     FemEquilibrium,
-    contact_path,
     equilibria_at_radii,
     flat_punch_equilibria,
     smooth_equilibrium,
 )
+from fem_reference.elastic.surface_fields import FemFields
 
 S = TypeVar("S")
 
@@ -170,7 +171,7 @@ class Fem:
             gap = partial(self._gap, scene, log=log)
             refuse_pulled_contacts(scene, (state.contact for state in equilibria), gap)
         refuse_touching_contacts(scene, ((state.contact, state.depth) for state in equilibria))
-        return contact_path(scene, equilibria, asdict(self), log)
+        return contact_path(scene, equilibria, asdict(self), log, fields=FemFields)
 
     def _solve_rubbed(self, scene: Scene, log: StageLog) -> ContactPath | HistoryPath:
         if isinstance(scene.indenter, FlatPunch):

@@ -19,7 +19,9 @@ from typing import Any, Final, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from contact import ElasticBase, GradedLayer, NotConvergedError
+from contact.records.errors import NotConvergedError
+from contact.scene.graded_layer import GradedLayer
+from contact.scene.layer_stack import ElasticBase
 
 # Depth times |k| at which a half-space is assumed below: exp(-2 DEEP cos(15 degrees)) is 1e-17.
 DEEP: Final = 21.0

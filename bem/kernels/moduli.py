@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from contact import ElasticLayer, Layer
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.layer import Layer
 
 
 def contact_modulus(layer: ElasticLayer) -> float:

@@ -11,8 +11,11 @@ from numpy.typing import NDArray
 
 from bem.kernels.layer import compliance_kernel, one_minus_kernel, zero_mode
 from bem.kernels.protocol import SurfaceKernel
-from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack, UnsupportedSceneError
-from contact.scene.layer import Support
+from contact.records.errors import UnsupportedSceneError
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.graded_layer import GradedLayer
+from contact.scene.layer import Layer, Support
+from contact.scene.layer_stack import ElasticBase, LayerStack
 
 if TYPE_CHECKING:
     from bem.kernels.graded import GradedKernel

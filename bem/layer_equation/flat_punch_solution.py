@@ -19,8 +19,9 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.truncation import integrated, integrated_share, rate_of_decay
-from contact import InvalidInput, Profile
+from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
+from contact.scene.profiles import Profile
 
 EPS = float(np.finfo(float).eps)
 # By this much, relative, the last panel reaches beyond the radius at which it ends, so that rounding takes no further.

@@ -17,8 +17,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.polynomials.mapped import MappedFunction
-from contact import ElasticLayer, Profile
 from contact.records.validation import FloatArray
+from contact.scene.elastic_layer import ElasticLayer
+from contact.scene.profiles import Profile
 
 if TYPE_CHECKING:
     from bem.layer_equation.profiles.at_radii import RadiusWeights

@@ -31,9 +31,10 @@ from bem.layer_equation.protocol import FITTED_SHARE, FlatPunchSolution
 from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, apart
-from contact import InvalidInput, Profile
+from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.layer import Support
+from contact.scene.profiles import Profile
 
 # Largest a/h. A quotient of two lengths meant as it may come out above it by this much, relative.
 LARGEST_RATIO = 1000.0

@@ -6,9 +6,9 @@ from itertools import pairwise
 
 import numpy as np
 
-from contact import NotConvergedError
 from contact.answer.compiled_files import lapack
 from contact.answer.one_thread import one_thread
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
 # Loaded with this module, before anything is solved: the BLAS libraries of a process are then looked up once

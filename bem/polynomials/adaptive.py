@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.polynomials import chebyshev
-from contact import NotConvergedError
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
 # Samples on each panel.

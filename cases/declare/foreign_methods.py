@@ -16,7 +16,7 @@ from cases.declare.foreign_agreements import foreign_agreements, relaxed
 from cases.declare.methods import REFEREES, MethodUse, load, registered
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.declared import PerMethod
-from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.own_laws import Residual
 from contact import InvalidInput
 from contact.records.record import shown
 

@@ -1,7 +1,5 @@
 """What the accepted numbers say about accuracy: which errors each method states, and how far two methods differ."""
 
-from __future__ import annotations
-
 import statistics
 import sys
 from collections.abc import Iterable, Iterator, Mapping

@@ -4,12 +4,11 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from cases.declare.case import CaseScene
 from cases.judgement.claims.agreement import Agreement
-from cases.judgement.claims.carried_force import CarriedForce
+from cases.judgement.claims.changed_scenes import ScalingLaw
 from cases.judgement.claims.declared import Reason
 from cases.judgement.claims.exact import Exact, Expected
 from cases.judgement.claims.field_agreement import FieldAgreement, Norm
-from cases.judgement.claims.residual import Residual
-from cases.judgement.claims.scaling_law import ScalingLaw
+from cases.judgement.claims.own_laws import CarriedForce, Residual
 from cases.library._layers import in_millimetres
 from cases.library._reasons import SHARED, with_tolerance
 from cases.library._requirements import REFERENCE

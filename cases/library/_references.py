@@ -1,9 +1,9 @@
-"""Reference numbers of `cases.references`, by kind and name; what each list holds stands in its ``table``."""
+"""Reference numbers of `benchmarks.references`, by kind and name; what each list holds stands in its ``table``."""
 
 import tomllib
 from pathlib import Path
 
-TABLE = tomllib.loads((Path(__file__).parents[1] / "references" / "numbers.toml").read_text(encoding="utf-8"))
+TABLE = tomllib.loads(Path(__file__).with_name("reference_numbers.toml").read_text(encoding="utf-8"))
 
 
 def numbers(kind: str) -> dict[str, list[float]]:

@@ -1,7 +1,5 @@
 """The one driver of all studies: solve, let somebody judge the answer, and write down what came out."""
 
-from __future__ import annotations
-
 import time
 import warnings
 from collections.abc import Callable, Iterable

@@ -1,7 +1,5 @@
 """Finished scenes of a campaign in one file, a line each, so that a campaign that was stopped goes on."""
 
-from __future__ import annotations
-
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields, replace

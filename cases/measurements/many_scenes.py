@@ -1,7 +1,5 @@
 """A campaign of any size: scenes in blocks on an executor, summed up where they are solved, kept in a file if asked."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -4,8 +4,6 @@ A study describes settings and scenes; the driver turns each pair into rows of t
 them (coverage, sharpness, cost of accuracy, where a method breaks) is a query on the rows.
 """
 
-from __future__ import annotations
-
 import re
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence

@@ -1,7 +1,5 @@
 """A study as a case of a report: its text, its records, and claims that a measured number keeps within a limit."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, TypeVar
 

@@ -10,55 +10,14 @@ constant sqrt(beta^2 + mu/K), as small as beta at nu = 1/2 only.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve, eigh
 from skfem import Basis, ElementVector, MeshTri
 
-from contact import InvalidInput
-from contact.records.validation import FloatArray
 from fem_reference.discrete_layer import weak_forms
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import moduli
 from fem_reference.discrete_layer.mesh import named_layer_mesh
-
-
-@dataclass(frozen=True)
-class InfSup:
-    """Constants on a sequence of meshes.
-
-    Attributes:
-        pair: the element pair.
-        cells: cells across the thickness.
-        constants: beta on each mesh.
-    """
-
-    pair: ElementPair
-    cells: tuple[int, ...]
-    constants: FloatArray
-
-    @property
-    def is_stable(self) -> bool:
-        """Whether beta stays bounded below.
-
-        From one mesh to the next a stable pair's beta changes by a few per cent and keeps most of the continuous
-        constant, about 0.6 here; that of an unstable pair halves or vanishes.
-        """
-        last, previous = self.constants[-1], self.constants[-2]
-        return bool(last > max(0.75 * previous, 0.1))
-
-
-def measure_inf_sup(pair: ElementPair, cells: Sequence[int] = (2, 4, 8)) -> InfSup:
-    """Constants on uniform meshes of a bonded section one thick and two wide.
-
-    Raises:
-        InvalidInput: the pair has no pressure.
-    """
-    if not pair.is_mixed:
-        raise InvalidInput(f"{pair.name} has no pressure; take a mixed pair such as P3P2")
-    return InfSup(pair, tuple(cells), np.array([inf_sup_constant(pair, uniform_mesh(n)) for n in cells]))
 
 
 def with_compressibility(constant: float, poissons_ratio: float) -> float:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from skfem.element import Element, ElementTriP0, ElementTriP1, ElementTriP2, ElementTriP3, ElementTriP4
 
-from contact import InvalidInput
+from contact.records.errors import InvalidInput
 
 
 @dataclass(frozen=True)

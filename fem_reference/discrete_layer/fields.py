@@ -9,7 +9,6 @@ import numpy as np
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import DEVIATOR, Space
 from fem_reference.discrete_layer.material import ElasticConstants
-from fem_reference.discrete_layer.problem import LayerProblem
 
 
 @dataclass(frozen=True)
@@ -87,31 +86,3 @@ def point_fields(space: Space, constants: ElasticConstants, solutions: FloatArra
         shear_modulus=moduli.shear,
         compressibility=moduli.compressibility,
     )
-
-
-@dataclass(frozen=True)
-class MutualEnergies:
-    """Twice the mutual strain energies of m solutions.
-
-    Attributes:
-        total: of the whole section (and the spring on its outer edge), shape (m, m).
-        beyond: estimate of what a longer section would store beyond the outer radius, shape (m, m).
-        decay: rate per length at which ``beyond`` falls with the outer radius.
-    """
-
-    total: FloatArray
-    beyond: FloatArray
-    decay: float
-
-
-def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> MutualEnergies:
-    """Energies of solutions (size, m), from stresses and strains at points; the problem knows how they decay."""
-    mesh = problem.layer_mesh.mesh
-    fields = point_fields(problem.space, problem.constants, solutions, np.arange(mesh.t.shape[1]))
-    by_triangle = np.einsum("ijtq,tq->ijt", fields.energy_products, fields.measure)
-    end = problem.end
-    beyond = by_triangle[:, :, end.strip].sum(axis=2) / end.strip_over_beyond
-    total = by_triangle.sum(axis=2)
-    if problem.has_elastic_edge:
-        total = total + solutions.T @ (problem.outer_edge_matrix @ solutions)
-    return MutualEnergies(total, beyond, end.decay)

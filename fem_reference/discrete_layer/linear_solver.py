@@ -10,7 +10,7 @@ import numpy as np
 from scipy import sparse
 from scipy.sparse.linalg import splu
 
-from contact import InvalidInput, NotConvergedError
+from contact.records.errors import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
 
 # Componentwise backward error that a solution must reach.  Refined solutions end below 1e-14 (paraboloids at a/h = 0.2

@@ -7,8 +7,9 @@ from typing import Protocol
 
 import numpy as np
 
-from contact import ElasticLayer, InvalidInput
+from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray, IntArray
+from contact.scene.elastic_layer import ElasticLayer
 
 
 @dataclass(frozen=True)

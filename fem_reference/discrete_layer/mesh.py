@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from skfem import MeshTri
 
-from contact import NotConvergedError
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space
 from fem_reference.discrete_layer.elements import ElementPair

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
-from contact import NotConvergedError
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
 
 

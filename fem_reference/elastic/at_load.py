@@ -13,16 +13,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact import IndentationDepths, NotConvergedError, Scene, StageLog
-from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.problem import problem_of
-from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, narrowest_radius
+from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
-from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
+from fem_reference.elastic.prescribed_radius import quick_solution
 
-# Settings of the secant iteration on the radius.  Their depth and force are within 4e-5 and 1.6e-4 of fine ones
-# (paraboloids at a/h = 0.2 to 20, nu = 0.3 to 1/2, 2026-11-22), so that one or two full solutions suffice.
-COARSE = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
 # Largest relative load by which coarse meshes of neighbouring radii may differ.  Beside a flat end they scatter by 1e-4
 # (a/b - 1 = 3e-5, growth 0.7, 2026-11-22), more than the secants asked for; full solutions settle the rest.
 SCATTER = 1e-2
@@ -91,15 +86,6 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
     narrowest = narrowest_radius(scene.layer, scene.indenter)
     radius, exponent = radius_of_load(ratio, start, scene.indenter.flat_radius, narrowest)
     return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, exponent=exponent)
-
-
-def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:
-    """The contact of a radius [m], solved with few cells, to about 1e-5 or, of tables, 1e-4."""
-    indenter, layer = ScaledIndenter(scene.indenter, radius), scene.layer
-    with log.stage("mesh"):
-        mesh = contact_mesh(layer, indenter, COARSE)
-    problem = problem_of(layer, mesh, COARSE.pair)
-    return solve_prescribed_contact(problem, indenter, log)
 
 
 def radius_of_load(

@@ -1,29 +1,50 @@
-"""Elastic frictionless contact at prescribed radius, or of a flat punch at prescribed depth or force."""
+"""States of an elastic frictionless contact at prescribed radius, or of a flat punch at prescribed depth or force."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from contact import Adhesion, ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene, StageLog
-from contact.answer.friction import told_of_friction
+from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-from fem_reference.elastic.surface_fields import FemFields, SurfaceState
 from fem_reference.error_model import INSIDE
 
-# Residuals that are published beside the error estimates.
-OWN_CHECKS = ("energy_defect", "patch_defect")
 # Radii over the contact's at which displacements of two degrees are compared.
 BESIDE = 1.0 + 2.0 ** np.arange(-6.0, 3.0)
 # The same beside an edge where the surface rises like a root; nearer ones lie in the cell that `root_at_edge` is for.
 BESIDE_ROOT = 1.0 + 2.0 ** np.arange(-16.0, 3.0)
 # Solves the contact of a given radius [m].
 ContactSolver = Callable[[float], ContactWithErrors]
+
+
+@dataclass(frozen=True)
+class SurfaceState:
+    """One equilibrium: a contact of radius one, its scale and its depth.
+
+    Attributes:
+        contact: the discrete answer.
+        contact_radius: a [m].
+        depth: delta / a.
+        contact_modulus: E* [Pa].
+        other: that of the neighbouring degree on the same mesh.
+        error: relative error of depth, force, radius and stiffness, the largest of them.
+        unshown: the part of the depth's relative error that a higher degree does not show.
+        missed: share of the radius by which the solved contact misses that of the state, edge cell included.
+    """
+
+    contact: PrescribedContact
+    contact_radius: float
+    depth: float
+    contact_modulus: float
+    other: PrescribedContact
+    error: float
+    unshown: float
+    missed: float
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,6 +70,20 @@ class FemEquilibrium:
         """k_N / (E* a) at the corrected radius."""
         answer = self.contact.answer
         return answer.stiffness + answer.stiffness_slope * (self.radius_factor - answer.radius)
+
+    def at_surface(self, modulus: float) -> SurfaceState:
+        """What fields of this state are computed from; ``modulus`` is E* [Pa]."""
+        contact, order = self.contact, self.contact.settings.order
+        return SurfaceState(
+            contact=contact.answer,
+            contact_radius=contact.indenter.contact_radius,
+            depth=self.depth,
+            contact_modulus=modulus,
+            other=contact.levels[order - 1 if order - 1 in contact.levels else order + 1],
+            error=max(self.error[name] for name in ContactPath.ARRAYS),
+            unshown=_unshown_error(self),
+            missed=missed_radius(self),
+        )
 
 
 def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
@@ -134,62 +169,6 @@ def _known_force(state: FemEquilibrium) -> FemEquilibrium:
     """Depth carries the error when the force is prescribed."""
     error = dict(state.error) | {"indentation_depth": state.error["normal_force"], "normal_force": 0.0}
     return FemEquilibrium(contact=state.contact, depth=state.depth, force=state.force, error=error)
-
-
-def contact_path(
-    scene: Scene,
-    equilibria: Sequence[FemEquilibrium],
-    settings: Mapping[str, bool | int | float | str | None],
-    log: StageLog,
-    notes: tuple[str, ...] = (),
-    *,
-    fields: Callable[[tuple[SurfaceState, ...]], FemFields] = FemFields,
-) -> ContactPath:
-    """The path in SI units; ``fields`` makes the surface fields of its states."""
-    modulus = contact_modulus(scene.layer)
-    radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
-    stiffness = np.array([state.stiffness for state in equilibria])
-    states = tuple(_surface_state(state, modulus) for state in equilibria)
-    force = modulus * radius**2 * np.array([state.force for state in equilibria])
-    depth = radius * np.array([state.depth for state in equilibria])
-    errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
-    own_checks = {name: np.array([getattr(s.contact.answer, name) for s in equilibria]) for name in OWN_CHECKS}
-    # With adhesion depth and force may cross zero: their errors refer to the largest value along the path.
-    if scene.effect(Adhesion) is not None:
-        for name in ("indentation_depth", "surface_displacement"):
-            errors[name] *= np.abs(depth) / np.abs(depth).max()
-        errors["normal_force"] *= np.abs(force) / np.abs(force).max()
-    elif not scene.effects:
-        notes = (*notes, *told_of_friction(scene.layer, radius))
-    meshes = ", ".join(dict.fromkeys(state.contact.layer_mesh.fingerprint for state in equilibria))
-    return ContactPath(
-        scene=scene,
-        method="fem",
-        settings={**settings, "mesh": meshes},
-        error_estimate=errors | own_checks,
-        cost=log.cost(unknowns=max(state.contact.answer.unknowns for state in equilibria)),
-        stages=log.records,
-        notes=notes,
-        contact_radius=radius * np.array([state.radius_factor for state in equilibria]),
-        indentation_depth=depth,
-        normal_force=force,
-        contact_stiffness=modulus * radius * stiffness,
-        fields=fields(states),
-    )
-
-
-def _surface_state(state: FemEquilibrium, modulus: float) -> SurfaceState:
-    contact, order = state.contact, state.contact.settings.order
-    return SurfaceState(
-        contact=contact.answer,
-        contact_radius=contact.indenter.contact_radius,
-        depth=state.depth,
-        contact_modulus=modulus,
-        other=contact.levels[order - 1 if order - 1 in contact.levels else order + 1],
-        error=max(state.error[name] for name in ContactPath.ARRAYS),
-        unshown=_unshown_error(state),
-        missed=missed_radius(state),
-    )
 
 
 def _unshown_error(state: FemEquilibrium) -> float:

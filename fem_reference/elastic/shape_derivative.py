@@ -1,4 +1,4 @@
-r"""The derivative of the strain energy with respect to the contact radius (G-theta).
+r"""Strain energies of discrete solutions, and their derivative with respect to the contact radius (G-theta).
 
 Points move by ``theta = (eta, 0)`` with eta one at the contact edge and zero away from it.  With the unknowns carried
 along, the derivative of the bilinear form ``A(u, v) = int (sigma(u) : eps(v)) 2 pi r dr dz`` is
@@ -13,11 +13,41 @@ accurate as the energy itself (a smooth eta at quadrature points costs four digi
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.fields import PointFields, point_fields
 from fem_reference.discrete_layer.problem import LayerProblem
+
+
+@dataclass(frozen=True)
+class MutualEnergies:
+    """Twice the mutual strain energies of m solutions.
+
+    Attributes:
+        total: of the whole section (and the spring on its outer edge), shape (m, m).
+        beyond: estimate of what a longer section would store beyond the outer radius, shape (m, m).
+        decay: rate per length at which ``beyond`` falls with the outer radius.
+    """
+
+    total: FloatArray
+    beyond: FloatArray
+    decay: float
+
+
+def mutual_energies(problem: LayerProblem, solutions: FloatArray) -> MutualEnergies:
+    """Energies of solutions (size, m), from stresses and strains at points; the problem knows how they decay."""
+    mesh = problem.layer_mesh.mesh
+    fields = point_fields(problem.space, problem.constants, solutions, np.arange(mesh.t.shape[1]))
+    by_triangle = np.einsum("ijtq,tq->ijt", fields.energy_products, fields.measure)
+    end = problem.end
+    beyond = by_triangle[:, :, end.strip].sum(axis=2) / end.strip_over_beyond
+    total = by_triangle.sum(axis=2)
+    if problem.has_elastic_edge:
+        total = total + solutions.T @ (problem.outer_edge_matrix @ solutions)
+    return MutualEnergies(total, beyond, end.decay)
 
 
 def cut_off(points: FloatArray, centre: float, support: float) -> FloatArray:

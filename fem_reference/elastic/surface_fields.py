@@ -8,32 +8,7 @@ from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
 from fem_reference.elastic.inside.interior import FemInterior
 from fem_reference.elastic.inside.section import MeridianSection
-from fem_reference.elastic.prescribed_radius import PrescribedContact
-
-
-@dataclass(frozen=True)
-class SurfaceState:
-    """One equilibrium: a contact of radius one, its scale and its depth.
-
-    Attributes:
-        contact: the discrete answer.
-        contact_radius: a [m].
-        depth: delta / a.
-        contact_modulus: E* [Pa].
-        other: that of the neighbouring degree on the same mesh.
-        error: relative error of depth, force, radius and stiffness, the largest of them.
-        unshown: the part of the depth's relative error that a higher degree does not show.
-        missed: share of the radius by which the solved contact misses that of the state, edge cell included.
-    """
-
-    contact: PrescribedContact
-    contact_radius: float
-    depth: float
-    contact_modulus: float
-    other: PrescribedContact
-    error: float
-    unshown: float
-    missed: float
+from fem_reference.elastic.path import SurfaceState
 
 
 @dataclass(frozen=True)

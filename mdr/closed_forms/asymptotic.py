@@ -12,11 +12,9 @@ from numpy.typing import ArrayLike
 
 from bem.kernels.moduli import confined_modulus, contact_modulus
 from bem.polynomials.gauss_panels import gauss_nodes
+from bem.tables.published_transform import NODES
 from contact import InvalidInput, Layer, Profile
 from contact.records.validation import FloatArray
-
-# Gauss nodes between two breakpoints of the profile; chosen.
-NODES = 32
 
 
 def is_film(layer: Layer) -> bool:
@@ -35,15 +33,6 @@ def foundation_modulus(layer: Layer) -> float:
     return contact_modulus(layer) if layer.support == "unbonded" else confined_modulus(layer)
 
 
-def thin_contact_stiffness(layer: Layer, contact_radius: ArrayLike) -> FloatArray:
-    """k_N [N/m], Eqs. (16), (18) and (21)."""
-    a, h = np.asarray(contact_radius, dtype=float), layer.thickness
-    if is_film(layer):
-        return np.pi * layer.youngs_modulus * a**4 / (8 * h**3)  # Eq. (18)
-    # Eqs. (16), (21).
-    return np.pi * foundation_modulus(layer) * a**2 / h
-
-
 def thin_spring_stiffness(layer: Layer, x: ArrayLike) -> FloatArray:
     """c_N = k_N'/2 [Pa], Eqs. (17), (20) and (22)."""
     x, h = np.asarray(x, dtype=float), layer.thickness
@@ -58,12 +47,6 @@ def thin_profile(layer: Layer, indenter: Profile, x: ArrayLike) -> FloatArray:
     """g [m]: the profile itself, Eqs. (17) and (22), or its mean over the contact area, Eq. (20)."""
     x = np.asarray(x, dtype=float)
     return _mean_height(indenter, x) if is_film(layer) else indenter.height(x)
-
-
-def thin_flat_punch_pressure(layer: Layer, rho: ArrayLike) -> FloatArray:
-    """p_bar of a flat punch over rho = r/a: constant, or the parabola of Eq. (19)."""
-    rho = np.asarray(rho, dtype=float)
-    return 2 * (1 - rho) * (1 + rho) if is_film(layer) else np.ones_like(rho)
 
 
 def _mean_height(indenter: Profile, x: FloatArray) -> FloatArray:

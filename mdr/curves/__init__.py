@@ -5,10 +5,11 @@ Read `force_curve` first, then `fit`.
 """
 
 from mdr.curves.fit import CurveFit, FormulaFit, fit_curve
-from mdr.curves.force_curve import CurveShape, ForceCurve
+from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
 from mdr.curves.map_fit import MapFit, fit_map
 from mdr.curves.reading import read_curve, read_map
+from mdr.curves.start import CurveShape
 
 __all__ = [
     "CurveFit",

@@ -15,9 +15,9 @@ import numpy as np
 
 from contact import Adhesion, IndentationDepths, InvalidInput, NotConvergedError, Scene
 from contact.records.validation import FloatArray
-from mdr.curves.force_curve import CurveShape, ForceCurve
+from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
-from mdr.curves.start import linear_start
+from mdr.curves.start import CurveShape, linear_start
 
 Parameter: TypeAlias = Literal["youngs_modulus", "contact_point", "baseline", "thickness", "work_of_adhesion"]
 

@@ -7,7 +7,6 @@ with the exact slopes d k_N / F at its ends, for dF/dd = k_N. Below the first de
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,16 +21,6 @@ _DECADES = 5.0
 _DEPTHS = 257
 # Halving the spacing of cubics divides their error by 16; half of that is claimed.
 _CLAIMED_GAIN = 8.0
-
-
-class CurveShape(Protocol):
-    """A force curve of a given shape: what a fit of Young's modulus needs."""
-
-    def per_modulus(self, depth: ArrayLike) -> FloatArray:
-        """phi = F/E [m^2] at depths [m], zero where nothing touches."""
-
-    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
-        """d(phi)/d(depth) [m]."""
 
 
 class ForceCurve:

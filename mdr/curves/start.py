@@ -2,15 +2,27 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from contact.records.validation import FloatArray
-from mdr.curves.force_curve import CurveShape
 
 # Trial contact points: a fiftieth of the curve apart, which is close enough for Newton's method to go on.
 TRIALS = 50
 # Trial contact points reach from the first depth on so far into the curve.
 _FURTHEST = 0.9
+
+
+class CurveShape(Protocol):
+    """A force curve of a given shape: what a fit of Young's modulus needs."""
+
+    def per_modulus(self, depth: ArrayLike) -> FloatArray:
+        """phi = F/E [m^2] at depths [m], zero where nothing touches."""
+
+    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
+        """d(phi)/d(depth) [m]."""
 
 
 def trial_points(depth: FloatArray) -> FloatArray:

@@ -34,6 +34,7 @@ from mdr.impact.units import is_flat, relaxation_of
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.error_model import (
+    DEFAULT_ACCURACY,
     EXCESS_ERRORS,
     HISTORY_SAFETY,
     LARGEST_HISTORY_ERROR,
@@ -44,9 +45,8 @@ from mdr.springs.pulling import refuse_pulling_at
 from mdr.springs.shared_tables import growing_radii, own_table
 from mdr.springs.table import MOMENT, PROFILE, STIFFENING, STIFFNESS, SpringTable
 
-# Accuracy of the method's time integration for which the next two numbers stand; one digit more doubles both.
-ACCURACY = 1e-9
-# Distances between springs within the largest front; an error of fourth order where spring forces are smooth.
+# Distances between springs within the largest front at the default accuracy, for which the next number stands too; one
+# digit more doubles both. An error of fourth order where spring forces are smooth.
 _GAPS = 640
 # Substeps of a whole force history, at least four in each interval.
 _FINENESS = 400
@@ -162,8 +162,8 @@ _BENT = (
 
 def _doublings(settings: Mapping[str, Setting]) -> int:
     """How much finer than usual the springs and substeps are for the method's accuracy."""
-    accuracy = settings.get("accuracy") or ACCURACY
-    return int(np.clip(round(np.log10(ACCURACY / float(accuracy))), _FEWEST, _MOST))
+    accuracy = settings.get("accuracy") or DEFAULT_ACCURACY
+    return int(np.clip(round(np.log10(DEFAULT_ACCURACY / float(accuracy))), _FEWEST, _MOST))
 
 
 def _substeps(loading: DepthHistory | ForceHistory, fineness: int) -> NDArray[np.intp]:

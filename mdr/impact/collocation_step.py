@@ -44,14 +44,17 @@ _DIFFERENCE = 1e-7
 _NUMBERS = np.arange(1.0, STAGES + 1.0)[:, None]
 
 POINTS, _GAUSS_WEIGHTS = legendre_rule(STAGES)
+# Matrix from values at the Gauss points to Legendre coefficients, and from there to those of the integral from -1 on.
 _ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
 _INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ _ANALYSIS
 # Matrix from slopes to states, for a unit step.
 TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS
+# Row from slopes to the change of state over a unit step.
 TO_END = 0.5 * _GAUSS_WEIGHTS
 # From slopes to the change of state over a unit step, and to the slope at its end, where all Legendre polynomials are
 # 1. The two stand in one matrix, because sums over columns of products with a single row depend on their number.
 _ENDS = np.stack([TO_END, np.ones(STAGES) @ _ANALYSIS])
+# Matrix from Legendre coefficients to powers of z.
 _POWERS = np.stack([np.pad(legendre.leg2poly(u), (0, STAGES - i)) for i, u in enumerate(np.eye(STAGES + 1))], axis=1)
 # Matrix from slopes to powers of z of the change of state.
 CHANGE = 0.5 * _POWERS @ _INTEGRALS

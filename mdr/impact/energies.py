@@ -18,8 +18,8 @@ from mdr.impact.motion import Leg
 from mdr.springs.table import MOMENT, PROFILE, SECOND_MOMENT, STIFFENING, STIFFNESS
 
 # Places of the samples on each step, z in [-1, 1], both ends among them.
-_SAMPLES = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))
-_POWERS = powers(np.concatenate([POINTS, _SAMPLES]), STAGES + 1)
+SAMPLES = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))
+_POWERS = powers(np.concatenate([POINTS, SAMPLES]), STAGES + 1)
 _RATES = np.arange(1.0, STAGES + 1.0)[:, None] * powers(POINTS, STAGES)
 # Matrix from derivatives by z at the Gauss points to the change since z = -1.
 _INTEGRALS = 2.0 * CHANGE.T @ _POWERS

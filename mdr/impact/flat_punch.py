@@ -14,6 +14,7 @@ from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from mdr.impact.collocation import EndCondition, Trajectory, integrate, states
 from mdr.impact.collocation_step import STAGES
+from mdr.impact.energies import SAMPLES
 from mdr.impact.flat_punch_equations import FlatPunchBatch
 from mdr.impact.history import distinct, estimates
 from mdr.impact.motion import COARSER
@@ -23,8 +24,6 @@ from mdr.springs.assembly import equivalent_system
 
 # First step for a tolerance of one, in units of time; with the tolerance it goes as its tenth root. Chosen.
 _FIRST_STEP = 1.4
-# Places of the samples on each step, z in [-1, 1], both ends among them.
-_Z = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))
 
 
 @dataclass(frozen=True)
@@ -147,7 +146,7 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
 
 def _samples(motion: Trajectory) -> FloatArray:
     """States of a single lane in order of time, shape (m, n)."""
-    state = np.swapaxes(states(motion, _Z), 1, 2)[..., 0].reshape(motion.final.shape[0], -1)
+    state = np.swapaxes(states(motion, SAMPLES), 1, 2)[..., 0].reshape(motion.final.shape[0], -1)
     # The first sample is first touch and the last one the end itself, not the polynomials' rounded values there.
     state[1, 0], state[3, 0], state[:, -1] = 0.0, 1.0, motion.final[:, 0]
     return state[:, distinct(state[1])]

@@ -11,7 +11,11 @@ from contact.records.validation import FloatArray, IntArray
 from mdr.impact.collocation import Trajectory
 from mdr.impact.collocation_step import STAGES, Derivative
 
+# Chebyshev nodes in u on each step on which a way in is inverted. Restitution and contact time move by 1.1e-11 at most
+# with 24 of them, as they do from 20; from 12 by 2.2e-11 (14 random impacts, a/h 0.05 to 10, seed 1533, 2026-11-22).
 _NODES = 16
+# Steps of Newton's method for those places. On the same impacts one leaves 7e-4 of a step, two 5e-8, three 2e-13 like
+# all further ones; two are spare.
 _NEWTON_STEPS = 5
 _POWERS_FROM_VALUES = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
 # Where a way in is taken to end that stopped without a turn, in units of the whole way.

@@ -17,7 +17,7 @@ from mdr.impact.units import ScaledImpacts
 from mdr.springs.error_model import (
     AGREEMENT_SHARES,
     COARSER_POWER,
-    FINEST_ACCURACY,
+    DEFAULT_ACCURACY,
     IMPACT_ROUNDING,
     LEAVING_SHARE,
     PROFILE_ROUNDING,
@@ -114,7 +114,7 @@ def fine_and_change(
         rounding: Relative, shape (n,).
     """
     fine, coarse = np.split(both, 2, axis=1)
-    chance = AGREEMENT_SHARES * accuracy * max(accuracy / FINEST_ACCURACY, 1.0) ** COARSER_POWER
+    chance = AGREEMENT_SHARES * accuracy * max(accuracy / DEFAULT_ACCURACY, 1.0) ** COARSER_POWER
     change = np.abs(fine - coarse) / np.abs(fine) + chance
     of_peaks = change[_TIME + 1 :].max(axis=0)
     change[_TIME] += (

@@ -21,9 +21,10 @@ from mdr.impact.motion import Impacts, TableTooShort, impacts
 from mdr.impact.results import ImpactResults, joined, results
 from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, relaxation_of, scaled, table_of
 from mdr.springs.beside_contact import refuse_touching_at
+from mdr.springs.error_model import DEFAULT_ACCURACY
 from mdr.springs.pulling import refuse_pulling_at
 
-ACCURACY = 1e-9
+# Accuracies that may be asked for: a coarser one is no impact any more, a finer one is below rounding; chosen.
 _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
 # Impacts integrated together: enough to hide the interpreter, few enough to stay in the cache; chosen.
 _CHUNK = 256
@@ -58,8 +59,8 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         InvalidInput: If it is pressed in beyond its rim.
         UnsupportedSceneError: If it would touch beside its largest circle of contact.
     """
-    known = {"accuracy": ACCURACY, **settings}
-    log, accuracy = StageLog(), float(known["accuracy"] or ACCURACY)
+    known = {"accuracy": DEFAULT_ACCURACY, **settings}
+    log, accuracy = StageLog(), float(known["accuracy"] or DEFAULT_ACCURACY)
     tolerance = step_tolerance(accuracy)
     if is_flat(scene):
         refuse_pulling_at(scene, flat_punch, scene.indenter.max_radius)
@@ -97,7 +98,7 @@ def impact_batch(
     scenes: Sequence[Scene],
     flat_punch: FlatPunchSource,
     *,
-    accuracy: float = ACCURACY,
+    accuracy: float = DEFAULT_ACCURACY,
     progress: Progress | None = None,
 ) -> ImpactResults:
     """Many impacts, those that share springs and the number of relaxation times together.

@@ -30,6 +30,8 @@ NOISE_TOLERANCE = 1e-11
 MANY = 1024
 # A position u beside the start of a piece at which a curve has a value and a slope; chosen.
 _BESIDE = 1e-6
+# Least excess over a flat end, relative to its radius, of which a rounded radius still tells four digits.
+LEAST_EXCESS = 1e-12
 # Radii, beside the profile's nodes, at which the largest error is looked for: errors change from panel to panel.
 _SAMPLES = 96
 

@@ -15,8 +15,17 @@ from functools import singledispatch
 import numpy as np
 
 from bem.polynomials.gauss_panels import gauss_nodes
-from contact import Cone, FlatPunch, Paraboloid, PowerLaw, Profile, Sphere, TruncatedCone, TruncatedParaboloid
 from contact.records.validation import FloatArray
+from contact.scene.profiles import (
+    Cone,
+    FlatPunch,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Sphere,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
 
 # Gauss nodes on each stretch of the profile between breakpoints; chosen.
 NODES = 48

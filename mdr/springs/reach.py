@@ -29,14 +29,12 @@ from contact.answer.one_circle import refuse_touching
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import SeveralContacts, contact_fields, equivalent_system
 from mdr.springs.beside_contact import circle_of
-from mdr.springs.equivalent_system import EquivalentSystem
+from mdr.springs.equivalent_system import LEAST_EXCESS, EquivalentSystem
 from mdr.springs.half_space_profile import half_space_profile
 from mdr.springs.pulling import LEAST_TENSION, OneStep, refuse_pulling
 
 # First trial radius: the half-space's, capped at this a/h, beyond which that is no guide any more; chosen.
 FIRST_RATIO = 10.0
-# Least excess over a flat end, relative to its radius, of which a rounded radius still tells four digits.
-LEAST_EXCESS = 1e-12
 # Radii, in units of a length made of the loading, on which the half-space's answer is tabulated: neighbours differ by
 # a fifth.
 TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)

@@ -20,8 +20,9 @@ from bem.layer_equation.protocol import FlatPunchSolution, LayerShare
 from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
-from contact import InvalidInput, Profile
+from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
+from contact.scene.profiles import Profile
 from mdr.springs.half_space_profile import half_space_profile
 
 # Gauss nodes on each piece of the integrals over displacements; as many as the layer's panels have by default.

@@ -81,12 +81,6 @@ class SpringTable:
         """The same, of points of known sections."""
         return _radius(np.asarray(self.section_radii[section]), y - self.section_ends[section])
 
-    def coordinate(self, radius: FloatArray) -> FloatArray:
-        """The front coordinate y at a [m]."""
-        section = np.clip(np.searchsorted(self.section_radii, radius, side="right") - 1, 0, self.section_radii.size - 2)
-        start = self.section_radii[section]
-        return np.asarray(self.section_ends[section] + np.where(start > 0.0, np.sqrt(radius - start), radius))
-
     def evaluate(self, y: FloatArray, rows: int = 6, section: int | None = None) -> FloatArray:
         """The first `rows` of g, dg/dy, k, dk/dy, P, Q at y, shape (rows, n), seen from inside one section if named."""
         return self.functions(y, slice(rows)) if section is None else self.within(section, rows)(y)

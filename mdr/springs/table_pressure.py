@@ -15,8 +15,7 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from contact import FlatPunch, Scene
 from contact.records.validation import FloatArray
 from mdr.springs.assembly import contact_fields
-from mdr.springs.equivalent_system import EquivalentSystem
-from mdr.springs.reach import LEAST_EXCESS
+from mdr.springs.equivalent_system import LEAST_EXCESS, EquivalentSystem
 from mdr.springs.table_errors import elastic_changes, size
 
 # Radii at which pressures are compared.

@@ -4,8 +4,6 @@ One method stands left of the axis and another right of it, where two solved the
 section is drawn as it deforms, with displacements enlarged by a factor that the picture states.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace

@@ -1,7 +1,5 @@
 """`contact-verify accuracy-page`: the page of accuracy figures, from stored numbers alone."""
 
-from __future__ import annotations
-
 from pathlib import Path
 
 from cases.gate.accuracy_figures import accuracy_figures

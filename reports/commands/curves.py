@@ -3,8 +3,6 @@
 Each is declared here with its options; what it needs is imported when it is called.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path

@@ -1,7 +1,5 @@
 """The page `docs/accuracy.md`: stated errors and observed agreement, from accepted numbers and measurements."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Sequence
 from itertools import groupby
 from operator import attrgetter

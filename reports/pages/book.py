@@ -1,7 +1,5 @@
 """Pages of the documentation that are written from the project: a page a case, and where each equation stands."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path

@@ -12,10 +12,10 @@ from bem.kernels.tangential import HalfSpaceKernel, beyond_half_space
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.stick.adhered_fields import AdheredFields, tanh_sinh
 from bem.layer_equation.stick.adhered_punch import adhered_punch, basis_transforms
-from bem.layer_equation.stick.all_radii import adhered_punches
 from bem.layer_equation.stick.coulomb import coulomb_functions
 from bem.layer_equation.stick.frictionless_slip import frictionless_punch, rung_of
 from contact import Layer
+from tests.bem.adhered_punches import adhered_punches
 
 # nu, a/h, support, k_stick/(2 E* a), c_stick/E*, k/(2 E* a) without friction, Q/N, p and q at a/2 over the mean
 # pressure, u_r1 at a/2: another program's values, printed to twelve digits.
@@ -213,3 +213,11 @@ def test_reciprocity_of_the_two_punches(nu, support, ratio):
     # Transforms at wavenumbers of 20 a/h lose digits: beyond a/h = 10 other nodes move the stiffness by 2e-13, too.
     rounding = 1e-13 if ratio <= 10.0 else 5e-13
     assert stuck.stiffness == pytest.approx(k_free - 2.0 * beta * moved, rel=rounding, abs=0)
+
+
+def test_the_shear_of_an_adhered_punch_vanishes_on_the_axis():
+    """It is odd in r: a line through the axis."""
+    fields = AdheredFields(adhered_punch(1.0, UniformKernel("bonded", 0.3)))
+    axis, *near = fields.shear(np.array([0.0, 1e-4, 5e-3, 2e-2]))
+    assert axis == 0.0
+    assert np.array(near) / [1e-4, 5e-3, 2e-2] == pytest.approx(near[-1] / 2e-2, rel=3e-4, abs=0)

@@ -8,11 +8,11 @@ from cases.declare.case import Case, CaseScene
 from cases.declare.methods import MethodUse
 from cases.declare.task import Sampling
 from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.changed_scenes import ScalingLaw
 from cases.judgement.claims.declared import Reason
 from cases.judgement.claims.exact import Exact
 from cases.judgement.claims.field_agreement import FieldAgreement
 from cases.judgement.claims.order import Order
-from cases.judgement.claims.scaling_law import ScalingLaw
 from cases.measurements.cost.work_precision import WorkStudy
 from cases.results.records.claim import Origin
 from cases.results.records.figure import Figure, Panel, Series

@@ -8,10 +8,10 @@ from cases.declare import methods
 from cases.declare.foreign_methods import with_foreign_methods, with_registered
 from cases.declare.registry import load_cases
 from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.changed_scenes import ScalingLaw
 from cases.judgement.claims.exact import Exact
 from cases.judgement.claims.order import Order
-from cases.judgement.claims.residual import Residual
-from cases.judgement.claims.scaling_law import ScalingLaw
+from cases.judgement.claims.own_laws import Residual
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from cases.references.partial_slip import partial_slip
+from benchmarks.references.partial_slip import partial_slip
 from contact import (
     Adhesion,
     Cone,

@@ -9,7 +9,6 @@ from bem.kernels.of_layer import UniformKernel, sticking_kernel
 from bem.kernels.tangential import beyond_half_space
 from bem.layer_equation.stick.adhered_fields import AdheredFields
 from bem.layer_equation.stick.adhered_punch import adhered_punch
-from bem.layer_equation.stick.all_radii import adhered_punches
 from bem.layer_equation.stick.growth import growth_table
 from contact import (
     Cone,
@@ -30,6 +29,7 @@ from contact import (
 from fem_reference import Fem
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
+from tests.bem.adhered_punches import adhered_punches
 
 STICK = (Friction(coefficient=math.inf),)
 PARABOLOID = Paraboloid(radius_of_curvature=10.0)

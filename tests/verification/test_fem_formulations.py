@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from skfem import ElementVector, FacetBasis, LinearForm, MeshTri
 
-from contact import FlatPunch, IndentationDepths, InvalidInput, Layer, NotConvergedError, Paraboloid, Scene, StageLog
+from contact import FlatPunch, IndentationDepths, Layer, NotConvergedError, Paraboloid, Scene, StageLog
 from fem_reference import Fem
-from fem_reference.code_verification.inf_sup import measure_inf_sup
+from fem_reference.code_verification.inf_sup import inf_sup_constant, uniform_mesh
 from fem_reference.discrete_layer.elements import PAIRS
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import Grading, layer_mesh, named_layer_mesh
@@ -27,15 +27,12 @@ def uniform(cells, shift=0.0):
 
 @pytest.mark.parametrize("pair", [p for p in PAIRS.values() if p.is_mixed], ids=lambda pair: pair.name)
 def test_inf_sup_constant_tells_stable_pairs_from_unstable_ones(pair):
-    measured = measure_inf_sup(pair, (2, 4) if pair.degree > 2 else (2, 4, 8))
-    assert measured.is_stable == pair.inf_sup_stable
+    """From one mesh to the next a stable pair keeps most of about 0.6; that of an unstable pair halves or vanishes."""
+    cells = (2, 4) if pair.degree > 2 else (2, 4, 8)
+    constants = [inf_sup_constant(pair, uniform_mesh(n)) for n in cells]
+    assert (constants[-1] > max(0.75 * constants[-2], 0.1)) == pair.inf_sup_stable
     if pair.inf_sup_stable:
-        assert measured.constants.min() > 0.45
-
-
-def test_a_displacement_formulation_has_no_inf_sup_constant():
-    with pytest.raises(InvalidInput, match="no pressure"):
-        measure_inf_sup(PAIRS["P2"])
+        assert min(constants) > 0.45
 
 
 LOCKING_MESH = layer_mesh(1.0, 11.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))

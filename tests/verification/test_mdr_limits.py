@@ -7,12 +7,7 @@ from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from contact import Cone, InvalidInput, Layer, Paraboloid, TruncatedCone
 from mdr import equivalent_system
-from mdr.closed_forms.asymptotic import (
-    thin_contact_stiffness,
-    thin_flat_punch_pressure,
-    thin_profile,
-    thin_spring_stiffness,
-)
+from mdr.closed_forms.asymptotic import foundation_modulus, is_film, thin_profile, thin_spring_stiffness
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
 from tests.verification.power_law import stiffness_exponent, stiffness_prefactor
 
@@ -24,6 +19,19 @@ LAYERS = {
     "bonded 0.5": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5),
 }
 RATIOS = np.array([20.0, 40.0, 80.0])
+
+
+def thin_contact_stiffness(layer, contact_radius):
+    """k_N [N/m], Eqs. (16), (18) and (21)."""
+    a, h = np.asarray(contact_radius, dtype=float), layer.thickness
+    if is_film(layer):
+        return np.pi * layer.youngs_modulus * a**4 / (8 * h**3)
+    return np.pi * foundation_modulus(layer) * a**2 / h
+
+
+def thin_flat_punch_pressure(layer, rho):
+    """p_bar of a flat punch over rho = r/a: constant, or the parabola of Eq. (19)."""
+    return 2 * (1 - rho) * (1 + rho) if is_film(layer) else np.ones_like(rho)
 
 
 def observed_orders(errors):

@@ -51,15 +51,6 @@ class PointKernel:
         z, w = self.exponentials.rates, self.exponentials.weights
         return np.asarray((-np.expm1(-np.multiply.outer(length, z)) @ (w / z)).real)
 
-    def mean_integral(self, length: FloatArray) -> FloatArray:
-        """(1/length) int_0^length of `integral`."""
-        z, w = self.exponentials.rates, self.exponentials.weights
-        u = np.multiply.outer(length, z)
-        small = np.abs(u) < 1e-4
-        safe = np.where(small, 1.0, u)
-        bracket = np.where(small, u / 2 - u**2 / 6, 1 + np.expm1(-safe) / safe)
-        return np.asarray((bracket @ (w / z)).real)
-
     @cached_property
     def _coefficients(self) -> FloatArray:
         starts = 2.0 ** np.arange(-SHORTEST, FARTHEST)

@@ -11,8 +11,8 @@ import numpy as np
 
 from bem.polynomials.abel_integral import Stretch
 from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
-from contact import PowerLaw, Profile
 from contact.records.validation import FloatArray
+from contact.scene.profiles import PowerLaw, Profile
 
 # Ends of pieces lie so many times as far from a singularity of the profile's slope as the ends before them.
 _GRADING = 4.0

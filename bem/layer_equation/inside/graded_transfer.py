@@ -30,7 +30,7 @@ from bem.kernels.graded import (
 )
 from bem.kernels.inside import Transfer
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
-from contact import NotConvergedError
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
 # Depths times k up to which tractions are followed: exp(-40) is below all digits.

@@ -10,8 +10,8 @@ from functools import singledispatch
 
 import numpy as np
 
-from contact import Cone, Paraboloid, PowerLaw, Profile, Sphere, TruncatedCone, TruncatedParaboloid
 from contact.records.validation import FloatArray
+from contact.scene.profiles import Cone, Paraboloid, PowerLaw, Profile, Sphere, TruncatedCone, TruncatedParaboloid
 
 
 @singledispatch

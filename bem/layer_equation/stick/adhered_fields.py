@@ -23,6 +23,11 @@ from contact.records.validation import FloatArray
 # Step and half range of the tanh-sinh rule: its error is exp(-pi^2/(2 step)), and at the ends weights are below 1e-17.
 _STEP = 0.05
 _RANGE = 3.4
+# Within this r/a shear and radial displacement, odd in r, are lines through the axis, where their integrals divide by
+# powers of r: their cubic terms are below 1e-4 of them there (a/h = 1, bonded, nu = 0.3, 2026-11-22).
+_SMALLEST_RADIUS = 1e-2
+# Least distance from the edge, far below any that can be told from it, which keeps divisions finite.
+_SMALLEST_REST = 1e-300
 
 
 @dataclass(frozen=True)
@@ -48,11 +53,11 @@ class AdheredFields:
 
     def shear(self, radius: FloatArray) -> FloatArray:
         """q at 0 <= r/a < 1, positive where it pushes the layer outward."""
-        radius = np.maximum(radius, _SMALLEST_RADIUS)
+        asked, radius = radius, np.maximum(radius, _SMALLEST_RADIUS)
         t, rest, weights = _towards_edge(radius)
         at = self.densities(t, rest)
         integrand = at.value / t - at.slope / t**2 + rest * (1.0 + t) * at.value / t**3
-        return np.asarray(radius * (integrand.imag @ weights) / np.sqrt((1.0 - radius) * (1.0 + radius)))
+        return np.asarray(asked * (integrand.imag @ weights) / np.sqrt((1.0 - radius) * (1.0 + radius)))
 
     def normal_displacement(self, radius: FloatArray) -> FloatArray:
         """w at r/a >= 0: 1 inside."""
@@ -142,10 +147,6 @@ class AdheredFields:
         at = self.densities(t, rest)
         height = np.sqrt((1.0 - inside) * (1.0 + inside))
         return height * ((at.value.imag / t) @ weights), height * (at.value.real @ weights)
-
-
-_SMALLEST_RADIUS = 1e-2
-_SMALLEST_REST = 1e-300
 
 
 @cache

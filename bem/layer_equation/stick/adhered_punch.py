@@ -130,16 +130,6 @@ class AdheredPunch:
         """D at the nodes of the wavenumber."""
         return _compliance(transforms, self.ratio, self.kernel)
 
-    @property
-    def cosine_transform(self) -> FloatArray:
-        """P(kappa) = int_0^1 phi cos(kappa t) dt, shape (k,)."""
-        return self.coefficients @ self.transforms.cosine
-
-    @property
-    def sine_transform(self) -> FloatArray:
-        """Q(kappa) = int_0^1 psi sin(kappa t) dt, shape (k,)."""
-        return self.coefficients @ self.transforms.sine
-
 
 def adhered_punch(ratio: float, kernel: StickingKernel, functions: int | None = None) -> AdheredPunch:
     """Solve for a punch of radius a on a layer whose surface material is h thick.

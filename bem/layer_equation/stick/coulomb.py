@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contact import NotConvergedError
+from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
 # Downward recurrences begin this many orders, and six cube roots of z, beyond the larger of order and argument: the

@@ -5,7 +5,6 @@
 - ``least_squares``: four grids and more (Eca and Hoekstra 2014)
 - ``behaviour``: monotone, oscillatory, divergent, floor, too few
 - ``asymptotic``: whether the grids lie in the asymptotic range, by tests that can fail
-- ``known_errors``: order and asymptotic range where the errors themselves are known
-- ``spectral``: digits gained per refinement
+- ``known_errors``: order, asymptotic range, or digits gained, where the errors themselves are known
 - ``study``: all of it for one sequence
 """

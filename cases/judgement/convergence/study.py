@@ -6,10 +6,14 @@ from dataclasses import dataclass
 from cases.judgement.convergence.asymptotic import is_asymptotic
 from cases.judgement.convergence.behaviour import behaviour
 from cases.judgement.convergence.extrapolation import extrapolated, grid_convergence_index, safety_factor
-from cases.judgement.convergence.known_errors import behaviour_of_errors, errors_follow_order, order_of_errors
+from cases.judgement.convergence.known_errors import (
+    behaviour_of_errors,
+    digits_per_refinement,
+    errors_follow_order,
+    order_of_errors,
+)
 from cases.judgement.convergence.least_squares import fit
 from cases.judgement.convergence.observed_order import observed_order
-from cases.judgement.convergence.spectral import digits_per_refinement
 from cases.results.records.convergence import ConvergenceClass, ConvergenceStudy, Grid
 from cases.results.records.scene_run import Quantity
 from contact import InvalidInput

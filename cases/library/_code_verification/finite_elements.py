@@ -1,7 +1,5 @@
 """The finite elements verified as a program: manufactured solutions, inf-sup constants, patch test, locking."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import replace

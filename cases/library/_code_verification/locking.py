@@ -1,7 +1,5 @@
 """Errors of the stiffness on one and the same mesh as Poisson's ratio goes to one half."""
 
-from __future__ import annotations
-
 from functools import cache
 
 import numpy as np

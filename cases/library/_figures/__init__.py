@@ -5,8 +5,6 @@ the numbers. Ranges are those of the paper's text, since its axes are printed as
 of other methods over these curves.
 """
 
-from __future__ import annotations
-
 import importlib
 from collections.abc import Iterable
 from dataclasses import replace

@@ -1,7 +1,5 @@
 """What the figures share: series with an error band, the layers they are drawn for, one source of flat-punch data."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from typing import Literal
 

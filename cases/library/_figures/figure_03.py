@@ -1,7 +1,5 @@
 """Fig. 3: normalised contact stiffness of the flat punch over a/h."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.library._figures._parts import LARGEST_RATIO, UNBONDED, closed_form, layer, mdr_line, name_of, percent, punch

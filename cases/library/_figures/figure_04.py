@@ -1,7 +1,5 @@
 """Fig. 4: contact pressure under a flat punch on a bonded incompressible layer."""
 
-from __future__ import annotations
-
 import numpy as np
 from scipy.optimize import brentq
 

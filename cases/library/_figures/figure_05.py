@@ -1,7 +1,5 @@
 """Fig. 5: exponent m and factor kappa of the contact stiffness, Eqs. (33) and (34)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.library._figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch

@@ -1,7 +1,5 @@
 """Fig. 7: MDR profile and pressure of a truncated cone, b/a = 0.5, for three layers."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.library._figures._parts import SOURCE, UNBONDED, layer, mdr_line, name_of

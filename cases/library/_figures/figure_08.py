@@ -1,7 +1,5 @@
 """Fig. 8: normalised elongation of the outermost spring before it lets go, Eq. (42)."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from bem.layer_equation.protocol import FlatPunchSource

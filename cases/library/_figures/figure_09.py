@@ -1,7 +1,5 @@
 """Fig. 9: force over depth while a flat punch detaches from a bonded incompressible layer."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.library._figures._parts import layer, mdr_line

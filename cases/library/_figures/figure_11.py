@@ -1,7 +1,5 @@
 """Fig. 11: restitution of a flat punch on a Kelvin-Voigt layer."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from cases.library._figures._parts import UNBONDED, closed_form, layer, mdr_line, name_of, punch

@@ -1,7 +1,5 @@
 """Fig. 12: a sphere hits a layer of 1, 2 or 3 mm, viscoelastic (standard solid) or elastic."""
 
-from __future__ import annotations
-
 from functools import cache
 from typing import Literal
 

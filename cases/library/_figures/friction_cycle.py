@@ -1,7 +1,5 @@
 """A cycle of depth with dry friction: force over depth, what friction makes of it, tangential tractions, heat."""
 
-from __future__ import annotations
-
 from dataclasses import replace
 from itertools import pairwise
 

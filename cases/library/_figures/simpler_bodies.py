@@ -1,7 +1,5 @@
 """Force over depth and pressure over radius with each simplification of a layered body beside the full answer."""
 
-from __future__ import annotations
-
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any

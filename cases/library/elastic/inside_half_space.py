@@ -14,7 +14,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.methods import MethodUse
 from cases.declare.task import Sampling
-from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.own_laws import Residual
 from cases.library._claims import exact
 from cases.library._layers import contact_modulus, half_space
 from cases.library._methods import EQUATION, MDR

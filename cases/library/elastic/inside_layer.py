@@ -22,7 +22,7 @@ from cases.declare.methods import MethodUse
 from cases.declare.task import Sampling
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.field_agreement import FieldAgreement, Norm
-from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.own_laws import Residual
 from cases.library._claims import names_of
 from cases.library._convergence import ROOT_TWO, Refinement, neighbours, studies
 from cases.library._layers import LAYERS, THICKNESS, layer, scene_name

@@ -20,9 +20,8 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers, Sampling
-from cases.judgement.claims.incremental_stiffness import IncrementalStiffness, chebyshev_radii
 from cases.judgement.claims.order import Order
-from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.own_laws import IncrementalStiffness, Residual, chebyshev_radii
 from cases.library._claims import (
     agreements,
     carried_force,

@@ -16,7 +16,7 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.never_below import NeverBelow
+from cases.judgement.claims.changed_scenes import NeverBelow
 from cases.library._claims import agreements, exact
 from cases.library._convergence import EDGE_CELL, fem_cells, studies
 from cases.library._layers import THICKNESS, confined_modulus, contact_modulus, half_space, layer_of, scene_name

@@ -7,8 +7,8 @@ not hold it. MDR solves full stick without a mesh, and states for finite coeffic
 the radial displacement u_r1 under the frictionless unit punch, a bound, |F - F_0| <= mu max |u_r1| F at the true
 radius, and the first order in mu, F_0 mu int p_0 |u_r1| dA/F_0. On half-spaces and thick layers the stick radius is a
 fixed share of the contact radius that knows mu and nu only; radius, force, stick radius and heat there are those of
-Spence's coupled equations, solved by themselves (`cases.references.partial_slip`). On the way back slip reverses from
-the edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
+Spence's coupled equations, solved by themselves (`benchmarks.references.partial_slip`). On the way back slip reverses
+from the edge on, the force is less at each depth, and the loop between is heat; friction never gives any back.
 """
 
 import math
@@ -24,8 +24,8 @@ from cases.declare.methods import MethodUse
 from cases.declare.task import Answers
 from cases.judgement.claims.agreement import Agreement
 from cases.judgement.claims.approach import Approach
-from cases.judgement.claims.never_below import NeverBelow
-from cases.judgement.claims.residual import Residual
+from cases.judgement.claims.changed_scenes import NeverBelow
+from cases.judgement.claims.own_laws import Residual
 from cases.library._claims import agreements, exact, names_of
 from cases.library._convergence import FINEST_MDR, NODES, in_turn, studies
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer_of

@@ -13,8 +13,8 @@ import numpy as np
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.methods import MethodUse
 from cases.declare.task import Answers
+from cases.judgement.claims.changed_scenes import ScalingLaw
 from cases.judgement.claims.printed import Printed
-from cases.judgement.claims.scaling_law import ScalingLaw
 from cases.library._claims import agreements, energy_balance, exact, names_of
 from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, NODES, TIME_ACCURACY, studies
 from cases.library._figures import paper_figure

@@ -4,24 +4,18 @@ Methods that share a kernel agree on a wrong one. The sampled pressure alone ent
 displacement it causes, are computed from `_second_kernel`. Inside the contact that must be delta - f(r).
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 from scipy.special import j0
 
 from bem.polynomials.gauss import legendre_rule
-from cases.declare.case import Case, CaseScene
-from cases.declare.task import Answers
-from cases.judgement.claims.declared import PerMethod, missing
-from cases.judgement.rules.invariant import judge_invariant
-from cases.judgement.rules.judgement import Judgement, nothing_compared
+from cases.declare.case import CaseScene
+from cases.judgement.claims.own_laws import SampledLaw
 from cases.judgement.rules.norms import RingQuadrature
 from cases.library.stacks._second_kernel import surface_compliance
-from cases.results.records.claim import Claim, Kind
-from cases.results.records.scene_run import SceneRun
-from cases.results.status import Status
+from cases.results.records.scene_run import Curve, SceneRun
 from contact import ElasticLayer, FlatPunch
 from contact.records.validation import FloatArray
 
@@ -33,7 +27,7 @@ NODES = 20
 
 
 @dataclass(frozen=True, kw_only=True)
-class PressedShape(PerMethod):
+class PressedShape(SampledLaw):
     """The sampled pressure of the last step displaces the surface by delta - f(r), relative to delta.
 
     Attributes:
@@ -42,30 +36,20 @@ class PressedShape(PerMethod):
         radial_waves: the least such number times the contact radius, for kernels that fall like 1/k.
     """
 
-    kind: ClassVar[Kind] = Kind.INVARIANT
-
     compliance: Compliance = surface_compliance
     waves: float = 24.0
     radial_waves: float = 0.0
 
-    def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
-        """Judge each scene and method."""
-        for scene, label, run, tolerance in self.answered(case, answers):
-            judged = missing(run) or self._judged(scene, run, tolerance)
-            yield self.record(judged, scene.name, (label,), tolerance=tolerance)
-
-    def _judged(self, scene: CaseScene, run: SceneRun, tolerance: float) -> Judgement:
-        curves = [curve for curve in run.curves if curve.name == self.quantity]
-        if not curves:
-            return nothing_compared(Status.SKIP, f"{run.method} gives no {self.quantity}")
+    def residual(self, scene: CaseScene, run: SceneRun, sampled: Curve) -> float:
+        """Where the displacement is farthest from delta - f(r)."""
         indenter, layer, rings = scene.scene.indenter, scene.scene.layer, scene.sampling.rings
-        pressed = Pressed(rings, np.array(curves[0].y), singular=isinstance(indenter, FlatPunch))
+        pressed = Pressed(rings, np.array(sampled.y), singular=isinstance(indenter, FlatPunch))
         radius = COMPARED * rings.edges[-1]
         largest = max(self.waves / layer.surface.thickness, self.radial_waves / rings.edges[-1])
         found = pressed.displacement(layer, self.compliance, radius, largest, tapered=self.radial_waves > 0)
         depth = run.quantity("indentation_depth").values[-1]
         height = indenter.height(radius)
-        return judge_invariant(float(np.max(np.abs(found - depth + height))) / depth, tolerance=tolerance)
+        return float(np.max(np.abs(found - depth + height))) / depth
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ left out: a layer of the mean modulus alone errs by a multiple of what methods d
 """
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.judgement.claims.never_below import NeverBelow
+from cases.judgement.claims.changed_scenes import NeverBelow
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, studies
 from cases.library.stacks._stacks import (
     METHODS,

@@ -1,7 +1,5 @@
 """What each listed effect costs and what it moves, from one cheap solution without it."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from functools import partial
 

@@ -1,7 +1,5 @@
 """Which effects, and which finite thickness, a scene needs at a wanted accuracy: solved with and without."""
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 
 from cases.measurements.advice.ablation import ablations_of, change_without, first_solution

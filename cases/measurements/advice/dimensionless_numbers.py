@@ -5,8 +5,6 @@ truncated ones and r^6: a half-space in place of a layer moves depth or force by
 most 2 times dl/delta, a dashpot by at most 6.5 times tau/T, and a branch that relaxes slowly by less than T/tau.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 

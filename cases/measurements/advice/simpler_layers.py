@@ -1,8 +1,5 @@
 """What may be left out of a layered body: its elastic base, buried layers, slip, grading, and its finite thickness."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
 from functools import partial
 from itertools import pairwise
 
@@ -11,11 +8,6 @@ from contact import ElasticBase, ElasticLayer, GradedLayer, Layer, LayerStack
 THICKNESS = "finite thickness"
 ELASTIC_BASE = "elastic base (rigid instead)"
 GRADING = "grading (the surface's material instead)"
-
-
-def simpler_layers(layer: ElasticLayer) -> Mapping[str, ElasticLayer]:
-    """The layer without each of its parts, by the name of the part."""
-    return {name: simpler(layer, name) for name in layer_parts(layer)}
 
 
 def layer_parts(layer: ElasticLayer) -> tuple[str, ...]:

@@ -6,8 +6,6 @@ spring by spring. For other loadings the refined method checks every scene, or a
 is also solved in other units, where it must give the same answer, and with its relaxation written down in other ways.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial

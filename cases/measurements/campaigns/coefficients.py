@@ -1,7 +1,5 @@
 """Every coefficient of the error models with the stated errors it shapes, and what a coverage study achieved there."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -73,7 +71,7 @@ GROUPS: Final = (
             "PROFILE_ROUNDING",
             "IMPACT_ROUNDING",
             "AGREEMENT_SHARES",
-            "FINEST_ACCURACY",
+            "DEFAULT_ACCURACY",
             "COARSER_POWER",
             "LEAVING_SHARE",
             "WITHIN_STEPS_SHARE",

@@ -1,7 +1,5 @@
 """Error bars that hold and are sharp: for each method, stated against true errors over hundreds of random scenes."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

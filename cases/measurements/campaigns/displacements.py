@@ -7,8 +7,6 @@ Radii are a rounding beyond those where a method may change its panels, a whole 
 from its edge, and random ones. Distances count relative to the depth.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any, Final
 

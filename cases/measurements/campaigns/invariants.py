@@ -1,7 +1,5 @@
 """Laws of mechanics that hold whatever the method; each gives a relative residual, zero for a perfect answer."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Final
 

@@ -8,8 +8,6 @@ start of the stretch, on panels that double with their distance from u = 0 and f
 arithmetic: `tests/cases/measurements/stability/test_pressures.py`.
 """
 
-from __future__ import annotations
-
 import math
 from itertools import pairwise
 from typing import Final

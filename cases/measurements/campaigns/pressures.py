@@ -8,8 +8,6 @@ Each field is one contact in random units. Four checks need no other method's co
 - **force of the pressure**: its integral over the contact against the normal force.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from functools import partial
 from itertools import pairwise

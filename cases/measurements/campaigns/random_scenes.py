@@ -4,8 +4,6 @@ A scene is drawn dimensionless (layer thickness, or on a half-space the contact 
 around a contact radius, so that every drawn scene is one a user could mean; then every number is put into random units.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from typing import Literal, TypeAlias, get_args
 

@@ -5,8 +5,6 @@ linear system for each contact radius. It shares the layer's kernel with MDR and
 against 40 digits and by finite elements.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 from typing import Final

@@ -4,8 +4,6 @@ Popov, Hess and Willert, Handbook of Contact Mechanics (2019), chapter 2, gives 
 cubic between its radii, for which the integral is elementary as well. They are written here a second time on purpose.
 """
 
-from __future__ import annotations
-
 import math
 from functools import singledispatch
 from itertools import pairwise

@@ -4,8 +4,6 @@ Branches in another order, a branch split into two, and another unit of time: th
 different numbers. The unit of time is no power of two, so the mantissa of every time changes.
 """
 
-from __future__ import annotations
-
 from collections.abc import Callable, Mapping
 from typing import Final
 

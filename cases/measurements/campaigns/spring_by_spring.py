@@ -5,8 +5,6 @@ closed forms of the handbook. Each step is implicit: a spring end moves to the i
 if that is deeper. No spectrum of the layer and no instant of touch or release is ever computed.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass
 from typing import Final
 

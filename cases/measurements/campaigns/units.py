@@ -1,7 +1,5 @@
 """The same scene and the same answer in another system of units: three free units, of length, stress and time."""
 
-from __future__ import annotations
-
 import dataclasses
 from collections.abc import Callable
 from dataclasses import dataclass

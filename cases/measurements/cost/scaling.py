@@ -1,7 +1,5 @@
 """Cost against size at fixed accuracy: fitted exponents with their confidence, beside those that theory expects."""
 
-from __future__ import annotations
-
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,7 +1,5 @@
 """Does a requested accuracy come out, and was there a faster way to it?  Random scenes, random accuracies."""
 
-from __future__ import annotations
-
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace

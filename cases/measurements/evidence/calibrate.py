@@ -1,7 +1,5 @@
 """Measure accuracy and time of settings on random scenes of each kind, on this machine."""
 
-from __future__ import annotations
-
 import platform
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Measured settings in the order worth trying for a requested accuracy, and the first answer that achieves it."""
 
-from __future__ import annotations
-
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass

@@ -1,7 +1,5 @@
 """Scenes that cost alike: what is prescribed, and how thin the layer is against the contact."""
 
-from __future__ import annotations
-
 from typing import Final
 
 import numpy as np

@@ -1,7 +1,5 @@
 """What was measured: how accurate and how fast each setting was on random scenes of one kind."""
 
-from __future__ import annotations
-
 import statistics
 from functools import cache
 from importlib.resources import files

@@ -1,7 +1,5 @@
 """All ladders by all methods as one case of a report: digits, breakdowns, and the claim that nothing fails silently."""
 
-from __future__ import annotations
-
 from collections.abc import Iterable, Mapping
 from typing import Any, Final
 

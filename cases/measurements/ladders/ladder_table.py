@@ -1,7 +1,5 @@
 """The ladders: every hard parameter that contact with layers is known to break on."""
 
-from __future__ import annotations
-
 import dataclasses
 from functools import partial
 from typing import Any, Final

@@ -1,7 +1,5 @@
 """A hard parameter walked in steps until something breaks: digits, iterations and invariant residuals of each rung."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

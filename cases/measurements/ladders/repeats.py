@@ -1,7 +1,5 @@
 """Repeats of one solve that ought to change nothing, and the digits that all of them share."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator, Sequence
 from typing import Any, Final

@@ -46,7 +46,7 @@ HEAT_ORDER = 1.5
 FEWEST_STUCK = 8
 # The end of the stick, extrapolated in the cells, is uncertain by so much of one: it was off by at most 0.19, and by
 # 0.05 in the median (17 paraboloids on half-spaces, nu 0, 0.3, 0.49, c/a 0.2 to 0.9, on 80 cells, against
-# `cases.references.partial_slip`, 2026-11-22).
+# `benchmarks.references.partial_slip`, 2026-11-22).
 STICK_UNCERTAIN = 0.2
 # Depths, relative to the one asked for, over which the largest correction is taken: at one depth it may vanish.
 NEARBY = (0.7, 0.85, 1.0)

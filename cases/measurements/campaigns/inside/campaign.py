@@ -1,7 +1,5 @@
 """Random contacts with points close to rims, edges, interfaces and the axis, each point judged alone."""
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from functools import partial

@@ -4,8 +4,6 @@ Fields are combined of four solutions, two that decay from the surface and two t
 coefficients solve the conditions at both faces, by elimination. Lengths are in thicknesses.
 """
 
-from __future__ import annotations
-
 import numpy as np
 from numpy.typing import NDArray
 

@@ -5,8 +5,6 @@ on panels that double from the point's radius and from the pieces' beginnings; t
 transfer functions by elimination. Radii and rims are subtracted before they are rounded.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from cases.judgement.convergence.behaviour import behaviour
-from cases.judgement.convergence.spectral import digits_per_refinement
+from cases.judgement.convergence.known_errors import digits_per_refinement
 from cases.results.records.convergence import ConvergenceClass
 from contact import InvalidInput
 

@@ -11,7 +11,6 @@ from cases.measurements.advice.simpler_layers import (
     THICKNESS,
     layer_parts,
     simpler,
-    simpler_layers,
 )
 from contact import (
     ElasticBase,
@@ -36,7 +35,7 @@ GRADED = GradedLayer(
 def test_each_part_of_a_stack_is_left_out_by_itself():
     buried, slip = "sublayer 2 (the material above it instead)", "slip below sublayer 2 (bonded instead)"
     assert layer_parts(STACK) == (ELASTIC_BASE, buried, slip, THICKNESS)
-    left = simpler_layers(STACK)
+    left = {part: simpler(STACK, part) for part in layer_parts(STACK)}
     assert left[ELASTIC_BASE] == STACK.replace(support="bonded")
     assert left[buried] == STACK.replace(sublayers=(TOP, TOP, MIDDLE))
     assert left[slip] == STACK.replace(interfaces=("bonded", "bonded"))

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from cases.library._formulas import cone, paraboloid, punch
-from cases.library._formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
-from cases.library._formulas.compact import paraboloid_factor, punch_factor
-from cases.library._formulas.fit_compact import exact
-from cases.library._formulas.page import PLACE, page
-from cases.library._formulas.table import FORMULAS
+from benchmarks.formulas import cone, paraboloid, punch
+from benchmarks.formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
+from benchmarks.formulas.fit_compact import exact
+from benchmarks.formulas.page import PLACE, page
+from benchmarks.formulas.table import FORMULAS
 from cases.referees import process
 from contact import Cone, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
+from mdr.closed_forms.compact import paraboloid_factor, punch_factor
 from mdr.curves import formulas_for
 
 BY_NAME = {formula.name: formula for formula in FORMULAS}

@@ -1,4 +1,4 @@
-"""Which reference numbers there are; ``python -m cases.references.table`` computes them into ``numbers.toml``."""
+"""Which reference numbers there are; ``python -m benchmarks.references.table`` computes them."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -7,9 +7,9 @@ from pathlib import Path
 
 from mpmath import mp, mpf
 
-from cases.references import layer_equation, partial_slip, sphere_impact
+from benchmarks.references import layer_equation, partial_slip, sphere_impact
 
-PLACE = Path(__file__).with_name("numbers.toml")
+PLACE = Path(__file__).parents[2] / "cases" / "library" / "reference_numbers.toml"
 LAYERS: dict[str, str | None] = {f"bonded nu={nu}": nu for nu in ("0.3", "0.4", "0.45", "0.5")} | {"unbonded": None}
 # Gauss nodes that give at least twelve digits up to this a/h.
 NODES = {"0.1": 16, "0.2": 16, "0.5": 18, "1": 20, "2": 24, "5": 34, "10": 50}
@@ -35,9 +35,9 @@ PARTIAL_SLIPS = (("0", "0.3"), ("0", "0.9"), ("0.3", "0.3"), ("0.3", "0.7"), ("0
 # Digits that are kept, and to how many a second computation on other nodes must agree.
 KEPT = 14
 
-HEAD = """# Reference numbers, computed by `python -m cases.references.table` in extended precision; do not edit.
+HEAD = """# Reference numbers, computed by `python -m benchmarks.references.table` in extended precision; do not edit.
 # Those of partial slip come from double precision, which repeats twelve digits on other points.
-# What each list holds stands in `cases/references/table.py`.
+# What each list holds stands in `benchmarks/references/table.py`.
 """
 
 
@@ -46,7 +46,7 @@ class Entry:
     """One list of numbers.
 
     Attributes:
-        kind: section of ``numbers.toml``.
+        kind: section of ``reference_numbers.toml``.
         name: within the section.
         compute: returns the numbers; takes nodes (or steps) to add to the usual ones.
         digits: that a computation with other nodes repeats.
@@ -139,7 +139,7 @@ def computed(entry: Entry, more: int = 0) -> list[mpf]:
 
 
 def main() -> None:
-    """Compute every number and write ``numbers.toml``."""
+    """Compute every number and write ``reference_numbers.toml``."""
     lines, kind = [HEAD], ""
     for entry in entries():
         if entry.kind != kind:

@@ -5,9 +5,9 @@ import tomllib
 import pytest
 from mpmath import mp, mpf
 
-from cases.references.layer_equation import DIGITS, chi, first_order, gauss, stiffness, truncated_cone
-from cases.references.sphere_impact import SphereSprings, impact
-from cases.references.table import PLACE, computed, entries
+from benchmarks.references.layer_equation import DIGITS, chi, first_order, gauss, stiffness, truncated_cone
+from benchmarks.references.sphere_impact import SphereSprings, impact
+from benchmarks.references.table import PLACE, computed, entries
 
 TEXT = PLACE.read_text(encoding="utf-8")
 WRITTEN = tomllib.loads(TEXT, parse_float=mpf)
@@ -74,7 +74,7 @@ def test_the_time_steps_of_an_impact_converge():
 
 def test_a_wrong_kernel_is_seen(monkeypatch):
     """kappa = 3 - 2 nu in place of 3 - 4 nu."""
-    from cases.references import layer_equation
+    from benchmarks.references import layer_equation
 
     right = layer_equation.chi
     monkeypatch.setattr(layer_equation, "chi", lambda q, nu: right(q, None if nu is None else nu / 2))

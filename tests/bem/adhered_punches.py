@@ -1,4 +1,4 @@
-"""Adhered flat punches of all radii from one factorisation, for any Poisson's ratio.
+"""Adhered flat punches of all radii from one factorisation, for any Poisson's ratio: what single radii are tested by.
 
 The half-space's operator has a triangular factor C that acts on waves in closed form: with ``Hf(z) = exp(iz)
 1F1(i eps; 1; -2iz)`` and ``y_0 = sqrt(pi eps/eta)``, ``C^-1 (cos kx, 0) = y_0 e_1(kx)`` and ``C^-1 (0, sin kx) = y_0

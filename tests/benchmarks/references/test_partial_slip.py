@@ -5,8 +5,8 @@ import math
 import pytest
 from scipy.special import ellipk
 
-from cases.references import partial_slip
-from cases.references.partial_slip import HalfSpaceContact
+from benchmarks.references import partial_slip
+from benchmarks.references.partial_slip import HalfSpaceContact
 
 
 @pytest.mark.parametrize("share", [0.2, 0.6, 0.95])

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 from mpmath import mp, mpf
 
-from cases.references.layer_equation import Contact
+from benchmarks.references.layer_equation import Contact
 
 # Confinement up to which springs are tabulated: the thinnest layer reaches a/h = 1.1.
 LARGEST_RATIO = mpf("1.2")

@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from cases.library._formulas.table import PublishedFormula
+from benchmarks.formulas.table import PublishedFormula
 from contact import Cone, ContactRadii, Layer, Paraboloid, Profile, Scene
 from contact.records.validation import FloatArray
 from mdr import Mdr

@@ -1,16 +1,16 @@
-"""The page of formulas, `docs/formulas.md`: ``python -m cases.library._formulas.page`` writes it anew."""
+"""The page of formulas, `docs/formulas.md`: ``python -m benchmarks.formulas.page`` writes it anew."""
 
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
-from cases.library._formulas import audit, cone, paraboloid, punch
-from cases.library._formulas.audit import RATIOS, SHOWN, reference
-from cases.library._formulas.table import FORMULAS, PublishedFormula
+from benchmarks.formulas import audit, cone, paraboloid, punch
+from benchmarks.formulas.audit import RATIOS, SHOWN, reference
+from benchmarks.formulas.table import FORMULAS, PublishedFormula
 from contact.records.validation import FloatArray
 
-PLACE = Path(__file__).parents[3] / "docs" / "formulas.md"
+PLACE = Path(__file__).parents[2] / "docs" / "formulas.md"
 SHARES = (0.01, 0.05, 0.2)
 # Errors beyond this are no use to anybody and are shown as such.
 USELESS = 10.0
@@ -19,7 +19,7 @@ AT = [int(np.argmin(np.abs(RATIOS - ratio))) for ratio in SHOWN]
 
 HEAD = """# Formulas in circulation, and how right they are
 
-Written by `python -m cases.library._formulas.page`; the formulas are plain functions in `cases/library/_formulas/`.
+Written by `python -m benchmarks.formulas.page`; the formulas are plain functions in `benchmarks/formulas/`.
 Right is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and with
 finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.
@@ -46,7 +46,7 @@ far as programs copied them rightly.
 LAST = """
 ## The compact fit
 
-`cases.library._formulas.compact` gives `punch_factor(a/h, nu, support)`, that is k_N/(2 E* a), and
+`mdr.closed_forms.compact` gives `punch_factor(a/h, nu, support)`, that is k_N/(2 E* a), and
 `paraboloid_factor(sqrt(R delta)/h, nu, support)`, that is F over Hertz's force, for a/h up to 10, any nu from 0 to 1/2
 and both supports: half-space and thin layer, added, times the exponential of a polynomial. `fit_compact` makes the
 coefficients (`compact.toml`). On random points that the fit has not seen the error stays below 0.1 %

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Literal, TypeAlias
 
-from cases.library._formulas import cone, paraboloid, punch
+from benchmarks.formulas import cone, paraboloid, punch
 from contact.records.validation import FloatArray
 
 Factor: TypeAlias = Callable[[FloatArray, float], FloatArray]

@@ -2,7 +2,8 @@
 
 - ``layer_equation``: flat punches and profiles on layers, `mpmath`
 - ``sphere_impact``: the springs of Fig. 12 in time, `mpmath`
-- ``table``: which numbers there are; ``python -m cases.references.table`` computes them all into ``numbers.toml``
+- ``table``: which numbers there are; ``python -m benchmarks.references.table`` computes them all
 
-Cases read ``numbers.toml`` only, so that a run needs no `mpmath`; the nightly tests compute every number again.
+Cases read `reference_numbers.toml` of their library only, so that a run needs no `mpmath`; nightly tests compute every
+number again.
 """

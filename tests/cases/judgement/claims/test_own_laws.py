@@ -3,9 +3,18 @@
 import numpy as np
 import pytest
 
-from cases.judgement.claims.incremental_stiffness import _judged, chebyshev_radii
+from cases.judgement.claims.declared import Reason
+from cases.judgement.claims.own_laws import IncrementalStiffness, chebyshev_radii
+from cases.results.records.claim import Origin
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
+
+CLAIM = IncrementalStiffness(
+    name="slope",
+    quantity="contact_stiffness",
+    tolerance=1e-9,
+    reason=Reason(because="a law", derived_from="roundings", origin=Origin.CLOSED_FORM, source="Eq. (10)"),
+)
 
 
 def cone(stiffness_error):
@@ -24,4 +33,4 @@ def cone(stiffness_error):
 
 @pytest.mark.parametrize(("stiffness_error", "status"), [(0.0, Status.PASS), (3e-9, Status.FAIL)])
 def test_the_law_on_the_half_space(stiffness_error, status):
-    assert _judged(cone(stiffness_error), 1e-9).status is status
+    assert CLAIM.judged(None, cone(stiffness_error), 1e-9).status is status

@@ -1,13 +1,13 @@
-"""Makes the coefficients of `compact`: ``python -m cases.library._formulas.fit_compact`` writes ``compact.toml``."""
+"""Makes the coefficients of `compact`: ``python -m benchmarks.formulas.fit_compact`` writes ``compact.toml``."""
 
 from typing import Any
 
 import numpy as np
 
-from cases.library._formulas.compact import PLACE, base, design
 from contact import ContactRadii, Layer, Paraboloid, Scene
 from contact.records.validation import FloatArray
 from mdr import Mdr
+from mdr.closed_forms.compact import PLACE, base, design
 
 RATIOS = np.concatenate([np.geomspace(1e-3, 0.05, 8), np.geomspace(0.06, 10.0, 56)])
 # Close to nu = 1/2 a layer changes where 1 - 2 nu is about (h/a)^2.
@@ -22,7 +22,7 @@ FITS: dict[str, dict[str, Any]] = {
     "paraboloid, unbonded": {"degrees": [6], "scale": 1.0},
 }
 REWEIGHTED = 40
-HEAD = "# Coefficients of the compact fit, made by `python -m cases.library._formulas.fit_compact`; do not edit.\n"
+HEAD = "# Coefficients of the compact fit, made by `python -m benchmarks.formulas.fit_compact`; do not edit.\n"
 
 
 def exact(nu: float, support: str, ratios: FloatArray = RATIOS) -> dict[str, tuple[FloatArray, FloatArray]]:
