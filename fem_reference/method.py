@@ -45,6 +45,7 @@ from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation, narrowest_radius
 from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
+from fem_reference.elastic.many_loads.scenes import are_many
 from fem_reference.elastic.path import (
     ContactSolver,
     FemEquilibrium,
@@ -165,6 +166,13 @@ class Fem:
             return self._solve_rubbed(scene, log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
+        if are_many(scene):
+            from fem_reference.elastic.many_loads.answer import interpolated_path  # noqa: PLC0415 - only many loads pay
+
+            one, solve = partial(self._equilibrium_at_load, scene, log=log), self._solver(scene, log)
+            path = interpolated_path(scene, one, solve, accuracy=self.accuracy, settings=asdict(self), log=log)
+            if path is not None:
+                return path
         equilibria = self._equilibria(scene, log)
         if not scene.effects and not (scene.layer.is_uniform and isinstance(scene.indenter, FlatPunch)):
             gap = partial(self._gap, scene, log=log)

@@ -46,8 +46,8 @@ def _neighbours(space: Space, node: IntArray) -> sparse.csc_array:
 
 def _elimination_rank(neighbours: sparse.csc_array) -> FloatArray:
     """Place of each node in a minimum degree order, read from a factorisation of the nodes' small graph by SuperLU."""
-    # Any matrix of that pattern whose diagonal outweighs its rows factors without row exchanges.  Unknowns of faces that
-    # are held to others have no triangle, hence the one.
+    # Any matrix of that pattern whose diagonal outweighs its rows factors without row exchanges.  Unknowns that others
+    # stand for have no triangle, hence the one.
     heavy = neighbours + sparse.diags_array(1.0 + neighbours.sum(axis=0)).tocsc()
     options = {"SymmetricMode": True, "Equil": False}
     return np.asarray(splu(heavy, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options).perm_c)

@@ -127,7 +127,7 @@ def contact_path(
     modulus = contact_modulus(scene.layer)
     radius = np.array([state.contact.indenter.contact_radius for state in equilibria])
     stiffness = np.array([state.stiffness for state in equilibria])
-    states = tuple(_surface_state(state, modulus) for state in equilibria)
+    states = tuple(surface_state(state, modulus) for state in equilibria)
     force = modulus * radius**2 * np.array([state.force for state in equilibria])
     depth = radius * np.array([state.depth for state in equilibria])
     errors = {name: np.array([state.error[name] for state in equilibria]) for name in equilibria[0].error}
@@ -155,7 +155,8 @@ def contact_path(
     )
 
 
-def _surface_state(state: FemEquilibrium, modulus: float) -> SurfaceState:
+def surface_state(state: FemEquilibrium, modulus: float) -> SurfaceState:
+    """What the surface fields of a state are made of; the modulus is E* [Pa]."""
     contact, order = state.contact, state.contact.settings.order
     return SurfaceState(
         contact=contact.answer,

@@ -1,0 +1,108 @@
+"""Depth, force and stiffness over the contact radius, interpolated between contacts solved at Chebyshev points.
+
+Between the breakpoints of a profile they are analytic in ln(a - b), b the radius of the flat end: logarithms of even
+power laws are straight lines.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebfit, chebval
+
+from contact.records.validation import FloatArray
+from fem_reference.elastic.error_estimate import ContactWithErrors
+from fem_reference.elastic.loaded_contact import LoadedContact
+from fem_reference.elastic.path import FemEquilibrium
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadCurve:
+    """Units: SI for lengths, stresses by E*.
+
+    Attributes:
+        flat: radius b of the flat end [m].
+        by_depth: whether loads are depths [m] or forces / E* [m^2].
+        contacts: at `grid` of ln(a - b), in increasing radius.
+    """
+
+    flat: float
+    by_depth: bool
+    contacts: Sequence[ContactWithErrors]
+
+    @cached_property
+    def states(self) -> list[FemEquilibrium]:
+        """Every solved radius in smooth contact, with the errors that it has at the load it carries."""
+        load = "smooth_depth" if self.by_depth else "smooth_force"
+        return [
+            LoadedContact(
+                contact=each, load=getattr(each.answer, load), by_depth=self.by_depth, radius_factor=each.answer.radius
+            ).equilibrium
+            for each in self.contacts
+        ]
+
+    @cached_property
+    def solved(self) -> FloatArray:
+        """Radius, depth, force and stiffness of the solved contacts, shape (4, n)."""
+        rows = []
+        for state in self.states:
+            a = state.contact.indenter.contact_radius
+            rows.append([a, a * state.depth, a**2 * state.force, a * state.stiffness])
+        return np.array(rows).T
+
+    @property
+    def loads(self) -> FloatArray:
+        """What the solved radii carry."""
+        return np.asarray(self.solved[1 if self.by_depth else 2])
+
+    @property
+    def _places(self) -> FloatArray:
+        return np.log(self.solved[0] - self.flat)
+
+    def _inside(self, place: FloatArray) -> FloatArray:
+        """Places x = ln(a - b) as arguments of Chebyshev polynomials."""
+        low, high = self._places[[0, -1]]
+        return np.asarray((2 * place - low - high) / (high - low))
+
+    @cached_property
+    def _cardinals(self) -> FloatArray:
+        """Chebyshev coefficients of the interpolants that are one at one solved radius and zero at the others."""
+        count = len(self.contacts)
+        return np.asarray(chebfit(2 * grid(count) - 1, np.eye(count), count - 1))
+
+    def _place_of(self, loads: FloatArray) -> FloatArray:
+        """Where loads are carried: Newton's method in logarithms from the straight line between two solved radii."""
+        place, target = np.interp(loads, self.loads, self._places), np.log(loads)
+        curve = self._cardinals @ np.log(self.loads)
+        slope, (low, high) = chebder(curve), self._places[[0, -1]]
+        for _ in range(20):
+            at = self._inside(place)
+            place = place - (chebval(at, curve) - target) / (chebval(at, slope) * 2 / (high - low))
+        return place
+
+    def at(self, loads: FloatArray) -> FloatArray:
+        """Radius, depth, force and stiffness at loads, shape (4, load)."""
+        place = self._place_of(loads)
+        values = np.exp(chebval(self._inside(place), self._cardinals @ np.log(self.solved[1:]).T))
+        values[0 if self.by_depth else 1] = loads
+        return np.vstack([self.flat + np.exp(place), values])
+
+    def errors(self, loads: FloatArray) -> Mapping[str, FloatArray]:
+        """Relative errors at loads by those of the solved radii, each with its weight there."""
+        weights = np.abs(chebval(self._inside(self._place_of(loads)), self._cardinals))
+        names = self.states[0].error
+        return {name: np.array([state.error[name] for state in self.states]) @ weights for name in names}
+
+    def missed(self, finer: LoadCurve) -> FloatArray:
+        """Largest relative differences to the states solved in between, each at its load, shape (4,)."""
+        between = finer.solved[:, 1::2]
+        foretold = self.at(finer.loads[1::2])
+        return np.asarray(np.abs(foretold / between - 1).max(axis=1))
+
+
+def grid(count: int) -> FloatArray:
+    """Chebyshev points of the second kind on [0, 1], increasing; every other one of 2 n - 1 is one of n."""
+    return np.asarray(np.sin(np.pi * np.arange(count) / (2 * (count - 1))) ** 2)
