@@ -1,13 +1,8 @@
-"""The answer to many loads: radii are doubled until those in between are foretold well enough.
-
-What they were missed by is the error that is stated of the interpolation.
-"""
+"""The answer to many loads: radii are added until interpolation errs less than the solved contacts do."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -17,22 +12,22 @@ from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.error_estimate import ContactWithErrors
-from fem_reference.elastic.many_loads.curve import LoadCurve, grid
+from fem_reference.elastic.many_loads.curve import LoadCurve, leja_points
 from fem_reference.elastic.many_loads.fields import FieldsOnDemand
-from fem_reference.elastic.path import OWN_CHECKS, ContactSolver, FemEquilibrium
+from fem_reference.elastic.path import OWN_CHECKS, ContactSolver
 
-# Solved radii, each grid with the one before in it; at most half as many as there are loads.
-GRIDS = (5, 9, 17, 33)
+# Radii that are solved before the first look at the error, and how many are added to the next.  Chosen.
+FIRST, STEP = 7, 2
 # Share of an accuracy that interpolation may cost; chosen.
 SHARE = 0.3
-# The largest radius exceeds the smallest, both from the flat end, by this factor at least: closer loads are solved one
-# by one.  Chosen.
-WIDE = 1.01
+# Solved radii go beyond the searched ones of the first and last load by this factor of a - b.  Chosen: a strip tells
+# its radius to some hundredths of a cell, of which the contact has thirty at least.
+MARGIN = 1.01
 
 
 def interpolated_path(
     scene: Scene,
-    at_load: Callable[[float], FemEquilibrium],
+    radius_at: Callable[[float], float],
     solve: ContactSolver,
     *,
     accuracy: float | None,
@@ -43,7 +38,7 @@ def interpolated_path(
 
     Args:
         scene: the scene.
-        at_load: solves one load: a depth [m], or a force / E* [m^2].
+        radius_at: contact radius [m] of one load, a depth [m] or a force / E* [m^2], to a per cent of a - b.
         solve: contact of a given radius [m].
         accuracy: relative accuracy wanted; without one, interpolation errs less than elements.
         settings: of the method, to be told in the answer.
@@ -51,7 +46,7 @@ def interpolated_path(
     """
     by_depth, modulus = isinstance(scene.loading, IndentationDepths), contact_modulus(scene.layer)
     loads = scene.loading.values / (1.0 if by_depth else modulus)  # type: ignore[attr-defined]
-    curve, errors = _curve_through(scene, loads, at_load, solve, accuracy)
+    curve, errors = _curve_through(scene, loads, radius_at, solve, accuracy)
     if curve is None:
         return None
     contacts = curve.contacts
@@ -77,66 +72,42 @@ def interpolated_path(
 def _curve_through(
     scene: Scene,
     loads: FloatArray,
-    at_load: Callable[[float], FemEquilibrium],
+    radius_at: Callable[[float], float],
     solve: ContactSolver,
     accuracy: float | None,
 ) -> tuple[LoadCurve | None, dict[str, FloatArray]]:
     """The curve and its errors at loads; no curve where the profile is broken or the accuracy out of reach."""
     by_depth = isinstance(scene.loading, IndentationDepths)
-    ends = [at_load(float(end)).contact for end in (loads.min(), loads.max())]
-    low, high = (end.indenter.contact_radius for end in ends)
     flat = scene.indenter.flat_radius
+    found = [radius_at(float(end)) - flat for end in (loads.min(), loads.max())]
+    low, high = flat + found[0] / MARGIN, min(flat + found[1] * MARGIN, scene.indenter.max_radius)
     is_broken = any(low < r < high for r in scene.indenter.breakpoints)
-    if is_broken or low <= narrowest_radius(scene.layer, scene.indenter) or high - flat < WIDE * (low - flat):
+    if is_broken or low <= narrowest_radius(scene.layer, scene.indenter):
         return None, {}
-    curve, missed = _interpolated(_Grids(flat, by_depth, ends, solve), len(loads) // 2, accuracy)
+    curve = _interpolated(flat, by_depth, (low, high), solve, most=len(loads) // 2, accuracy=accuracy)
     if curve is None:
         return None, {}
     errors = dict(curve.errors(loads))
-    errors |= {name: errors[name] + error for name, error in zip(ContactPath.ARRAYS, missed, strict=True)}
+    between = zip(ContactPath.ARRAYS, curve.interpolation_error, strict=True)
+    errors |= {name: errors[name] + error for name, error in between}
     errors["indentation_depth" if by_depth else "normal_force"] = np.zeros(len(loads))
     meets = accuracy is None or max(float(errors[name].max()) for name in ContactPath.ASKED) <= accuracy
     return (curve if meets else None), errors
 
 
-@dataclass(frozen=True)
-class _Grids:
-    """Curves on finer and finer grids between two solved radii [m]; no radius is solved twice."""
-
-    flat: float
-    by_depth: bool
-    ends: Sequence[ContactWithErrors]
-    solve: ContactSolver
-
-    @cached_property
-    def _known(self) -> dict[float, ContactWithErrors]:
-        return dict(zip((0.0, 1.0), self.ends, strict=True))
-
-    def curve(self, count: int) -> LoadCurve:
-        """That of so many radii."""
-        low, high = (end.indenter.contact_radius - self.flat for end in self.ends)
-        for share in grid(count):
-            # Both grids' points agree to a rounding.
-            place = round(float(share), 12)
-            if place not in self._known:
-                self._known[place] = self.solve(self.flat + low * (high / low) ** float(share))
-        contacts = [self._known[round(float(share), 12)] for share in grid(count)]
-        return LoadCurve(flat=self.flat, by_depth=self.by_depth, contacts=contacts)
-
-
-def _interpolated(grids: _Grids, most: int, accuracy: float | None) -> tuple[LoadCurve | None, FloatArray]:
-    """The first curve that interpolates well enough, and by how much its radius, depth, force and stiffness may err."""
-    curve, before = grids.curve(GRIDS[0]), None
-    for count in GRIDS[1:]:
-        if count > most:
-            break
-        finer = grids.curve(count)
-        missed = curve.missed(finer)
-        # The finer curve errs at most like the fall of two grids goes on; doubling the radii squares an error.
-        left = missed if before is None else missed * np.minimum(1.0, missed / before)
-        stated = np.array([max(state.error[name] for state in finer.states) for name in ContactPath.ARRAYS])
+def _interpolated(
+    flat: float, by_depth: bool, ends: tuple[float, float], solve: ContactSolver, *, most: int, accuracy: float | None
+) -> LoadCurve | None:
+    """The first curve between two radii [m] that interpolates well enough, of at most so many solved ones."""
+    low, high = (end - flat for end in ends)
+    contacts: list[ContactWithErrors] = []
+    for count in range(FIRST, most + 1, STEP):
+        added = leja_points(count)[len(contacts) :]
+        contacts += [solve(flat + low * (high / low) ** share) for share in added.tolist()]
+        in_order = sorted(contacts, key=lambda contact: contact.indenter.contact_radius)
+        curve = LoadCurve(flat=flat, by_depth=by_depth, contacts=in_order)
+        stated = np.array([max(state.error[name] for state in curve.states) for name in ContactPath.ARRAYS])
         allowed = SHARE * (stated if accuracy is None else np.full(4, accuracy))
-        if np.all((left <= allowed) | (stated == 0.0)):
-            return finer, left
-        curve, before = finer, missed
-    return None, np.full(4, np.inf)
+        if np.all((curve.interpolation_error <= allowed) | (stated == 0.0)):
+            return curve
+    return None
