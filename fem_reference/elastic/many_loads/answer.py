@@ -16,10 +16,10 @@ from fem_reference.elastic.many_loads.curve import LoadCurve, leja_points
 from fem_reference.elastic.many_loads.fields import FieldsOnDemand
 from fem_reference.elastic.path import OWN_CHECKS, ContactSolver
 
-# Radii that are solved before the first look at the error, and how many are added to the next.  Chosen.
-FIRST, STEP = 7, 2
+# Radii of the first curve, and how many each next one has more.  Chosen.
+FIRST, STEP = 5, 2
 # Share of an accuracy that interpolation may cost; chosen.
-SHARE = 0.3
+SHARE = 0.5
 # Solved radii go beyond the searched ones of the first and last load by this factor of a - b.  Chosen: a strip tells
 # its radius to some hundredths of a cell, of which the contact has thirty at least.
 MARGIN = 1.01
@@ -84,11 +84,11 @@ def _curve_through(
     is_broken = any(low < r < high for r in scene.indenter.breakpoints)
     if is_broken or low <= narrowest_radius(scene.layer, scene.indenter):
         return None, {}
-    curve = _interpolated(flat, by_depth, (low, high), solve, most=len(loads) // 2, accuracy=accuracy)
+    curve, missed = _interpolated(flat, by_depth, (low, high), solve, most=len(loads) // 2, accuracy=accuracy)
     if curve is None:
         return None, {}
     errors = dict(curve.errors(loads))
-    between = zip(ContactPath.ARRAYS, curve.interpolation_error, strict=True)
+    between = zip(ContactPath.ARRAYS, missed, strict=True)
     errors |= {name: errors[name] + error for name, error in between}
     errors["indentation_depth" if by_depth else "normal_force"] = np.zeros(len(loads))
     meets = accuracy is None or max(float(errors[name].max()) for name in ContactPath.ASKED) <= accuracy
@@ -97,17 +97,21 @@ def _curve_through(
 
 def _interpolated(
     flat: float, by_depth: bool, ends: tuple[float, float], solve: ContactSolver, *, most: int, accuracy: float | None
-) -> LoadCurve | None:
-    """The first curve between two radii [m] that interpolates well enough, of at most so many solved ones."""
+) -> tuple[LoadCurve | None, FloatArray]:
+    """The first curve between two radii [m] that interpolates well enough, with its errors."""
     low, high = (end - flat for end in ends)
     contacts: list[ContactWithErrors] = []
+    curve, errors = None, np.full(4, np.inf)
     for count in range(FIRST, most + 1, STEP):
         added = leja_points(count)[len(contacts) :]
         contacts += [solve(flat + low * (high / low) ** share) for share in added.tolist()]
         in_order = sorted(contacts, key=lambda contact: contact.indenter.contact_radius)
-        curve = LoadCurve(flat=flat, by_depth=by_depth, contacts=in_order)
+        coarser, curve = curve, LoadCurve(flat=flat, by_depth=by_depth, contacts=in_order)
+        if coarser is None:
+            continue
+        errors = curve.change_from(coarser)
         stated = np.array([max(state.error[name] for state in curve.states) for name in ContactPath.ARRAYS])
         allowed = SHARE * (stated if accuracy is None else np.full(4, accuracy))
-        if np.all((curve.interpolation_error <= allowed) | (stated == 0.0)):
-            return curve
-    return None
+        if np.all((errors <= allowed) | (stated == 0.0)):
+            return curve, errors
+    return None, errors

@@ -18,6 +18,9 @@ from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import FemEquilibrium
 
+# Loads at which two curves are compared: four to the narrowest wave of twenty radii.  Chosen.
+PLACES = 60
+
 
 @dataclass(frozen=True, kw_only=True)
 class LoadCurve:
@@ -81,7 +84,7 @@ class LoadCurve:
         for _ in range(20):
             at = self._inside(place)
             place = place - (chebval(at, curve) - target) / (chebval(at, slope) * 2 / (high - low))
-        return place
+        return np.asarray(place)
 
     def at(self, loads: FloatArray) -> FloatArray:
         """Radius, depth, force and stiffness at loads, shape (4, load)."""
@@ -91,25 +94,21 @@ class LoadCurve:
         return np.vstack([self.flat + np.exp(place), values])
 
     def errors(self, loads: FloatArray) -> Mapping[str, FloatArray]:
-        """Relative errors at loads by those of the solved radii, each with its weight there."""
-        weights = np.abs(chebval(self._inside(self._place_of(loads)), self._cardinals))
-        names = self.states[0].error
-        return {name: np.array([state.error[name] for state in self.states]) @ weights for name in names}
+        """Relative errors at loads by those of the solved radii, in common to all or each apart, whichever is more."""
+        weights = chebval(self._inside(self._place_of(loads)), self._cardinals)
+        solved = {name: np.array([state.error[name] for state in self.states]) for name in self.states[0].error}
+        return {
+            name: np.maximum(np.abs(error @ weights), np.sqrt(error**2 @ weights**2)) for name, error in solved.items()
+        }
 
-    @property
-    def interpolation_error(self) -> FloatArray:
-        """Relative errors of radius, depth, force and stiffness between the solved radii, at given loads, shape (4,).
+    def change_from(self, coarser: LoadCurve) -> FloatArray:
+        """Largest relative change of radius, depth, force and stiffness at one load by the radii added since.
 
-        What an analytic function has beyond its last two Chebyshev coefficients is less than these.
+        Measured with the last two of 7 to 21 radii on exact data (MDR, 60 random layers and profiles, 2026-11-22):
+        the error that is left is at most this in 97 of 100 curves, a fifth of it in the median.
         """
-        fits = self._cardinals @ np.log(self.solved[1:]).T
-        tails = np.abs(fits[-2:]).sum(axis=0)
-        slopes = np.abs(chebval(self._inside(self._places), chebder(fits))) * 2 / np.ptp(self._places)
-        load = 0 if self.by_depth else 1
-        # An error of the load moves the radius along its slope, and the others with it.
-        moved = tails[load] / slopes[load]
-        radius = np.max(moved * (1 - self.flat / self.solved[0]))
-        return np.array([radius, *(tails + (slopes * moved).max(axis=1))])
+        loads = np.geomspace(self.loads[0], self.loads[-1], PLACES)
+        return np.asarray(np.abs(coarser.at(loads) / self.at(loads) - 1).max(axis=1))
 
 
 def leja_points(count: int) -> FloatArray:
