@@ -277,9 +277,11 @@ class Fem:
 
     def _searched_radius(self, scene: Scene, target: float, log: StageLog) -> float:
         """Contact radius [m] of a load by the active set, to some hundredths of its cells."""
-        from fem_reference.elastic.contact_search import find_contact  # noqa: PLC0415 - only scenes that search
+        from fem_reference.elastic.contact_search import find_contact, find_disc  # noqa: PLC0415 - only scenes that search
 
-        found = find_contact(scene, target, self.discretisation, self.solver, log)
+        is_disc = scene.layer.is_uniform and scene.indenter.is_convex
+        find = find_disc if is_disc else partial(find_contact, settings=self.discretisation)
+        found = find(scene, target, backend=self.solver, log=log)
         return found.contact_radius * found.radius
 
     def refined(self) -> Self:
