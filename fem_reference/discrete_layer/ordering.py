@@ -37,10 +37,12 @@ def nodes(space: Space) -> IntArray:
 def _neighbours(space: Space, node: IntArray) -> sparse.csc_array:
     """How many triangles each two nodes share."""
     unknowns = space.element_unknowns
-    triangle = np.repeat(np.arange(len(unknowns)), unknowns.shape[1])
+    # One unknown stands for each node.
+    stands = np.zeros(space.size, dtype=bool)
+    stands[np.unique(node, return_index=True)[1]] = True
+    triangle, place = np.nonzero(stands[unknowns])
     shape = (len(unknowns), int(node.max()) + 1)
-    belongs = sparse.coo_array((np.ones(unknowns.size), (triangle, node[unknowns].ravel())), shape=shape).tocsr()
-    belongs.data[:] = 1.0
+    belongs = sparse.coo_array((np.ones(len(place)), (triangle, node[unknowns[triangle, place]])), shape=shape).tocsr()
     return (belongs.T @ belongs).tocsc()
 
 

@@ -63,7 +63,7 @@ class LoadCurve:
 
     @property
     def _places(self) -> FloatArray:
-        return np.log(self.solved[0] - self.flat)
+        return np.asarray(np.log(self.solved[0] - self.flat))
 
     def _inside(self, place: FloatArray) -> FloatArray:
         """Places x = ln(a - b) as arguments of Chebyshev polynomials."""
