@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import partial
-from typing import ClassVar, Self, TypeVar, overload
+from typing import TYPE_CHECKING, ClassVar, Self, TypeVar, overload
 
 from contact import (
     Adhesion,
@@ -46,6 +46,7 @@ from fem_reference.discrete_layer.settings import Discretisation, narrowest_radi
 from fem_reference.elastic.answer import contact_path
 from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors
+from fem_reference.elastic.many_loads.scenes import are_many
 from fem_reference.elastic.path import (
     ContactSolver,
     FemEquilibrium,
@@ -54,6 +55,9 @@ from fem_reference.elastic.path import (
     smooth_equilibrium,
 )
 from fem_reference.elastic.surface_fields import FemFields
+
+if TYPE_CHECKING:
+    from fem_reference.elastic.at_load import Load
 
 S = TypeVar("S")
 
@@ -166,6 +170,13 @@ class Fem:
             return self._solve_rubbed(scene, log)
         if isinstance(scene.loading, Impact | DepthHistory | ForceHistory):
             return self._solve_in_time(scene, scene.loading, log)
+        if are_many(scene):
+            from fem_reference.elastic.many_loads.answer import interpolated_path  # noqa: PLC0415 - only many loads pay
+
+            radius_at, solve = partial(self._radius_of_load, scene, log=log), self._solver(scene, log)
+            path = interpolated_path(scene, radius_at, solve, accuracy=self.accuracy, settings=asdict(self), log=log)
+            if path is not None:
+                return path
         equilibria = self._equilibria(scene, log)
         if not scene.effects and not (scene.layer.is_uniform and isinstance(scene.indenter, FlatPunch)):
             gap = partial(self._gap, scene, log=log)
@@ -247,16 +258,32 @@ class Fem:
 
     def _equilibrium_at_load(self, scene: Scene, target: float, log: StageLog) -> FemEquilibrium:
         """Searches the contact, then solves it at a prescribed radius; target is a depth [m] or a force / E* [m^2]."""
-        from fem_reference.elastic.at_load import found_load  # noqa: PLC0415 - only scenes that search pay for it
-        from fem_reference.elastic.contact_search import find_contact  # noqa: PLC0415
-
-        found = find_contact(scene, target, self.discretisation, self.solver, log)
-        load = found_load(scene, target, found.contact_radius * found.radius, log)
+        load = self._found_load(scene, target, log)
 
         def attempt(settings: Discretisation) -> FemEquilibrium:
             return load.equilibrium(lambda radius: self._contact(scene, radius, settings, log))
 
         return self._to_accuracy(attempt, lambda state: state.error)
+
+    def _found_load(self, scene: Scene, target: float, log: StageLog) -> Load:
+        from fem_reference.elastic.at_load import found_load  # noqa: PLC0415 - only scenes that search pay for it
+
+        return found_load(scene, target, self._searched_radius(scene, target, log), log)
+
+    def _radius_of_load(self, scene: Scene, target: float, log: StageLog) -> float:
+        """Contact radius [m]; a strip does not tell how far it is from a flat end, and coarse solutions do."""
+        if scene.indenter.flat_radius:
+            return self._found_load(scene, target, log).radius
+        return self._searched_radius(scene, target, log)
+
+    def _searched_radius(self, scene: Scene, target: float, log: StageLog) -> float:
+        """Contact radius [m] of a load by the active set, to some hundredths of its cells."""
+        from fem_reference.elastic.contact_search import find_contact, find_disc  # noqa: PLC0415 - only scenes that search
+
+        is_disc = scene.layer.is_uniform and scene.indenter.is_convex
+        find = find_disc if is_disc else partial(find_contact, settings=self.discretisation)
+        found = find(scene, target, backend=self.solver, log=log)
+        return found.contact_radius * found.radius
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.

@@ -58,6 +58,12 @@ def _quadrature(degree: int) -> tuple[FloatArray, FloatArray]:
     return points, weights
 
 
+@cache
+def _tabulated(element: Element, degree: int) -> Tabulation:
+    """`tabulate` at the points of the rule for ``degree``: the same on every mesh."""
+    return tabulate(element, _quadrature(degree)[0])
+
+
 @dataclass(frozen=True)
 class Space:
     """Displacement and pressure of one element pair on one mesh, seen at the quadrature points."""
@@ -110,10 +116,14 @@ class Space:
         area = np.abs(np.linalg.det(self.jacobians))[:, None] * weights
         return np.asarray(2 * np.pi * self.radius * area)
 
+    @property
+    def _tabulated_displacement(self) -> Tabulation:
+        return _tabulated(self.pair.displacement, 2 * self.pair.degree)
+
     @cached_property
     def gradients(self) -> FloatArray:
         """Gradients of the scalar basis, shape (triangle, 2, basis, point)."""
-        reference = tabulate(self.pair.displacement, self.quadrature[0]).gradient
+        reference = self._tabulated_displacement.gradient
         inverse = np.linalg.inv(self.jacobians)
         flat = inverse.transpose(0, 2, 1) @ reference.reshape(2, -1)
         return flat.reshape(len(flat), 2, *reference.shape[1:])
@@ -121,12 +131,12 @@ class Space:
     @cached_property
     def displacement_values(self) -> FloatArray:
         """Scalar basis values, shape (basis, point)."""
-        return tabulate(self.pair.displacement, self.quadrature[0]).value
+        return self._tabulated_displacement.value
 
     @cached_property
     def pressure_values(self) -> FloatArray:
         """Pressure basis values, shape (basis, point)."""
-        return tabulate(self.pair.pressure, self.quadrature[0]).value
+        return _tabulated(self.pair.pressure, 2 * self.pair.degree).value
 
     @cached_property
     def strains(self) -> FloatArray:
@@ -209,8 +219,10 @@ def stiffness_matrix(space: Space, moduli: Moduli) -> sparse.csc_array:
 def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_array:
     """Sum element matrices (triangle, n, n) into a sparse matrix."""
     count = unknowns.shape[1]
-    rows = np.repeat(unknowns, count, axis=1).ravel()
-    columns = np.tile(unknowns, (1, count)).ravel()
+    # Half as many bytes to move: no mesh has 2^31 unknowns.
+    short = unknowns.astype(np.int32)
+    rows = np.repeat(short, count, axis=1).ravel()
+    columns = np.tile(short, (1, count)).ravel()
     return sparse.coo_array((elements.ravel(), (rows, columns)), shape=(size, size)).tocsc()
 
 

@@ -26,7 +26,7 @@ class Factors(Protocol):
 
 
 def without_pivoting(matrix: sparse.csc_array) -> Factors:
-    """SuperLU in the given order with diagonal pivots: fast, right when the order is a nested dissection."""
+    """SuperLU in the given order with diagonal pivots: fast, right in the order of `ordering`."""
     options = {"SymmetricMode": True, "Equil": False}
     factors: Factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
     return factors

@@ -18,7 +18,7 @@ from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.linear_solver import CheckedSolver
 from fem_reference.discrete_layer.material import ElasticConstants, Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
-from fem_reference.discrete_layer.ordering import nested_dissection
+from fem_reference.discrete_layer.ordering import minimum_degree
 from fem_reference.discrete_layer.outer_edge import decay_rate
 
 Support = Literal["bonded", "unbonded"]
@@ -172,7 +172,7 @@ class RestrictedSolver:
     """
 
     def __init__(self, problem: LayerProblem, held: IntArray) -> None:
-        order = nested_dissection(problem.space)
+        order = minimum_degree(problem.space)
         is_free = np.ones(problem.space.size, dtype=bool)
         is_free[held] = False
         self.problem = problem
@@ -181,7 +181,7 @@ class RestrictedSolver:
         # The transpose is the same symmetric matrix, stored by rows.
         rows = problem.matrix.T[self._free]
         self._coupling = rows[:, held]
-        self.checked = CheckedSolver(rows[:, self._free].tocsc(), problem.backend, problem.least_share)
+        self.checked = CheckedSolver(rows[:, self._free].T, problem.backend, problem.least_share)
 
     def solve_displaced(self, values: FloatArray) -> FloatArray:
         """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""

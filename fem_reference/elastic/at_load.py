@@ -79,27 +79,40 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
 
+    flat = scene.indenter.flat_radius
+    slopes: list[float] = []
+
     def ratio(radius: float) -> float:
         contact = quick_solution(scene, radius, log)
-        return (contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2) / target
+        depth, force, slope = contact.smooth_depth, contact.smooth_force, contact.smooth_depth_slope
+        # d ln(load) / d ln(a - b): the depth grows by its slope, the force by k_N times that.
+        grows = slope / depth if by_depth else contact.stiffness * slope / force
+        slopes.append(grows * (1 - flat / radius))
+        return (depth * radius if by_depth else force * radius**2) / target
 
     narrowest = narrowest_radius(scene.layer, scene.indenter)
-    radius, exponent = radius_of_load(ratio, start, scene.indenter.flat_radius, narrowest)
+    radius, exponent = radius_of_load(ratio, start, flat, narrowest, first_exponent=lambda: slopes[0])
     return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, exponent=exponent)
 
 
 def radius_of_load(
-    ratio_at: Callable[[float], float], start: float, flat: float, narrowest: float = 0.0
+    ratio_at: Callable[[float], float],
+    start: float,
+    flat: float,
+    narrowest: float = 0.0,
+    *,
+    first_exponent: Callable[[], float] = lambda: 2.0,
 ) -> tuple[float, float]:
     """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat): secants in logarithms.
 
     Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  The narrowest radius is
-    returned where even that carries more.
+    returned where even that carries more.  ``first_exponent`` guesses the power once the first ratio is known.
     """
     least = float(np.log(narrowest - flat)) if flat else -np.inf
     x = max(float(np.log(max(start - flat, 1e-6 * start))), least)
     y = float(np.log(ratio_at(flat + np.exp(x))))
-    exponent, step = 2.0, float(np.clip(-y / 2, -1, 1)) or 1e-3
+    exponent = float(np.clip(first_exponent(), 0.2, 20))
+    step = float(np.clip(-y / exponent, -1, 1)) or 1e-3
     for number in range(15):
         if x == least and y > 0:
             return narrowest, 0.5
@@ -111,6 +124,7 @@ def radius_of_load(
         exponent = float(np.clip((following - y) / step, 0.2, 20))
         x, y = x + step, following
         step = float(np.clip(-y / exponent, -1, 1))
-        if abs(y) < 0.1 * LEFT_OVER:
+        # The last step takes most of that away.
+        if abs(y) < LEFT_OVER:
             return flat + float(np.exp(x + step)), exponent
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})

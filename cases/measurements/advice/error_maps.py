@@ -6,6 +6,7 @@ relative to the fast method's. The a/h of a map is that of the exact answer.
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cache
 from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
@@ -117,20 +118,25 @@ class Solved:
     settings: Mapping[str, Any] = field(default_factory=dict)
 
     def __call__(self, layer: Layer, given: Given, values: FloatArray) -> FloatArray:
-        """Solve one by one, so that one refusal costs one number."""
+        """Solve all in one scene, which shares what a method prepares; one by one where that is refused."""
         method = build_guarded(self.method, dict(self.settings))
-        return np.array([_solved(method, layer, given, value) for value in values])
+        found = _solved(method, layer, given, values)
+        if found is not None:
+            return found
+        each = [_solved(method, layer, given, values[i : i + 1]) for i in range(len(values))]
+        return np.array([np.nan if one is None else one[0] for one in each])
 
 
-def _solved(method: Method, layer: Layer, given: Given, value: float) -> float:
-    loading = IndentationDepths([value]) if given == "depth" else NormalForces([value])
+def _solved(method: Method, layer: Layer, given: Given, values: FloatArray) -> FloatArray | None:
+    """What is sought at these depths or forces; None where there is no answer."""
+    loading = IndentationDepths(values) if given == "depth" else NormalForces(values)
     try:
         path = method.solve(_scene(layer, loading))
     except BrokenMethodError:
         raise
     except ContactError:
-        return float("nan")
-    return float(getattr(path, SOUGHT[given])[-1]) if isinstance(path, ContactPath | ForcePath) else float("nan")
+        return None
+    return np.asarray(getattr(path, SOUGHT[given])) if isinstance(path, ContactPath | ForcePath) else None
 
 
 @dataclass(frozen=True)
@@ -226,12 +232,18 @@ def _map(plan: MapPlan, given: Given) -> ErrorMap:
 
 def errors_of(answer: Answer, given: Given, layer: Layer, ratios: Sequence[float]) -> tuple[float | None, ...]:
     """Signed relative errors at the exact answers with these a/h; None where there is no answer."""
-    path = _exact(layer, ContactRadii(values=np.array(ratios) * layer.thickness))
-    known, expected = path.indentation_depth, path.normal_force
+    known, expected = _exact_at(layer, tuple(ratios))
     if given == "force":
         known, expected = expected, known
     errors = answer(layer, given, known) / expected - 1.0
     return tuple(float(error) if np.isfinite(error) else None for error in errors)
+
+
+@cache
+def _exact_at(layer: Layer, ratios: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
+    """Exact depths and forces at a/h: they serve every map of a layer, and films up to a/h = 1000 take seconds."""
+    path = _exact(layer, ContactRadii(values=np.array(ratios) * layer.thickness))
+    return path.indentation_depth, path.normal_force
 
 
 def _exact(layer: Layer, loading: Loading) -> ContactPath:

@@ -1,0 +1,1 @@
+"""Many depths or forces on one scene, from contacts solved at a few radii."""
