@@ -86,6 +86,17 @@ class PixelDisc:
         return _stiffness(self.half_space) / 2.0
 
     @cached_property
+    def moment_error(self) -> float:
+        """How far the mean square distance of two points of the pressure is off, relative to the circle's (4/3) a^2.
+
+        A layer many cells thick answers to that distance alone, so its k_bar is off in proportion. Uniform pressures on
+        the cells add the square of a cell over six; displacements are those of the cells' centres.
+        """
+        centre = np.arange(self.cells // 2) + 0.5
+        square = np.average(centre[:, None] ** 2 + centre**2, weights=self.half_space.pressure)
+        return float((2.0 * square + 1.0 / 6.0) / (4.0 / 3.0 * self.radius**2) - 1.0)
+
+    @cached_property
     def contact(self) -> BoolArray:
         """Covered cells of the quadrant."""
         return disc(self.cells, FILL * self.cells / 2)

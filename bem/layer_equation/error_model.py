@@ -50,10 +50,6 @@ class OneRadiusCoefficients:
     # with 8 to 16 nodes against 48, the 19 numbers off by more than 1e-12, seed 1, 2026-11-22); the margin is for
     # answers on fewer nodes that are close by accident.
     safety: float = 4.0
-    # On graded layers another quarter of the nodes takes no more of a change beside the contact away than all but this
-    # share: up to 0.04 was left on 8 nodes, 0.005 in the median (7 contacts of the campaign of displacements,
-    # seed 6101, 2026-11-22).
-    graded_fall: float = 0.04
     # What one rounding of all positions would do to the depth is multiplied by this share, because they are rounded
     # independently of each other. Measured against 40-digit arithmetic over 60 spheres on the half-space, 1 - a/R from
     # 1e-9 to 1e-2: at most 0.115 of it, 0.015 in the median (seed 3, 2026-11-22).

@@ -29,7 +29,6 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     NormalForces,
-    Profile,
     Scene,
     StageLog,
     Supported,
@@ -113,7 +112,7 @@ class IntegralEquationMethod(Record):
             fewer = [_Solver(scene, self.panel_width, self.nodes * quarters // 4, log) for quarters in (3, 2)]
             others = [[coarse.at_radius(c) for c in contacts] for coarse in fewer]
             errors = _errors(contacts, others, scene)
-            errors["surface_displacement"] = _displacement_errors(errors, contacts, others, scene)
+            errors["surface_displacement"] = _displacement_errors(errors, contacts, others)
         answers = np.array([contact.answer for contact in contacts])
         path = ContactPath(
             scene=scene,
@@ -174,15 +173,6 @@ class DirectContact:
         offsets = (ends[:-1, None] + np.diff(ends)[:, None] * gauss_nodes(PRESSURES)[0]).ravel()
         return offsets, self.pressure(offsets)
 
-    def displacement(self, radius: FloatArray, indenter: Profile) -> FloatArray:
-        """w(r) [m]: delta - f(r) inside, Eq. (13) outside."""
-        unit, a = self.density.unit, self.density.contact_radius
-        inside = radius <= a * unit
-        w = np.empty_like(radius)
-        w[inside] = self.depth * unit - indenter.height(radius[inside])
-        w[~inside] = unit * self.density.displacement_outside(radius[~inside] / unit, self.depth)
-        return w
-
 
 @dataclass(frozen=True, eq=False)
 class DirectFields:
@@ -211,7 +201,13 @@ class DirectFields:
 
     def surface_displacement(self, radius: FloatArray, step: int) -> FloatArray:
         """w(r) [m]: delta - f(r) inside, Eq. (13) outside."""
-        return self.contacts[step].displacement(radius, self.scene.indenter)
+        contact = self.contacts[step]
+        unit, a = contact.density.unit, contact.density.contact_radius
+        inside = radius <= a * unit
+        w = np.empty_like(radius)
+        w[inside] = contact.depth * unit - self.scene.indenter.height(radius[inside])
+        w[~inside] = unit * contact.density.displacement_outside(radius[~inside] / unit, contact.depth)
+        return w
 
     def inside(self, step: int, known: KnownContact) -> ContactInterior:
         """The body under one step."""
@@ -336,25 +332,24 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
 
 
 def _displacement_errors(
-    errors: Mapping[str, FloatArray], fine: list[DirectContact], fewer: list[list[DirectContact]], scene: Scene
+    errors: Mapping[str, FloatArray], fine: list[DirectContact], fewer: list[list[DirectContact]]
 ) -> FloatArray:
     """Of the depth: what the nodes leave beside the contact, as in `_errors`, and what is not known of the depth.
 
     Each change is the largest beside the edge, since changes pass zero there. An error of the radius moves the surface
     of smooth contact to second order only.
     """
-    e, f = (np.array([_moved(*pair, scene.indenter) for pair in zip(fine, coarse, strict=True)]) for coarse in fewer)
-    least = 0.0 if scene.layer.is_piecewise_uniform else ONE_RADIUS.graded_fall
-    left = e * np.clip(np.divide(e, f, out=np.ones_like(e), where=f > 0.0), least, 1.0)
+    e, f = (np.array([_moved(*pair) for pair in zip(fine, coarse, strict=True)]) for coarse in fewer)
+    left = e * np.minimum(1.0, np.divide(e, f, out=np.ones_like(e), where=f > 0.0))
     rounding = ONE_RADIUS.rounding + np.array([_rounding(contact.density) for contact in fine])
     return np.asarray(ONE_RADIUS.safety * left + rounding + errors["indentation_depth"])
 
 
-def _moved(fine: DirectContact, coarse: DirectContact, profile: Profile) -> float:
+def _moved(fine: DirectContact, coarse: DirectContact) -> float:
     """Largest change of the displacement beside the contact, over the depth."""
-    radius, depth, *_ = fine.answer
-    beside = radius * BESIDE
-    return float(np.abs(fine.displacement(beside, profile) - coarse.displacement(beside, profile)).max() / depth)
+    radius = fine.density.contact_radius * BESIDE
+    one, other = (contact.density.beside_height(radius, contact.depth) for contact in (fine, coarse))
+    return float(np.abs(one - other).max() / fine.depth)
 
 
 def _rounding(density: DirectDensity) -> float:

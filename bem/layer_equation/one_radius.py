@@ -12,7 +12,7 @@ there are no wavenumbers and psi = 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -238,17 +238,31 @@ class DirectDensity:
         """w at radii r > a in length units: (2/pi) [int phi/sqrt(r^2 - t^2) dt - int (1 - chi) phi^ J0(kr) dk]."""
         if not radius.size:
             return np.zeros(0)
+        outside = self.beside_height(radius, depth)
+        if self._stretches:
+            outside = outside - 2 / np.pi * arc_integral(radius, self._finer_load, self.flat, 2 * self.load.grid.count)
+        return outside
+
+    def beside_height(self, radius: FloatArray, depth: float) -> FloatArray:
+        """The same without the integral of g_hs, which does not depend on what was solved."""
         k, weight = layer_waves(self.layer, self.contact_radius + float(radius.max()))
         transform = _moments(self.load, self.flat, self.contact_radius, k) + _transform(self.grid, self.psi, k)
         layer = j0(np.multiply.outer(radius, k)) @ (weight * (transform @ under(depth)))
-        outside: FloatArray = 2 / np.pi * (self._half_space_displacement(radius, depth) - layer)
-        return outside
+        grid = _doubled(self.grid)
+        psi = np.cos(np.multiply.outer(grid.nodes, self.wavenumbers)) @ (self.amplitudes @ under(depth))
+        share = arc_integral(radius, MappedFunction(grid, psi, 0.0), 0.0, grid.count)
+        return np.asarray(2 / np.pi * (depth * np.arcsin(self.contact_radius / radius) + share - layer))
 
-    def _half_space_displacement(self, radius: FloatArray, depth: float) -> FloatArray:
-        """int_0^a phi/sqrt(r^2 - t^2) dt."""
-        psi = MappedFunction(self.grid, (self.psi @ under(depth)).reshape(self.grid.nodes.shape), 0.0)
-        total = depth * np.arcsin(self.contact_radius / radius) + arc_integral(radius, psi, 0.0, self.grid.count)
-        return total - arc_integral(radius, self.load, self.flat, self.grid.count) if self._stretches else total
+    @cached_property
+    def _finer_load(self) -> MappedFunction:
+        """g_hs on twice as many nodes."""
+        grid = _doubled(self.load.grid)
+        return MappedFunction(grid, half_space_load(self.indenter, self.unit * grid.nodes) / self.unit, 0.0)
+
+
+def _doubled(grid: MappedGrid) -> MappedGrid:
+    """The pieces with twice as many nodes, whose polynomials miss as little as Gauss's rule of the given ones."""
+    return replace(grid, count=2 * grid.count)
 
 
 def under(depth: float) -> FloatArray:

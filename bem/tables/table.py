@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline, RectBivariateSpline, make_interp_spline
 
+from bem.grid.error_model import TABLES
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.mapped import MappedFunction
 from bem.tables.published_transform import published_profile
@@ -85,13 +86,17 @@ class FlatPunchTable(FlatPunchSolution):
         return float(self.ratios[-1])
 
     def linear_errors(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Of k_bar the third order is known; how far a film bends is seen in q of the first row."""
+        """What no coarser table shows of k_bar and of q, both read towards the half-space below the first row.
+
+        Of k_bar the third order is known, and the fourth counts up to the first row and as little beyond; how far a
+        film bends is seen in q of the first row. Conjugate gradients leave an error in q that shrinks with q - 1/2.
+        """
         first = float(self.ratios[0])
-        left = np.where(ratio < first, ratio * first**2, 0.0)
+        floor = TABLES.pressure_floor * np.minimum(ratio / first, 1.0)
         if self.stack is None:
-            # In q the floor of conjugate gradients is as large.
-            return first * left, np.zeros_like(left)
-        return left * max(1.0, self.first_bending / first**3), left * (self.first_bending / first**3)
+            return first**3 * np.minimum(ratio, first**2 / np.maximum(ratio, first)), floor
+        left = np.where(ratio < first, ratio * first**2, 0.0)
+        return left * max(1.0, self.first_bending / first**3), floor + left * (self.first_bending / first**3)
 
     @property
     def first_bending(self) -> float:

@@ -15,7 +15,7 @@ from bem.grid.error_model import TABLES
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
-from mdr.springs.error_model import STIFFNESS_SHARE
+from mdr.springs.error_model import SPRING_ROUNDING, STIFFNESS_SHARE
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class TableDifferences:
         ]
         linear, bending = system.flat_punch.linear_errors(np.atleast_1d(radius / system.length_unit))
         by_stiffness = TABLES.stiffness_floor + linear
-        by_profile = TABLES.pressure_floor + bending + system.profile_truncation(radius)
+        by_profile = bending + SPRING_ROUNDING + system.profile_truncation(radius)
         rows += [
             [by_stiffness * k, by_stiffness * c, 0 * g, 0 * moment],
             [0 * k, 0 * c, by_profile * g, by_profile * moment],

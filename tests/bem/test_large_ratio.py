@@ -76,6 +76,26 @@ def test_stated_errors_cover_what_longer_waves_and_more_radii_change_and_are_sha
         assert np.max(bound) < 1e-11
 
 
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_on_a_smaller_range_stated_errors_cover_against_narrow_panels_and_no_fiftieth_of_them_would(nu, monkeypatch):
+    """The same solution from a/h = 20 to 96, where narrow panels still know every radius, in half a second."""
+    smaller = {"LARGEST_RATIO": 96.0, "FIRST_RATIO": 8.0, "PANEL_WIDTH": 2.0, "PANEL_NODES": 16}
+    for name, value in smaller.items():
+        monkeypatch.setattr(bem.layer_equation.thin_layers, name, value)
+    narrow, layer = IntegralEquation(nodes=16), Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu)
+    near, exact = (narrow.solution(layer, ratio) for ratio in (16.0, 96.0))
+    solution = LargeRatioSolution("bonded", nu, lambda: near)
+    ratios = np.geomspace(near.max_ratio * 1.001, 95.0, 60)
+    for quantity, stated in QUANTITIES.items():
+        error = np.abs(getattr(solution, quantity)(ratios) / getattr(exact, quantity)(ratios) - 1)
+        bound, allowance = getattr(solution, stated)(ratios), getattr(exact, stated)(ratios)
+        assert np.all(error <= bound + allowance), quantity
+        # At nu = 0.3 c_bar is a hundred times as exact as said.
+        if nu == 0.5 or stated == "relative_error":
+            assert np.mean(error <= bound / 50 + allowance) < 0.8, quantity
+            assert np.median(bound / error) < 10.0, quantity
+
+
 def fresh_phases():
     """Phases remembered for other nodes are forgotten."""
     bem.layer_equation.fourier_energy._phases.cache_clear()

@@ -19,7 +19,6 @@ from bem.layer_equation.any_layer.relative_panels import EDGE_LEVELS, RATIO, Rel
 from bem.layer_equation.any_layer.split_kernel import SplitKernel, split_kernel
 from bem.layer_equation.inside.density import Density, Piece, cut_at, pieces_of
 from bem.layer_equation.one_radius import DirectDensity, graded_pieces, half_space_load, under
-from bem.polynomials.abel_integral import arc_integral
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact import ElasticLayer, NotConvergedError, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
@@ -101,18 +100,17 @@ class GradedDirectDensity(DirectDensity):
         pieces = pieces_of(self.indenter, self.unit, self._stretches)
         return Density(a, edge, cut_at(pieces, a * self.panels.ends), slope, 1.0)
 
-    def displacement_outside(self, radius: FloatArray, depth: float) -> FloatArray:
-        """w at radii r > a in length units: (2/pi) int W/sqrt(r^2 - s^2) ds, W continued beyond a by the equation."""
-        if not radius.size:
-            return np.zeros(0)
+    def beside_height(self, radius: FloatArray, depth: float) -> FloatArray:
+        """(2/pi) int W/sqrt(r^2 - s^2) ds of W = delta - g_hs, continued beyond a by the equation, without g_hs."""
         inside = depth * np.arcsin(self.contact_radius / radius)
-        if self._stretches:
-            inside = inside - arc_integral(radius, self.load, self.flat, self.panels.count)
         mass = (self.grid.weights.ravel()[:, None] * (self._load_values() + self.psi)) @ under(depth)
         a, t = self.contact_radius, self.grid.nodes.ravel()
         beyond = np.empty_like(radius)
         for i, r in enumerate(radius):
-            ends = np.append(0.0, np.sqrt(r**2 - a**2) * RATIO ** np.arange(EDGE_LEVELS, -1, -1.0))
+            last = np.sqrt(r**2 - a**2)
+            # The kernel varies over a thickness, and s beyond a radius.
+            inner = np.concatenate([[0.0, 0.125, 0.5], RATIO ** np.arange(EDGE_LEVELS + 1.0)])
+            ends = np.unique(np.append(np.arange(1.0, last), last * inner))
             grid = MappedGrid.between(ends, self.panels.count)
             # s^2 = a^2 + v^2 and v = v_max sin(beta) make both ends regular.
             v = ends[-1] * np.sin(np.pi / 2 * grid.nodes / ends[-1]).ravel()

@@ -41,8 +41,8 @@ from contact.scene.layer import Support
 
 Draw = np.random.Generator
 
-# Distances from the edge over the contact's radius.
-_DOUBLINGS: Final = 2.0 ** np.arange(-4.0, 2.0)
+# Distances from the edge over the contact's radius. Close to the edge polynomials of few nodes end.
+_DOUBLINGS: Final = 2.0 ** np.append([-12.0, -9.0, -6.0], np.arange(-4.0, 2.0))
 # a/h on the layers of this campaign; graded ones take seconds beyond.
 _RATIO: Final = (0.05, 3.0)
 

@@ -21,7 +21,7 @@ from fem_reference.elastic.path import FemEquilibrium
 
 # Loads at which two curves are compared: four to the narrowest wave of twenty radii.  Chosen.
 PLACES = 60
-# Share of a load to which its place between solved radii is found: some thousand roundings, below any error of elements.
+# Share of a load to which its place between solved radii is found: thousands of roundings, below any error of elements.
 ROUNDING = 1e-12
 
 
