@@ -69,39 +69,79 @@ def at_edge(density: Density, points: Points) -> FloatArray:
 
 
 def _over_piece(density: Density, piece: Piece, points: Points) -> FloatArray:
+    """Over one piece; where it reaches far to both sides of the radius, over either side alone.
+
+    Positions s are counted from where they are least, beside the radius: terms are largest there, and a position errs
+    by a rounding of itself.
+    """
     r, z, ends = points
-    total = np.zeros((7, r.size))
     first, last = np.arcsinh(ends / z)
-    panels = np.ceil((last - first) / _LENGTH).astype(int)
-    # Points that need the same number of panels are taken together.
-    for count in np.unique(panels):
-        some = panels == count
-        spread = _Spread(r[some], z[some], first[some], (last - first)[some] / count)
-        total[:, some] = _by_panels(density, piece, spread, int(count))
+    width = _width(*(ends / z), piece.length / z)
+    both = (first < -_LENGTH) & (last > _LENGTH)
+    before = _Spread(r, z, -ends[0], first, np.where(both, 0.0, last), np.where(both, -first, width))
+    total = _over_part(density, piece, before)
+    if both.any():
+        beyond = _Spread(r, z, -ends[0], np.zeros_like(r), last, last)
+        total[:, both] += _over_part(density, piece, _Spread(*(column[both] for column in beyond)), begins=False)
     return total
 
 
+def _width(first: FloatArray, last: FloatArray, apart: FloatArray) -> FloatArray:
+    """Difference of the arsinh of two numbers that lie `apart`, which says more than their own difference."""
+    one, other = np.abs(first), np.abs(last)
+    of_one_sign = apart * (one + other) / (one * np.hypot(1.0, last) + other * np.hypot(1.0, first))
+    width = np.where(first * last >= 0.0, np.arcsinh(of_one_sign), np.arcsinh(last) - np.arcsinh(first))
+    return np.asarray(width)
+
+
 class _Spread(NamedTuple):
-    """Points whose panels of s are equally many: the first s and the panels' width, each of shape (n,)."""
+    """A part of a piece as points see it, each of shape (n,).
+
+    Attributes:
+        r: Radii.
+        z: Depths.
+        behind: How far the piece's beginning lies behind the radius.
+        first: First s.
+        last: Last s.
+        width: How far they are apart.
+    """
 
     r: FloatArray
     z: FloatArray
+    behind: FloatArray
     first: FloatArray
+    last: FloatArray
     width: FloatArray
 
 
-def _by_panels(density: Density, piece: Piece, points: _Spread, count: int) -> FloatArray:
-    r, z, first, width = (column[:, None] for column in points)
+def _over_part(density: Density, piece: Piece, points: _Spread, *, begins: bool = True) -> FloatArray:
+    total = np.zeros((7, points.r.size))
+    panels = np.ceil(points.width / _LENGTH).astype(int)
+    # Points that need the same number of panels are taken together.
+    for count in np.unique(panels):
+        some = panels == count
+        spread = _Spread(*(column[some] for column in points))
+        total[:, some] = _by_panels(density, piece, spread, int(count), begins=begins)
+    return total
+
+
+def _by_panels(density: Density, piece: Piece, points: _Spread, count: int, *, begins: bool) -> FloatArray:
+    r, z, behind, first, last, whole = (column[:, None] for column in points)
     u, w = gauss_nodes(PANEL_NODES)
-    share = np.arange(count)[:, None] + u
-    weight = np.tile(w, (count, 1))
-    # The first panel crowds its nodes towards the piece's beginning.
-    share[0], weight[0] = u**piece.power, w * piece.power * u ** (piece.power - 1.0)
+    share, weight = np.arange(count)[:, None] + u, np.tile(w, (count, 1))
+    if begins:
+        # The first panel crowds its nodes towards the piece's beginning.
+        share[0], weight[0] = u**piece.power, w * piece.power * u ** (piece.power - 1.0)
+    width = whole / count
     step = width * share.ravel()
-    s = first + step
-    offset = 2.0 * z * np.cosh(first + step / 2.0) * np.sinh(step / 2.0)
-    offset = np.minimum(offset, piece.length)
+    s = np.where(np.abs(first) <= np.abs(last), first + step, last - width * (count - share).ravel())
     beyond = z * np.sinh(s)
+    offset = behind + beyond
+    if begins:
+        # Close to the beginning a difference would lose its digits.
+        near = step[:, : u.size] / 2.0
+        offset[:, : u.size] = 2.0 * z * np.cosh(first + near) * np.sinh(near)
+    offset = np.minimum(offset, piece.length)
     slope = density.slope(piece, offset) * width * weight.ravel() * z * np.cosh(s)
     kernels = _kernels(r, z, r + beyond, beyond)
     # A position s is rounded by a share of itself, and the term with it.
