@@ -21,6 +21,9 @@ from contact.records.validation import FloatArray
 
 # Length of a panel of s: singularities lie pi/2 beside it, which leaves 1e-15.
 _LENGTH = 1.5
+# Share of its first panel that is taken alone at a tip, where slopes begin like any power: Gauss nodes on the rest, so
+# far from the tip, leave 2.38^-40.
+_AT_TIP = 0.2
 
 
 class Integrals(NamedTuple):
@@ -127,20 +130,16 @@ def _over_part(density: Density, piece: Piece, points: _Spread, *, begins: bool 
 
 def _by_panels(density: Density, piece: Piece, points: _Spread, count: int, *, begins: bool) -> FloatArray:
     r, z, behind, first, last, whole = (column[:, None] for column in points)
-    u, w = gauss_nodes(PANEL_NODES)
-    share, weight = np.arange(count)[:, None] + u, np.tile(w, (count, 1))
-    if begins:
-        # The first panel crowds its nodes towards the piece's beginning.
-        share[0], weight[0] = u**piece.power, w * piece.power * u ** (piece.power - 1.0)
+    share, weight = _panels(count, piece, begins=begins)
     width = whole / count
     step = width * share.ravel()
-    s = np.where(np.abs(first) <= np.abs(last), first + step, last - width * (count - share).ravel())
+    s = np.where(np.abs(first) <= np.abs(last), first + step, last - width * (count - share.ravel()))
     beyond = z * np.sinh(s)
     offset = behind + beyond
     if begins:
         # Close to the beginning a difference would lose its digits.
-        near = step[:, : u.size] / 2.0
-        offset[:, : u.size] = 2.0 * z * np.cosh(first + near) * np.sinh(near)
+        near = step[:, :PANEL_NODES] / 2.0
+        offset[:, :PANEL_NODES] = 2.0 * z * np.cosh(first + near) * np.sinh(near)
     offset = np.minimum(offset, piece.length)
     slope = density.slope(piece, offset) * width * weight.ravel() * z * np.cosh(s)
     kernels = _kernels(r, z, r + beyond, beyond)
@@ -148,6 +147,19 @@ def _by_panels(density: Density, piece: Piece, points: _Spread, count: int, *, b
     terms = kernels[[2, 5]] * (slope * (1.0 + np.abs(s)))
     squares = np.sum(terms[0] ** 2, axis=1) + r[:, 0] ** 2 * np.sum(terms[1] ** 2, axis=1)
     return np.vstack([np.einsum("cpn,pn->cp", kernels, slope), squares])
+
+
+def _panels(count: int, piece: Piece, *, begins: bool) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of panels of unit length; where the piece begins, the first crowds its nodes there."""
+    u, w = gauss_nodes(PANEL_NODES)
+    ends, power = np.arange(count + 1.0), piece.power if begins else 1.0
+    if power > 1.0 and piece.start == 0.0:
+        # Twice the power, which would be too much for a whole panel, makes all powers above one smooth.
+        ends, power = np.insert(ends, 1, _AT_TIP), 2.0 * power
+    widths = np.diff(ends)[:, None]
+    share, weight = ends[:-1, None] + widths * u, widths * w
+    share[0], weight[0] = ends[1] * u**power, ends[1] * w * power * u ** (power - 1.0)
+    return share, weight
 
 
 def _kernels(r: FloatArray, z: FloatArray, t: FloatArray, beyond: FloatArray) -> FloatArray:
