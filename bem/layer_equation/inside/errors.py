@@ -15,9 +15,9 @@ from contact.answer.inside import KnownContact
 from contact.records.validation import FloatArray
 
 _EPS = float(np.finfo(float).eps)
-# What quadrature leaves of stresses, displacements and gradients, over the largest: 4e-15 at worst, doubled (7000 points
-# of 1000 contacts, a/h 0.1 to 10, seven kinds of profile, seeds 78 and 79; rules of 40 nodes over the same density, in
-# extended precision; 2026-11-22).
+# What quadrature leaves of stresses, displacements and gradients, over the largest: 4e-15 at worst, doubled (7000
+# points of 1000 contacts, a/h 0.1 to 10, seven kinds of profile, seeds 78 and 79; rules of 40 nodes over the same
+# density, in extended precision; 2026-11-22).
 _QUADRATURE = 8e-15
 # Roundings of integrals over the contact, which count against the mean pressure where stresses are small, and against
 # the depth of a half-space where a thin layer yields less: 2.2 at worst (seeds 901 and 912, 2026-11-22), a third more.
