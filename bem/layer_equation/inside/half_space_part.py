@@ -78,8 +78,8 @@ def _over_piece(density: Density, piece: Piece, points: Points) -> FloatArray:
     by a rounding of itself.
     """
     r, z, ends = points
-    first, last = np.arcsinh(ends / z)
-    width = _width(*(ends / z), piece.length / z)
+    start, stop = ends / z
+    first, last, width = np.arcsinh(start), np.arcsinh(stop), _width(start, stop, piece.length / z)
     both = (first < -_LENGTH) & (last > _LENGTH)
     before = _Spread(r, z, -ends[0], first, np.where(both, 0.0, last), np.where(both, -first, width))
     total = _over_part(density, piece, before)
