@@ -331,7 +331,7 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
     far, mean = path.inside().at(3.0 * radius, 0.3), float(path.normal_force[0]) / (math.pi * radius**2)
     found = max(abs(float(getattr(far, name))) for name in ("radial_stress", "hoop_stress", "axial_stress"))
     rounded = np.finfo(float).eps * mean / found
-    assert deep.error_estimate["stress"] + 2.2 * rounded < far.error_estimate["stress"] < 5e-14 + 4.0 * rounded
+    assert deep.error_estimate["stress"] + 2.2 * rounded < far.error_estimate["stress"] < 5e-14 + 6.0 * rounded
 
 
 @pytest.mark.parametrize("nodes", [8, 12])
