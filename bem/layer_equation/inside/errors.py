@@ -36,8 +36,8 @@ _MOVED = 2.0
 _ALIKE, _UNLIKE = 1.5, 0.5
 # An adhering contact is one that presses less a punch that pulls, and both err: 1.6 is needed (the same contacts).
 _TWO_PARTS = 2.0
-# What the difference of two transfer functions leaves of a layer's gradient, over stress and length: 3.8e-14 at worst in
-# all, on the axis just below a flat punch, where the rest states as much (scene 351 of seed 19302, campaign of the
+# What the difference of two transfer functions leaves of a layer's gradient, over stress and length: 3.8e-14 at worst,
+# on the axis just below a flat punch, where the rest states as much again (scene 351 of seed 19302, campaign of the
 # fields inside, 2026-11-22).
 _SUBTRACTED = 4e-14
 # Roundings of a sum of terms, times the root of the sum of their squares: 5.9 at worst within 1e-6 of the surface,
