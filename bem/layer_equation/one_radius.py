@@ -223,8 +223,8 @@ class DirectDensity:
         """-g_hs' at offsets from where a piece begins."""
         if piece.start < self.flat or not self._stretches:
             return np.zeros_like(offset)
-        past = (piece.start - self.flat) + offset
-        return -self._slope_at(past, self._stretches[-1].room + self.excess - past)
+        before = piece.start - self.flat
+        return -self._slope_at(before + offset, self._stretches[-1].room + ((self.excess - before) - offset))
 
     @cached_property
     def _smooth_slopes(self) -> FloatArray:

@@ -37,7 +37,9 @@ def density_of(contact: ContactFields, layer: ElasticLayer) -> Density:
         t = np.minimum(piece.start + offset, contact.contact_radius)
         total = np.zeros_like(t) if smooth is None else smooth(t)
         if piece.start >= flat / contact.unit and not isinstance(contact.indenter, FlatPunch):
-            total -= contact.slope_at((piece.start - flat / contact.unit) + offset)
+            before = piece.start - flat / contact.unit
+            # Two small distances from the edge: beside a sphere's equator one small difference would lose its digits.
+            total -= contact.slope_at(before + offset, (contact.excess - before) - offset)
         return np.asarray(total)
 
     return Density(contact.contact_radius, contact.edge_density, pieces, slope, 1.0)

@@ -124,9 +124,9 @@ class ContactFields:
         closed = profile_slope(self.indenter, self.unit * nodes.offset, self.unit * nodes.room)
         return self._sampled_slope(nodes.offset) if closed is None else closed
 
-    def slope_at(self, offset: FloatArray) -> FloatArray:
-        """g_hs' at offsets from the rim of the flat end, any shape; not with a table."""
-        room = (self.excess + self.room) - offset
+    def slope_at(self, offset: FloatArray, left: FloatArray) -> FloatArray:
+        """g_hs' at offsets from the rim of the flat end with what is left to the edge, any shape; not with a table."""
+        room = self.room + left
         closed = profile_slope(self.indenter, self.unit * offset, self.unit * room)
         return self._sampled_slope(offset) if closed is None else closed
 

@@ -326,12 +326,12 @@ def test_the_surface_and_rims_state_what_they_lose(radius):
     assert 0.0 < abs(float(surface.shear_stress)) <= surface.error_estimate["stress"] * largest
     assert surface.error_estimate["stress"] < 1e-9
     shallow, deep = (path.inside().at(0.5 * radius, z * radius) for z in (1e-6, 0.2))
-    assert deep.error_estimate["pressure_gradient"] < 1e-12 < shallow.error_estimate["pressure_gradient"]
-    # Beside the contact stresses are small, and integrals err by roundings of the mean pressure all the same.
+    assert deep.error_estimate["pressure_gradient"] < 1e-13 < shallow.error_estimate["pressure_gradient"]
+    # Beside the contact stresses are small, and integrals err by roundings of the mean pressure, at worst by 2.2.
     far, mean = path.inside().at(3.0 * radius, 0.3), float(path.normal_force[0]) / (math.pi * radius**2)
     found = max(abs(float(getattr(far, name))) for name in ("radial_stress", "hoop_stress", "axial_stress"))
     rounded = np.finfo(float).eps * mean / found
-    assert deep.error_estimate["stress"] + 4.0 * rounded < far.error_estimate["stress"] < 1e-13 + 8.0 * rounded
+    assert deep.error_estimate["stress"] + 2.2 * rounded < far.error_estimate["stress"] < 5e-14 + 6.0 * rounded
 
 
 @pytest.mark.parametrize("nodes", [8, 12])

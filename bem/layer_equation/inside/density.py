@@ -108,7 +108,8 @@ def pieces_of(indenter: Profile, unit: float, stretches: Sequence[Stretch]) -> t
         ends = _graded(start, stop, min(2.0 * start, start - previous), stretch.room)
         previous = start
         if power == 4.0:
-            ends.insert(1, start + _TIP * (ends[1] - start))
+            # Beyond the tip the slope is singular a piece's beginning away.
+            ends[1:1] = (start + away for away in _growing(_TIP * (ends[1] - start), ends[1] - start))
         pieces += _no_longer([Piece(one, two - one, power if one == start else 1.0) for one, two in pairwise(ends)])
     return tuple(pieces)
 

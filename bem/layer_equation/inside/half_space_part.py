@@ -21,6 +21,9 @@ from contact.records.validation import FloatArray
 
 # Length of a panel of s: singularities lie pi/2 beside it, which leaves 1e-15.
 _LENGTH = 1.5
+# Share of its first panel that is taken alone at a tip, where slopes begin like any power: Gauss nodes on the rest, so
+# far from the tip, leave 2.38^-40.
+_AT_TIP = 0.2
 
 
 class Integrals(NamedTuple):
@@ -69,45 +72,94 @@ def at_edge(density: Density, points: Points) -> FloatArray:
 
 
 def _over_piece(density: Density, piece: Piece, points: Points) -> FloatArray:
+    """Over one piece; where it reaches far to both sides of the radius, over either side alone.
+
+    Positions s are counted from where they are least, beside the radius: terms are largest there, and a position errs
+    by a rounding of itself.
+    """
     r, z, ends = points
-    total = np.zeros((7, r.size))
-    first, last = np.arcsinh(ends / z)
-    panels = np.ceil((last - first) / _LENGTH).astype(int)
-    # Points that need the same number of panels are taken together.
-    for count in np.unique(panels):
-        some = panels == count
-        spread = _Spread(r[some], z[some], first[some], (last - first)[some] / count)
-        total[:, some] = _by_panels(density, piece, spread, int(count))
+    start, stop = ends / z
+    first, last, width = np.arcsinh(start), np.arcsinh(stop), _width(start, stop, piece.length / z)
+    both = (first < -_LENGTH) & (last > _LENGTH)
+    before = _Spread(r, z, -ends[0], first, np.where(both, 0.0, last), np.where(both, -first, width))
+    total = _over_part(density, piece, before)
+    if both.any():
+        beyond = _Spread(r, z, -ends[0], np.zeros_like(r), last, last)
+        total[:, both] += _over_part(density, piece, _Spread(*(column[both] for column in beyond)), begins=False)
     return total
 
 
+def _width(first: FloatArray, last: FloatArray, apart: FloatArray) -> FloatArray:
+    """Difference of the arsinh of two numbers that lie `apart`, which says more than their own difference."""
+    one, other = np.abs(first), np.abs(last)
+    of_one_sign = apart * (one + other) / (one * np.hypot(1.0, last) + other * np.hypot(1.0, first))
+    width = np.where(first * last >= 0.0, np.arcsinh(of_one_sign), np.arcsinh(last) - np.arcsinh(first))
+    return np.asarray(width)
+
+
 class _Spread(NamedTuple):
-    """Points whose panels of s are equally many: the first s and the panels' width, each of shape (n,)."""
+    """A part of a piece as points see it, each of shape (n,).
+
+    Attributes:
+        r: Radii.
+        z: Depths.
+        behind: How far the piece's beginning lies behind the radius.
+        first: First s.
+        last: Last s.
+        width: How far they are apart.
+    """
 
     r: FloatArray
     z: FloatArray
+    behind: FloatArray
     first: FloatArray
+    last: FloatArray
     width: FloatArray
 
 
-def _by_panels(density: Density, piece: Piece, points: _Spread, count: int) -> FloatArray:
-    r, z, first, width = (column[:, None] for column in points)
-    u, w = gauss_nodes(PANEL_NODES)
-    share = np.arange(count)[:, None] + u
-    weight = np.tile(w, (count, 1))
-    # The first panel crowds its nodes towards the piece's beginning.
-    share[0], weight[0] = u**piece.power, w * piece.power * u ** (piece.power - 1.0)
+def _over_part(density: Density, piece: Piece, points: _Spread, *, begins: bool = True) -> FloatArray:
+    total = np.zeros((7, points.r.size))
+    panels = np.ceil(points.width / _LENGTH).astype(int)
+    # Points that need the same number of panels are taken together.
+    for count in np.unique(panels):
+        some = panels == count
+        spread = _Spread(*(column[some] for column in points))
+        total[:, some] = _by_panels(density, piece, spread, int(count), begins=begins)
+    return total
+
+
+def _by_panels(density: Density, piece: Piece, points: _Spread, count: int, *, begins: bool) -> FloatArray:
+    r, z, behind, first, last, whole = (column[:, None] for column in points)
+    share, weight = _panels(count, piece, begins=begins)
+    width = whole / count
     step = width * share.ravel()
-    s = first + step
-    offset = 2.0 * z * np.cosh(first + step / 2.0) * np.sinh(step / 2.0)
-    offset = np.minimum(offset, piece.length)
+    s = np.where(np.abs(first) <= np.abs(last), first + step, last - width * (count - share.ravel()))
     beyond = z * np.sinh(s)
+    offset = behind + beyond
+    if begins:
+        # Close to the beginning a difference would lose its digits.
+        near = step[:, :PANEL_NODES] / 2.0
+        offset[:, :PANEL_NODES] = 2.0 * z * np.cosh(first + near) * np.sinh(near)
+    offset = np.minimum(offset, piece.length)
     slope = density.slope(piece, offset) * width * weight.ravel() * z * np.cosh(s)
     kernels = _kernels(r, z, r + beyond, beyond)
     # A position s is rounded by a share of itself, and the term with it.
     terms = kernels[[2, 5]] * (slope * (1.0 + np.abs(s)))
     squares = np.sum(terms[0] ** 2, axis=1) + r[:, 0] ** 2 * np.sum(terms[1] ** 2, axis=1)
     return np.vstack([np.einsum("cpn,pn->cp", kernels, slope), squares])
+
+
+def _panels(count: int, piece: Piece, *, begins: bool) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of panels of unit length; where the piece begins, the first crowds its nodes there."""
+    u, w = gauss_nodes(PANEL_NODES)
+    ends, power = np.arange(count + 1.0), piece.power if begins else 1.0
+    if power > 1.0 and piece.start == 0.0:
+        # Twice the power, which would be too much for a whole panel, makes all powers above one smooth.
+        ends, power = np.insert(ends, 1, _AT_TIP), 2.0 * power
+    widths = np.diff(ends)[:, None]
+    share, weight = ends[:-1, None] + widths * u, widths * w
+    share[0], weight[0] = ends[1] * u**power, ends[1] * w * power * u ** (power - 1.0)
+    return share, weight
 
 
 def _kernels(r: FloatArray, z: FloatArray, t: FloatArray, beyond: FloatArray) -> FloatArray:

@@ -47,9 +47,7 @@ class ContactInterior:
         """At points [m] of shape (n,)."""
         layer, unit = self.scene.layer, self.unit
         modulus = contact_modulus(layer)
-        # Beside a rim a difference of two radii in metres is exact; of two rounded ratios it is not.
-        distances = (self._ends[:, None] - radius) / unit
-        points = Points(radius / unit, np.minimum(depth, layer.thickness) / unit, distances)
+        points = Points(radius / unit, np.minimum(depth, layer.thickness) / unit, self.distances(radius))
         found = self._body.at(points)
         shear = found["modulus"] * layer.shear_modulus
         stresses, slopes = _stresses(found), {name: found[name] for name in _SLOPES}
@@ -87,14 +85,24 @@ class ContactInterior:
             return GradedBody(None, nu, self.density, surface=GradedKernel(layer.in_own_units()))
         return Body(None if layer.is_half_space else stack_of(layer), nu, self.density)
 
+    def distances(self, radius: FloatArray) -> FloatArray:
+        """Ends of the density's pieces minus radii [m], by the unit, shape (pieces + 1, n).
+
+        Beside a rim a difference of two radii in metres is exact; of two rounded ratios it is not.
+        """
+        rims, beyond = self._ends
+        return np.asarray((rims[:, None] - radius) / self.unit + beyond[:, None])
+
     @cached_property
-    def _ends(self) -> FloatArray:
-        """Where pieces of the density end [m]: at rims and at the edge the radii that were given, unrounded."""
-        indenter = self.scene.indenter
+    def _ends(self) -> tuple[FloatArray, FloatArray]:
+        """Where pieces of the density end: the nearest rim as it was given [m], and the way from there by the unit."""
+        indenter, a = self.scene.indenter, self.density.radius
         given = np.array([indenter.flat_radius, *indenter.breakpoints, self.known.radius])
-        ends = self.unit * np.array([*(piece.start for piece in self.density.pieces), self.density.radius])
-        nearest = given[np.argmin(np.abs(np.subtract.outer(ends, given)), axis=1)]
-        return np.where(np.abs(nearest - ends) <= _ROUNDED * ends, nearest, ends)
+        ratios = np.append(given[:-1] / self.unit, a)
+        ends = np.array([*(piece.start for piece in self.density.pieces), a])
+        nearest = np.argmin(np.abs(np.subtract.outer(ends, ratios)), axis=1)
+        beyond = ends - ratios[nearest]
+        return given[nearest], np.where(np.abs(beyond) <= _ROUNDED * ends, 0.0, beyond)
 
 
 def _displacement(found: Mapping[str, FloatArray], r: FloatArray) -> FloatArray:
