@@ -259,7 +259,7 @@ def resolve(
     scale: float,
     far: float,
 ) -> MappedFunction:
-    """Split pieces until the function's last coefficients fall below `RESOLVED`, or below the tolerance where it is more.
+    """Split pieces until the function's last coefficients fall below `RESOLVED` or the tolerance, whichever is more.
 
     Towards a mapped singularity pieces may become as small as they need; elsewhere a piece below a thousandth of its
     distance from the start shows noise, not structure, and the tail that is left goes into the error estimate.

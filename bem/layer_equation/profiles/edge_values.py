@@ -48,7 +48,8 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     cut = np.flatnonzero(~whole)
     for piece, within in zip(cut, load.within_nodes(cut), strict=True):
         smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
-        values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece, within)
+        own = _own_integral(factor, load, panel, position, piece, within=within)
+        values[piece] = load.node_values[piece] + smooth + own
     return values
 
 
@@ -98,6 +99,7 @@ def _own_integral(
     panel: NDArray[np.intp],
     position: FloatArray,
     piece: np.intp,
+    *,
     within: FloatArray,
 ) -> FloatArray:
     """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x.
