@@ -41,10 +41,12 @@ from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 
 PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
+# What states an error beside the numbers of a contact.
+FIELDS: Final = ("pressure", "surface_displacement")
 # Numbers of points that are tried in turn for an accuracy.
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
-# The finest accuracy that may be asked for. On 2048 points `DIRECT.slope_scatter` alone makes 3e-6 of smooth contacts,
-# so that only flat punches may reach it.
+# The finest accuracy that may be asked for. On 2048 points `DIRECT.scatter` alone makes 1.4e-6 of smooth contacts, so
+# that only flat punches may reach it.
 FINEST_ACCURACY: Final = 1e-6
 # Twice as many points divide errors by four at best, since the method is of second order.
 BEST_GAIN: Final = 4.0
@@ -56,7 +58,7 @@ class Bem(Record):
 
     Attributes:
         points: Cells across the box, a multiple of 4.
-        accuracy: Relative accuracy wanted in all quantities but the pressure; then the points are chosen: those of
+        accuracy: Relative accuracy wanted in all quantities but the fields; then the points are chosen: those of
             `ACCURACY_POINTS` are tried in turn until the stated errors hold.
         boundary: "free" space, or "periodic" with 16 thicknesses between images (thin layers; no half-space).
         tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
@@ -158,7 +160,7 @@ class Bem(Record):
                 if points == ACCURACY_POINTS[-1]:
                     raise
                 continue
-            errors = {name: float(np.max(error)) for name, error in path.error_estimate.items() if name != "pressure"}
+            errors = {name: float(np.max(error)) for name, error in path.error_estimate.items() if name not in FIELDS}
             worst = max(errors, key=lambda name: errors[name])
             if errors[worst] <= accuracy:
                 return dataclasses.replace(path, settings=dict(path.settings) | {"accuracy": accuracy})
@@ -216,6 +218,8 @@ class Bem(Record):
         times = DIRECT.kink_difference if any(kink < reached for kink in scene.indenter.kinks) else 1.0
         errors["pressure"] = times * _pressure_difference(fields, other, fine)
         errors["pressure"] += DIRECT.pressure_exponent * fine.radius_scatter / fine.contact_radius
+        moved = max(errors["indentation_depth"], errors["normal_force"])
+        errors["surface_displacement"] = DIRECT.displacement * _displacement_difference(fields, other, fine) + moved
         return PathStep({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
 
     def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
@@ -298,6 +302,17 @@ def _pressure_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterField
     r: FloatArray = state.contact_radius * (np.arange(200) + 0.5) / 200
     p, q = fine.pressure(r), coarse.pressure(r)
     return float(np.sqrt(np.sum(r * (p - q) ** 2) / np.sum(r * p**2)))
+
+
+def _displacement_difference(fine: SmoothIndenterFields, coarse: SmoothIndenterFields, state: CircularContact) -> float:
+    """Largest difference of two grids' displacements out to the end of the box, relative to the depth.
+
+    Further out displacements are a share of the force.
+    """
+    end = state.contact_radius + 0.8 * (fine.box - state.contact_radius)
+    r = np.linspace(state.contact_radius, end, 60)
+    apart = np.abs(fine.surface_displacement(r) - coarse.surface_displacement(r))
+    return float(np.max(apart) / state.indentation_depth)
 
 
 def _supported_by_cells(scene: Scene) -> Supported | Unsupported:

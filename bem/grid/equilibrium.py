@@ -29,9 +29,16 @@ COARSE_TOLERANCE: Final = 1e-5
 # The first coarse box holds a contact of this times the radius where f equals the depth. Not round on purpose: a cell
 # centre exactly on that radius would let rounding decide whether it touches.
 FIRST_BOX: Final = 1.0973
+# So many times as far the slope is taken once more, on half as many cells, for what its step alone makes of it: the
+# noise of the cells counts 1/15 of itself in that. Twice as far, where a third of it counts, radii became three times
+# worse on uniform layers (60 scenes on 128 cells, `slope_scatter`, seed 4, 2026-11-22).
+WIDER: Final = 4.0
 # Tolerance of the states beside a contact over the scatter that is stated for their slope: the radius then lost less
 # than a tenth of that scatter (12 contacts on 128 and 256 cells, 2026-11-22).
 BESIDE_SHARE: Final = 0.05
+# And no more than this: on 64 cells a wide step to a coarser tolerance told 2.4e-4 of a half-space's depth wrong, where
+# 2.0e-4 was stated (2026-11-22).
+COARSEST: Final = 2.5e-4
 # Contact radius over half the box, and its largest value in a coarse box, which leaves room for a deeper contact.
 FILL: Final = 0.88
 LARGEST_FILL: Final = 0.92
@@ -107,11 +114,15 @@ class IndenterOnGrid:
 
     def beside(self, state: GridSolution, start: Beside | None = None, step: float = STEP) -> Beside:
         """A little less deep and a little deeper than this state, from other such states or from this one."""
-        depth, first = state.indentation_depth, start or Beside(state.pressure, state.pressure)
-        scatter = DIRECT.slope_scatter * self.grid.cell_size / area_radius(state.pressure, self.grid.cell_size)
-        on_grid = replace(self, tolerance=max(self.tolerance, BESIDE_SHARE * scatter))
-        less = on_grid.at_depth(depth * exp(-step), first.less)
-        return Beside(less.pressure, on_grid.at_depth(depth * exp(step), first.more).pressure)
+        depth, p = state.indentation_depth, state.pressure
+        scatter = DIRECT.scatter(self.grid.cell_size / area_radius(state.pressure, self.grid.cell_size))
+        # What forces miss counts in the slope by one over the step, and by its square in what a wide step tells.
+        on_grid = replace(
+            self, tolerance=max(self.tolerance, min(BESIDE_SHARE * scatter * (step / STEP) ** 3, COARSEST))
+        )
+        less = on_grid.at_depth(depth * exp(-step), start.less if start else p).pressure
+        more = on_grid.at_depth(depth * exp(step), start.more if start else np.maximum(2.0 * p - less, 0.0))
+        return Beside(less, more.pressure)
 
     def stiffness(self, state: GridSolution, beside: Beside, step: float = STEP) -> float:
         """dF/d(delta) [N/m] about this state."""
@@ -119,11 +130,12 @@ class IndenterOnGrid:
         less, more = cells * float(beside.less.sum()), cells * float(beside.more.sum())
         return slope(state.indentation_depth, self.force(state), less, more, step)
 
-    def slope_excess(self, state: GridSolution, start: Beside) -> float:
-        """Relative error of the slope by its step, whatever the grid: a third of what twice the step changes."""
-        near = self.beside(state, start)
-        far = self.beside(state, near, 2.0 * STEP)
-        return (self.stiffness(state, far, 2.0 * STEP) / self.stiffness(state, near) - 1.0) / 3.0
+    def slope_excess(self, state: GridSolution, near: Beside) -> float:
+        """Relative error of the slope by its step, which goes with its square, from a step `WIDER` times as far."""
+        p = state.pressure
+        start = Beside(*(np.maximum(p + WIDER * (other - p), 0.0) for other in (near.less, near.more)))
+        far = self.beside(state, start, WIDER * STEP)
+        return (self.stiffness(state, far, WIDER * STEP) / self.stiffness(state, near) - 1.0) / (WIDER**2 - 1.0)
 
     def _counted(self, answer: GridSolution) -> GridSolution:
         self.log.count("iterations", answer.iterations)
@@ -207,15 +219,17 @@ class GridContactSearch:
             with self.log.stage("contact"):
                 solve = on_grid.at_depth if prescribed == "depth" else on_grid.under_force
                 answer = solve(value, start)
+            start = prolonged(answer.pressure)
+            if cells < points // 2:
+                continue
             with self.log.stage("contact_stiffness"):
                 beside = on_grid.beside(answer, beside)
+                if cells == points // 2:
+                    excess = on_grid.slope_excess(answer, beside)
                 stiffness = on_grid.stiffness(answer, beside) / (1.0 + excess)
-                excess = self._slope_excess(on_grid, answer, beside, points)
-            start, beside = prolonged(answer.pressure), beside.prolonged()
-            if cells >= points // 2:
-                with self.log.stage("contact_stiffness"):
-                    radius, known = self._radius(stiffness, radius, cells, known)
-                states.append(self._state(on_grid, answer, radius, stiffness))
+                beside = beside.prolonged()
+                radius, known = self._radius(stiffness, radius, cells, known)
+            states.append(self._state(on_grid, answer, radius, stiffness, excess))
         return states[1], states[0]
 
     def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[CircularContact, CircularContact]:
@@ -232,21 +246,14 @@ class GridContactSearch:
                 answer, beside, exponent = self._as_stiff(
                     on_grid, stiffness * (1.0 + excess), on_grid.at_depth(depth, start), beside, exponent
                 )
-                excess = self._slope_excess(on_grid, answer, beside, points)
+                if cells == points // 2:
+                    excess = on_grid.slope_excess(answer, on_grid.beside(answer, beside))
+                    answer = on_grid.at_depth(answer.indentation_depth * (1.0 + excess) ** exponent, answer.pressure)
             depth, start, beside = answer.indentation_depth, prolonged(answer.pressure), beside.prolonged()
-            states.append(self._state(on_grid, answer, radius, stiffness))
+            states.append(self._state(on_grid, answer, radius, stiffness, excess))
         with self.log.stage("contact_stiffness"):
             coarse = contact_stiffness(self.layer, radius, self._punch_cells(points, radius) // 2)
         return states[-1], replace(states[-2], contact_stiffness=coarse)
-
-    def _slope_excess(self, on_grid: IndenterOnGrid, answer: GridSolution, beside: Beside, points: int) -> float:
-        """What the finest grid takes off its slope, as the next coarser one finds it; 0 on others.
-
-        There the difference of the two grids shows it. On uniform layers what is stated covers it: 1.1e-4 of the depth
-        at most with a rim at 0.8 a, 1e-5 under paraboloids (a/h = 0.1 to 5, nu = 0.3 to 0.5, 2026-11-22).
-        """
-        told = on_grid.grid.cells == points // 2 and not self.layer.is_uniform
-        return on_grid.slope_excess(answer, beside) if told else 0.0
 
     def _as_stiff(
         self, on_grid: IndenterOnGrid, stiffness: float, answer: GridSolution, start: Beside | None, exponent: float
@@ -312,7 +319,9 @@ class GridContactSearch:
         """That of the flat punch that is as stiff."""
         return radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(cells, near), known)
 
-    def _state(self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float) -> CircularContact:
+    def _state(
+        self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float, excess: float
+    ) -> CircularContact:
         self._check_inside(answer, on_grid.grid, radius)
         if radius < LEAST_RADIUS * on_grid.grid.cell_size:
             raise InvalidInput(
@@ -321,8 +330,9 @@ class GridContactSearch:
             )
         punch_cell = self._punch_cell(on_grid.grid.cells, radius)
         scatter = (
-            DIRECT.slope_scatter * on_grid.grid.cell_size
+            DIRECT.scatter(on_grid.grid.cell_size / radius) * radius
             + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.surface.thickness) ** 2
+            + DIRECT.excess_share * abs(excess) * radius
         )
         exponent = stiffness_exponent(radius / self.layer.thickness)
         return CircularContact(on_grid.grid, answer, radius, scatter, on_grid.force(answer), stiffness, exponent)

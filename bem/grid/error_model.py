@@ -31,13 +31,20 @@ class DirectContactCoefficients:
     # once cells are small against the distance of kink and edge; before, 3.8 times was needed at most (60 scenes on 128
     # cells, seed 77001, 2026-11-22).
     kink_difference: float = 4.0
+    # Times the difference of the displacements beside the contact, whose order of 1.6 from 128 to 256 cells leaves half
+    # of it (60 scenes, seed 6, 2026-11-22).
+    displacement: float = 0.6
     # A relative error of the contact radius counts this many times in the pressure. It is the largest growth of a
     # contact's pressure with its radius: on a thin incompressible layer p goes with a^4 and F_N with a^6.
     pressure_exponent: float = 6.0
-    # Times s/a: what the radius read from the slope of force over depth may be off although both grids agree. Depth,
-    # force and radius of smooth profiles needed 0.0013 at most, k_N 0.0024 (250 steps on 128 cells, seeds 1 and 5,
-    # 2026-11-22).
-    slope_scatter: float = 0.003
+    # Times s/a, and times its square: what the radius read from the slope of force over depth may be off although both
+    # grids agree. Beyond the other parts radii needed 0.0004 s/a on 512 cells, 0.0012 on 256 and 0.0032 on 128 (60
+    # scenes, seed 4, 2026-11-22).
+    slope_scatter: float = 0.001
+    slope_square: float = 0.2
+    # Share of what is taken off the slope for its step that counts as an error of the radius: the next power of both
+    # steps is 17 times 0.03 squared, 1.5 %, of it for every unit by which that varies faster; chosen.
+    excess_share: float = 0.1
     # Times (s/a) (s/h)^2, for layers that are few cells thick. At h = s, 0.7 of it was needed with nu = 1/2 and 0.4
     # with nu = 0.3.
     thin_scatter: float = 0.05
@@ -46,6 +53,10 @@ class DirectContactCoefficients:
     exponent_growth: float = 1.5
     # The largest that exponent becomes: k_N goes with a^4 on a thin incompressible layer, Eq. (21).
     largest_exponent: float = 4.0
+
+    def scatter(self, cell: float) -> float:
+        """Of the radius read from the slope, relative, from the cell's share s/a of it."""
+        return self.slope_scatter * cell + self.slope_square * cell**2
 
 
 @dataclass(frozen=True)

@@ -107,13 +107,14 @@ class SmoothIndenterFields:
         """w(r) [m]: delta - f under the indenter, from the grid beside it, by direct summation beyond the box."""
         a, state = self.state.contact_radius, self.state
         under = state.indentation_depth - self.indenter.height(np.minimum(radius, a))
-        w = np.where(radius <= a, under, self._beside(np.clip(radius, a, self._box)))
-        far = radius > self._box
+        w = np.where(radius <= a, under, self._beside(np.clip(radius, a, self.box)))
+        far = radius > self.box
         w[far] = summed_displacement(self.layer, state.grid, state.equilibrium.pressure, radius[far])
         return w
 
     @property
-    def _box(self) -> float:
+    def box(self) -> float:
+        """Largest radius [m] at which the grid holds displacements."""
         return float(self.state.grid.cell_size * (self.state.grid.cells / 2 - 1))
 
     @cached_property
@@ -129,7 +130,7 @@ class SmoothIndenterFields:
     def _beside(self) -> PiecewiseCubic:
         state = self.state
         a, s = state.contact_radius, state.grid.cell_size
-        ring = (state.grid.radius > a + s) & (state.grid.radius < self._box + s)
+        ring = (state.grid.radius > a + s) & (state.grid.radius < self.box + s)
         mean = ring_interpolator(state.grid.radius[ring], state.equilibrium.displacement[ring], s)
         edge = state.indentation_depth - float(self.indenter.height(np.array([a]))[0])
         return PiecewiseCubic.monotone(np.concatenate([[a], mean.x]), np.concatenate([[edge], mean(mean.x)]))

@@ -98,20 +98,18 @@ class ContactDensity:
     def outside_quickly(self, distance: FloatArray) -> FloatArray:
         """As `outside` but for roundings, with the exponentials of one panel shared by all as wide as it.
 
+        Those of the factor's panels serve other contacts, too; only the last panel is cut at the edge.
         Gauss nodes are symmetric, so that they serve t from the panel's start and its end alike.
         """
         grid, rates = self.psi.grid, self.kernel.rates
         mass = (self.load + self.psi.node_values) * grid.weights
-        after, before = (
-            np.exp(-np.multiply.outer(x, rates)) for x in (self.ratio - grid.ends[1:], self.ratio + grid.left)
-        )
+        after, before = (self.kernel.decay(x) for x in (self.ratio - grid.ends[1:], self.ratio + grid.left))
         moments = np.zeros_like(rates)
         for width in np.unique(grid.width):
             own = grid.width == width
-            shared = np.exp(-np.multiply.outer(width * gauss_nodes(grid.count)[0], rates))
+            shared = self.kernel.decay_within(float(width), grid.count, keep=width in grid.width[:-1])
             moments += np.sum(after[own] * (mass[own, ::-1] @ shared) + before[own] * (mass[own] @ shared), axis=0)
-        decay = np.exp(-np.multiply.outer(distance, rates))
-        return -np.asarray((decay @ (self.kernel.weights * moments)).real) / np.pi
+        return -np.asarray((self.kernel.decay(distance) @ (self.kernel.weights * moments)).real) / np.pi
 
 
 def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar
@@ -136,6 +137,18 @@ class IntegralEquationSolution(FlatPunchSolution):
         m, tiny = self.nodes, np.finfo(float).tiny
         inside = m / np.maximum(2.0 * np.sqrt(s * (1.0 - s)), 2.0 / (m + 1))
         return np.asarray(2.0 / self._panels.width[panels] * inside + (panels == 0) / np.maximum(ratio, tiny))
+
+    def sketch(
+        self, load: Callable[[FloatArray], FloatArray], ratio: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """At the nodes of panels, as if the load were a polynomial on each."""
+        panels = self.factor.panels_to(ratio)
+        x = self._panels.nodes[:panels]
+        values = load(x)
+        _, inherited = self.factor.eliminate(values)
+        profile = self.factor.edge_values(values + inherited) / (1 + self._edge_share.node_values[:panels])
+        stiffness = 2 * x * (1 + self._stiffness_share.node_values[:panels])
+        return x.ravel(), profile.ravel(), stiffness.ravel()
 
     @property
     def nodes(self) -> int:

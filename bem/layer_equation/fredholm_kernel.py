@@ -11,7 +11,7 @@ with one set of Gauss nodes t_j, graded towards zero, is good for all s up to 2^
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
@@ -51,6 +51,9 @@ class FredholmKernel:
 
     rates: NDArray[np.complex128]
     weights: NDArray[np.complex128]
+    _kept: dict[tuple[float, int], NDArray[np.complex128]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @classmethod
     def of_layer(cls, support: Support, poissons_ratio: float) -> FredholmKernel:
@@ -89,6 +92,27 @@ class FredholmKernel:
         decay = np.exp(-np.multiply.outer(left, self.rates)) * self.weights
         values: FloatArray = (decay @ np.exp(-np.multiply.outer(self.rates, right))).real
         return values
+
+    def decay(self, distance: FloatArray) -> NDArray[np.complex128]:
+        """exp(-rates s) at distances s, shape (n, terms)."""
+        exponents = np.multiply.outer(distance, -self.rates)
+        return np.exp(exponents, out=exponents)
+
+    def decay_within(self, width: float, count: int, *, keep: bool) -> NDArray[np.complex128]:
+        """The same at the Gauss nodes of a panel.
+
+        Args:
+            width: Of the panel.
+            count: Its nodes.
+            keep: Whether others will ask for this width again.
+        """
+        key = (width, count)
+        if key in self._kept:
+            return self._kept[key]
+        decay = self.decay(width * gauss_nodes(count)[0])
+        if keep:
+            self._kept[key] = decay
+        return decay
 
     def panel_matrix(self, panels: int, width: float, count: int) -> FloatArray:
         """L(x, t) = [N(x - t) + N(x + t)]/2 at all Gauss nodes of equal panels [p width, (p + 1) width].

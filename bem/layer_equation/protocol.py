@@ -10,6 +10,7 @@ replace the rest.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
 from typing import TYPE_CHECKING, Protocol, Self, runtime_checkable
 
@@ -119,6 +120,19 @@ class FlatPunchSolution(Protocol):
     def error_steepness(self, ratio: FloatArray) -> FloatArray:
         """How fast relative errors change with the ratio at most, as a share of their bounds; inf where not known."""
         return np.full(np.shape(ratio), inf)
+
+    def sketch(
+        self, load: Callable[[FloatArray], FloatArray], ratio: float
+    ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
+        """Ratios up to about the given one, the MDR profile of a load there, roughly, and k_N/E* in thicknesses.
+
+        None where it would take as long as the profile itself.
+
+        Args:
+            load: g_hs of positions x/h.
+            ratio: a/h.
+        """
+        return None
 
     @property
     def nodes(self) -> int:

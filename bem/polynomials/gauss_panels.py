@@ -37,9 +37,9 @@ def lagrange_matrix(count: int, points: FloatArray) -> FloatArray:
     distance = points[..., None] - nodes
     # At a point that is a node its own term dominates.
     distance[distance == 0] = np.finfo(float).tiny
-    terms = _barycentric_weights(count) / distance
-    matrix: FloatArray = terms / terms.sum(axis=-1, keepdims=True)
-    return matrix
+    terms: FloatArray = np.divide(_barycentric_weights(count), distance, out=distance)
+    terms /= terms.sum(axis=-1, keepdims=True)
+    return terms
 
 
 @cache

@@ -19,6 +19,8 @@ from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, part
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
+# Pieces are split until a function's last Chebyshev coefficients are below this share of the largest; chosen.
+RESOLVED = 1e-13
 # Times that pieces may be split, more than halving a piece down to rounding takes.
 MAX_SPLITS = 60
 EPS, TINY = float(np.finfo(float).eps), float(np.finfo(float).tiny)
@@ -172,17 +174,17 @@ class MappedFunction:
         partial = stretch * np.sum(inside * inner**exponent * np.multiply.outer(u, omega), axis=2)
         return MappedFunction(grid, full[:, None] + partial, self.lead + float(grid.power[0]))
 
-    def within_nodes(self) -> FloatArray:
-        """Values on unmapped pieces at shares tau_i tau_j of the width, shape (q, m, m), by the pieces' polynomials."""
-        u = gauss_nodes(self.grid.count)[0]
-        inside = (partial_panel_interpolation(self.grid.count) @ self._regular[:, None, :, None])[..., 0]
-        inside[0] *= np.multiply.outer(u, u) ** self.lead
+    def within_nodes(self, pieces: NDArray[np.intp] | None = None) -> FloatArray:
+        """Values at u = tau_i tau_j on all or some pieces, shape (q, m, m), by their polynomials."""
+        u, own = gauss_nodes(self.grid.count)[0], np.arange(len(self.grid.left)) if pieces is None else pieces
+        inside = (partial_panel_interpolation(self.grid.count) @ self._regular[own, None, :, None])[..., 0]
+        inside[own == 0] *= np.multiply.outer(u, u) ** self.lead
         return np.asarray(inside)
 
     def left_out(self, d: FloatArray) -> FloatArray:
         """Size of what the polynomials leave out at points d, as the decay of all their coefficients tells."""
         piece, u = self.grid.locate(d)
-        beyond = orders_beyond(self.coefficients)[piece] * between_nodes(self.grid.count, 2 * u - 1)
+        beyond = self._all_beyond[piece] * between_nodes(self.grid.count, 2 * u - 1)
         return np.asarray(beyond * self._factor(piece, u))
 
     def truncation(self) -> FloatArray:
@@ -203,6 +205,11 @@ class MappedFunction:
             own * self._factor(piece, u), values, out=np.zeros_like(values), where=values > 0
         )
         return relative
+
+    @cached_property
+    def _all_beyond(self) -> FloatArray:
+        """Coefficients left out, as all those that are known tell."""
+        return orders_beyond(self.coefficients)
 
     @cached_property
     def _beyond(self) -> FloatArray:
@@ -259,11 +266,11 @@ def resolve(
     grid: MappedGrid,
     lead: float,
     *,
-    tolerance: float,
+    tolerance: Callable[[], float],
     scale: float,
     far: float,
 ) -> MappedFunction:
-    """Split pieces until the function's last coefficients fall below the tolerance.
+    """Split pieces until the function's last coefficients fall below `RESOLVED` or the tolerance, whichever is more.
 
     Towards a mapped singularity pieces may become as small as they need; elsewhere a piece below a thousandth of its
     distance from the start shows noise, not structure, and the tail that is left goes into the error estimate.
@@ -275,7 +282,9 @@ def resolve(
         resolved = MappedFunction(grid, function(grid.nodes), lead)
         right = grid.left + grid.width
         smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, 0.1 * (far - right))
-        coarse = (resolved.truncation() > tolerance) & (grid.width > smallest)
+        coarse = (resolved.truncation() > RESOLVED) & (grid.width > smallest)
+        if coarse.any():
+            coarse &= resolved.truncation() > tolerance()
         coarse |= (grid.power > 1) & (grid.width > scale * 4.0 ** (1 - grid.power))
         if not coarse.any():
             break

@@ -128,11 +128,12 @@ def peak_memory_bytes() -> int:
 
 
 def _own_peak() -> int:
-    status = Path("/proc/self/status")
     # On Linux `getrusage` also remembers the program that started this one, so the kernel's own file is read.
-    if status.exists():
-        return 1024 * int(status.read_text(encoding="ascii").split("VmHWM:")[1].split()[0])
-    return _in_bytes(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
+    try:
+        with Path("/proc/self/status").open("rb", buffering=0) as status:
+            return 1024 * int(status.read().split(b"VmHWM:")[1].split(maxsplit=1)[0])
+    except FileNotFoundError:
+        return _in_bytes(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss)
 
 
 def _in_bytes(peak: int) -> int:

@@ -306,3 +306,39 @@ def test_a_contact_takes_few_filters(monkeypatch, prescribed, most):
     monkeypatch.setattr(QuarterTransform, "filter", counted)
     solve(PARABOLOID, prescribed, points=256)
     assert len(filters) <= most
+
+
+@pytest.mark.parametrize(
+    ("layer", "flat", "prescribed"),
+    [
+        (Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.0), 0.7155, IndentationDepths),
+        (Layer(thickness=0.4164, youngs_modulus=1.0, poissons_ratio=0.0, support="unbonded"), 0.793, NormalForces),
+        (Layer(thickness=1.187, youngs_modulus=1.0, poissons_ratio=0.5, support="bonded"), 0.5812, NormalForces),
+    ],
+)
+def test_the_step_of_slopes_leaves_no_error_of_its_own_on_fine_grids(layer, flat, prescribed):
+    """Radii were 1.8e-5 to 2.3e-5 off on 512 cells, where 1.5e-5 to 1.8e-5 was stated."""
+    indenter = TruncatedCone(flat_radius=flat, slope=0.1)
+    exact = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([1.0])))
+    values = exact.indentation_depth if prescribed is IndentationDepths else exact.normal_force
+    path = solve(indenter, prescribed(values), layer, points=512)
+    for name in ("contact_radius", "contact_stiffness"):
+        error = float(np.abs(getattr(path, name) / getattr(exact, name) - 1.0)[0])
+        assert error <= path.error_estimate[name][0]
+        assert error < 1.5e-5
+
+
+@pytest.mark.parametrize("indenter", [PARABOLOID, CONE], ids=["paraboloid", "truncated cone"])
+@pytest.mark.parametrize("prescribed", [ContactRadii, IndentationDepths, NormalForces])
+@pytest.mark.parametrize("layer", [HALF_SPACE, LAYER], ids=["half-space", "layer"])
+def test_the_displacement_states_an_error_that_covers_it_inside_and_beside(layer, indenter, prescribed):
+    exact = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([1e-3])))
+    known = {ContactRadii: "contact_radius", IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
+    path = solve(indenter, prescribed(getattr(exact, known[prescribed])), layer)
+    radius = np.concatenate([np.linspace(0.05, 1.0, 10), np.linspace(1.01, 3.0, 40)]) * 1e-3
+    apart = np.abs(path.surface_displacement(radius) - exact.surface_displacement(radius))
+    error, stated = (
+        float(apart.max() / exact.indentation_depth[0]),
+        float(path.error_estimate["surface_displacement"][0]),
+    )
+    assert error <= stated <= 30.0 * error

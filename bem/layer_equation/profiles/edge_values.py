@@ -45,9 +45,11 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     # These are right as they stand where a piece fills its panel.
     values = factor.edge_values(averages + inherited)[panel]
     polynomial = factor.edge_values(inherited)
-    for piece in np.flatnonzero(~whole):
+    cut = np.flatnonzero(~whole)
+    for piece, within in zip(cut, load.within_nodes(cut), strict=True):
         smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
-        values[piece] = load.node_values[piece] + smooth + _own_integral(factor, load, panel, position, piece)
+        own = _own_integral(factor, load, panel, position, piece, within=within)
+        values[piece] = load.node_values[piece] + smooth + own
     return values
 
 
@@ -92,9 +94,18 @@ def panel_averages(
 
 
 def _own_integral(
-    factor: VolterraFactor, load: MappedFunction, panel: NDArray[np.intp], position: FloatArray, piece: np.intp
+    factor: VolterraFactor,
+    load: MappedFunction,
+    panel: NDArray[np.intp],
+    position: FloatArray,
+    piece: np.intp,
+    *,
+    within: FloatArray,
 ) -> FloatArray:
-    """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x."""
+    """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x.
+
+    `within` are the values of W there at u = tau_i tau_j.
+    """
     grid, own = load.grid, panel[piece]
     before = np.flatnonzero(panel[:piece] == own)
     points = np.broadcast_to(position[before].ravel(), (grid.count, before.size * grid.count))
@@ -108,5 +119,5 @@ def _own_integral(
     points = origin + stretch * inner ** grid.power[piece]
     weights = grid.width[piece] * grid.power[piece] * inner ** (grid.power[piece] - 1) * np.multiply.outer(u, omega)
     G = factor.resolvent_at(own, position[piece], np.maximum(points, 0.0))
-    values: FloatArray = earlier + np.sum(G * weights * load.at(np.full(inner.shape, piece), inner), axis=1)
+    values: FloatArray = earlier + np.sum(G * weights * within, axis=1)
     return values
