@@ -173,8 +173,8 @@ class Fem:
         if are_many(scene):
             from fem_reference.elastic.many_loads.answer import interpolated_path  # noqa: PLC0415 - only many loads pay
 
-            radius_at, solve = partial(self._radius_of_load, scene, log=log), self._solver(scene, log)
-            path = interpolated_path(scene, radius_at, solve, accuracy=self.accuracy, settings=asdict(self), log=log)
+            found, solve = partial(self._found_load, scene, log=log), self._solver(scene, log)
+            path = interpolated_path(scene, found, solve, accuracy=self.accuracy, settings=asdict(self), log=log)
             if path is not None:
                 return path
         equilibria = self._equilibria(scene, log)
@@ -266,24 +266,11 @@ class Fem:
         return self._to_accuracy(attempt, lambda state: state.error)
 
     def _found_load(self, scene: Scene, target: float, log: StageLog) -> Load:
+        """A depth [m] or a force / E* [m^2] with the contact radius near which it is carried."""
         from fem_reference.elastic.at_load import found_load  # noqa: PLC0415 - only scenes that search pay for it
+        from fem_reference.elastic.contact_search import searched_radius  # noqa: PLC0415
 
-        return found_load(scene, target, self._searched_radius(scene, target, log), log)
-
-    def _radius_of_load(self, scene: Scene, target: float, log: StageLog) -> float:
-        """Contact radius [m]; a strip does not tell how far it is from a flat end, and coarse solutions do."""
-        if scene.indenter.flat_radius:
-            return self._found_load(scene, target, log).radius
-        return self._searched_radius(scene, target, log)
-
-    def _searched_radius(self, scene: Scene, target: float, log: StageLog) -> float:
-        """Contact radius [m] of a load by the active set, to some hundredths of its cells."""
-        from fem_reference.elastic.contact_search import find_contact, find_disc  # noqa: PLC0415 - only scenes that search
-
-        is_disc = scene.layer.is_uniform and scene.indenter.is_convex
-        find = find_disc if is_disc else partial(find_contact, settings=self.discretisation)
-        found = find(scene, target, backend=self.solver, log=log)
-        return found.contact_radius * found.radius
+        return found_load(scene, target, searched_radius(scene, target, self.discretisation, self.solver, log), log)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.

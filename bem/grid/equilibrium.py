@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import ceil, exp, log, log2
-from typing import Final, Literal
+from math import ceil, copysign, exp, log, log2
+from typing import Final, Literal, NamedTuple
 
 import numpy as np
 
@@ -77,6 +77,13 @@ class Beside:
         return Beside(prolonged(self.less), prolonged(self.more))
 
 
+class SlopeExcess(NamedTuple):
+    """Relative error of a slope by its step: what is taken off it, and how much may be left."""
+
+    taken: float = 0.0
+    left: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class IndenterOnGrid:
     """An indenter above a layer on one grid.
@@ -130,12 +137,16 @@ class IndenterOnGrid:
         less, more = cells * float(beside.less.sum()), cells * float(beside.more.sum())
         return slope(state.indentation_depth, self.force(state), less, more, step)
 
-    def slope_excess(self, state: GridSolution, near: Beside) -> float:
-        """Relative error of the slope by its step, which goes with its square, from a step `WIDER` times as far."""
+    def slope_excess(self, state: GridSolution, near: Beside) -> SlopeExcess:
+        """Of the slope by its step, which goes with its square, from a step `WIDER` times as far."""
         p = state.pressure
         start = Beside(*(np.maximum(p + WIDER * (other - p), 0.0) for other in (near.less, near.more)))
         far = self.beside(state, start, WIDER * STEP)
-        return (self.stiffness(state, far, WIDER * STEP) / self.stiffness(state, near) - 1.0) / (WIDER**2 - 1.0)
+        told = (self.stiffness(state, far, WIDER * STEP) / self.stiffness(state, near) - 1.0) / (WIDER**2 - 1.0)
+        noise = DIRECT.excess_noise * (self.grid.cell_size / area_radius(p, self.grid.cell_size)) ** 3
+        # What the cells may have made of it is left in, and counts as an error.
+        taken = copysign(max(abs(told) - noise / (WIDER**2 - 1.0), 0.0), told)
+        return SlopeExcess(taken, DIRECT.excess_share * abs(taken) + abs(told - taken))
 
     def _counted(self, answer: GridSolution) -> GridSolution:
         self.log.count("iterations", answer.iterations)
@@ -213,7 +224,7 @@ class GridContactSearch:
         beside: Beside | None = None
         known: StiffnessNearby | None = None
         states: list[CircularContact] = []
-        box, excess = radius, 0.0
+        box, excess = radius, SlopeExcess()
         for cells in grid_sequence(points):
             on_grid = self._on_grid(box, cells)
             with self.log.stage("contact"):
@@ -226,10 +237,10 @@ class GridContactSearch:
                 beside = on_grid.beside(answer, beside)
                 if cells == points // 2:
                     excess = on_grid.slope_excess(answer, beside)
-                stiffness = on_grid.stiffness(answer, beside) / (1.0 + excess)
+                stiffness = on_grid.stiffness(answer, beside) / (1.0 + excess.taken)
                 beside = beside.prolonged()
                 radius, known = self._radius(stiffness, radius, cells, known)
-            states.append(self._state(on_grid, answer, radius, stiffness, excess))
+            states.append(self._state(on_grid, answer, radius, stiffness, excess.left))
         return states[1], states[0]
 
     def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[CircularContact, CircularContact]:
@@ -238,19 +249,20 @@ class GridContactSearch:
             stiffness = contact_stiffness(self.layer, radius, self._punch_cells(points, radius))
         with self.log.stage("first_guess"):
             guess, exponent = self._coarse_root(FirstGuess.stiffness, stiffness, self._depth_scale(radius))
-        depth, start, beside, excess = guess.answer.indentation_depth, None, None, 0.0
+        depth, start, beside, excess = guess.answer.indentation_depth, None, None, SlopeExcess()
         states: list[CircularContact] = []
         for cells in grid_sequence(points):
             on_grid = self._on_grid(radius, cells)
             with self.log.stage("contact"):
                 answer, beside, exponent = self._as_stiff(
-                    on_grid, stiffness * (1.0 + excess), on_grid.at_depth(depth, start), beside, exponent
+                    on_grid, stiffness * (1.0 + excess.taken), on_grid.at_depth(depth, start), beside, exponent
                 )
                 if cells == points // 2:
                     excess = on_grid.slope_excess(answer, on_grid.beside(answer, beside))
-                    answer = on_grid.at_depth(answer.indentation_depth * (1.0 + excess) ** exponent, answer.pressure)
+                    deeper = answer.indentation_depth * (1.0 + excess.taken) ** exponent
+                    answer = on_grid.at_depth(deeper, answer.pressure)
             depth, start, beside = answer.indentation_depth, prolonged(answer.pressure), beside.prolonged()
-            states.append(self._state(on_grid, answer, radius, stiffness, excess))
+            states.append(self._state(on_grid, answer, radius, stiffness, excess.left))
         with self.log.stage("contact_stiffness"):
             coarse = contact_stiffness(self.layer, radius, self._punch_cells(points, radius) // 2)
         return states[-1], replace(states[-2], contact_stiffness=coarse)
@@ -332,7 +344,7 @@ class GridContactSearch:
         scatter = (
             DIRECT.scatter(on_grid.grid.cell_size / radius) * radius
             + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.surface.thickness) ** 2
-            + DIRECT.excess_share * abs(excess) * radius
+            + excess * radius
         )
         exponent = stiffness_exponent(radius / self.layer.thickness)
         return CircularContact(on_grid.grid, answer, radius, scatter, on_grid.force(answer), stiffness, exponent)

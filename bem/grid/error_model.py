@@ -45,6 +45,9 @@ class DirectContactCoefficients:
     # Share of what is taken off the slope for its step that counts as an error of the radius: the next power of both
     # steps is 17 times 0.03 squared, 1.5 %, of it for every unit by which that varies faster; chosen.
     excess_share: float = 0.1
+    # Times (s/a)^3 of the grid where that is measured: what its cells may make of a slope. Under r^4.7 and r^5 that was
+    # 62 on 64, 128 and 256 cells (seed 9, 2026-11-22); the rest is a margin.
+    excess_noise: float = 90.0
     # Times (s/a) (s/h)^2, for layers that are few cells thick. At h = s, 0.7 of it was needed with nu = 1/2 and 0.4
     # with nu = 0.3.
     thin_scatter: float = 0.05

@@ -11,9 +11,6 @@ from contact.answer.one_thread import one_thread
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray
 
-# Loaded with this module, before anything is solved: the BLAS libraries of a process are then looked up once
-# (`contact.answer.one_thread`).
-_LAPACK = lapack()
 # Side of the squares that a matrix is mirrored by: two of them take 64 kB; chosen.
 _SQUARE = 64
 # Largest section of a factor that is copied for LAPACK, 8 MB; larger ones are solved in blocks of this size. Chosen.
@@ -38,7 +35,7 @@ def equation_factor(kernel: FloatArray, root: FloatArray, ratio: float) -> Float
     with one_thread:
         # LAPACK counts in columns: what lies row by row it would copy first.
         _mirror(kernel)
-        lower, failed = _LAPACK.dpotrf(kernel.T, lower=True, overwrite_a=True, clean=True)
+        lower, failed = lapack().dpotrf(kernel.T, lower=True, overwrite_a=True, clean=True)
     if failed:
         message = f"the layer's equation up to a/h = {ratio:g} is singular to double precision; ask for a smaller a/h"
         raise NotConvergedError(message)
@@ -67,7 +64,7 @@ def solve_lower(lower: FloatArray, right: FloatArray, *, transposed: bool = Fals
     # LAPACK counts in columns: a matrix that lies in memory row by row is its own transpose there.
     by_columns = lower.flags.f_contiguous
     with one_thread:
-        solution, failed = _LAPACK.dtrtrs(
+        solution, failed = lapack().dtrtrs(
             lower if by_columns else lower.T, right, lower=by_columns, trans=transposed == by_columns
         )
     if failed:
@@ -95,7 +92,7 @@ def positive_factor(matrix: FloatArray) -> FloatArray:
     Raises:
         numpy.linalg.LinAlgError: If it is not positive definite in double precision.
     """
-    factor, failed = _LAPACK.dpotrf(matrix, lower=True, clean=False)
+    factor, failed = lapack().dpotrf(matrix, lower=True, clean=False)
     if failed:
         raise np.linalg.LinAlgError(f"the leading minor of order {failed} is not positive definite")
     return np.asarray(factor)
@@ -103,7 +100,7 @@ def positive_factor(matrix: FloatArray) -> FloatArray:
 
 def solve_factored(factor: FloatArray, loads: FloatArray) -> FloatArray:
     """Solution of A x = b from the lower Cholesky factor of A."""
-    return np.asarray(_LAPACK.dpotrs(factor, loads, lower=True)[0])
+    return np.asarray(lapack().dpotrs(factor, loads, lower=True)[0])
 
 
 def solve_positive(matrix: FloatArray, loads: FloatArray) -> FloatArray:

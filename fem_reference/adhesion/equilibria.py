@@ -24,15 +24,9 @@ from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import errors_along
 from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus
+from fem_reference.elastic.beside_contact import BESIDE_ROOT, moved_beside, pressed_punch_error, root_at_edge
 from fem_reference.elastic.error_estimate import ContactWithErrors, relative_size
-from fem_reference.elastic.path import (
-    BESIDE_ROOT,
-    ContactSolver,
-    FemEquilibrium,
-    moved_beside,
-    pressed_punch_error,
-    root_at_edge,
-)
+from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 
 # Chebyshev points of a piece: the first number that meets the accuracy is taken.

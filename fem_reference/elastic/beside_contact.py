@@ -1,4 +1,7 @@
-"""Refusal of contacts that are no single circle: pulled somewhere inside, or touched by the indenter beside it."""
+"""The surface beside a contact: how far it may be off, and contacts refused that are no single circle.
+
+Those are pulled somewhere inside, or touched by the indenter beside the circle.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +14,7 @@ from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from contact.records.validation import FloatArray
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
+from fem_reference.error_model import INSIDE
 
 # Relative error of the depth in a quick solution: three times the largest difference to MDR, 6e-5, on 16 random tables
 # (seed 2, 2026-11-22).
@@ -18,6 +22,10 @@ QUICK_ERROR = 2e-4
 # The finer of two degrees errs by at most this share of their difference, where a degree more takes two thirds of an
 # error away; derived.
 FINE_SHARE = 0.5
+# Radii over the contact's at which displacements of two degrees are compared.
+BESIDE = 1.0 + 2.0 ** np.arange(-6.0, 3.0)
+# The same beside an edge where the surface rises like a root; nearer ones lie in the cell that `root_at_edge` is for.
+BESIDE_ROOT = 1.0 + 2.0 ** np.arange(-16.0, 3.0)
 
 
 def refuse_pulled_contacts(
@@ -97,3 +105,31 @@ def _circle(contact: PrescribedContact, radius: float, depth: float, error: floa
 
     tolerance = error * max(abs(depth), contact.smooth_depth) + max(depth - contact.smooth_depth, 0.0)
     return Circle(radius, radius * depth, displacement, radius * tolerance)
+
+
+def moved_beside(
+    contact: ContactWithErrors, depth: Callable[[PrescribedContact], float], points: FloatArray = BESIDE
+) -> float:
+    """Error of the surface beside the contact by interpolation, over the depth / a that each degree has.
+
+    Displacements at points err by the same share of their changes on the surface as inside; that of the depth is among
+    them.  A flat punch has no depth of smooth contact: nothing is stated then, since that state is not the answer.
+    """
+    over = abs(depth(contact.answer))
+    moved = contact.changes_of(lambda level: level.surface_displacement(points, depth(level)))
+    return float(INSIDE.share_of_change[contact.settings.order] * moved.max() / over) if over > 0.0 else 0.0
+
+
+def root_at_edge(contact: ContactWithErrors, shift: float) -> float:
+    """Error of the surface close to a flat punch's edge, over its depth: that of a contact smaller by a relative shift.
+
+    There the surface follows ``1 - 2 / pi phi sqrt(2 (r - a) / a)``, phi^2 = k_N' / 2 the release rate over that of a
+    half-space.
+    """
+    return float(2 / np.pi * np.sqrt(contact.answer.stiffness_slope * shift))
+
+
+def pressed_punch_error(contact: ContactWithErrors) -> float:
+    """Error of the surface beside a flat punch over its depth: one solution, scaled."""
+    by_degree = moved_beside(contact, lambda _: 1.0, BESIDE_ROOT)
+    return contact.coarse_edge_error["stiffness"] + by_degree + root_at_edge(contact, contact.edge_shift)

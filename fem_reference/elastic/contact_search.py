@@ -185,10 +185,17 @@ def find_contact(
     raise NotConvergedError("no strip of the surface fits the contact", {"strip_radius": radius})
 
 
-def find_disc(scene: Scene, target: float, *, backend: str, log: StageLog) -> FoundContact:
-    """`find_contact` where the contact is a disc for sure: the radius alone is sought, on a coarse strip."""
-    settings = Discretisation(order=3, truncation=DISC_TRUNCATION, half_space_thickness=1 / DISC_TRUNCATION)
-    return find_contact(scene, target, settings, backend, log, cells=DISC_CELLS)
+def searched_radius(scene: Scene, target: float, settings: Discretisation, backend: str, log: StageLog) -> float:
+    """Contact radius [m] of a load by the active set, to some hundredths of its cells; arguments of `find_contact`.
+
+    Where the contact is a disc for sure its radius alone is sought, on a coarse strip.
+    """
+    is_disc = scene.layer.is_uniform and scene.indenter.is_convex
+    if is_disc:
+        settings = Discretisation(order=3, truncation=DISC_TRUNCATION, half_space_thickness=1 / DISC_TRUNCATION)
+    cells = DISC_CELLS if is_disc else STRIP_CELLS
+    found = find_contact(scene, target, settings, backend, log, cells=cells)
+    return found.contact_radius * found.radius
 
 
 def _first_radius(indenter: Profile, target: float, by_depth: bool) -> float:

@@ -12,8 +12,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact.records.validation import FloatArray
+from fem_reference.elastic.beside_contact import moved_beside, root_at_edge
 from fem_reference.elastic.error_estimate import ContactWithErrors, pressure_difference
-from fem_reference.elastic.path import FemEquilibrium, moved_beside, root_at_edge
+from fem_reference.elastic.path import FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact
 from fem_reference.error_model import AT_LOAD
 

@@ -5,19 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from contact import ContactPath, FlatPunch, IndentationDepths, InvalidInput, NormalForces, Scene
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
+from fem_reference.elastic.beside_contact import moved_beside, pressed_punch_error, root_at_edge
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.prescribed_radius import PrescribedContact
-from fem_reference.error_model import INSIDE
 
-# Radii over the contact's at which displacements of two degrees are compared.
-BESIDE = 1.0 + 2.0 ** np.arange(-6.0, 3.0)
-# The same beside an edge where the surface rises like a root; nearer ones lie in the cell that `root_at_edge` is for.
-BESIDE_ROOT = 1.0 + 2.0 ** np.arange(-16.0, 3.0)
 # Solves the contact of a given radius [m].
 ContactSolver = Callable[[float], ContactWithErrors]
 
@@ -107,28 +101,6 @@ def smooth_equilibrium(contact: ContactWithErrors) -> FemEquilibrium:
     )
 
 
-def moved_beside(
-    contact: ContactWithErrors, depth: Callable[[PrescribedContact], float], points: FloatArray = BESIDE
-) -> float:
-    """Error of the surface beside the contact by interpolation, over the depth / a that each degree has.
-
-    Displacements at points err by the same share of their changes on the surface as inside; that of the depth is among
-    them.  A flat punch has no depth of smooth contact: nothing is stated then, since that state is not the answer.
-    """
-    over = abs(depth(contact.answer))
-    moved = contact.changes_of(lambda level: level.surface_displacement(points, depth(level)))
-    return float(INSIDE.share_of_change[contact.settings.order] * moved.max() / over) if over > 0.0 else 0.0
-
-
-def root_at_edge(contact: ContactWithErrors, shift: float) -> float:
-    """Error of the surface close to a flat punch's edge, over its depth: that of a contact smaller by a relative shift.
-
-    There the surface follows ``1 - 2 / pi phi sqrt(2 (r - a) / a)``, phi^2 = k_N' / 2 the release rate over that of a
-    half-space.
-    """
-    return float(2 / np.pi * np.sqrt(contact.answer.stiffness_slope * shift))
-
-
 def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquilibrium:
     """A flat punch at depth / a; its pressure error is measured with the weight (1 - r^2/a^2), which its edge needs."""
     reported = {
@@ -140,12 +112,6 @@ def flat_punch_equilibrium(contact: ContactWithErrors, depth: float) -> FemEquil
         "surface_displacement": pressed_punch_error(contact),
     }
     return FemEquilibrium(contact=contact, depth=depth, force=contact.answer.force(depth), error=reported)
-
-
-def pressed_punch_error(contact: ContactWithErrors) -> float:
-    """Error of the surface beside a flat punch over its depth: one solution, scaled."""
-    by_degree = moved_beside(contact, lambda _: 1.0, BESIDE_ROOT)
-    return contact.coarse_edge_error["stiffness"] + by_degree + root_at_edge(contact, contact.edge_shift)
 
 
 def equilibria_at_radii(radii: FloatArray, solve: ContactSolver) -> list[FemEquilibrium]:

@@ -12,6 +12,7 @@ from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.answer import OWN_CHECKS
+from fem_reference.elastic.at_load import Load
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.elastic.many_loads.curve import LoadCurve, leja_points
 from fem_reference.elastic.many_loads.fields import FieldsOnDemand
@@ -28,7 +29,7 @@ MARGIN = 1.01
 
 def interpolated_path(
     scene: Scene,
-    radius_at: Callable[[float], float],
+    found: Callable[[float], Load],
     solve: ContactSolver,
     *,
     accuracy: float | None,
@@ -39,7 +40,7 @@ def interpolated_path(
 
     Args:
         scene: the scene.
-        radius_at: contact radius [m] of one load, a depth [m] or a force / E* [m^2], to a per cent of a - b.
+        found: finds the contact radius of one load, a depth [m] or a force / E* [m^2], to a per cent of a - b.
         solve: contact of a given radius [m].
         accuracy: relative accuracy wanted; without one, interpolation errs less than elements.
         settings: of the method, to be told in the answer.
@@ -47,7 +48,7 @@ def interpolated_path(
     """
     by_depth, modulus = isinstance(scene.loading, IndentationDepths), contact_modulus(scene.layer)
     loads = scene.loading.values / (1.0 if by_depth else modulus)  # type: ignore[attr-defined]
-    curve, errors = _curve_through(scene, loads, radius_at, solve, accuracy)
+    curve, errors = _curve_through(scene, loads, found, solve, accuracy)
     if curve is None:
         return None
     contacts = curve.contacts
@@ -73,15 +74,15 @@ def interpolated_path(
 def _curve_through(
     scene: Scene,
     loads: FloatArray,
-    radius_at: Callable[[float], float],
+    found: Callable[[float], Load],
     solve: ContactSolver,
     accuracy: float | None,
 ) -> tuple[LoadCurve | None, dict[str, FloatArray]]:
     """The curve and its errors at loads; no curve where the profile is broken or the accuracy out of reach."""
     by_depth = isinstance(scene.loading, IndentationDepths)
     flat = scene.indenter.flat_radius
-    found = [radius_at(float(end)) - flat for end in (loads.min(), loads.max())]
-    low, high = flat + found[0] / MARGIN, min(flat + found[1] * MARGIN, scene.indenter.max_radius)
+    ends = [found(float(end)).radius - flat for end in (loads.min(), loads.max())]
+    low, high = flat + ends[0] / MARGIN, min(flat + ends[1] * MARGIN, scene.indenter.max_radius)
     is_broken = any(low < r < high for r in scene.indenter.breakpoints)
     if is_broken or low <= narrowest_radius(scene.layer, scene.indenter):
         return None, {}
