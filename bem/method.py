@@ -33,6 +33,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.accuracy import FIELDS
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import refuse_touching_path
 from contact.answer.one_thread import one_thread
@@ -41,8 +42,6 @@ from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 
 PRESCRIBED: Final[dict[type, Prescribed]] = {ContactRadii: "radius", IndentationDepths: "depth", NormalForces: "force"}
-# What states an error beside the numbers of a contact.
-FIELDS: Final = ("pressure", "surface_displacement")
 # Numbers of points that are tried in turn for an accuracy.
 ACCURACY_POINTS: Final = (128, 256, 512, 1024, 2048)
 # The finest accuracy that may be asked for. On 2048 points `DIRECT.scatter` alone makes 1.4e-6 of smooth contacts, so

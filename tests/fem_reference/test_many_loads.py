@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import pickle
 from functools import cache
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -93,11 +94,10 @@ def test_few_loads_and_radii_are_solved_one_by_one():
 def given_up(asked, accuracy, solve):
     """Whether interpolation declines; radii are those of a half-space."""
 
-    def radius_at(depth):
-        return float(np.sqrt(0.01 * depth))
+    def found(depth):
+        return SimpleNamespace(radius=float(np.sqrt(0.01 * depth)))
 
-    log = StageLog()
-    return interpolated_path(asked, radius_at, solve, accuracy=accuracy, settings={}, log=log) is None
+    return interpolated_path(asked, found, solve, accuracy=accuracy, settings={}, log=StageLog()) is None
 
 
 def test_a_profile_with_breakpoints_between_the_radii_is_given_up_unsolved():
