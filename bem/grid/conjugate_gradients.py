@@ -120,6 +120,10 @@ def solve_contact(
     if load is not None:
         p = p * (load / p.sum())
     u = operator.displacement(p)
+    if start is None and depth is not None:
+        # The penetration says where a pressure is, but it is a length: of its multiples, the one of least energy.
+        share = float(np.vdot(p, depth - height)) / (float(np.vdot(p, u)) or 1.0)
+        p, u = share * p, share * u
     r_before = z_before = v = np.zeros(height.shape)
     for iteration in range(max_iterations + 1):
         delta = depth if depth is not None else _mean_depth(u + height, p)
@@ -179,7 +183,7 @@ def _without_net_force(operator: Operator, z: FloatArray, contact: BoolArray) ->
 
 
 def _first_guess(height: FloatArray, depth: float | None, load: float | None) -> FloatArray:
-    """Pressure proportional to the penetration of the undeformed surface, or uniform near the tip."""
+    """The penetration of the undeformed surface, which a pressure is proportional to, or uniform near the tip."""
     if depth is None:
         return np.where(height <= np.quantile(height, 0.05), 1.0, 0.0)
     return np.maximum(depth - height, 0.0)

@@ -73,6 +73,25 @@ def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> t
     return terms, np.array(errors)
 
 
+def force_error_at_depth(
+    system: EquivalentSystem, radius: FloatArray, depth: FloatArray, moved: FloatArray
+) -> FloatArray:
+    """Bound of the error of F [N] under a given depth, where the radius errs by so much [m], shape (n,).
+
+    F = k_N delta - P has dF/da = 2 c_N (delta - g) = -2 c_N dl at given depth, by Eqs. (4) and (6): errors of g and dl
+    count through the radius alone, and there only times dl. What is left are errors of k_N and P, those of the contact
+    without adhesion under its own depth g, and k_N once more in what adhesion adds to it, a flat punch pulled by dl.
+    """
+    relative = system.relative_errors(radius, of_springs=False)
+    stiffness, g, moment = (of(radius) for of in (system.contact_stiffness, system.mdr_profile, system.profile_moment))
+    elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - moment)
+    spread = np.divide(stiffness * g, elastic, out=np.ones_like(g), where=elastic > 0.0)
+    of_stiffness, of_profile = relative["contact_stiffness"], relative["indentation_depth"]
+    fixed = elastic * system.flat_punch.error_at_depth(of_stiffness, of_profile, spread)
+    fixed = fixed + stiffness * elongation * of_stiffness + moment * system.moment_truncation(radius)
+    return np.asarray(fixed + 2.0 * system.spring_stiffness(radius) * elongation * moved)
+
+
 @dataclass(frozen=True)
 class BranchErrors:
     """Errors of states on a branch.
@@ -90,6 +109,21 @@ class BranchErrors:
     def of_states(self, y: FloatArray, shift: FloatArray) -> FloatArray:
         """Errors of delta, F and a where y itself is uncertain by a shift, shape (3, n)."""
         return self._moved(y, shift, self._at_radius(y))
+
+    def of_given(self, quantity: int, y: FloatArray) -> FloatArray:
+        """Errors of delta, F and a of states that are looked for by their depth or force, which is exact, (3, n)."""
+        errors, depth = self.of_states(y, self.shift(quantity, y)), self.branch.values(y)[DEPTH]
+        errors[quantity] = 0.0
+        if self.system.variants:
+            return errors
+        radius = self.branch.radius(y)
+        of_force = force_error_at_depth(self.system, radius, depth, errors[RADIUS])
+        stiffness, truncation = self.system.contact_stiffness(radius), self.branch.truncation(y)
+        # The depth under a given force is the branch's, the force under a given depth is not.
+        bounds = np.stack([(of_force + truncation[FORCE]) / stiffness + truncation[DEPTH], of_force])
+        other = FORCE if quantity == DEPTH else DEPTH
+        errors[other] = np.minimum(errors[other], bounds[other])
+        return errors
 
     def _moved(self, y: FloatArray, shift: FloatArray, at_radius: FloatArray) -> FloatArray:
         """The same from the errors of delta and F at fixed radius, shape (2, n)."""

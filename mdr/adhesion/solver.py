@@ -320,9 +320,7 @@ def _errors_on_branch(
 ) -> tuple[FloatArray, FloatArray]:
     """Errors of depth, force and radius of states with a prescribed quantity, which is exact; and at their edges."""
     errors = BranchErrors(system, branch)
-    spread = errors.of_states(y, errors.shift(quantity, y))
-    spread[quantity] = 0.0
-    return spread, errors.of_states(y, np.zeros(y.shape))[DEPTH]
+    return errors.of_given(quantity, y), errors.of_states(y, np.zeros(y.shape))[DEPTH]
 
 
 def _on_punch(

@@ -236,13 +236,17 @@ def _candidates(scene: Scene, system: EquivalentSystem, value: float) -> list[fl
 
 
 def _only_valid(scene: Scene, system: EquivalentSystem, candidates: list[float], ring: SeveralContacts) -> float:
+    objection: UnsupportedSceneError = ring
     for excess in candidates:
         try:
             _refuse_invalid(scene, system, excess)
-        except UnsupportedSceneError:
+        except UnsupportedSceneError as own:
+            # A circle short of the falling stretch has its own reason, which does not depend on how far was looked.
+            if system.flat_radius + excess < ring.radius:
+                objection = own
             continue
         return excess
-    raise ring
+    raise objection
 
 
 def _refuse_invalid(scene: Scene, system: EquivalentSystem, excess: float) -> None:

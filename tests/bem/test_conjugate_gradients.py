@@ -34,6 +34,19 @@ def test_hertz_force_converges_with_second_order():
     assert errors[-1] < 1e-5
 
 
+@pytest.mark.parametrize(("length", "stress"), [(2.0**-30, 2.0**30), (2.0**20, 2.0**-10)])
+def test_other_units_change_no_digit(length, stress):
+    """The first guess was a penetration [m] for a pressure [Pa]: units decided where iterations to 1e-3 ended."""
+    s = 2.3 / 64
+    height = quadrant_radius(64, 2.3) ** 2 / 2
+    other = Layer.half_space(youngs_modulus=stress, poissons_ratio=0.0)
+    own = FreeSpaceOperator(HALF_SPACE, cell_size=s, cells=64, quarter=True)
+    there = FreeSpaceOperator(other, cell_size=length * s, cells=64, quarter=True)
+    first = solve_contact(own, height, depth=1.0, tolerance=1e-3)
+    second = solve_contact(there, length * height, depth=length, tolerance=1e-3)
+    np.testing.assert_array_equal(second.pressure / stress, first.pressure)
+
+
 def test_hertz_pressure_is_an_ellipsoid():
     answer, r, _ = hertz(128, depth=1.0)
     inside = r < 0.9
