@@ -72,7 +72,8 @@ def solve_to_accuracy(
             answer = attempt(settings)
         except NotConvergedError:
             # On coarse meshes the radius of a load beside a flat end may not settle.
-            if not left:
+            in_vain += 1
+            if not left or in_vain == IN_VAIN:
                 raise
             settings = _finer(settings, UNSETTLED)
             continue

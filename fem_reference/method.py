@@ -152,13 +152,19 @@ class Fem:
         """The answer with its error estimates.
 
         Raises:
-            UnsupportedSceneError: the scene asks for what `supports` denies, or the contact would be no single circle.
+            UnsupportedSceneError: the scene asks for what `supports` denies, the contact would be no single circle, or
+                the mesh does not fit into memory.
             NotConvergedError: a linear solve or the requested accuracy was missed.
         """
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
-        answer = self._solve(scene, StageLog())
+        try:
+            answer = self._solve(scene, StageLog())
+        except MemoryError:
+            raise UnsupportedSceneError(
+                "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
+            ) from None
         return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:

@@ -16,7 +16,7 @@ from contact import IndentationDepths, NotConvergedError, Scene, StageLog
 from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
-from fem_reference.elastic.prescribed_radius import quick_solution
+from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 
 # Largest relative load by which coarse meshes of neighbouring radii may differ.  Beside a flat end they scatter by 1e-4
 # (a/b - 1 = 3e-5, growth 0.7, 2026-11-22), more than the secants asked for; full solutions settle the rest.
@@ -34,14 +34,12 @@ class Load:
         target: a depth [m] or a force / E* [m^2].
         by_depth: which of them.
         radius: contact radius [m] by coarse solutions.
-        exponent: d ln(load) / d ln(a - flat radius) there.
     """
 
     scene: Scene
     target: float
     by_depth: bool
     radius: float
-    exponent: float
 
     def equilibrium(self, solve: ContactSolver) -> FemEquilibrium:
         """The state at the load, by full solutions.
@@ -60,7 +58,8 @@ class Load:
             if radius == narrowest and defect > 1:
                 contact = contact.narrowed(1 / defect)
                 defect = getattr(contact.answer, name) / scaled
-            corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / self.exponent)
+            exponent = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
+            corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own: the last may miss the load by what its mesh misses it by.
             if abs(defect - 1) <= max(LEFT_OVER, is_last * contact.error[name]):
                 factor = corrected / radius
@@ -84,15 +83,23 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
 
     def ratio(radius: float) -> float:
         contact = quick_solution(scene, radius, log)
-        depth, force, slope = contact.smooth_depth, contact.smooth_force, contact.smooth_depth_slope
-        # d ln(load) / d ln(a - b): the depth grows by its slope, the force by k_N times that.
-        grows = slope / depth if by_depth else contact.stiffness * slope / force
-        slopes.append(grows * (1 - flat / radius))
-        return (depth * radius if by_depth else force * radius**2) / target
+        slopes.append(grows_like(contact, flat / radius, by_depth=by_depth))
+        return (contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2) / target
 
     narrowest = narrowest_radius(scene.layer, scene.indenter)
-    radius, exponent = radius_of_load(ratio, start, flat, narrowest, first_exponent=lambda: slopes[0])
-    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, exponent=exponent)
+    radius, _ = radius_of_load(ratio, start, flat, narrowest, first_exponent=lambda: slopes[0])
+    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius)
+
+
+def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
+    """d ln(load) / d ln(a - flat) of one solution, lengths by its radius, within [0.2, 20].
+
+    The depth grows by its slope, the force by k_N times that.  Differences of neighbouring radii, each with a mesh of
+    its own, say nothing where the errors of the meshes are as large.
+    """
+    slope = contact.smooth_depth_slope
+    grows = slope / contact.smooth_depth if by_depth else contact.stiffness * slope / contact.smooth_force
+    return float(np.clip(grows * (contact.radius - flat), 0.2, 20))
 
 
 def radius_of_load(

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 from scipy import sparse
 
-from contact import InvalidInput, NotConvergedError
+from contact import (
+    FlatPunch,
+    IndentationDepths,
+    InvalidInput,
+    Layer,
+    NotConvergedError,
+    Scene,
+    UnsupportedSceneError,
+)
+from fem_reference import Fem
 from fem_reference.discrete_layer import linear_solver
 from fem_reference.discrete_layer.assembly import Space, stiffness_matrix
 from fem_reference.discrete_layer.elements import PAIRS, taylor_hood
@@ -130,3 +139,29 @@ def test_unknown_or_missing_backends_are_named(monkeypatch):
 def test_displacement_formulation_refuses_incompressibility():
     with pytest.raises(InvalidInput, match="mixed"):
         stiffness_matrix(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))
+
+
+def out_of_memory(*_arguments):
+    raise MemoryError
+
+
+@pytest.mark.parametrize(
+    ("name", "value"), [("BACKENDS", {"superlu": (out_of_memory,)}), ("physical_memory", lambda: 1e3)]
+)
+def test_a_mesh_that_does_not_fit_is_refused_in_words(monkeypatch, name, value):
+    """SuperLU raises a MemoryError without a word; where memory is overcommitted, the process ends."""
+    monkeypatch.setattr(linear_solver, name, value)
+    with pytest.raises(UnsupportedSceneError, match=r"10 unknowns needs about .* less strict accuracy"):
+        CheckedSolver(sparse.csc_array(sparse.eye_array(10)), "superlu")
+
+
+def test_no_memory_error_leaves_the_method(monkeypatch):
+    """Assembling a mesh that is too fine takes memory before it is factorised."""
+    monkeypatch.setattr(Fem, "_solve", out_of_memory)
+    scene = Scene(
+        layer=Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
+        indenter=FlatPunch(radius=1.0),
+        loading=IndentationDepths(values=[0.1]),
+    )
+    with pytest.raises(UnsupportedSceneError, match="does not fit into memory"):
+        Fem().solve(scene)

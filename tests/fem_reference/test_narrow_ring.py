@@ -6,8 +6,18 @@ import numpy as np
 import pytest
 
 from cases.measurements.campaigns.random_scenes import random_scenes
-from contact import ContactRadii, IndentationDepths, Layer, NormalForces, Scene, TruncatedCone, TruncatedParaboloid
+from contact import (
+    ContactRadii,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    Scene,
+    StageLog,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
 from fem_reference import Fem
+from fem_reference.elastic.at_load import Load
 from mdr import Mdr
 
 LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
@@ -40,6 +50,24 @@ def assert_covered(path):
 def test_any_small_load_beside_a_flat_end_is_carried(indenter, quantity, load):
     """Rings of 1e-15 to 1e-4 radii: the secants ended in meshes without area, singular masses or "does not settle"."""
     assert_covered(coarse_path(indenter, quantity, load))
+
+
+@pytest.mark.parametrize("indenter", PROFILES)
+def test_a_radius_that_is_slightly_off_settles_at_once(indenter):
+    """Slopes by secants of neighbouring meshes, 0.2 where the law says 1/2, threw the radius away from the load."""
+    scene = Scene(layer=LAYER, indenter=indenter, loading=IndentationDepths(values=[2e-5]))
+    exact, solved = Mdr().solve(scene), []
+
+    def solve(radius):
+        solved.append(radius)
+        return COARSE.solve_contact(scene, radius, StageLog())
+
+    ring = 1.02 * (exact.contact_radius[0] - 1.0)
+    state = Load(scene=scene, target=2e-5, by_depth=True, radius=1.0 + ring).equilibrium(solve)
+    assert len(solved) == 2
+    assert state.force * solved[-1] ** 2 * LAYER.contact_modulus == pytest.approx(
+        exact.normal_force[0], rel=1e-3, abs=0.0
+    )
 
 
 @pytest.mark.parametrize("indenter", [PROFILES[0], pytest.param(PROFILES[1], marks=pytest.mark.slow)])
