@@ -199,11 +199,9 @@ class Fem:
             def history(settings: Discretisation) -> HistoryPath:
                 return rubbed_history(scene, settings, asdict(self), log)
 
-            return (
-                history(self.discretisation)
-                if self.accuracy is None
-                else solve_history_to_accuracy(history, self.accuracy)
-            )
+            if self.accuracy is None:
+                return history(self.discretisation)
+            return solve_history_to_accuracy(history, self.accuracy)
         from fem_reference.elastic.friction.answers import rubbed_path  # noqa: PLC0415 - only listed effects load
 
         return self._to_accuracy(
@@ -222,9 +220,8 @@ class Fem:
     def _solve_adhered(self, scene: Scene, log: StageLog) -> ContactPath:
         from fem_reference.elastic.stick import adhered_punch as stick  # noqa: PLC0415 - only listed effects load
 
-        equilibria = stick.adhered_equilibria(
-            scene, partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)
-        )
+        solve = partial(self.solve_contact, scene, log=log, problem=stick.AdheredProblem)
+        equilibria = stick.adhered_equilibria(scene, solve)
         fields = partial(stick.AdheredFemFields, layer=scene.layer)
         return contact_path(scene, equilibria, asdict(self), log, fields=fields)
 
