@@ -99,11 +99,11 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
         size += reading if name in channels else 0.0
         size += known.everywhere * _share(fine, name)
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
+    if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
+        error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
     if "contact_time" in error and known.heights > 0.0:
         times = [getattr(each, DERIVED[1]) for each in (fine, half_cells, half_both)]
         error["contact_time"] = np.array([_smooth_end(times, known.heights) + known.everywhere])
-    if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
-        error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
     return replace(fine, error_estimate=error)
 
 
