@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
 
-from contact import HistoryPath, ImpactHistory, NotConvergedError
+from contact import HistoryPath, ImpactHistory, NotConvergedError, UnsupportedSceneError
 from contact.answer.accuracy import asked_errors
 from fem_reference.discrete_layer.settings import Discretisation
 
@@ -120,3 +121,18 @@ def solve_history_to_accuracy(attempt: Callable[[Discretisation], H], accuracy: 
             return history
         settings = replace(settings, growth=settings.growth / 2)
     raise NotConvergedError(f"accuracy {accuracy:g} was not reached in time", {"estimated_error": worst})
+
+
+@contextmanager
+def meshes_that_fit() -> Iterator[None]:
+    """Turns the end of the memory into words.
+
+    Raises:
+        UnsupportedSceneError: the memory ended.
+    """
+    try:
+        yield
+    except MemoryError:
+        raise UnsupportedSceneError(
+            "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
+        ) from None

@@ -127,6 +127,9 @@ class HistoryCoefficients:
     # Contact ends when it is half a cell wide: the contact time of a cone is of first order in the cells, so that half
     # of them change it by what it errs; up to 1.05 times as much was needed (30 impacts, seed 9001, 2026-11-22).
     first_order: float = 1.25
+    # Height at a cell over that at half a cell up to which a profile ends contact like a square or more slowly.  It is
+    # chosen, a power of 2.07: a sphere exceeds a paraboloid's four by the square of the cell over its radius.
+    squares: float = 4.2
     # Contact ends with some energy left in the last cell, which is uneven from mesh to mesh: the restitution erred by
     # up to 1.8 times what half the cells changed (69 impacts, seeds 9001 and 9002, 2026-11-22).
     uneven_end: float = 2.0

@@ -37,7 +37,7 @@ from contact import (
 from contact.answer.accuracy import told_where_less
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
-from fem_reference.adaptive import settings_for, solve_history_to_accuracy, solve_to_accuracy
+from fem_reference.adaptive import meshes_that_fit, settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
@@ -159,12 +159,8 @@ class Fem:
         support = self.supports(scene)
         if isinstance(support, Unsupported):
             raise UnsupportedSceneError(support.reason)
-        try:
+        with meshes_that_fit():
             answer = self._solve(scene, StageLog())
-        except MemoryError:
-            raise UnsupportedSceneError(
-                "the mesh does not fit into memory: ask fem for a less strict accuracy, or give it a larger growth"
-            ) from None
         return answer if self.accuracy is None else told_where_less(answer, self.accuracy, self.pressure_accuracy)
 
     def _solve(self, scene: Scene, log: StageLog) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:

@@ -18,7 +18,7 @@ from contact import (
     StageLog,
 )
 from contact.records.validation import FloatArray
-from fem_reference.discrete_layer.indenter import ScaledIndenter, shape
+from fem_reference.discrete_layer.indenter import ScaledIndenter, height, shape
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
@@ -111,7 +111,16 @@ class HistorySetup:
             exact=frozenset(name for name, is_exact in exact.items() if is_exact),
             cell=cell,
             space=IN_TIME.kinked_profile if self.scene.indenter.kinks else 1.0,
+            heights=self._heights(cell),
         )
+
+    def _heights(self, cell: float) -> float:
+        """Height at a cell [m] over that at half a cell; zero where contact does not end like that of a power."""
+        indenter = self.scene.indenter
+        damped = self._branches > 0 or self.relaxation.viscosity > 0
+        if damped or indenter.kinks or indenter.breakpoints or isinstance(indenter, FlatPunch):
+            return 0.0
+        return height(indenter, cell) / height(indenter, cell / 2)
 
     @property
     def _per_shear(self) -> float:
