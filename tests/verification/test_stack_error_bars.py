@@ -23,6 +23,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from mdr import Mdr
+from mdr.adhesion.errors import force_error_at_depth
 from mdr.springs.assembly import equivalent_system
 
 PARABOLOID = Paraboloid(radius_of_curvature=10.0)
@@ -149,3 +150,14 @@ def test_weak_adhesion_hardly_changes_stated_errors(given, told):
             stated.append(coarse.solve(scene.replace(loading=given(load), effects=effects)).error_estimate[told][0])
         growth.append(stated[1] / stated[0])
     assert np.median(growth) <= 1.3
+
+
+def test_under_a_given_depth_an_error_of_the_radius_moves_the_force_through_the_edge_alone():
+    """What is stated for it is |dF/da| at that depth, here by differences of the force itself."""
+    layer = LayerStack(sublayers=(Sublayer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4),))
+    system = equivalent_system(layer, PARABOLOID, 2.0, Mdr().flat_punch)
+    radius, step = np.array([0.3, 0.8, 1.5]), 1e-5
+    depth = 0.7 * system.mdr_profile(radius)
+    slope = (system.force(radius + step, depth) - system.force(radius - step, depth)) / (2.0 * step)
+    without, moved = (force_error_at_depth(system, radius, depth, np.full(3, by)) for by in (0.0, 1e-6))
+    np.testing.assert_allclose(moved - without, np.abs(slope) * 1e-6, rtol=1e-5)
