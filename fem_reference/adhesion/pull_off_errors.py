@@ -123,9 +123,11 @@ def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
     here, answer = np.array([radius]), contact.answer
 
     def elongation(level: PrescribedContact) -> float:
+        """What adhesion takes away from the depth, over the radius."""
         return float(np.sqrt(4 * np.pi * branch.work / radius / level.stiffness_slope))
 
     def terms(level: PrescribedContact) -> FloatArray:
+        """The parts of the depth or the force, each with one factor of this degree and the others of the answer."""
         if row == 0:
             return np.array([level.smooth_depth, elongation(level)])
         pulled = level.stiffness * elongation(answer), answer.stiffness * elongation(level)

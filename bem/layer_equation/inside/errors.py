@@ -22,8 +22,9 @@ _QUADRATURE = 8e-15
 # Roundings of integrals over the contact, which count against the mean pressure where stresses are small, and against
 # the depth of a half-space where a thin layer yields less: 2.2 at worst (seeds 901 and 912, 2026-11-22), a third more.
 _ROUNDINGS = 3.0
-# So many more of stresses for each thickness that the contact is wide, since waves round their arguments: without them
-# the bar of a gradient beside a flat punch of a/h = 9.9 was just enough (scene 117 of seed 19302, 2026-11-22).
+# Added to `_ROUNDINGS` times a/h, since the argument of a wave as short as the layer is thick is rounded by eps a/h.
+# Without it the bar of a gradient beside a flat punch of a/h = 9.9 was just enough (scene 117 of seed 19302,
+# 2026-11-22).
 _OF_WAVES = 0.5
 # A derivative along r or z errs by so many times the error over the smaller of contact radius and thickness; chosen,
 # 2.4 is needed (300 contacts, seeds 9 and 41, with 8, 12 and 24 nodes, campaign of the fields inside, 2026-11-22).

@@ -22,8 +22,8 @@ from fem_reference.elastic.path import ContactSolver
 FIRST, STEP = 5, 2
 # Share of an accuracy that interpolation may cost; chosen.
 SHARE = 0.5
-# Solved radii go beyond the searched ones of the first and last load by this factor of a - b.  Chosen: a strip tells
-# its radius to some hundredths of a cell, of which the contact has thirty at least.
+# Solved radii go beyond those found for the first and last load by this factor of a - b.  Chosen: coarse solutions find
+# them to 1e-3, and all loads have to lie between solved radii.
 MARGIN = 1.01
 
 
