@@ -41,6 +41,8 @@ def _error(system: EquivalentSystem, scene: Scene, radius: float, depth: float, 
     What no coarser table shows of q, Markov's inequality magnifies in the slope of a profile's polynomials.
     """
     rings = radius * np.sqrt((np.arange(RINGS) + 0.5) / RINGS)
+    # The pressure is infinite at a kink, which a ring may meet.
+    rings = rings[~np.isin(rings, scene.indenter.kinks)]
     least = max(radius - system.flat_radius, LEAST_EXCESS * radius)
 
     def pressure(table: FlatPunchSolution, way: float) -> FloatArray:

@@ -157,6 +157,15 @@ def assert_mdr_agrees(support, nu, radii, cells):
             assert np.all(error <= published.error_estimate[name] + 1e-12), name
 
 
+def test_contacts_at_round_multiples_of_a_flat_radius():
+    """Points that estimates choose may meet the kink, where the pressure is infinite."""
+    radii = 0.5e-3 * np.unique([p / q for p in range(2, 6) for q in range(1, p)])
+    scene = Scene(layer=layer("bonded", 0.3), indenter=CONE, loading=ContactRadii(radii))
+    path, exact = Mdr(flat_punch=FftTable(cells=64)).solve(scene), Mdr().solve(scene)
+    assert np.all(path.uncertainty("pressure") > 0.0)
+    assert np.all(np.abs(path.normal_force - exact.normal_force) <= path.uncertainty("normal_force"))
+
+
 @pytest.mark.parametrize("indenter", [PARABOLOID, CONE], ids=["paraboloid", "truncated cone"])
 @pytest.mark.parametrize("ratio", [1.0, 2.0])
 def test_direct_contact_at_512(indenter, ratio):
