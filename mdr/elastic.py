@@ -240,7 +240,8 @@ def _equilibria(
     excess, depth = _excess_and_depth(system, scene, values, chosen)
     radius = values if isinstance(scene.loading, ContactRadii) else system.flat_radius + excess
     stiffness = system.contact_stiffness(radius)
-    force = system.force(radius, depth, stiffness)
+    # Where two pieces meet polynomials leap, and no radius may have the prescribed force to the last digit.
+    force = values if isinstance(scene.loading, NormalForces) else system.force(radius, depth, stiffness)
     return {"excess": excess} | dict(zip(ContactPath.ARRAYS, (radius, depth, force, stiffness), strict=True))
 
 
@@ -294,7 +295,7 @@ def _errors(
     of_force = stiffness + of_depth * spread + of_moment
     if given != "ContactRadii":
         at_depth = system.flat_punch.error_at_depth(stiffness, of_depth, spread) + of_moment
-        of_force, of_depth = np.minimum(of_force, at_depth), np.minimum(of_depth, at_depth / spread)
+        of_force, of_depth = np.minimum(of_force, at_depth), at_depth / spread
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)

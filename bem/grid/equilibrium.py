@@ -36,9 +36,6 @@ WIDER: Final = 4.0
 # Tolerance of the states beside a contact over the scatter that is stated for their slope: the radius then lost less
 # than a tenth of that scatter (12 contacts on 128 and 256 cells, 2026-11-22).
 BESIDE_SHARE: Final = 0.05
-# And no more than this: on 64 cells a wide step to a coarser tolerance told 2.4e-4 of a half-space's depth wrong, where
-# 2.0e-4 was stated (2026-11-22).
-COARSEST: Final = 2.5e-4
 # Contact radius over half the box, and its largest value in a coarse box, which leaves room for a deeper contact.
 FILL: Final = 0.88
 LARGEST_FILL: Final = 0.92
@@ -123,10 +120,7 @@ class IndenterOnGrid:
         """A little less deep and a little deeper than this state, from other such states or from this one."""
         depth, p = state.indentation_depth, state.pressure
         scatter = DIRECT.scatter(self.grid.cell_size / area_radius(state.pressure, self.grid.cell_size))
-        # What forces miss counts in the slope by one over the step, and by its square in what a wide step tells.
-        on_grid = replace(
-            self, tolerance=max(self.tolerance, min(BESIDE_SHARE * scatter * (step / STEP) ** 3, COARSEST))
-        )
+        on_grid = replace(self, tolerance=max(self.tolerance, BESIDE_SHARE * scatter))
         less = on_grid.at_depth(depth * exp(-step), start.less if start else p).pressure
         more = on_grid.at_depth(depth * exp(step), start.more if start else np.maximum(2.0 * p - less, 0.0))
         return Beside(less, more.pressure)

@@ -26,6 +26,7 @@ from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fourier_energy import energy_matrix, tail_left_out
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.profiles.edge_values import gain_within
 from bem.layer_equation.profiles.thin_layers import LAST_TERMS, WidePanels
 from bem.layer_equation.protocol import FITTED_SHARE, FlatPunchSolution
 from bem.layer_equation.triangular import solve_lower
@@ -199,10 +200,20 @@ class LargeRatioSolution(FlatPunchSolution):
     @cached_property
     def wide_alone(self) -> WideSolution:
         """The wide panels for all radii: seven digits, but for profiles with breakpoints anywhere."""
-        ratios = FIRST_RATIO + PANEL_WIDTH * np.linspace(0.0, 1.0, SAMPLES * PANEL_NODES)
-        springs = [solution.normalized_spring_stiffness(ratios) for solution in (self.wide, self.near)]
-        seen = float(np.max(np.abs(springs[0] / springs[1] - 1)))
-        return WideSolution(self.wide.kernel, self.wide.factor, self._lost, seen)
+        positions = np.linspace(0.0, 1.0, SAMPLES * PANEL_NODES + 1)
+        first, last = (start + PANEL_WIDTH * positions for start in (FIRST_RATIO, self.near.max_ratio - PANEL_WIDTH))
+        before, after = (self._springs_missed(ratios) for ratios in (first, last))
+        stiffness = [float(self.near.normalized_contact_stiffness(ratios[0])) for ratios in (first, last)]
+        growth = float(np.abs(np.mean(after - before))) / (2 * (stiffness[1] - stiffness[0]))
+        # Two waves of the first order that is left out, since errors vanish in between.
+        seen = _largest_nearby(before, 2 * SAMPLES)
+        return WideSolution(self.wide.kernel, self.wide.factor, self._lost, (positions, seen), growth)
+
+    def _springs_missed(self, ratio: FloatArray) -> FloatArray:
+        """What `wide` makes of c_bar, relative, where `near` reaches."""
+        return np.asarray(
+            self.wide.normalized_spring_stiffness(ratio) / self.near.normalized_spring_stiffness(ratio) - 1
+        )
 
     def _lost(self, ratio: FloatArray) -> FloatArray:
         """What `wide` makes of k_bar."""
@@ -241,11 +252,7 @@ class LargeRatioSolution(FlatPunchSolution):
         shorter = self._fitted(DEGREE - LAST_TERMS)
         last, before = self.log_stiffness - shorter, shorter - self._fitted(DEGREE - 2 * LAST_TERMS)
         share = min(1.0, FALL_SAFETY * float(np.max(np.abs(last(log_ratio))) / np.max(np.abs(before(log_ratio)))))
-        value, slope = (
-            share
-            * sliding_window_view(np.pad(np.abs(error(log_ratio)), NEARBY, mode="edge"), 2 * NEARBY + 1).max(axis=1)
-            for error in (last, last.deriv())
-        )
+        value, slope = (share * _largest_nearby(error(log_ratio), NEARBY) for error in (last, last.deriv()))
         return log_ratio, value, slope
 
     def _fitted(self, degree: int) -> Chebyshev:
@@ -278,31 +285,58 @@ class WideSolution(IntegralEquationSolution):
 
     Attributes:
         lost: Relative error of its k_bar at each ratio.
-        seen: Largest relative error of its c_bar on one panel. The kernel makes the same on every panel.
+        seen: Positions on a panel in [0, 1], and the largest relative error of c_bar about each. The kernel makes the
+            same on every panel.
+        growth: Relative error of k_bar over k_bar, besides what each panel makes.
     """
 
     lost: Callable[[FloatArray], FloatArray]
-    seen: float
+    seen: tuple[FloatArray, FloatArray]
+    growth: float
     shares: ClassVar[FactorCoefficients] = WIDE_FACTOR
 
     def ending_at(self, ratio: float) -> None:
         """None: it is judged as one with the panels it has."""
 
     def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """The kernel's share as it was seen."""
-        return super()._spring_truncation(ratio)[0], np.full(np.shape(ratio), self.seen)
+        """The kernel's share as it was seen at this place of a panel."""
+        own, _ = super()._spring_truncation(ratio)
+        return own, np.interp(self._panels.locate(ratio)[1], *self.seen)
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar."""
         return super().relative_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
-        """Bound of the relative error of c_bar."""
-        return super().spring_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+        """Bound of the relative error of c_bar, which has twice what grows with k_bar in it."""
+        return super().spring_error(ratio) + 2 * self._grown(self._covered(ratio))
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """Bound of the relative error of g."""
-        return super().profile_error(ratio) + 2 * self.lost(np.asarray(ratio, dtype=float))
+        """Bound of the relative error of g under any load."""
+        return super().profile_error(ratio) + 2 * self._grown(self._covered(ratio))
+
+    def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
+        """What the edge values of both loads have in common cancels; the rest falls with the distance from the rim.
+
+        The kernel errs like a polynomial that oscillates along the panel, so that of its error there is left what the
+        density gains in half a wave. What comes from all panels together does not fall.
+        """
+        gain = gain_within(profile, ratio - flat_radius, PANEL_WIDTH / (2 * PANEL_NODES))
+        return self._edge_error(self._covered(ratio), gain, self.shares.profile_safety * gain) + 2 * self._grown(ratio)
+
+    def kernel_errors(self, ratio: FloatArray) -> FloatArray:
+        """None: `error_of_profile` tells already what of them cancels in g."""
+        return np.zeros((2, *np.shape(ratio)))
+
+    def _grown(self, ratio: FloatArray) -> FloatArray:
+        """Relative error of k_bar by small errors of the factor on all panels, which grows with the condition."""
+        return np.asarray(self.growth * self.normalized_contact_stiffness(ratio))
+
+
+def _largest_nearby(error: FloatArray, samples: int) -> FloatArray:
+    """The largest absolute value within so many samples on either side."""
+    padded = np.pad(np.abs(error), samples, mode="edge")
+    return np.asarray(sliding_window_view(padded, 2 * samples + 1).max(axis=1))
 
 
 def _wide_punches(

@@ -183,6 +183,9 @@ class MappedFunction:
 
     def left_out(self, d: FloatArray) -> FloatArray:
         """Size of what the polynomials leave out at points d, as the decay of all their coefficients tells."""
+        return self._on_both_sides(self._left_out, d)
+
+    def _left_out(self, d: FloatArray) -> FloatArray:
         piece, u = self.grid.locate(d)
         beyond = self._all_beyond[piece] * between_nodes(self.grid.count, 2 * u - 1)
         return np.asarray(beyond * self._factor(piece, u))
@@ -198,6 +201,18 @@ class MappedFunction:
 
         Values at the nodes are taken as right: what a load's polynomials leave out is orthogonal to the kernel's.
         """
+        return self._on_both_sides(self._relative_error, d)
+
+    def _on_both_sides(self, error: Callable[[FloatArray], FloatArray], d: FloatArray) -> FloatArray:
+        """An error at points d; where two pieces meet that of both, since rounding decides which of them answers."""
+        found, left = error(d), self.grid.left
+        low, high = d * (1.0 - GAP), d * (1.0 + GAP)
+        between = left.searchsorted(low) != left.searchsorted(high)
+        if not np.any(between):
+            return found
+        return np.where(between, np.maximum(error(low), error(high)), found)
+
+    def _relative_error(self, d: FloatArray) -> FloatArray:
         piece, u = self.grid.locate(d)
         values = np.abs(self.at(piece, u))
         own = self._beyond[piece] * between_nodes(self.grid.count, 2 * u - 1) + self._rounding[piece]

@@ -59,10 +59,12 @@ def pressure_errors(
     of_elastic = system.flat_punch.contact_pressure_error(ratio, relative["indentation_depth"]) + rounding
     of_punch = system.flat_punch.punch_pressure_error(ratio) + PRESSURE_ROUNDING
     shift = moved[chosen] / a
-    # The elastic pressure goes with the depth, the punch's with dl/a.
+    # At the same shares of the radius the elastic pressure goes with g, g/a or between, the punch's with dl/a.
     rise = np.divide(a * np.abs(system.mdr_profile_slope(a)), g, out=np.zeros_like(a), where=g > 0.0)
-    error = (of_elastic + (1.0 + rise) * shift) * elastic
-    error += ((of_punch + shift) * elongation + edge[chosen]) * punch
+    moves = np.maximum(rise, 1.0 - rise) * shift
+    parts = [of_elastic * elastic, moves * elastic, of_punch * elongation * punch, shift * elongation * punch]
+    # They oscillate along the radius with different phases, so that they add up like independent errors.
+    error = np.linalg.norm([*parts, edge[chosen] * punch], axis=0)
     return np.asarray(np.interp(np.arange(radius.size), chosen, error / whole))
 
 

@@ -8,6 +8,7 @@ from scipy.integrate import quad
 
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.any_layer import graded_one_radius
+from bem.layer_equation.any_layer.edge_systems import EdgeSystems
 from bem.layer_equation.any_layer.graded_one_radius import GradedDirectDensity
 from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
 from bem.layer_equation.any_layer.point_kernel import PointKernel
@@ -68,6 +69,24 @@ def test_the_kernel_by_another_path_and_any_split(length):
     surface = surface_kernel(EXPONENTIAL)
     s = np.geomspace(1e-9, 40.0, 40)
     np.testing.assert_allclose(SplitKernel(surface, length)(s), PointKernel.of_surface(surface)(s), rtol=0, atol=3e-13)
+
+
+@pytest.mark.parametrize("x", [0.3, 1.99, 3.9])
+def test_what_is_left_of_the_resolvent_starts_from_an_exact_integral(x):
+    """Of two kernels' product, by adaptive quadrature. The layer's images are closest where x is two thicknesses."""
+    systems = EdgeSystems(PointKernel.of_surface(surface_kernel(LAYERS["softer below, elastic base"])), 12)
+    t = np.array([0.01, 0.4, 0.97]) * x
+
+    def product(s: float, at: float) -> float:
+        N = systems.kernel
+        left, right = N(np.array([abs(at - s)])) + N(np.array([at + s])), N(np.array([x - s])) + N(np.array([x + s]))
+        return float((left * right)[0]) / np.pi**2
+
+    expected = [
+        sum(quad(product, a, b, args=(at,), epsabs=1e-12, epsrel=1e-12, limit=200)[0] for a, b in ((0, at), (at, x)))
+        for at in t
+    ]
+    np.testing.assert_allclose(systems._iterated(x, t), expected, rtol=0, atol=1e-10)
 
 
 def test_the_answer_does_not_depend_on_the_split(monkeypatch):

@@ -12,6 +12,7 @@ from cases.measurements.campaigns.referee import CHEAP_RATIO, adhesive_states
 from cases.measurements.measurement import by_quantity, covered, sharpness
 from contact import (
     Adhesion,
+    Cone,
     ContactRadii,
     Detachment,
     FlatPunch,
@@ -305,3 +306,27 @@ def test_displacements_beside_an_adhering_contact_keep_their_stated_error(kind):
         error = np.abs(coarse.surface_displacement(radii, step) - exact.surface_displacement(radii, step))
         assert np.all(error <= stated[step]), (step, error, stated)
         assert stated[step] < 1e-3
+
+
+@pytest.mark.slow
+def test_errors_of_adhering_pressures_are_covered_and_told_less_loosely():
+    """Seen to fail at 20.8 in the median, as parts that oscillate each by itself were added up."""
+    rng, stated, true = np.random.default_rng(14), [], []
+    coarse, fine = build("mdr", {"nodes": 12}), build("mdr", {"nodes": 40})
+    for number in range(90):
+        a = float(np.exp(rng.uniform(np.log(0.02), np.log(20.0))))
+        layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=float(rng.choice([0.0, 0.3, 0.45, 0.5])))
+        indenter = Paraboloid(radius_of_curvature=30.0 * a) if number % 2 else Cone(slope=0.03)
+        bare = fine.solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([a])))
+        work = float(bare.indentation_depth[0]) ** 2 / a * 10.0 ** rng.uniform(-5.0, 0.0)
+        scene = bare.scene.replace(effects=(Adhesion(work_of_adhesion=work),))
+        known = fine.solve(scene)
+        given = ContactRadii([a]), IndentationDepths(known.indentation_depth), NormalForces(known.normal_force)
+        scene = scene.replace(loading=given[number % 3])
+        one, other = coarse.solve(scene), fine.solve(scene)
+        true.append(distance(one, float(other.contact_radius[0]), other.pressure))
+        stated.append(float(one.error_estimate["pressure"][0]))
+    ratio = np.array(stated) / np.maximum(true, 1e-300)
+    assert np.mean(ratio >= 1) >= 0.95
+    assert np.median(ratio) < 16.0
+    assert np.quantile(ratio, 0.9) < 120.0

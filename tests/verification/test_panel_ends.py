@@ -9,8 +9,21 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact import Adhesion, ContactRadii, Detachment, FlatPunch, Layer, Paraboloid, Scene, TruncatedCone
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from contact import (
+    Adhesion,
+    ContactRadii,
+    Detachment,
+    FlatPunch,
+    IndentationDepths,
+    Layer,
+    NormalForces,
+    Paraboloid,
+    Scene,
+    TruncatedCone,
+)
 from mdr import Mdr
+from mdr.springs.assembly import equivalent_system
 
 WINDOW = 1e-3
 
@@ -67,3 +80,47 @@ def test_the_pressure_of_a_contact_that_ends_with_a_panel(shift):
         for a in (2.0 * (1.0 + shift), 2.0 - 1e-9)
     )
     np.testing.assert_allclose(near.pressure(r), exact.pressure(r), rtol=1e-7)
+
+
+def edge_of_two_pieces():
+    """A system whose profile leaps by 2e-9 at five thicknesses, where pieces behind a rim meet a panel."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.4999)
+    cone = TruncatedCone(flat_radius=4.698177017865153, slope=0.0094)
+    systems = (equivalent_system(layer, cone, 7.7, IntegralEquation(nodes=nodes)) for nodes in (12, 40))
+    return layer, cone, *systems
+
+
+@pytest.mark.parametrize("shift", [-1e-15, 0.0, 1e-15])
+def test_where_two_pieces_meet_the_error_of_both_is_stated(shift):
+    """Depths were 2.3e-9 off on one side where 1.5e-10 was stated, the error of the other side."""
+    _, cone, coarse, fine = edge_of_two_pieces()
+    for near in (-1e-12, 1e-12):
+        excess = np.array([5.0 + near - cone.flat_radius])
+        true = abs(coarse.profile_beyond(excess) / fine.profile_beyond(excess) - 1)
+        assert true <= coarse.relative_errors(np.array([5.0 * (1.0 + shift)]))["indentation_depth"]
+
+
+def test_a_prescribed_force_is_answered_to_the_last_digit():
+    """Between two pieces no radius has it, and the force of the nearest was given: 2.6e-9 off, no error stated."""
+    layer, cone, coarse, _ = edge_of_two_pieces()
+    sides = 5.0 * (1.0 + np.array([-1e-13, 1e-13]))
+    force = float(coarse.elastic_force(sides).mean())
+    scene = Scene(layer=layer, indenter=cone, loading=NormalForces([0.3 * force, force]))
+    path = Mdr(flat_punch=IntegralEquation(nodes=12)).solve(scene)
+    np.testing.assert_array_equal(path.normal_force, scene.loading.values)
+
+
+@pytest.mark.parametrize("ratio", [1.01, 1.5])
+def test_a_depth_under_a_force_errs_like_the_force_under_that_depth(ratio):
+    """dF = k_N d(delta), but the error of the depth at a fixed radius was stated, without that of the stiffness."""
+    layer, solver = (
+        Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3),
+        Mdr(flat_punch=IntegralEquation(nodes=10)),
+    )
+    scene = Scene(layer=layer, indenter=TruncatedCone(flat_radius=1.3, slope=0.1), loading=ContactRadii([1.3 * ratio]))
+    radius = solver.solve(scene)
+    loads = IndentationDepths(radius.indentation_depth), NormalForces(radius.normal_force)
+    depth, force = (solver.solve(scene.replace(loading=loading)) for loading in loads)
+    of_force = depth.error_estimate["normal_force"] * depth.normal_force
+    of_depth = force.error_estimate["indentation_depth"] * force.indentation_depth * force.contact_stiffness
+    assert of_depth[0] >= 0.999 * of_force[0]

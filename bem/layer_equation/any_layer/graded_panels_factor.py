@@ -22,7 +22,7 @@ from bem.layer_equation.one_factorisation import (
     edge_resolvents,
     schur_kernels,
 )
-from bem.layer_equation.profiles.edge_values import filled_panels
+from bem.layer_equation.profiles.edge_values import filled_panels, gain_within
 from bem.layer_equation.triangular import equation_factor
 from bem.polynomials.gauss_panels import (
     chebyshev_from_nodes,
@@ -187,12 +187,10 @@ class AnyLayerSolution(IntegralEquationSolution):
         panel, filled = filled_panels(self.factor, profile.grid, flat_radius)
         excess = np.maximum(ratio - flat_radius, 0.0)
         piece, _ = profile.grid.locate(excess)
-        before = np.maximum(excess - self.factor.widths(panel[-1] + 1)[panel[piece]] / (2 * self.nodes), 0.0)
-        value = profile(excess)
-        gain = np.abs(np.divide(value - profile(before), value, out=np.ones_like(value), where=value != 0.0))
+        gain = gain_within(profile, excess, self.factor.widths(panel[-1] + 1)[panel[piece]] / (2 * self.nodes))
         whole, left = filled[piece], np.clip(CUT_KERNEL * self._resolvent[panel[piece]], 0.5, 1.0)
         own = np.where(whole, FILLED_OWN, 0.5)
-        return self._edge_error(self._covered(ratio), own, np.where(whole, np.minimum(gain, 1.0), left))
+        return self._edge_error(self._covered(ratio), own, np.where(whole, gain, left))
 
     @cached_property
     def _resolvent(self) -> FloatArray:

@@ -64,6 +64,14 @@ def filled_panels(
     return panel, whole
 
 
+def gain_within(profile: MappedFunction, excess: FloatArray, step: float | FloatArray) -> FloatArray:
+    """Share of g, in [0, 1], that a profile gains on the last step before each excess, up to all of it at the rim."""
+    value = profile(np.maximum(excess, 0.0))
+    before = profile(np.maximum(excess - step, 0.0))
+    gain = np.abs(np.divide(value - before, value, out=np.ones_like(value), where=value != 0.0))
+    return np.asarray(np.minimum(gain, 1.0))
+
+
 def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
     """Averages of a load on the panels that cover the contact [0, b + end of the grid], the last ending there."""
     grid = load.grid
