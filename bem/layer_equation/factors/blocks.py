@@ -112,8 +112,9 @@ def block_factor(kernel: FredholmKernel, panels: int, width: float, count: int) 
     """
     together = max(BLOCK // count, 1)
     blocks, nodes = -(-panels // together), (width * (np.arange(together)[:, None] + gauss_nodes(count)[0])).ravel()
-    joined = ShiftedKernel.of_kernel(kernel, nodes, width * together, 2 * width * together * blocks)
-    U, T, root = joined.functions, joined.shift, np.sqrt(width * np.tile(gauss_nodes(count)[1], together))
+    weights = width * np.tile(gauss_nodes(count)[1], together)
+    joined = ShiftedKernel.of_kernel(kernel, nodes, weights, width * together, blocks)
+    U, T, root = joined.functions, joined.shift, np.sqrt(weights)
     taken, diagonal, columns, schur = np.zeros_like(T), [], [], []
     for number, (own, right) in enumerate(_matrix(kernel, joined, blocks, width, count)):
         n = min(len(U), panels * count - number * len(U))

@@ -1,7 +1,7 @@
 """The kernel between points on both sides of a cut as a short sum of products, and what it becomes a block further.
 
-For points x, s >= 0 of any distance the kernel N(x + s) has few independent functions of x: the largest eigenvectors of
-its Hankel matrix on panels that double (some 35 to a rounding). With these functions as columns of U,
+For x, s >= 0 the kernel N(x + s) has few independent functions of x: the largest eigenvectors of its Hankel matrix on
+the nodes of a block and on panels that double beyond it, some 35 to a rounding. With them as columns of U,
 
     N(x + s) = U(x) v(s),    v(s + B) = T v(s),
 
@@ -43,32 +43,42 @@ class ShiftedKernel:
     mirrored: FloatArray
 
     @classmethod
-    def of_kernel(cls, kernel: FredholmKernel, nodes: FloatArray, width: float, reach: float) -> ShiftedKernel:
-        """For distances x + s up to `reach`.
+    def of_kernel(
+        cls, kernel: FredholmKernel, nodes: FloatArray, weights: FloatArray, width: float, blocks: int
+    ) -> ShiftedKernel:
+        """For distances x + s up to twice that of so many blocks.
 
         Args:
             kernel: N.
             nodes: x of one block, shape (n,).
+            weights: Of integrals over it, shape (n,).
             width: B, in thicknesses.
-            reach: A multiple of B, two at least.
+            blocks: Their number.
         """
-        grid = doubling_panels(reach)
-        x, weights = grid.nodes.ravel(), grid.weights.ravel()
-        basis = _functions(kernel, x, np.sqrt(weights))
-        projection = (basis * weights[:, None]).T
-        to_left, to_right = width - nodes, width + nodes
-        values = kernel.products(x, np.concatenate([to_left, to_right]))
+        beyond = _doubling_panels(width, 2 * blocks * width)
+        x, own = np.append(nodes, width + beyond.nodes), np.append(weights, beyond.weights)
+        basis = _functions(kernel, x, np.sqrt(own))
+        projection = (basis * own[:, None]).T
+        values = kernel.products(x, np.append(width - nodes, width + nodes))
         coefficients = projection @ values
         # Once more: the functions are orthonormal but for roundings.
         coefficients += projection @ (values - basis @ coefficients)
         before, mirrored = np.hsplit(coefficients, 2)
-        return cls(_between(grid, basis, nodes), _shift(grid, basis, width), before, mirrored)
+        inside, outside = np.split(basis, [len(nodes)])
+        # T by least squares on all but the last block.
+        ends = beyond.ends[beyond.ends < beyond.end - width]
+        shorter = MappedGrid.between(np.append(ends, beyond.end - width), beyond.count)
+        root = np.sqrt(np.append(weights, shorter.weights))[:, None]
+        here = np.concatenate([inside, _between(beyond, outside, shorter.nodes)])
+        there = _between(beyond, outside, np.append(nodes, width + shorter.nodes))
+        shift = np.linalg.lstsq(root * here, root * there, rcond=None)[0]
+        return cls(inside, shift, before, mirrored)
 
 
-def doubling_panels(reach: float) -> MappedGrid:
-    """Panels on [0, reach] that are one thickness wide at the start and double; the last one ends there."""
-    ends = 2.0 ** np.arange(np.ceil(np.log2(reach)))
-    return MappedGrid.between(np.concatenate([[0.0], ends[ends < reach], [reach]]), PANEL_NODES)
+def _doubling_panels(first: float, end: float) -> MappedGrid:
+    """Beyond the first block, counted from its end: panels that end where the distance from its start has doubled."""
+    ends = first * 2.0 ** np.arange(np.ceil(np.log2(end / first)))
+    return MappedGrid.between(np.append(ends[ends < end], end) - first, PANEL_NODES)
 
 
 def _functions(kernel: FredholmKernel, x: FloatArray, root: FloatArray) -> FloatArray:
@@ -80,15 +90,6 @@ def _functions(kernel: FredholmKernel, x: FloatArray, root: FloatArray) -> Float
 
 def _between(grid: MappedGrid, basis: FloatArray, points: FloatArray) -> FloatArray:
     """The functions at other points, by the polynomials of their panels."""
-    panel, position = grid.locate(points)
+    panel, position = grid.locate(points.ravel())
     on_panels = basis.reshape(len(grid.left), grid.count, -1)
     return np.asarray((lagrange_matrix(grid.count, position)[:, None] @ on_panels[panel])[:, 0])
-
-
-def _shift(grid: MappedGrid, basis: FloatArray, width: float) -> FloatArray:
-    """T by least squares on all of the grid but a block."""
-    ends = grid.ends[grid.ends < grid.end - width]
-    shorter = MappedGrid.between(np.append(ends, grid.end - width), grid.count)
-    x, root = shorter.nodes.ravel(), np.sqrt(shorter.weights).reshape(-1, 1)
-    here, there = (root * _between(grid, basis, points) for points in (x, x + width))
-    return np.asarray(np.linalg.lstsq(here, there, rcond=None)[0])
