@@ -22,8 +22,8 @@ from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
 
-# Unknowns of a block at most: few enough for its dense factor to cost less than joining blocks, and enough for errors
-# of T not to add up: its powers are as many as blocks. Panels one by one left 1 k_bar rounding, eight 0.1 (2026-11-23).
+# Unknowns of a block at most: few enough for its dense factor to cost less than joining blocks, enough for errors of T
+# not to add up. With blocks of one panel k_bar moved by one k_bar rounding, with eight by 0.2 (a/h = 160, 2026-11-23).
 BLOCK = 192
 
 
