@@ -7,8 +7,8 @@ of phi enters by its square.
 
 Densities are given on equal panels by values at Gauss nodes. ``phi^(k) = int_0^a phi cos(kt) dt`` at thousands of k
 comes from FFTs over the panels, one for each pair of a node in t and an offset in k, panels of the same phase first
-added up. Beyond `LARGEST_WAVENUMBER`
-chi = 1, and phi^ is known from the density and its derivatives at the edge, by partial integration.
+added up. Beyond `LARGEST_WAVENUMBER` chi = 1, and phi^ is known from the density and its derivatives at the edge, by
+partial integration.
 """
 
 from __future__ import annotations
