@@ -102,7 +102,7 @@ def _graded_solution(surface: SurfaceKernel, ratio: float) -> GradedSolution:
     return GradedSolution(PointKernel.of_surface(surface), ratio)
 
 
-# A factor for the largest ratio takes 110 MB.
+# A factor for the largest ratio takes 110 MB on thin sublayers.
 @lru_cache(maxsize=8)
 def _any_solution(settings: IntegralEquation, surface: SurfaceKernel, ratio: float) -> AnyLayerSolution:
     from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor  # noqa: PLC0415

@@ -50,8 +50,9 @@ def energy_matrix(densities: FloatArray, width: float, support: Support, poisson
     size, turns = _panels_of_a_turn(unit.shape[1]), _whole_turns()
     step = 2 * np.pi / size
     transform = _transforms(unit, turns, size)
-    weights = step * np.repeat(gauss_nodes(WAVENUMBERS)[1], turns * size)
-    energy = (transform * (weights * _compliances(size, support, poissons_ratio).ravel())) @ transform.T
+    weights = step * gauss_nodes(WAVENUMBERS)[1][:, None] * _compliances(turns, size, support, poissons_ratio)
+    # Offset by offset: one sum of them all would lose ten roundings.
+    energy = np.sum((transform * weights[:, None]) @ transform.swapaxes(1, 2), axis=0)
     return 2 / np.pi * (energy + _tail(densities, width, step * (turns * size)))
 
 
@@ -64,10 +65,10 @@ def _panels_of_a_turn(radius: int) -> int:
 
 # Densities of one layer come in seven sizes, of which the largest takes 0.3 MB.
 @lru_cache(maxsize=8)
-def _compliances(size: int, support: Support, poissons_ratio: float) -> FloatArray:
+def _compliances(turns: int, size: int, support: Support, poissons_ratio: float) -> FloatArray:
     """chi at all wavenumbers, a row for each offset."""
     step = 2 * np.pi / size
-    k = step * np.arange(_whole_turns() * size)
+    k = step * np.arange(turns * size)
     return compliance_kernel(k + step * gauss_nodes(WAVENUMBERS)[0][:, None], support, poissons_ratio)
 
 
@@ -79,27 +80,25 @@ def _on_unit_panels(densities: FloatArray, parts: int) -> FloatArray:
 
 
 def _transforms(unit: FloatArray, turns: int, size: int) -> FloatArray:
-    """int phi cos(kt) dt at k = offset + (2 pi/size) (0 .. turns size - 1), one offset after the other.
+    """int phi cos(kt) dt at k = offset + (2 pi/size) (0 .. turns size - 1).
 
     On panel p, t = p + node: the sums of phi exp(ikp) over the panels have the period 2 pi in k. So k is a place in the
     first period and a number of turns, and the phase exp(ik node) a product. Gauss nodes are symmetric: sums at one
     offset are the conjugates of those at its mirror image, in reversed order.
 
     Returns:
-        Shape (densities, offsets turns size).
+        Shape (offsets, densities, turns size).
     """
     nodes, weights = gauss_nodes(NODES)
-    offsets = 2 * np.pi / size * gauss_nodes(WAVENUMBERS)[0]
-    half = _panel_sums(unit, offsets[: WAVENUMBERS // 2], size)
+    shares = gauss_nodes(WAVENUMBERS)[0]
+    half, offsets = _panel_sums(unit, shares[: WAVENUMBERS // 2], size), 2 * np.pi / size * shares
     sums = np.concatenate([half, half[::-1, ..., ::-1].conj()]) * _phases(size)
     nodal = _turns(turns) * (weights * np.exp(1j * np.multiply.outer(offsets, nodes)))[:, None, :]
-    # Shape (offsets, densities, turns, size).
-    transforms = (nodal[:, None] @ sums).real
-    return np.asarray(transforms.swapaxes(0, 1).reshape(len(unit), -1))
+    return np.asarray((nodal[:, None] @ sums).real.reshape(len(shares), len(unit), -1))
 
 
-def _panel_sums(unit: FloatArray, offsets: FloatArray, size: int) -> NDArray[np.complex128]:
-    """Sums of phi exp(ikp) over the panels p at k = offset + (2 pi/size) (0 .. size - 1), a row for each node.
+def _panel_sums(unit: FloatArray, shares: FloatArray, size: int) -> NDArray[np.complex128]:
+    """Sums of phi exp(ikp) over the panels p at k = (2 pi/size) (share + 0 .. size - 1), a row for each node.
 
     Panels that are `size` apart have the same phase but for the offset's.
 
@@ -108,12 +107,11 @@ def _panel_sums(unit: FloatArray, offsets: FloatArray, size: int) -> NDArray[np.
     """
     by_node = np.pad(unit, ((0, 0), (0, -unit.shape[1] % size), (0, 0))).swapaxes(1, 2)
     folds = by_node.reshape(len(unit) * NODES, -1, size).swapaxes(0, 1)
-    turn = np.exp(1j * size * np.multiply.outer(offsets, np.arange(len(folds))))
+    turn = np.exp(2j * np.pi * np.multiply.outer(shares, np.arange(len(folds))))
     together = turn.real @ folds.reshape(len(folds), -1) + 1j * (turn.imag @ folds.reshape(len(folds), -1))
-    turned = (
-        together.reshape(len(offsets), -1, size) * np.exp(1j * np.multiply.outer(offsets, np.arange(size)))[:, None]
-    )
-    return size * np.fft.ifft(turned).reshape(len(offsets), len(unit), NODES, size)
+    within = np.exp(2j * np.pi / size * np.multiply.outer(shares, np.arange(size)))
+    turned = together.reshape(len(shares), -1, size) * within[:, None]
+    return size * np.fft.ifft(turned).reshape(len(shares), len(unit), NODES, size)
 
 
 @cache
