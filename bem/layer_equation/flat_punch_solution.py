@@ -248,12 +248,14 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def _remembered(self, name: str, ratio: FloatArray, compute: Callable[[FloatArray], Known]) -> Known:
         """What was computed last under this name, where it was for the same ratios: errors ask in a row."""
-        asked, known = self._last.get(name, (None, None))
-        if known is None or not np.array_equal(asked, ratio):
-            known = compute(ratio)
-            if ratio.size <= BLOCK:
-                self._last[name] = ratio.copy(), known
-        return known
+        last = self._last.get(name)
+        if last is not None and np.array_equal(last[0], ratio):
+            known: Known = last[1]
+            return known
+        found = compute(ratio)
+        if ratio.size <= BLOCK:
+            self._last[name] = ratio.copy(), found
+        return found
 
     @cached_property
     def _last(self) -> dict[str, tuple[FloatArray, Any]]:

@@ -52,7 +52,7 @@ def energy_matrix(densities: FloatArray, width: float, support: Support, poisson
     transform = _transforms(unit, turns, size)
     weights = step * gauss_nodes(WAVENUMBERS)[1][:, None] * _compliances(turns, size, support, poissons_ratio)
     # Offset by offset: one sum of them all would lose ten roundings.
-    energy = np.sum((transform * weights[:, None]) @ transform.swapaxes(1, 2), axis=0)
+    energy: FloatArray = np.sum((transform * weights[:, None]) @ transform.swapaxes(1, 2), axis=0)
     return 2 / np.pi * (energy + _tail(densities, width, step * (turns * size)))
 
 
