@@ -17,7 +17,6 @@ import numpy as np
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
-from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.abel_integral import even_abel_integral
 from bem.polynomials.even_slopes import EvenSlopes
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
@@ -121,6 +120,6 @@ def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> Float
     schur = E @ factor.schur[len(load) - 1] @ E.T
     last = np.linalg.solve(np.eye(m) - schur * (last_width * omega), load[-1] + E @ inherited[-1])
     root = np.broadcast_to(factor.root_weights(len(load)), load.shape)
-    returned = factor.lower[before : before + m, :before].T @ (E.T @ (last_width * omega * last) / root[-1])
-    earlier = solve_lower(factor.lower[:before, :before], z[:before] - returned, transposed=True)
+    returned = factor.lower.row(before, before + m).T @ (E.T @ (last_width * omega * last) / root[-1])
+    earlier = factor.lower.solve(z[:before] - returned, transposed=True)
     return np.vstack([earlier.reshape(-1, m) / root[:-1], last])

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution
     from bem.layer_equation.any_layer.graded_solution import GradedSolution
 
-# Largest a/h on narrow panels: the dense factor for it takes 110 MB and two seconds.
+# Largest a/h on narrow panels; beyond, roundings are more than what wide panels and energies leave.
 LARGEST_FACTORISED_RATIO: Final = 160.0
 # Ratios are rounded up to these, so that a larger cached factor never changes an answer's last digits.
 RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)
@@ -102,7 +102,7 @@ def _graded_solution(surface: SurfaceKernel, ratio: float) -> GradedSolution:
     return GradedSolution(PointKernel.of_surface(surface), ratio)
 
 
-# A factor for the largest ratio takes 110 MB.
+# A factor for the largest ratio takes 110 MB on thin sublayers.
 @lru_cache(maxsize=8)
 def _any_solution(settings: IntegralEquation, surface: SurfaceKernel, ratio: float) -> AnyLayerSolution:
     from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution, GradedFactor  # noqa: PLC0415
@@ -120,7 +120,7 @@ def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: fl
     return IntegralEquationSolution(kernel, factor)
 
 
-# The factors of each take 280 MB.
+# The factors and densities of each take some 40 MB.
 @lru_cache(maxsize=2)
 def _large_solution(settings: IntegralEquation, support: Support, nu: float) -> LargeRatioSolution:
     return LargeRatioSolution(support, nu, lambda: _solution(settings, support, nu, RUNGS[-1]))

@@ -27,14 +27,18 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.layer_equation.factors.blocks import BlockLower, block_factor
+from bem.layer_equation.factors.dense import DenseLower, dense_factor
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.layer_equation.triangular import equation_factor, solve_lower
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix, partial_panel_interpolation
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
 # The kernel's half of the strip around the real axis where it is analytic: it is a transform of exp(-2k) times powers.
 STRIP = 2.0
+# Unknowns up to which the factor is one dense matrix: with 24 nodes on a panel up to a/h = 40, where both ways take as
+# long (40 ms, 2026-11-23).
+DENSE = 1024
 # Panels whose resolvents are made at a time: of 24 nodes they take 15 MB; chosen.
 TOGETHER = 32
 
@@ -45,14 +49,14 @@ class VolterraFactor:
 
     Attributes:
         panel_width: H.
-        lower: Cholesky factor of I - sqrt(w) K sqrt(w), shape (P m, P m).
+        lower: Cholesky factor of I - sqrt(w) K sqrt(w) of P m unknowns.
         schur: K~ at each panel's own nodes, shape (P, m, m).
         resolvent: G of each panel, shape (P, i, j): the edge value at node tau_i is the load there plus the integral of
             G times the load inside the panel; j counts the nodes tau_i tau_j of that integral.
     """
 
     panel_width: float
-    lower: FloatArray
+    lower: DenseLower | BlockLower
     schur: FloatArray
     resolvent: FloatArray
 
@@ -63,11 +67,8 @@ class VolterraFactor:
         Raises:
             NotConvergedError: If the matrix is not positive definite in double precision.
         """
-        K = kernel.panel_matrix(panels, panel_width, count)
-        own = 2 / np.pi * np.array([K[s : s + count, s : s + count] for s in range(0, len(K), count)])
-        root = np.sqrt(panel_width * np.tile(gauss_nodes(count)[1], panels))
-        lower = equation_factor(K, root, panels * panel_width)
-        schur = schur_kernels(own, lower, root)
+        factor = dense_factor if panels * count <= DENSE else block_factor
+        lower, schur = factor(kernel, panels, panel_width, count)
         return cls(panel_width, lower, schur, edge_resolvents(schur, panel_width))
 
     @property
@@ -129,10 +130,9 @@ class VolterraFactor:
             z = C^-1 (sqrt(w) load), shape (q m,), and what each panel inherits from the earlier ones, K A^-1 W at its
             nodes, shape (q, m).
         """
-        n, root = load.size, self.root_weights(len(load))
-        z = solve_lower(self.lower[:n, :n], (root * load).ravel())
-        starts = range(0, n, self.count)
-        inherited = np.array([-self.lower[s : s + self.count, :s] @ z[:s] for s in starts]) / root
+        root = self.root_weights(len(load))
+        z = self.lower.solve((root * load).ravel())
+        inherited = -self.lower.from_earlier(z, self.count) / root
         return z, inherited
 
     def edge_values(self, values: FloatArray) -> FloatArray:
@@ -183,16 +183,6 @@ class VolterraFactor:
         E = partial_panel_interpolation(self.count)
         matrix: FloatArray = np.eye(self.count) + np.einsum("pij,ijk->pik", self.resolvent * weights, E)
         return matrix
-
-
-def schur_kernels(own: FloatArray, lower: FloatArray, root: FloatArray) -> FloatArray:
-    """K~ = K + K A^-1 K over the earlier panels, from the rows of the factor left of each diagonal block of K."""
-    schur, count = own.copy(), own.shape[1]
-    for p, kernel in enumerate(schur):
-        start, stop = p * count, (p + 1) * count
-        row = lower[start:stop, :start] / root[start:stop, None]
-        kernel[:] += row @ row.T
-    return schur
 
 
 def edge_resolvents(schur: FloatArray, widths: float | FloatArray) -> FloatArray:

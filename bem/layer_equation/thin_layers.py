@@ -29,7 +29,6 @@ from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.profiles.edge_values import gain_within
 from bem.layer_equation.profiles.thin_layers import LAST_TERMS, WidePanels
 from bem.layer_equation.protocol import FITTED_SHARE, FlatPunchSolution
-from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, apart
 from contact.records.errors import InvalidInput
@@ -366,8 +365,8 @@ def _trial_densities(factor: VolterraFactor, ratios: FloatArray) -> list[FloatAr
     t, root = width * (panels + gauss_nodes(factor.count)[0]).ravel(), np.sqrt(np.tile(factor.weights, factor.panels))
     inside = (t[:, None] < ratios)[..., None]
     loads = np.polynomial.legendre.legvander(2 * np.minimum(t[:, None] / ratios, 1.0) ** 2 - 1, RITZ_DENSITIES - 1)
-    half = solve_lower(factor.lower, root[:, None] * (loads * inside).reshape(t.size, -1)).reshape(loads.shape) * inside
-    densities = solve_lower(factor.lower, half.reshape(t.size, -1), transposed=True) / root[:, None]
+    half = factor.lower.solve(root[:, None] * (loads * inside).reshape(t.size, -1)).reshape(loads.shape) * inside
+    densities = factor.lower.solve(half.reshape(t.size, -1), transposed=True) / root[:, None]
     by_radius = np.moveaxis(densities.reshape(panels.size, -1, ratios.size, RITZ_DENSITIES), (2, 3), (0, 1))
     return [density[:, : round(a / width)] for density, a in zip(by_radius, ratios, strict=True)]
 

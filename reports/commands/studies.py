@@ -7,8 +7,9 @@ from __future__ import annotations
 
 import itertools
 import time
-from collections.abc import Callable
-from contextlib import nullcontext
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, nullcontext
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -51,7 +52,8 @@ def ladders(names: Words = None, method: Methods = None, out: Report = None) -> 
     from cases.measurements.ladders.ladder_table import LADDERS  # noqa: PLC0415
 
     plans, climbers = chosen(LADDERS, names or []), {name: CLIMBERS.get(name, {}) for name in method or ["mdr"]}
-    return published(lambda: ladder_case(plans, climbers, progress=_counted(out, len(plans) * len(climbers))), out)
+    total = len(plans) * len(climbers)
+    return published(_told(lambda say, _: ladder_case(plans, climbers, progress=say), out, total), out)
 
 
 def coverage(
@@ -76,7 +78,7 @@ def coverage(
 
     def study() -> CaseResult:
         """Measure, then show the coefficients."""
-        case = coverage_case(plans, SEED if seed is None else seed, progress=_counted(out))
+        case = _told(partial(coverage_case, plans, SEED if seed is None else seed), out)()
         if table := error_coefficients(case):
             show_table(table, on=console())
         return case
@@ -103,7 +105,7 @@ def scaling(out: Report = Path("build/scaling")) -> int:
     """Measure how the time grows with a/h, radii, Prony terms, pieces of a history, grid cells, against theory."""
     from cases.measurements.cost.scaling import PLANS, scaling_case  # noqa: PLC0415
 
-    return published(lambda: scaling_case(progress=_counted(out, len(PLANS))), out)
+    return published(_told(partial(scaling_case, PLANS), out, len(PLANS)), out)
 
 
 def maps(names: Words = None, method: Methods = None, out: Report = Path("build/maps")) -> int:
@@ -114,7 +116,7 @@ def maps(names: Words = None, method: Methods = None, out: Report = Path("build/
     from cases.measurements.advice.error_maps import map_case, plans_of  # noqa: PLC0415
 
     plans = list(plans_of(names or [], method or []))
-    return published(lambda: map_case(plans, progress=_counted(out, len(plans))), out)
+    return published(_told(partial(map_case, plans), out, sum(len(plan.given) for plan in plans)), out)
 
 
 def calibrate(
@@ -217,23 +219,51 @@ def published(study: Callable[[], CaseResult], out: Path | None) -> int:
 PARTIAL = "partial.txt"
 
 
-def _counted(out: Path | None, total: int | None = None) -> Callable[[str], None]:
+def _told(
+    study: Callable[[Callable[[str], None], Callable[[str], None]], CaseResult],
+    out: Path | None,
+    total: int | None = None,
+) -> Callable[[], CaseResult]:
+    """A study that says its results and what it is at."""
+
+    def run() -> CaseResult:
+        """Carry it out."""
+        with _counted(out, total) as (say, at_work):
+            return study(say, at_work)
+
+    return run
+
+
+@contextmanager
+def _counted(
+    out: Path | None, total: int | None = None
+) -> Iterator[tuple[Callable[[str], None], Callable[[str], None]]]:
     """Says each result when it is there, with its number and the time; with a folder it is kept there at once.
 
-    What a study has found before it is interrupted stands in `PARTIAL`.
+    What a study has found before it is interrupted stands in `PARTIAL`. The second says what is being worked at, on a
+    terminal in a line of its own that goes with the work, elsewhere not at all.
     """
-    start, number = time.monotonic(), itertools.count(1)
+    from rich.text import Text  # noqa: PLC0415 - see the first lines of this module
+
+    from reports.terminal.terminal import console  # noqa: PLC0415 - see the first lines of this module
+
+    on, start, number = console(), time.monotonic(), itertools.count(1)
 
     def say(line: str) -> None:
         """One result, of one or more lines."""
         count = next(number)
-        _say(f"[{count}{f' of {total}' if total else ''}, {time.monotonic() - start:.0f} s] {line}")
+        words = f"[{count}{f' of {total}' if total else ''}, {time.monotonic() - start:.0f} s] {line}"
+        on.print(words, markup=False, highlight=False, soft_wrap=True)
         if out is not None:
             out.mkdir(parents=True, exist_ok=True)
             with (out / PARTIAL).open("w" if count == 1 else "a", encoding="utf-8") as file:
                 file.write(f"{line}\n")
 
-    return say
+    if not on.is_terminal:
+        yield say, lambda _: None
+        return
+    with on.status("") as shown:
+        yield say, lambda line: shown.update(Text(line))
 
 
 def _say(line: str) -> None:

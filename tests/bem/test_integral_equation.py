@@ -88,3 +88,20 @@ def test_settings_out_of_range_are_refused():
         IntegralEquation(nodes=2)
     with pytest.raises(InvalidInput, match="panel_width"):
         IntegralEquation(panel_width=0.0)
+
+
+def test_what_was_asked_last_is_not_computed_again_and_never_mixed_up():
+    """A million depths take a fifth less; arrays that their owner changes afterwards do not count as the same."""
+    solution = IntegralEquation(nodes=12).solution(LAYERS[3], 1.5)
+    ratios = np.array([0.3, 1.2])
+    first = solution.normalized_contact_stiffness(ratios)
+    known = solution._last["stiffness"][1]
+    solution.relative_error(ratios.copy())
+    assert solution._last["stiffness"][1] is known
+    ratios[0] = 0.7
+    alone = [float(solution.normalized_contact_stiffness(ratio)) for ratio in (0.7, 1.2)]
+    assert solution.normalized_contact_stiffness(ratios).tolist() == alone
+    assert first[1] == alone[1]
+    assert first[0] != alone[0]
+    assert solution.normalized_contact_stiffness(np.linspace(0.0, 1.0, 9000)).shape == (9000,)
+    assert solution._last["stiffness"][0].size < 9000

@@ -1,9 +1,12 @@
 """The history of accepted numbers as a chart of the report, and what long studies say while they run."""
 
+import dataclasses
 import datetime
+import time
 
 import pytest
 
+from cases.measurements.advice.error_maps import map_case, plans_of
 from cases.results.records.run import Acceptance
 from reports.charts.history import accepted_steps, figures
 from reports.commands.studies import PARTIAL, _counted
@@ -51,13 +54,35 @@ def test_the_chart_is_drawn_with_its_data_and_left_out_where_nothing_changed(tmp
 
 
 def test_a_study_tells_how_far_it_is_and_keeps_what_it_has_found(tmp_path, capsys):
-    say = _counted(tmp_path / "maps", 3)
-    say("Hertz: 1 %")
-    say("Dimitriadis: 5 %")
+    with _counted(tmp_path / "maps", 3) as (say, at_work):
+        at_work("1 of 2: Hertz")
+        say("Hertz: 1 %")
+        say("Dimitriadis: 5 %")
     assert capsys.readouterr().out.splitlines() == ["[1 of 3, 0 s] Hertz: 1 %", "[2 of 3, 0 s] Dimitriadis: 5 %"]
     assert (tmp_path / "maps" / PARTIAL).read_text() == "Hertz: 1 %\nDimitriadis: 5 %\n"
-    _counted(tmp_path / "maps")("again")
+    with _counted(tmp_path / "maps") as (say, _):
+        say("again")
     assert (tmp_path / "maps" / PARTIAL).read_text() == "again\n"
+
+
+def test_on_a_terminal_a_study_says_what_it_is_at(monkeypatch, capsys):
+    """Seen to fail before: minutes of finite elements went by without a word."""
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    with _counted(None) as (say, at_work):
+        at_work("[3 of 6]: FEM, Poisson's ratio 0.3")
+        time.sleep(0.2)
+        say("FEM: 1 %")
+    shown = capsys.readouterr().out
+    assert "[3 of 6]: FEM, Poisson's ratio 0.3" in shown
+    assert "[1, 0 s] FEM: 1 %\n" in shown
+
+
+def test_studies_say_what_they_are_at_before_they_are_at_it():
+    lines = []
+    (plan,) = plans_of(["half-space"], [])
+    map_case([dataclasses.replace(plan, ratios=(0.1, 1.0), rows=("0", "0.5"))], lambda _: None, lines.append)
+    assert lines[0] == "1 of 2: Half-space (Hertz): force at given depth, Poisson's ratio 0"
+    assert lines[3] == "2 of 2: Half-space (Hertz): depth at given force, Poisson's ratio 0.5"
 
 
 def test_the_tolerance_history_has_a_row_a_case_of_each_run_and_names_what_was_loosened():

@@ -14,16 +14,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.layer_equation.error_model import STACK_FACTOR, FactorCoefficients
+from bem.layer_equation.factors.dense import factor_of_matrix
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import (
     STRIP,
     VolterraFactor,
     edge_resolvents,
-    schur_kernels,
 )
+<<<<<<< HEAD
 from bem.layer_equation.profiles.edge_values import filled_panels, gain_within
 from bem.layer_equation.triangular import equation_factor
+=======
+from bem.layer_equation.profiles.edge_values import filled_panels
+>>>>>>> w22a
 from bem.polynomials.gauss_panels import (
     chebyshev_from_nodes,
     gauss_nodes,
@@ -72,11 +76,8 @@ class GradedFactor(VolterraFactor):
         first = panel_width * np.append(0.0, 2.0 ** np.arange(-halvings, 1.0))
         ends = np.append(first, panel_width * np.arange(2.0, panels + 1))
         K = _with_parts(kernel, kernel.panel_matrix(panels, panel_width, count), first, count)
-        starts = range(0, len(K), count)
-        own = 2 / np.pi * np.array([K[s : s + count, s : s + count] for s in starts])
         root = np.sqrt(np.multiply.outer(np.diff(ends), gauss_nodes(count)[1]).ravel())
-        lower = equation_factor(K, root, panels * panel_width)
-        schur = schur_kernels(own, lower, root)
+        lower, schur = factor_of_matrix(K, root, count, panels * panel_width)
         return cls(panel_width, lower, schur, edge_resolvents(schur, np.diff(ends)), ends)
 
     @property

@@ -16,7 +16,6 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from bem.layer_equation.one_factorisation import VolterraFactor
-from bem.layer_equation.triangular import solve_lower
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from contact.records.validation import FloatArray
 
@@ -63,16 +62,15 @@ class RadiusWeights:
         """What a panel's nodes inherit from a load's averages on the earlier panels, shape (m, panel m)."""
         if panel not in self._inheritances:
             m, before = self.factor.count, panel * self.factor.count
-            row, root = self.factor.lower[before : before + m, :before], np.tile(self.factor.root_weights(1), panel)
-            solved = solve_lower(self.factor.lower[:before, :before], row.T, transposed=True).T
+            row, root = self.factor.lower.row(before, before + m), np.tile(self.factor.root_weights(1), panel)
+            solved = self.factor.lower.solve(row.T, transposed=True).T
             self._inheritances[panel] = -solved * root / self.factor.root_weights(1)[:, None]
         return self._inheritances[panel]
 
     def _whole_panels(self, panel: int) -> FloatArray:
         """phi_1 of the contact that ends where a panel begins, shape (panel, m)."""
-        before, root = panel * self.factor.count, np.tile(self.factor.root_weights(1), panel)
-        lower = self.factor.lower[:before, :before]
-        phi = solve_lower(lower, solve_lower(lower, root), transposed=True) / root
+        root, lower = np.tile(self.factor.root_weights(1), panel), self.factor.lower
+        phi = lower.solve(lower.solve(root), transposed=True) / root
         return phi.reshape(panel, self.factor.count)
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from bem.polynomials.gauss import legendre_rule
 from cases.declare.guarded_method import BrokenMethodError, build_guarded
 from cases.declare.methods import check_known
-from cases.measurements.study import Say, silent, study_case, told
+from cases.measurements.study import Say, announced, silent, study_case, told
 from cases.results.records.reliability import UNBONDED, ErrorMap
 from cases.results.records.run import CaseResult
 from contact import (
@@ -206,27 +206,31 @@ def plans_of(names: Collection[str], methods: Collection[str]) -> tuple[MapPlan,
     return tuple(known.get(name) or _as_it_comes(name) for name in wanted)
 
 
-def map_case(plans: Iterable[MapPlan] = (*FORMULAS, *FRICTION, *METHODS), progress: Say = silent) -> CaseResult:
-    """Draw up the maps; ``progress`` is told of each."""
+def map_case(
+    plans: Iterable[MapPlan] = (*FORMULAS, *FRICTION, *METHODS), progress: Say = silent, at_work: Say = silent
+) -> CaseResult:
+    """Draw up the maps; ``progress`` is told of each, ``at_work`` of every row before it is solved."""
     return study_case(
         NAME,
         "Where closed forms and methods are good",
         "Over which a/h and Poisson's ratios is each formula right to one percent, and what do methods leave?",
         TEXT,
         equations=("Eq. (17)", "Eq. (20)", "Eq. (22)"),
-        maps=tuple(told((_map(plan, given) for plan in plans for given in plan.given), summary, progress)),
+        maps=tuple(told((_map(plan, given, at_work) for plan in plans for given in plan.given), summary, progress)),
     )
 
 
-def _map(plan: MapPlan, given: Given) -> ErrorMap:
+def _map(plan: MapPlan, given: Given, at_work: Say) -> ErrorMap:
+    title = f"{plan.title}: {WORDS[given]}"
+    rows = announced(plan.rows, lambda row: f"{title}, Poisson's ratio {row}", at_work)
     return ErrorMap(
         name=f"{plan.name}, {WORDS[given]}",
-        title=f"{plan.title}: {WORDS[given]}",
+        title=title,
         quantity=SOUGHT[given],
         reference="the fast method (24 nodes)",
         ratios=plan.ratios,
         rows=plan.rows,
-        errors=tuple(errors_of(plan.answer, given, _layer(row), plan.ratios) for row in plan.rows),
+        errors=tuple(errors_of(plan.answer, given, _layer(row), plan.ratios) for row in rows),
     )
 
 

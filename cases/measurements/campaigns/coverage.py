@@ -13,7 +13,7 @@ from cases.measurements.campaigns.campaign import answered, refereed
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
 from cases.measurements.measurement import Measurement, answers, by_quantity, covered, median, sharpness
-from cases.measurements.study import Say, silent, study_case, told, within_limit
+from cases.measurements.study import Say, announced, silent, study_case, told, within_limit
 from cases.results.records.claim import Claim
 from cases.results.records.reliability import PERCENTILES, CoverageRecord
 from cases.results.records.run import CaseResult
@@ -90,15 +90,18 @@ QUICK_PLANS: Final = (
 )
 
 
-def coverage_case(plans: Iterable[CoveragePlan] = PLANS, seed: int = SEED, progress: Say = silent) -> CaseResult:
+def coverage_case(
+    plans: Iterable[CoveragePlan] = PLANS, seed: int = SEED, progress: Say = silent, at_work: Say = silent
+) -> CaseResult:
     """Measure all plans and claim that stated errors cover true ones and are sharp.
 
     Args:
         plans: What is measured.
         seed: Of the scenes.
         progress: Called with one line a record.
+        at_work: Called with one line a scene before it is solved.
     """
-    found = (record for plan in plans for record in records_of(plan, seed))
+    found = (record for plan in plans for record in records_of(plan, seed, at_work))
     records = tuple(told(found, summary, progress))
     return study_case(
         NAME,
@@ -110,18 +113,20 @@ def coverage_case(plans: Iterable[CoveragePlan] = PLANS, seed: int = SEED, progr
     )
 
 
-def records_of(plan: CoveragePlan, seed: int) -> Iterator[CoverageRecord]:
+def records_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[CoverageRecord]:
     """One record for each quantity the plan's method states an error for."""
-    rows = list(rows_of(plan, seed))
+    rows = list(rows_of(plan, seed, at_work))
     for quantity, found in by_quantity(rows).items():
         yield _record(plan, quantity, found, answers(rows))
 
 
-def rows_of(plan: CoveragePlan, seed: int) -> Iterator[Measurement]:
+def rows_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[Measurement]:
     """Every scene of the plan, answered and judged by the fast method at its finest where no second opinion reaches."""
     method, finest = build(plan.method, plan.settings), build("mdr", {"nodes": 32, "accuracy": 1e-12})
     of = Measurement(method=plan.method, settings=plan.settings, parameters={"family": plan.family}, seed=seed)
-    yield from answered(method, enumerate(_scenes(plan, seed, method)), partial(refereed, method, other=finest), of)
+    numbers = announced(range(plan.count), lambda _: f"scenes of {plan.method}, {plan.family}", at_work)
+    scenes = zip(numbers, _scenes(plan, seed, method), strict=True)
+    yield from answered(method, scenes, partial(refereed, method, other=finest), of)
 
 
 def _scenes(plan: CoveragePlan, seed: int, method: Method) -> Iterator[Scene]:
