@@ -12,10 +12,10 @@ from bem.kernels.graded import GradedKernel
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import stack_of
 from bem.layer_equation.inside.density import Density
-from bem.layer_equation.inside.errors import LEFT_OUT, Magnitudes, stated_errors
+from bem.layer_equation.inside.errors import LEFT_OUT, Magnitudes, left_by, stated_errors
 from bem.layer_equation.inside.fields import Body
 from bem.layer_equation.inside.half_space_part import Points
-from contact import GradedLayer, Scene
+from contact import FlatPunch, GradedLayer, Scene
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
 
@@ -51,28 +51,41 @@ class ContactInterior:
         found = self._body.at(points)
         shear = found["modulus"] * layer.shear_modulus
         stresses, slopes = _stresses(found), {name: found[name] for name in _SLOPES}
-        edge = self._body.of_unit_edge(points)
-        yields = modulus / (2.0 * layer.shear_modulus)
-        sizes = Magnitudes(
-            displacement=yields * _displacement(found, points.r) / found["modulus"],
-            stress=_largest(stresses),
-            gradient=_largest(slopes),
-            gradient_terms=found["gradient_terms"],
-            edge_displacement=yields * _displacement(edge, points.r),
-            edge_stress=_largest(_stresses(edge)),
-            edge_gradient=_largest({name: edge[name] for name in _SLOPES}),
-            length=min(self.density.radius, layer.thickness / unit),
-            thickness=layer.thickness / unit,
-            depth=self.depth,
-            **{name: found[name] for name in LEFT_OUT if name in found},
-        )
         return InsideFields(
             radial_displacement=modulus * found["hoop_strain"] * radius / (2.0 * shear),
             axial_displacement=modulus * found["axial"] * unit / (2.0 * shear),
             **{name: modulus * values for name, values in stresses.items()},
             hydrostatic_pressure=modulus * found["hydrostatic_pressure"],
             **{name: modulus * values / unit for name, values in slopes.items()},
-            error_estimate=stated_errors(self.density, points, sizes, self.known, unit),
+            error_estimate=stated_errors(self.density, points, self._sizes(points, found), self.known, unit),
+        )
+
+    def _sizes(self, points: Points, found: Mapping[str, FloatArray]) -> Magnitudes:
+        layer, unit = self.scene.layer, self.unit
+        thickness = layer.thickness / unit
+        edge = self._body.of_unit_edge(points)
+        # A flat punch is one part alone.
+        alone = isinstance(self.scene.indenter, FlatPunch)
+        pulls = (0.0 if alone else self.density.edge_value) * left_by(thickness, points)
+        stresses, slopes, moved = _of_kinds(points.r, found)
+        of_edge = _of_kinds(points.r, edge)
+        # Displacements are multiplied by 2 G of the surface material.
+        yields = contact_modulus(layer) / (2.0 * layer.shear_modulus)
+        return Magnitudes(
+            stress=_of_both(stresses, pulls, of_edge[0]),
+            gradient=_of_both(slopes, pulls, of_edge[1]),
+            displacement=yields * _of_both(moved, pulls, of_edge[2]),
+            largest_stress=float(_largest(stresses).max(initial=0.0)),
+            largest_gradient=float(_largest(slopes).max(initial=0.0)),
+            gradient_terms=found["gradient_terms"],
+            displacement_terms=yields * found["displacement_terms"] / found["modulus"],
+            edge_stress=_largest(of_edge[0]),
+            edge_gradient=_largest(of_edge[1]),
+            edge_displacement=yields * _largest(of_edge[2]),
+            length=min(self.density.radius, thickness),
+            thickness=thickness,
+            depth=self.depth,
+            **{name: found[name] for name in LEFT_OUT if name in found},
         )
 
     @cached_property
@@ -105,8 +118,16 @@ class ContactInterior:
         return given[nearest], np.where(np.abs(beyond) <= _ROUNDED * ends, 0.0, beyond)
 
 
-def _displacement(found: Mapping[str, FloatArray], r: FloatArray) -> FloatArray:
-    return np.maximum(np.abs(found["hoop_strain"]) * r, np.abs(found["axial"]))
+def _of_both(whole: Mapping[str, FloatArray], pulls: FloatArray, edge: Mapping[str, FloatArray]) -> FloatArray:
+    """Largest sum of the magnitudes of the edge's part of some fields and of the rest, at each point."""
+    return _largest({name: np.abs(pulls * part) + np.abs(whole[name] - pulls * part) for name, part in edge.items()})
+
+
+def _of_kinds(r: FloatArray, found: Mapping[str, FloatArray]) -> tuple[dict[str, FloatArray], ...]:
+    """Stresses, gradient, and displacements times 2 G of the surface material."""
+    modulus = found.get("modulus", 1.0)
+    moved = {"radial": found["hoop_strain"] * r / modulus, "axial": found["axial"] / modulus}
+    return _stresses(found), {name: found[name] for name in _SLOPES}, moved
 
 
 def _stresses(found: Mapping[str, FloatArray]) -> dict[str, FloatArray]:
