@@ -9,9 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bem.layer_equation.inside.density import Density
-from bem.layer_equation.inside.fields import SURFACE
 from bem.layer_equation.inside.half_space_part import Points
-from contact.answer.inside import KnownContact
+from contact.answer.inside import SURFACE, KnownContact
 from contact.records.validation import FloatArray
 
 _EPS = float(np.finfo(float).eps)
@@ -65,6 +64,7 @@ class Magnitudes(NamedTuple):
         edge_stress: Largest stress under it, shape (n,).
         edge_gradient: The pressure's gradient under it, shape (n,).
         length: The smaller of contact radius and thickness.
+        tip_order: n of a profile that begins like r^n.
         thickness: Of the body, infinite for a half-space.
         depth: delta.
         left_out: Of stresses, what is left out of integrals over waves, shape (n,).
@@ -83,6 +83,7 @@ class Magnitudes(NamedTuple):
     edge_stress: FloatArray
     edge_gradient: FloatArray
     length: float
+    tip_order: float
     thickness: float
     depth: float
     left_out: FloatArray | float = 0.0
@@ -111,15 +112,16 @@ def stated_errors(
     grown = _DERIVATIVE * known.radius_error * a / found.length
     share = known.density_error + _QUADRATURE + grown
     lowest = np.maximum(z, SURFACE * a)
-    rims = [*(piece.start > 0.0 and piece.power > 1.0 for piece in density.pieces), True]
-    away = np.hypot(points.ends[rims], lowest).min(axis=0)
-    # The surface is looked at a little below.
+    # The surface is looked at a little below, where gradients are other ones beside rims and tips. Stresses change by
+    # what the gradient tells.
+    away = np.hypot(points.ends[_rims(density, found.tip_order)], lowest).min(axis=0)
     shifted = (lowest - z) * (1.0 / away + _DERIVATIVE / found.length)
+    below = (lowest - z) * (_DERIVATIVE / found.length * found.stress + _rises(found.tip_order) * found.gradient)
     edge = _of_edge(density, known, unit)
     felt = edge * left_by(found.thickness, points)
     # A rigid base throws back what arrives, so that stresses there are up to twice those of the half-space.
     thrown = (1.0 + points.z / found.thickness) * felt
-    stress = (share + shifted) * found.stress + thrown * found.edge_stress + rounding * mean + found.left_out
+    stress = share * found.stress + below + thrown * found.edge_stress + rounding * mean + found.left_out
     gradient = (_ALIKE * share + _DERIVATIVE * shifted) * found.gradient + thrown * found.edge_gradient
     gradient += _DERIVATIVE * rounding * mean / found.length
     # A radius that is off moves all fields by as much over the length, those where the gradient passes zero as well.
@@ -141,6 +143,21 @@ def stated_errors(
         "hydrostatic_pressure": stresses,
         "pressure_gradient": float(gradient.max(initial=0.0)) / steepest,
     }
+
+
+def _rims(density: Density, tip_order: float) -> list[bool]:
+    """Which ends of pieces the gradient is singular at: kinks, the edge, and a tip that is no parabola."""
+    kinks = (piece.power > 1.0 if piece.start > 0.0 else tip_order != 2.0 for piece in density.pieces)
+    return [*kinks, True]
+
+
+def _rises(tip_order: float) -> float:
+    """Change of stresses on the last way to the surface, over that way times the pressure's gradient at its beginning.
+
+    Stresses of a compressible body have three times the gradient of the hydrostatic pressure. They change like a power
+    of the way: at edges like its root, by twice the gradient, at a tip r^n like its power n - 1.
+    """
+    return 3.0 * max(2.0, 1.0 / (tip_order - 1.0) if tip_order > 1.0 else 0.0)
 
 
 def left_by(thickness: float, points: Points) -> FloatArray:

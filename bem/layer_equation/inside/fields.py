@@ -14,10 +14,9 @@ from bem.layer_equation.inside.density import Density
 from bem.layer_equation.inside.half_space_part import Integrals, Points, at_edge, integrals
 from bem.layer_equation.inside.half_space_part import fields as half_space_fields
 from bem.layer_equation.inside.layer_part import NAMES, layer_fields
+from contact.answer.inside import SURFACE
 from contact.records.validation import FloatArray
 
-# The surface itself is looked at this share of the contact radius below it: fields differ there by as much.
-SURFACE = 1e-11
 TERMS = ("gradient_terms", "displacement_terms")
 
 

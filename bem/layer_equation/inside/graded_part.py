@@ -16,11 +16,12 @@ from scipy.special import j0, j1
 from bem.kernels.graded import GradedKernel, logarithmic_slope
 from bem.kernels.inside import Transfer, half_space_transfer
 from bem.layer_equation.inside.errors import LEFT_OUT
-from bem.layer_equation.inside.fields import SURFACE, Body, sizes_of_displacement
+from bem.layer_equation.inside.fields import Body, sizes_of_displacement
 from bem.layer_equation.inside.graded_transfer import FADED, GradedTransfer
 from bem.layer_equation.inside.half_space_part import Points
 from bem.layer_equation.inside.layer_part import NAMES
 from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
+from contact.answer.inside import SURFACE
 from contact.records.validation import FloatArray
 
 # Largest wavenumber times the contact radius plus the distance from the axis. At the edge of a paraboloid's contact

@@ -15,13 +15,17 @@ from bem.layer_equation.inside.density import Density
 from bem.layer_equation.inside.errors import LEFT_OUT, Magnitudes, left_by, stated_errors
 from bem.layer_equation.inside.fields import Body
 from bem.layer_equation.inside.half_space_part import Points
-from contact import FlatPunch, GradedLayer, Scene
+from contact import FlatPunch, GradedLayer, InvalidInput, PowerLaw, Scene
 from contact.answer.inside import InsideFields, KnownContact
 from contact.records.validation import FloatArray
 
 # Relative distance within which an end of a piece is a rounded rim: the rim was divided by the unit, subtracted from
 # another one and multiplied again, which is four roundings.
 _ROUNDED = 4.0 * float(np.finfo(float).eps)
+# Contact radii from the contact of which stresses on a half-space, which fall like 1/r^2, are below all roundings; and
+# contact radii and thicknesses by which those on a layer, which fall exponentially, have vanished long ago, and which
+# take 0.05 s a point, in proportion to the distance; chosen.
+_REACH, _REACH_OF_WAVES = 1e8, 1e3
 _SLOPES = ("pressure_gradient_radial", "pressure_gradient_axial")
 
 
@@ -44,8 +48,13 @@ class ContactInterior:
     known: KnownContact
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
-        """At points [m] of shape (n,)."""
+        """At points [m] of shape (n,).
+
+        Raises:
+            InvalidInput: A point so far away that nothing is left to be resolved.
+        """
         layer, unit = self.scene.layer, self.unit
+        self._refuse_distant(radius, depth)
         modulus = contact_modulus(layer)
         points = Points(radius / unit, np.minimum(depth, layer.thickness) / unit, self.distances(radius))
         found = self._body.at(points)
@@ -59,6 +68,16 @@ class ContactInterior:
             **{name: modulus * values / unit for name, values in slopes.items()},
             error_estimate=stated_errors(self.density, points, self._sizes(points, found), self.known, unit),
         )
+
+    def _refuse_distant(self, radius: FloatArray, depth: FloatArray) -> None:
+        layer, a = self.scene.layer, self.known.radius
+        farthest = _REACH * a if layer.is_half_space else _REACH_OF_WAVES * (a + layer.thickness)
+        distant = np.flatnonzero(np.maximum(radius, depth) > farthest)
+        if distant.size:
+            r, z = radius[distant[0]], depth[distant[0]]
+            raise InvalidInput(
+                f"(r, z) = ({r:g}, {z:g}) m: nothing is left to resolve beyond {farthest:g} m; ask nearer"
+            )
 
     def _sizes(self, points: Points, found: Mapping[str, FloatArray]) -> Magnitudes:
         layer, unit = self.scene.layer, self.unit
@@ -83,10 +102,18 @@ class ContactInterior:
             edge_gradient=_largest(of_edge[1]),
             edge_displacement=yields * _largest(of_edge[2]),
             length=min(self.density.radius, thickness),
+            tip_order=self._tip_order,
             thickness=thickness,
             depth=self.depth,
             **{name: found[name] for name in LEFT_OUT if name in found},
         )
+
+    @property
+    def _tip_order(self) -> float:
+        indenter = self.scene.indenter
+        if isinstance(indenter, PowerLaw):
+            return indenter.exponent
+        return 1.0 if float(indenter.slope_at(0.0)) > 0.0 else 2.0
 
     @cached_property
     def _body(self) -> Body:
