@@ -135,9 +135,9 @@ class ContactInterior:
 
     @cached_property
     def _ends(self) -> tuple[FloatArray, FloatArray]:
-        """Where pieces of the density end: the nearest rim as it was given [m], and the way from there by the unit."""
+        """Where pieces of the density end: the axis or the nearest rim as given [m], and the way from it by the unit."""
         indenter, a = self.scene.indenter, self.density.radius
-        given = np.array([indenter.flat_radius, *indenter.breakpoints, self.known.radius])
+        given = np.array([0.0, indenter.flat_radius, *indenter.breakpoints, self.known.radius])
         ratios = np.append(given[:-1] / self.unit, a)
         ends = np.array([*(piece.start for piece in self.density.pieces), a])
         nearest = np.argmin(np.abs(np.subtract.outer(ends, ratios)), axis=1)

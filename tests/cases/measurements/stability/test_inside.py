@@ -8,7 +8,16 @@ from bem.layer_equation.one_radius import DirectDensity
 from cases.declare.methods import build
 from cases.measurements.campaigns.inside.campaign import inside_campaign
 from cases.measurements.campaigns.inside.referee import InsideReferee
-from contact import ContactRadii, Layer, Paraboloid, Scene, Sphere, TruncatedCone
+from contact import (
+    ContactRadii,
+    FlatPunch,
+    IndentationDepths,
+    Layer,
+    Paraboloid,
+    Scene,
+    Sphere,
+    TruncatedCone,
+)
 from mdr import Mdr
 
 
@@ -112,6 +121,22 @@ def test_stated_errors_of_displacements_are_sharp_under_punches_on_thin_layers()
     told = [row.sharpness for row in rows if row.quantity == "displacement" and row.sharpness is not None]
     assert len(told) >= 3
     assert np.median(told) <= 15.0
+
+
+@pytest.mark.parametrize("indenter", [FlatPunch(radius=0.17), TruncatedCone(flat_radius=0.11, slope=0.1)])
+def test_gradients_beside_the_axis_just_below_a_flat_end_keep_their_digits(indenter):
+    """Pieces began a rounding beside the axis: at 1e-6 a below 1e-10 of the gradient was off, 6e-14 stated."""
+    layer, a = Layer(thickness=0.1, youngs_modulus=0.75, poissons_ratio=0.5), 0.17
+    punch = isinstance(indenter, FlatPunch)
+    loading = IndentationDepths([1e-3]) if punch else ContactRadii([a])
+    inside = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=loading)).inside()
+    referee, modulus = InsideReferee(layer, indenter, a, depth=1e-3 if punch else None), layer.contact_modulus
+    slopes = ("pressure_gradient_radial", "pressure_gradient_axial")
+    for r, z in [(4e-9, 1e-4), (3.3e-9, 1e-6), (1.7e-6, 1e-6), (2.3e-7, 1e-7)]:
+        found, exact = inside.at(r * a, z * a), referee.at(r * a, z * a)
+        steepest = max(modulus * max(abs(exact[name]) for name in STRESSES) / layer.thickness, 1e-300)
+        error = apart(found, exact, slopes, modulus) / steepest
+        assert error <= found.error_estimate["pressure_gradient"], (r, z)
 
 
 def test_gradients_just_below_the_surface_are_stated_as_their_terms_are_rounded():
