@@ -275,8 +275,10 @@ def _draw_frame(axes: Axes, halves: Sequence[Half], note: str) -> None:
 def _interfaces(half: Half) -> list[float]:
     """Depths [m] of a stack's interfaces within the section."""
     layer = half.path.scene.layer
-    parts = [part.thickness for part in layer.sublayers] if isinstance(layer, LayerStack) else []
-    return [depth for depth in np.cumsum(parts)[:-1].tolist() if depth < half.depth.max()]
+    if not isinstance(layer, LayerStack):
+        return []
+    faces = np.cumsum([part.thickness for part in layer.sublayers])[:-1]
+    return [depth for depth in faces.tolist() if depth < half.depth.max()]
 
 
 def _name_sides(axes: Axes, halves: Sequence[Half]) -> None:

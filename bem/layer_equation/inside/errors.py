@@ -55,6 +55,7 @@ class Magnitudes(NamedTuple):
     Attributes:
         stress: Largest of the stresses at each point, shape (n,).
         displacement: Larger of the two displacements, shape (n,).
+        yields: E* over 2 G there, shape (n,).
         gradient: Of the pressure's gradient, shape (n,).
         largest_stress: Of all points, of both parts together.
         largest_gradient: The same of the gradient.
@@ -73,6 +74,7 @@ class Magnitudes(NamedTuple):
     """
 
     displacement: FloatArray
+    yields: FloatArray
     stress: FloatArray
     gradient: FloatArray
     largest_stress: float
@@ -134,11 +136,14 @@ def stated_errors(
     own = _MOVED * known.density_error + _QUADRATURE + grown
     moved = own * found.displacement + felt * found.edge_displacement + found.displacement_left_out
     moved += _ROUNDINGS * _EPS * found.displacement_terms
-    surface = float((lowest - z).max(initial=0.0)) / found.length
+    # Beside a rim stresses are of the size of their gradient times its distance, though some vanish on the surface, and
+    # so are tilts; elsewhere tilts are of the size of the depth over a length.
+    strain = found.yields * (found.stress + np.minimum(away, found.length) * found.gradient)
+    moved += (lowest - z) * (_rises(found.tip_order) * strain + _DERIVATIVE * abs(found.depth) / found.length)
     steepest = max(found.largest_gradient, largest / found.length)
     stresses = float(stress.max(initial=0.0)) / largest
     return {
-        "displacement": float(moved.max(initial=0.0)) / abs(found.depth) + _QUADRATURE + surface,
+        "displacement": float(moved.max(initial=0.0)) / abs(found.depth) + _QUADRATURE,
         "stress": stresses,
         "hydrostatic_pressure": stresses,
         "pressure_gradient": float(gradient.max(initial=0.0)) / steepest,

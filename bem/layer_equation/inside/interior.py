@@ -92,6 +92,7 @@ class ContactInterior:
         yields = contact_modulus(layer) / (2.0 * layer.shear_modulus)
         return Magnitudes(
             stress=_of_both(stresses, pulls, of_edge[0]),
+            yields=yields / found["modulus"],
             gradient=_of_both(slopes, pulls, of_edge[1]),
             displacement=yields * _of_both(moved, pulls, of_edge[2]),
             largest_stress=float(_largest(stresses).max(initial=0.0)),
@@ -135,7 +136,7 @@ class ContactInterior:
 
     @cached_property
     def _ends(self) -> tuple[FloatArray, FloatArray]:
-        """Where pieces of the density end: the axis or the nearest rim as given [m], and the way from it by the unit."""
+        """Where pieces of the density end: the axis or the nearest rim as given [m], and the way on by the unit."""
         indenter, a = self.scene.indenter, self.density.radius
         given = np.array([0.0, indenter.flat_radius, *indenter.breakpoints, self.known.radius])
         ratios = np.append(given[:-1] / self.unit, a)

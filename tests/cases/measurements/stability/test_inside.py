@@ -6,12 +6,14 @@ import pytest
 from bem.layer_equation.inside.smooth_slope import smooth_slope
 from bem.layer_equation.one_radius import DirectDensity
 from cases.declare.methods import build
-from cases.measurements.campaigns.inside.campaign import inside_campaign
+from cases.measurements.campaigns.inside import referee
+from cases.measurements.campaigns.inside.campaign import inside_campaign, random_inside
 from cases.measurements.campaigns.inside.referee import InsideReferee
 from contact import (
     ContactRadii,
     FlatPunch,
     IndentationDepths,
+    InvalidInput,
     Layer,
     Paraboloid,
     Scene,
@@ -31,6 +33,36 @@ def test_points_of_random_contacts_lie_within_their_stated_errors(nodes):
     rows = inside_campaign(build("mdr", {"nodes": nodes}), seed=8, count=3)
     assert beyond(rows) == []
     assert [row.reason for row in rows if row.reason] == []
+
+
+@pytest.mark.parametrize(("seed", "count"), [(501, 4), pytest.param(502, 60, marks=pytest.mark.slow)])
+def test_the_surface_itself_lies_within_its_stated_errors(seed, count, monkeypatch):
+    """Methods look 1e-11 a below, the referee here 1e-18 a: displacements beside edges were up to 600 times beyond."""
+    monkeypatch.setattr(referee, "_SURFACE", 1e-18)
+    for number in range(count):
+        draw = np.random.default_rng([seed, number])
+        scene, exact = random_inside(draw)
+        inside, a = Mdr().solve(scene).inside(), exact.contact_radius
+        for rim in (0.0, a, *(kink for kink in scene.indenter.kinks if kink < a)):
+            r = abs(rim + a * 10 ** draw.uniform(-10.6, -0.5) * draw.integers(-1, 2))
+            z = draw.integers(2) * a * 10 ** draw.uniform(-14.0, -9.0)
+            try:
+                found = inside.at(r, z)
+            except InvalidInput:
+                assert abs(rim - r) < 1e-11 * a
+                continue
+            assert_within(found, exact, (r, z))
+
+
+def assert_within(found, exact, point):
+    """Stresses over the largest of this point, displacements over the depth."""
+    layer, true = exact.layer, exact.at(*point)
+    largest = max(abs(float(getattr(found, name))) for name in STRESSES)
+    error = apart(found, true, (*STRESSES, "hydrostatic_pressure"), layer.contact_modulus)
+    assert error <= found.error_estimate["stress"] * largest, point
+    yields = layer.contact_modulus / (2.0 * layer.shear_modulus)
+    error = apart(found, true, ("radial_displacement", "axial_displacement"), yields)
+    assert error <= found.error_estimate["displacement"] * exact.indentation_depth, point
 
 
 @pytest.mark.slow
@@ -143,10 +175,10 @@ def test_gradients_just_below_the_surface_are_stated_as_their_terms_are_rounded(
     """Terms cancel by the root of the depth; positions counted from afar made sixty roundings of them needful."""
     indenter = Paraboloid(radius_of_curvature=20.0)
     inside = Mdr().solve(Scene(layer=HALF_SPACE, indenter=indenter, loading=ContactRadii([1.0]))).inside()
-    referee, modulus = InsideReferee(HALF_SPACE, indenter, 1.0), HALF_SPACE.contact_modulus
+    exact_at, modulus = InsideReferee(HALF_SPACE, indenter, 1.0).at, HALF_SPACE.contact_modulus
     slopes, told = ("pressure_gradient_radial", "pressure_gradient_axial"), []
     for r, z in zip(np.linspace(0.1, 0.95, 24), np.geomspace(1e-7, 1e-5, 24), strict=True):
-        found, exact = inside.at(r, z), referee.at(r, z)
+        found, exact = inside.at(r, z), exact_at(r, z)
         steepest = modulus * max(abs(exact[name]) for name in (*slopes, *STRESSES))
         error = apart(found, exact, slopes, modulus) / steepest
         assert error <= found.error_estimate["pressure_gradient"], (r, z)
