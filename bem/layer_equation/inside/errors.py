@@ -66,6 +66,7 @@ class Magnitudes(NamedTuple):
         edge_gradient: The pressure's gradient under it, shape (n,).
         length: The smaller of contact radius and thickness.
         tip_order: n of a profile that begins like r^n.
+        tilt: Slope of the indenter at the edge of the contact.
         thickness: Of the body, infinite for a half-space.
         depth: delta.
         left_out: Of stresses, what is left out of integrals over waves, shape (n,).
@@ -86,6 +87,7 @@ class Magnitudes(NamedTuple):
     edge_gradient: FloatArray
     length: float
     tip_order: float
+    tilt: float
     thickness: float
     depth: float
     left_out: FloatArray | float = 0.0
@@ -137,9 +139,10 @@ def stated_errors(
     moved = own * found.displacement + felt * found.edge_displacement + found.displacement_left_out
     moved += _ROUNDINGS * _EPS * found.displacement_terms
     # Beside a rim stresses are of the size of their gradient times its distance, though some vanish on the surface, and
-    # so are tilts; elsewhere tilts are of the size of the depth over a length.
+    # so are tilts; elsewhere tilts are of the size of the depth over a length, at the edge that of the indenter.
     strain = found.yields * (found.stress + np.minimum(away, found.length) * found.gradient)
-    moved += (lowest - z) * (_rises(found.tip_order) * strain + _DERIVATIVE * abs(found.depth) / found.length)
+    tilt = found.tilt + _DERIVATIVE * abs(found.depth) / found.length
+    moved += (lowest - z) * (_rises(found.tip_order) * strain + tilt)
     steepest = max(found.largest_gradient, largest / found.length)
     stresses = float(stress.max(initial=0.0)) / largest
     return {

@@ -104,10 +104,16 @@ class ContactInterior:
             edge_displacement=yields * _largest(of_edge[2]),
             length=min(self.density.radius, thickness),
             tip_order=self._tip_order,
+            tilt=self._tilt,
             thickness=thickness,
             depth=self.depth,
             **{name: found[name] for name in LEFT_OUT if name in found},
         )
+
+    @property
+    def _tilt(self) -> float:
+        indenter = self.scene.indenter
+        return float(indenter.slope_at(np.nextafter(min(self.known.radius, indenter.max_radius), 0.0)))
 
     @property
     def _tip_order(self) -> float:

@@ -35,7 +35,7 @@ def test_points_of_random_contacts_lie_within_their_stated_errors(nodes):
     assert [row.reason for row in rows if row.reason] == []
 
 
-@pytest.mark.parametrize(("seed", "count"), [(501, 4), pytest.param(502, 60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(("seed", "count"), [(501, 2), pytest.param(502, 60, marks=pytest.mark.slow)])
 def test_the_surface_itself_lies_within_its_stated_errors(seed, count, monkeypatch):
     """Methods look 1e-11 a below, the referee here 1e-18 a: displacements beside edges were up to 600 times beyond."""
     monkeypatch.setattr(referee, "_SURFACE", 1e-18)
