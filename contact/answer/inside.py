@@ -20,6 +20,11 @@ from contact.scene.scene import Scene
 
 Searched: TypeAlias = Literal["von_mises", "interface_shear"]
 
+# The surface is looked at this share of the contact radius below it, and points as close to a sharp rim count as on it.
+SURFACE = 1e-11
+# Points deeper than a layer by so many roundings of its thickness lie on its base.
+_ROUNDED = 4.0 * float(np.finfo(float).eps)
+_KINDS = ("displacement", "stress", "hydrostatic_pressure", "pressure_gradient")
 # Points of the first look in r and z.
 _SAMPLES = 40
 # Where the surface has rims, the search for von Mises stresses begins this share of the contact radius below; chosen.
@@ -120,21 +125,21 @@ class Inside:
         """Fields at points [m] of any shape, depth counted from the undeformed surface.
 
         Raises:
-            InvalidInput: A point outside the layer, or where a stress is infinite.
+            InvalidInput: A point outside the layer, or where a stress is infinite; no numbers, or shapes that differ.
         """
-        r, z = np.broadcast_arrays(np.asarray(radius, dtype=np.float64), np.asarray(depth, dtype=np.float64))
+        r, z = _together(_numbers("radius", radius), _numbers("depth", depth))
         if not np.all(np.isfinite(r) & (r >= 0.0)):
             raise InvalidInput(f"radius = {_worst(r, 0.0, np.inf):g}: radii must be finite and not negative")
         thickness = self.scene.layer.thickness
-        outside = ~(np.isfinite(z) & (z >= 0.0) & (z <= thickness))
+        outside = ~(np.isfinite(z) & (z >= 0.0) & (z <= thickness * (1.0 + _ROUNDED)))
         if np.any(outside):
             worst = float(z[outside].flat[0])
-            raise InvalidInput(f"depth = {worst:g}: points must lie in the layer, between 0 and {thickness:g} m")
-        infinite = r[(z == 0.0) & np.isin(r, self._rims)]
-        if infinite.size:
-            raise InvalidInput(
-                f"radius = {infinite[0]:g} m, depth = 0: stresses are infinite at this sharp rim; ask beside it"
-            )
+            raise InvalidInput(f"depth = {worst:.15g}: points must lie in the layer, between 0 and {thickness:.15g} m")
+        z = np.minimum(z, thickness)
+        self._refuse_sharp_rims(r, z)
+        if not r.size:
+            nothing = {f.name: np.zeros(r.shape) for f in fields(InsideFields) if f.name != "error_estimate"}
+            return InsideFields(**nothing, error_estimate=dict.fromkeys(_KINDS, 0.0))
         found = self.fields.at(r.ravel(), z.ravel())
         arrays = {f.name: getattr(found, f.name).reshape(r.shape) for f in fields(found) if f.name != "error_estimate"}
         return InsideFields(**arrays, error_estimate=found.error_estimate)
@@ -167,6 +172,16 @@ class Inside:
         found = [largest_in(box, [r, np.full_like(r, box.low[1])], self._shear) for box in boxes]
         return max(found, key=lambda extreme: extreme.value)
 
+    def _refuse_sharp_rims(self, r: FloatArray, z: FloatArray) -> None:
+        closest = SURFACE * self.contact_radius
+        for rim in self._rims:
+            infinite = np.hypot(r - rim, z) < closest
+            if np.any(infinite):
+                raise InvalidInput(
+                    f"radius = {r[infinite].flat[0]:g} m, depth = {z[infinite].flat[0]:g}: stresses are infinite at "
+                    f"this sharp rim; ask beside it, at least {closest:g} m away"
+                )
+
     def _shear(self, r: FloatArray, z: FloatArray) -> FloatArray:
         return np.abs(self.fields.at(r, z).shear_stress)
 
@@ -197,6 +212,30 @@ class Inside:
                 f'largest("von_mises"): it is infinite at the rim r = {rims[-1]:g} m of the surface; ask for '
                 "fields at points of interest"
             )
+
+
+def _numbers(name: str, given: ArrayLike) -> FloatArray:
+    """Real numbers as an array, not yet known to be finite."""
+    if np.ma.is_masked(given):
+        raise InvalidInput(f"{name}: masked entries have no value; leave them out")
+    try:
+        values = np.asarray(given)
+    except ValueError:
+        values = np.array(None)
+    if values.dtype.kind not in "iuf":
+        raise InvalidInput(f"{name} = {given!r:.60}: must be a number of metres, or an array of numbers")
+    return values.astype(np.float64)
+
+
+def _together(radius: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
+    try:
+        r, z = np.broadcast_arrays(radius, depth)
+    except ValueError:
+        raise InvalidInput(
+            f"radius of shape {radius.shape}, depth of shape {depth.shape}: give both one shape, or shapes that numpy "
+            "broadcasts together"
+        ) from None
+    return r, z
 
 
 def _worst(values: FloatArray, low: float, high: float) -> float:

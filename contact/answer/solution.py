@@ -456,5 +456,7 @@ def _frozen(name: str, values: ArrayLike, method: str) -> FloatArray:
 
 
 def _refuse_step(step: int, count: int) -> None:
-    if not -count <= step < count:
+    # A whole number as Python or numpy have it, but no truth value.
+    is_whole = isinstance(step, int | np.integer) and not isinstance(step, bool)
+    if not (is_whole and -count <= step < count):
         raise InvalidInput(f"step = {step}: this path has steps 0 to {count - 1}")

@@ -18,7 +18,7 @@ from matplotlib.figure import Figure as Drawing
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from contact import ContactPath, InvalidInput, Solution
+from contact import ContactPath, InvalidInput, LayerStack, Solution
 from contact.answer.inside import InsideFields
 from contact.files.layer_table import kind_of
 from contact.records.validation import FloatArray
@@ -32,7 +32,7 @@ POINTS = (200, 100)
 WIDTH, LEAST_HEIGHT, MOST_HEIGHT, BESIDE_MAP = 5.6, 0.95, 2.4, 0.85
 # The largest displacement is drawn as about this share of the section's depth.
 DRAWN_SHARE = 0.12
-# Colours end at this share of all values, since stresses may be infinite at rims.
+# Colours leave out the rest of all values, at either end, since stresses may be infinite at rims.
 SHARE_OF_COLOURS = 0.995
 # Decades of the differences: further down only zeros of the difference would be seen.
 DECADES = 3
@@ -144,15 +144,16 @@ def _headline(halves: Sequence[Half], *, compared: bool) -> str:
     return (
         f"{kind_of(type(scene.indenter)).replace('_', ' ')} on a {scene.layer.title}, {radius}\n"
         f"error over the largest stress, as stated: {', '.join(stated)}\n"
-        f"thick line: contact; displacements drawn {size}"
+        f"thick line: contact; {'dotted: interfaces; ' if _interfaces(left) else ''}displacements drawn {size}"
     )
 
 
 def _draw_map(axes: Axes, halves: Sequence[Half], value: Value, title: str) -> None:
     values = [value(half.fields) for half in halves]
-    top = float(np.quantile(np.concatenate([one.ravel() for one in values]), SHARE_OF_COLOURS))
+    together = np.concatenate([one.ravel() for one in values])
+    bottom, top = np.quantile(together, [1.0 - SHARE_OF_COLOURS, SHARE_OF_COLOURS]).tolist()
     factor, prefix = prefix_for(np.array([top]))
-    low = min(0.0, float(min(one.min() for one in values)) / factor)
+    low = min(0.0, bottom / factor)
     norm = Normalize(low, top / factor)
     steps = MaxNLocator(6).tick_values(low, top / factor)[1:-1]
     for half, one in zip(halves, values, strict=True):
@@ -161,7 +162,7 @@ def _draw_map(axes: Axes, halves: Sequence[Half], value: Value, title: str) -> N
         if half.side < 0:
             _label(axes, lines, half)
     axes.set_title(title)
-    _bar(axes, mesh, f"[{prefix}Pa]")
+    _bar(axes, mesh, f"[{prefix}Pa]", extend="both" if low < 0.0 else "max")
 
 
 def _label(axes: Axes, lines: QuadContourSet, half: Half) -> None:
@@ -246,6 +247,9 @@ def _draw_frame(axes: Axes, halves: Sequence[Half], note: str) -> None:
         axes.plot(x[0], y[0], color=BLACK, linewidth=0.8)
         touching = one.radius[0] <= one.path.contact_radius[-1]
         axes.plot(x[0, touching], y[0, touching], color=BLACK, linewidth=2.4, solid_capstyle="butt")
+        for depth in _interfaces(one):
+            moved = [[np.interp(depth, one.depth[:, 0], column) for column in place.T] for place in (x, y)]
+            axes.plot(*moved, color=BLACK, linewidth=0.9, linestyle=":")
     indenter, delta = half.path.scene.indenter, float(half.path.indentation_depth[-1])
     r = np.linspace(0.0, min(half.radius.max(), indenter.max_radius), 400)
     outline = half.enlarged * (delta - indenter.height(r)) / unit
@@ -266,6 +270,15 @@ def _draw_frame(axes: Axes, halves: Sequence[Half], note: str) -> None:
     axes.yaxis.set_major_locator(MaxNLocator(4))
     axes.set_box_aspect(_height(half) / (WIDTH - 1.4))
     axes.grid(visible=False)
+
+
+def _interfaces(half: Half) -> list[float]:
+    """Depths [m] of a stack's interfaces within the section."""
+    layer = half.path.scene.layer
+    if not isinstance(layer, LayerStack):
+        return []
+    faces = np.cumsum([part.thickness for part in layer.sublayers])[:-1]
+    return [depth for depth in faces.tolist() if depth < half.depth.max()]
 
 
 def _name_sides(axes: Axes, halves: Sequence[Half]) -> None:

@@ -16,11 +16,12 @@ from scipy.special import j0, j1
 from bem.kernels.graded import GradedKernel, logarithmic_slope
 from bem.kernels.inside import Transfer, half_space_transfer
 from bem.layer_equation.inside.errors import LEFT_OUT
-from bem.layer_equation.inside.fields import SURFACE, Body
+from bem.layer_equation.inside.fields import Body, sizes_of_displacement
 from bem.layer_equation.inside.graded_transfer import FADED, GradedTransfer
 from bem.layer_equation.inside.half_space_part import Points
 from bem.layer_equation.inside.layer_part import NAMES
 from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
+from contact.answer.inside import SURFACE
 from contact.records.validation import FloatArray
 
 # Largest wavenumber times the contact radius plus the distance from the axis. At the edge of a paraboloid's contact
@@ -62,6 +63,7 @@ class GradedBody(Body):
         slopes = 1.0 + layer.ratio_at(z), 1.0 + float(layer.ratio_at(0.0))
         modulus = layer.youngs_modulus.at(z, 1.0) / float(layer.youngs_modulus.at(0.0, 1.0)) * slopes[1] / slopes[0]
         total = {name: found.get(name, 0.0) + values for name, values in added.items()}
+        total["displacement_terms"] = sizes_of_displacement(points.r, found, added)
         return found | total | {"modulus": np.asarray(modulus)}
 
     @cached_property
