@@ -22,12 +22,7 @@ from bem.layer_equation.one_factorisation import (
     VolterraFactor,
     edge_resolvents,
 )
-<<<<<<< HEAD
 from bem.layer_equation.profiles.edge_values import filled_panels, gain_within
-from bem.layer_equation.triangular import equation_factor
-=======
-from bem.layer_equation.profiles.edge_values import filled_panels
->>>>>>> w22a
 from bem.polynomials.gauss_panels import (
     chebyshev_from_nodes,
     gauss_nodes,
