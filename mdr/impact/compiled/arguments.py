@@ -26,6 +26,7 @@ def equations_of(problem: Motion) -> Equations:
     if isinstance(problem, Receding) and problem.memory is not None:
         inverse, powers = problem.memory.within(problem.step, np.arange(lanes.count))
     numbers = _numbers(lanes, lanes.units[6:], lanes.units[:_ROWS], *inverse)
+    powers = np.ascontiguousarray(powers[..., ::-1])
     kind = PRESSING if isinstance(problem, Pressing) else RECEDING
     return Equations(kind, numbers, _branches(lanes), powers, *_panels(lanes.table, problem.section))
 
@@ -44,4 +45,4 @@ def _panels(table: SpringTable, section: int) -> tuple[FloatArray, FloatArray]:
     """Ends, centres and scales of a section's panels, and their powers."""
     functions, own = table.functions, slice(*table.section_panels[section : section + 2])
     panels = np.stack([functions.edges[1:][own], functions.centres[own], functions.scales[own]], axis=1)
-    return panels, np.ascontiguousarray(functions.powers[:, :_ROWS, own].transpose(2, 0, 1))
+    return panels, np.ascontiguousarray(functions.powers[::-1, :_ROWS, own].transpose(2, 0, 1))

@@ -64,12 +64,12 @@ def integrate(
         task = _walk(problem, state, course, events, lengths=(first_step, tolerance), room=room)
         # A trial step far too long overflows.
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            ended = walk.walked(task)
-        if not np.any(ended == walk.FULL):
+            walk.walked(task)
+        if not np.any(task.ended == walk.FULL):
             break
         room *= _MORE
     found = _trajectory(task)
-    left = np.flatnonzero(ended == walk.LEFT)
+    left = np.flatnonzero(task.ended == walk.LEFT)
     if not left.size:
         return found
     others = tuple(EndCondition(event.component, event.target[left], event.direction) for event in events)
@@ -109,11 +109,12 @@ def _walk(
     room: int,
 ) -> walk.Walk:
     """What the walk takes, with copies of all that it changes; lengths are the first step's and the tolerance."""
-    count, lanes = state.shape
+    (count, lanes), stages = state.shape, collocation_step.STAGES
     row, speed, clock = problem.chain
     first_step, tolerance = lengths
+    equations = equations_of(problem)
     return walk.Walk(
-        equations=equations_of(problem),
+        equations=equations,
         rule=_RULE,
         control=_CONTROL,
         chain=(row, speed, -1 if clock is None else clock),
@@ -124,7 +125,13 @@ def _walk(
         lengths=np.array([first_step, course.size, course.origin, np.zeros(lanes), tolerance]).T.copy(),
         counts=np.zeros((lanes, 3), dtype=np.intp),
         starts=np.zeros((count, room, lanes)),
-        steps=np.zeros((collocation_step.STAGES + 1, count, room, lanes)),
+        steps=np.zeros((stages + 1, count, room, lanes)),
+        ended=np.zeros(lanes, dtype=np.intp),
+        bench=np.empty((3, count, stages)),
+        rows=np.empty((2, count)),
+        powers=np.empty(stages + 1),
+        springs=np.empty((5, stages)),
+        recalled=np.empty((equations.memory.shape[1], stages)),
     )
 
 

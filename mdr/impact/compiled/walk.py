@@ -46,8 +46,17 @@ def _compilers() -> tuple[Callable[[F], F], Callable[[F], F]]:
         return _plain, _plain
     njit = importlib.import_module("numba").njit
     # Division by zero gives infinity, as it does in NumPy.
-    inner: Callable[[F], F] = njit(error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True)
-    outer: Callable[[F], F] = njit(error_model="numpy", no_cfunc_wrapper=True, cache=True)
+    inner: Callable[[F], F] = njit(
+        error_model="numpy",
+        fastmath={"contract"},
+        forceinline=True,
+        _nrt=False,
+        no_cpython_wrapper=True,
+        no_cfunc_wrapper=True,
+    )
+    outer: Callable[[F], F] = njit(
+        error_model="numpy", fastmath={"contract"}, _nrt=False, no_cfunc_wrapper=True, cache=True
+    )
     return inner, outer
 
 
@@ -61,9 +70,9 @@ class Equations(NamedTuple):
         kind: PRESSING, RECEDING or FLAT.
         numbers: Of each lane, shape (lanes, 13).
         branches: G_j / G_0, and the unit of time over tau_j, shape (lanes, 2, branches).
-        memory: Powers of its argument, shape (lanes, rows, 16).
+        memory: Powers of its argument, the highest first, shape (lanes, rows, 16).
         panels: End, centre and scale of each panel of the table, shape (panels, 3).
-        powers: Of z on each panel for g, dg/dy, k, dk/dy, P, shape (panels, 17, 5).
+        powers: Of z on each panel, the highest first, for g, dg/dy, k, dk/dy, P, shape (panels, 17, 5).
     """
 
     kind: int
@@ -110,6 +119,12 @@ class Walk(NamedTuple):
         counts: Of steps and sweeps, and the event at the end, shape (lanes, 3).
         starts: As in `Trajectory`, shape (m, room, lanes).
         steps: As in `Trajectory`, shape (11, m, room, lanes).
+        ended: How each lane ended, shape (lanes,).
+        bench: To work on: states, slopes and new slopes at the stages, shape (3, m, 10).
+        rows: To work on: a state at the end, and the precision, shape (2, m).
+        powers: To work on, shape (11,).
+        springs: To work on: rows of the table at the stages, shape (5, 10).
+        recalled: To work on: rows of the memory at the stages, shape (rows, 10).
     """
 
     equations: Equations
@@ -124,6 +139,12 @@ class Walk(NamedTuple):
     counts: IntArray
     starts: FloatArray
     steps: FloatArray
+    ended: IntArray
+    bench: FloatArray
+    rows: FloatArray
+    powers: FloatArray
+    springs: FloatArray
+    recalled: FloatArray
 
 
 class _Landing(NamedTuple):
@@ -143,38 +164,34 @@ class _Trial(NamedTuple):
 
 
 @called
-def walked(walk: Walk) -> IntArray:
-    """Advance every lane to its first event; how each of them ended."""
-    lanes, count, stages = walk.heading.shape
-    ended = np.empty(lanes, dtype=np.intp)
-    bench = np.empty((3, count, stages))
-    for lane in range(lanes):
-        ended[lane] = _lane(walk, bench, lane)
-    return ended
+def walked(walk: Walk) -> None:
+    """Advance every lane to its first event."""
+    for lane in range(walk.ended.size):
+        walk.ended[lane] = _lane(walk, lane)
 
 
 @loops
-def _lane(walk: Walk, bench: FloatArray, lane: int) -> int:
+def _lane(walk: Walk, lane: int) -> int:
     """One lane to its event."""
-    lengths, counts, due = walk.lengths[lane], walk.counts[lane], -1
+    lengths, counts, slopes, end, due = walk.lengths[lane], walk.counts[lane], walk.bench[1], walk.rows[0], -1
     for _ in range(walk.control.trials):
-        if not _completed(walk, bench, lane):
+        if not _completed(walk, lane):
             return LEFT
         landing = _landing(walk, lane, due)
-        trial = _swept(walk, bench, landing, lane)
+        trial = _swept(walk, landing, lane)
         if not np.isfinite(trial.error) and trial.aim < walk.control.stiff:
             return LEFT
         due, kept = -1, trial.error <= 1.0
         if kept:
-            end = _end(walk, bench[1], landing, trial.size, lane)
+            _end(walk, landing, trial.size, lane)
             due = _first_event(walk, lane, end, landing.due)
             kept = due < 0
             if kept and counts[STEPS] == walk.starts.shape[1]:
                 return FULL
             if kept:
-                _keep(walk, bench[1], trial.size, end, lane)
+                _keep(walk, trial.size, lane)
                 lengths[ERROR] += lengths[TOLERANCE] * (trial.error + walk.control.sweep_tolerance)
-        _follow(walk.rule, bench[1], walk.heading[lane], trial, kept)
+        _follow(walk.rule, slopes, walk.heading[lane], trial, kept)
         landed = kept and landing.due >= 0
         lengths[NEXT] = _next_size(walk.control, lengths[NEXT], trial, due, landed)
         lengths[LAST], lengths[ORIGIN] = trial.size, 1.0 if kept else -1.0
@@ -185,16 +202,16 @@ def _lane(walk: Walk, bench: FloatArray, lane: int) -> int:
 
 
 @loops
-def _completed(walk: Walk, bench: FloatArray, lane: int) -> bool:
+def _completed(walk: Walk, lane: int) -> bool:
     """Constant slopes where there was no earlier step; whether all are finite."""
-    heading = walk.heading[lane]
+    heading, states, new = walk.heading[lane], walk.bench[0], walk.bench[2]
     if np.isnan(heading[0, 0]):
         for c in range(heading.shape[0]):
             for i in range(heading.shape[1]):
-                bench[0, c, i], heading[c, i] = walk.state[lane, c], 0.0
-        _slopes(walk.equations, lane, bench[0], bench[1])
+                states[c, i], heading[c, i] = walk.state[lane, c], 0.0
+        _slopes(walk, lane, new)
         for c in range(heading.shape[0]):
-            heading[c, 0] = bench[1, c, 0]
+            heading[c, 0] = new[c, 0]
         walk.lengths[lane, ORIGIN] = -1.0
     for c in range(heading.shape[0]):
         for k in range(heading.shape[1]):
@@ -207,7 +224,8 @@ def _completed(walk: Walk, bench: FloatArray, lane: int) -> bool:
 def _landing(walk: Walk, lane: int, due: int) -> _Landing:
     """The event that is due, or the one that the next step nearly reaches if the course holds."""
     if due < 0:
-        due = _first_event(walk, lane, _ahead(walk, lane), -1)
+        _ahead(walk, lane, walk.rows[0])
+        due = _first_event(walk, lane, walk.rows[0], -1)
     if due < 0:
         return _Landing(-1, 0, 0.0)
     component = walk.events[due, 0]
@@ -215,9 +233,8 @@ def _landing(walk: Walk, lane: int, due: int) -> _Landing:
 
 
 @loops
-def _ahead(walk: Walk, lane: int) -> FloatArray:
+def _ahead(walk: Walk, lane: int, end: FloatArray) -> None:
     """The state a little more than a step ahead if the course holds."""
-    end: FloatArray = walk.state[lane].copy()
     heading, lengths = walk.heading[lane], walk.lengths[lane]
     far = lengths[ORIGIN] + 2.0 * lengths[NEXT] / lengths[LAST]
     for c in range(end.size):
@@ -226,8 +243,7 @@ def _ahead(walk: Walk, lane: int) -> FloatArray:
             way += heading[c, k] * (ahead - behind) / (k + 1.0)
             ahead *= far
             behind *= lengths[ORIGIN]
-        end[c] += walk.control.almost * 0.5 * lengths[LAST] * way
-    return end
+        end[c] = walk.state[lane, c] + walk.control.almost * 0.5 * lengths[LAST] * way
 
 
 @loops
@@ -278,19 +294,19 @@ def _lengthened(control: Control, size: float, miss: float) -> float:
 
 
 @loops
-def _swept(walk: Walk, bench: FloatArray, landing: _Landing, lane: int) -> _Trial:
+def _swept(walk: Walk, landing: _Landing, lane: int) -> _Trial:
     """Sweep until no stage moves; the error is infinite where that fails."""
-    control, before, slopes = walk.control, np.inf, bench[1]
+    control, before = walk.control, np.inf
+    slopes, new, precision = walk.bench[1], walk.bench[2], walk.rows[1]
     aim = size = _aimed(walk, landing, lane)
     _guess(walk, slopes, size, lane)
-    precision = walk.state[lane].copy()
     for c in range(precision.size):
-        precision[c] = walk.lengths[lane, TOLERANCE] * max(1.0, abs(precision[c]))
+        precision[c] = walk.lengths[lane, TOLERANCE] * max(1.0, abs(walk.state[lane, c]))
     for sweep in range(1, control.sweeps + 1):
         walk.counts[lane, SWEEPS] += 1
-        _states(walk, bench, size, lane)
-        _slopes(walk.equations, lane, bench[0], bench[2])
-        change = aim * _largest_change(slopes, bench[2], precision)
+        _states(walk, size, lane)
+        _slopes(walk, lane, new)
+        change = aim * _largest_change(slopes, new, precision)
         if landing.due >= 0:
             miss, weight = _miss(walk.rule, slopes, precision, landing, size)
             size = _lengthened(control, size, miss)
@@ -311,15 +327,15 @@ def _guess(walk: Walk, slopes: FloatArray, size: float, lane: int) -> None:
         z = walk.lengths[lane, ORIGIN] + share * (1.0 + walk.rule[i, POINTS])
         for c in range(slopes.shape[0]):
             value = 0.0
-            for k in range(heading.shape[1] - 1, -1, -1):
-                value = value * z + heading[c, k]
+            for k in range(heading.shape[1]):
+                value = value * z + heading[c, heading.shape[1] - 1 - k]
             slopes[c, i] = value
 
 
 @loops
-def _states(walk: Walk, bench: FloatArray, size: float, lane: int) -> None:
+def _states(walk: Walk, size: float, lane: int) -> None:
     """At the stages; a chained component from the newest of its speed."""
-    start, states, slopes, rate = walk.state[lane], bench[0], bench[1], bench[2, 0]
+    start, states, slopes, rate = walk.state[lane], walk.bench[0], walk.bench[1], walk.bench[2, 0]
     row, speed, clock = walk.chain
     for c in range(start.size):
         _spread(walk.rule, STAGES, slopes[c], states[c])
@@ -392,26 +408,25 @@ def _error(rule: FloatArray, slopes: FloatArray, precision: FloatArray, size: fl
 
 
 @loops
-def _end(walk: Walk, slopes: FloatArray, landing: _Landing, size: float, lane: int) -> FloatArray:
+def _end(walk: Walk, landing: _Landing, size: float, lane: int) -> None:
     """State at the end of a step, exactly on its event where there is one."""
-    end: FloatArray = walk.state[lane].copy()
+    end, slopes = walk.rows[0], walk.bench[1]
     for c in range(end.size):
-        end[c] += size * _term(walk.rule, ENDS, slopes[c])
+        end[c] = walk.state[lane, c] + size * _term(walk.rule, ENDS, slopes[c])
     if landing.due >= 0:
         end[landing.component] = walk.state[lane, landing.component] + landing.span
-    return end
 
 
 @loops
-def _keep(walk: Walk, slopes: FloatArray, size: float, end: FloatArray, lane: int) -> None:
+def _keep(walk: Walk, size: float, lane: int) -> None:
     """Record a step and go to its end."""
-    start, step, powers = walk.state[lane], walk.counts[lane, STEPS], np.empty(walk.steps.shape[0])
+    start, step, powers, slopes = walk.state[lane], walk.counts[lane, STEPS], walk.powers, walk.bench[1]
     for c in range(start.size):
         _spread(walk.rule, CHANGE, slopes[c], powers)
         walk.starts[c, step, lane] = start[c]
         for k in range(powers.size):
             walk.steps[k, c, step, lane] = size * powers[k]
-        start[c] = end[c]
+        start[c] = walk.rows[0, c]
     walk.counts[lane, STEPS] = step + 1
 
 
@@ -437,95 +452,107 @@ def _next_size(control: Control, wanted: float, trial: _Trial, passed: int, land
 
 
 @loops
-def _slopes(equations: Equations, lane: int, states: FloatArray, slopes: FloatArray) -> None:
+def _slopes(walk: Walk, lane: int, new: FloatArray) -> None:
     """The right-hand side at all stages."""
-    for stage in range(states.shape[1]):
-        if equations.kind == PRESSING:
-            _pressing(equations, lane, states, slopes, stage)
-        elif equations.kind == RECEDING:
-            _receding(equations, lane, states, slopes, stage)
-        else:
-            _flat(equations, lane, states, slopes, stage)
+    own, states = walk.equations, walk.bench[0]
+    if own.kind == FLAT:
+        _flat(own.numbers[lane], own.branches[lane], states, new)
+        return
+    _springs(own, own.numbers[lane], states[0], walk.springs)
+    if own.kind == PRESSING:
+        _pressing(walk.springs, own.numbers[lane], own.branches[lane], states, new)
+    else:
+        if own.branches.shape[2]:
+            _recall(own.memory[lane], own.numbers[lane], states[0], walk.recalled)
+        _receding(walk, own.numbers[lane], own.branches[lane], new)
 
 
 @loops
-def _pressing(own: Equations, lane: int, states: FloatArray, slopes: FloatArray, i: int) -> None:
+def _pressing(
+    springs: FloatArray, numbers: FloatArray, branches: FloatArray, states: FloatArray, slopes: FloatArray
+) -> None:
     """d(state)/d(sigma) on the way in, `equations.Pressing`."""
-    count, v, numbers = own.branches.shape[2], states[2, i], own.numbers[lane]
-    g, g_y, k, k_y, moment = _springs(own, lane, states[0, i])
-    gaps = 0.0
-    for j in range(count):
-        weight, relaxation = own.branches[lane, 0, j], own.branches[lane, 1, j] * g_y
-        relaxed, faded = states[3 + j, i], states[3 + count + j, i]
-        gaps += k * relaxed - faded
-        slopes[3 + j, i] = relaxation * (weight * g - relaxed)
-        slopes[3 + count + j, i] = k_y * v * relaxed + relaxation * (weight * moment - faded)
-    slopes[0, i], slopes[1, i] = v, g_y
-    slopes[2, i] = (k * (g + numbers[VISCOSITY] * v) - (moment + gaps)) * (g_y * -numbers[INERTIA])
+    count = branches.shape[1]
+    for i in range(states.shape[1]):
+        g, g_y, k, k_y, moment = springs[0, i], springs[1, i], springs[2, i], springs[3, i], springs[4, i]
+        v, gaps = states[2, i], 0.0
+        for j in range(count):
+            weight, relaxation = branches[0, j], branches[1, j] * g_y
+            relaxed, faded = states[3 + j, i], states[3 + count + j, i]
+            gaps += k * relaxed - faded
+            slopes[3 + j, i] = relaxation * (weight * g - relaxed)
+            slopes[3 + count + j, i] = k_y * v * relaxed + relaxation * (weight * moment - faded)
+        slopes[0, i], slopes[1, i] = v, g_y
+        slopes[2, i] = (k * (g + numbers[VISCOSITY] * v) - (moment + gaps)) * (g_y * -numbers[INERTIA])
 
 
 @loops
-def _receding(own: Equations, lane: int, states: FloatArray, slopes: FloatArray, i: int) -> None:
+def _receding(walk: Walk, numbers: FloatArray, branches: FloatArray, slopes: FloatArray) -> None:
     """d(state)/d(sigma) on the way back, `equations.Receding`."""
-    count, numbers, met, place = own.branches.shape[2], own.numbers[lane], 0.0, 0.0
-    y, t, delta, v = states[0, i], states[1, i], states[2, i], states[3, i]
-    g, g_y, k, _, moment = _springs(own, lane, y)
-    if count:
-        left = np.sqrt(max(numbers[MEMORY] - y / numbers[MEMORY + 1], 0.0))
-        place = numbers[MEMORY + 3] - numbers[MEMORY + 2] * left
-        met = _power_sum(own.memory[lane, 0], place)
-    taken, tip, held = 0.0, 0.0, numbers[LONG_TERM]
-    for j in range(count):
-        weight, rate, relaxed = own.branches[lane, 0, j], own.branches[lane, 1, j], states[4 + j, i]
-        history, fading = weight * delta - relaxed, np.exp((met - t) * rate)
-        front = history - fading * (weight * g - _power_sum(own.memory[lane, 1 + j], place))
-        taken += k * relaxed + fading * (weight * moment - _power_sum(own.memory[lane, 1 + count + j], place))
-        tip += weight * v - rate * front
-        held += weight * fading
-        slopes[4 + j, i] = rate * history * g_y
-    pressed = k * (delta + numbers[VISCOSITY] * v) - (numbers[LONG_TERM] * moment + taken)
-    slowed = -numbers[INERTIA] * pressed
-    slopes[0, i] = (numbers[LONG_TERM] * v + numbers[VISCOSITY] * slowed + tip) / held
-    slopes[1, i], slopes[2, i], slopes[3, i] = g_y, v * g_y, slowed * g_y
+    states, springs, past, count = walk.bench[0], walk.springs, walk.recalled, branches.shape[1]
+    long_term, viscosity = numbers[LONG_TERM], numbers[VISCOSITY]
+    for i in range(states.shape[1]):
+        g, g_y, k, moment = springs[0, i], springs[1, i], springs[2, i], springs[4, i]
+        t, delta, v = states[1, i], states[2, i], states[3, i]
+        taken, tip, held = 0.0, 0.0, long_term
+        for j in range(count):
+            weight, rate, relaxed = branches[0, j], branches[1, j], states[4 + j, i]
+            history, fading = weight * delta - relaxed, np.exp((past[0, i] - t) * rate)
+            front = history - fading * (weight * g - past[1 + j, i])
+            taken += k * relaxed + fading * (weight * moment - past[1 + count + j, i])
+            tip += weight * v - rate * front
+            held += weight * fading
+            slopes[4 + j, i] = rate * history * g_y
+        slowed = -numbers[INERTIA] * (k * (delta + viscosity * v) - (long_term * moment + taken))
+        slopes[0, i] = (long_term * v + viscosity * slowed + tip) / held
+        slopes[1, i], slopes[2, i], slopes[3, i] = g_y, v * g_y, slowed * g_y
 
 
 @loops
-def _flat(own: Equations, lane: int, states: FloatArray, slopes: FloatArray, i: int) -> None:
+def _flat(numbers: FloatArray, branches: FloatArray, states: FloatArray, slopes: FloatArray) -> None:
     """d(state)/dt of a flat punch, `flat_punch_equations`."""
-    count, numbers, v = own.branches.shape[2], own.numbers[lane], states[3, i]
-    slowed = -numbers[INERTIA] * states[0, i]
-    rise, lost = numbers[LONG_TERM] * v + numbers[VISCOSITY] * slowed, numbers[VISCOSITY] * v**2
-    for j in range(count):
-        weight, rate, branch = own.branches[lane, 0, j], own.branches[lane, 1, j], states[4 + j, i]
-        slopes[4 + j, i] = weight * v - rate * branch
-        rise += slopes[4 + j, i]
-        lost += rate / weight * branch**2
-    slopes[0, i], slopes[1, i], slopes[2, i], slopes[3, i] = rise, 1.0, v, slowed
-    slopes[4 + count, i] = numbers[INERTIA] * lost
+    count, long_term, viscosity = branches.shape[1], numbers[LONG_TERM], numbers[VISCOSITY]
+    for i in range(states.shape[1]):
+        v, slowed = states[3, i], -numbers[INERTIA] * states[0, i]
+        rise, lost = long_term * v + viscosity * slowed, viscosity * v**2
+        for j in range(count):
+            weight, rate, branch = branches[0, j], branches[1, j], states[4 + j, i]
+            slopes[4 + j, i] = weight * v - rate * branch
+            rise += slopes[4 + j, i]
+            lost += rate / weight * branch**2
+        slopes[0, i], slopes[1, i], slopes[2, i], slopes[3, i] = rise, 1.0, v, slowed
+        slopes[4 + count, i] = numbers[INERTIA] * lost
 
 
 @loops
-def _springs(own: Equations, lane: int, y: float) -> tuple[float, float, float, float, float]:
-    """g, dg/dy, k, dk/dy, P in the lane's units."""
-    units, panel = own.numbers[lane, UNIT:MEMORY], 0
-    at = y * units[0]
-    while panel < own.panels.shape[0] - 1 and own.panels[panel, 0] <= at:
-        panel += 1
-    z, powers = (at - own.panels[panel, 1]) * own.panels[panel, 2], own.powers[panel]
-    g, g_y, k, k_y, moment = 0.0, 0.0, 0.0, 0.0, 0.0
-    for n in range(powers.shape[0] - 1, -1, -1):
-        g = g * z + powers[n, 0]
-        g_y = g_y * z + powers[n, 1]
-        k = k * z + powers[n, 2]
-        k_y = k_y * z + powers[n, 3]
-        moment = moment * z + powers[n, 4]
-    return g / units[1], g_y / units[2], k / units[3], k_y / units[4], moment / units[5]
+def _springs(own: Equations, numbers: FloatArray, y: FloatArray, found: FloatArray) -> None:
+    """g, dg/dy, k, dk/dy, P in the lane's units at all stages."""
+    panels, powers = own.panels, own.powers
+    for i in range(y.size):
+        at, panel = y[i] * numbers[UNIT], 0
+        while panel < panels.shape[0] - 1 and panels[panel, 0] <= at:
+            panel += 1
+        z = (at - panels[panel, 1]) * panels[panel, 2]
+        g, g_y, k, k_y, moment = 0.0, 0.0, 0.0, 0.0, 0.0
+        for n in range(powers.shape[1]):
+            g = g * z + powers[panel, n, 0]
+            g_y = g_y * z + powers[panel, n, 1]
+            k = k * z + powers[panel, n, 2]
+            k_y = k_y * z + powers[panel, n, 3]
+            moment = moment * z + powers[panel, n, 4]
+        found[0, i], found[1, i] = g / numbers[UNIT + 1], g_y / numbers[UNIT + 2]
+        found[2, i], found[3, i] = k / numbers[UNIT + 3], k_y / numbers[UNIT + 4]
+        found[4, i] = moment / numbers[UNIT + 5]
 
 
 @loops
-def _power_sum(powers: FloatArray, z: float) -> float:
-    """A polynomial in powers of z."""
-    value: float = 0.0
-    for n in range(powers.size - 1, -1, -1):
-        value = value * z + powers[n]
-    return value
+def _recall(powers: FloatArray, numbers: FloatArray, y: FloatArray, found: FloatArray) -> None:
+    """What the front met on its way in at all stages, `Memory.recall`."""
+    for i in range(y.size):
+        left = np.sqrt(max(numbers[MEMORY] - y[i] / numbers[MEMORY + 1], 0.0))
+        z = numbers[MEMORY + 3] - numbers[MEMORY + 2] * left
+        for row in range(powers.shape[0]):
+            value = 0.0
+            for n in range(powers.shape[1]):
+                value = value * z + powers[row, n]
+            found[row, i] = value
