@@ -79,6 +79,13 @@ solve = lambda source=IntegralEquation(): equilibria(scenes, source)
 equilibria(scenes[::50], IntegralEquation())
 forces = lambda found: np.concatenate([found.normal_force, found.contact_radius, found.indentation_depth]).tolist()
 """
+# Where a source has compiled impacts and numba is installed; otherwise the row is what NumPy takes.
+COMPILED = """
+from importlib.util import find_spec
+fast = {"compiled": True} if hasattr(Mdr(), "compiled") and find_spec("numba") else {}
+"""
+FAST_MANY = MANY.replace("impacts(scenes, source)", "impacts(scenes, source, **fast)")
+FAST_ONE = ONE.replace("accuracy=1e-6", "accuracy=1e-6, **fast")
 CONE, SPHERE = "indenter = TruncatedCone(flat_radius=5e-4, slope=0.1)\n", "indenter = Sphere(radius=0.01)\n"
 DEEP, WIDE = "prescribed = IndentationDepths([5e-5])", "prescribed = ContactRadii([1e-3])"
 MILLION = """
@@ -113,6 +120,11 @@ ROWS = {
     "warm, Bem 512 truncated cone": "cone = TruncatedCone(flat_radius=5e-4, slope=0.1)\n"
     "scene = scene.replace(indenter=cone)\n" + BEM.format(points=512) + WARM,
     "warm, 2 000 impacts": IMPACTS + MANY + WARM,
+    "warm, 2 000 impacts, compiled": IMPACTS + COMPILED + FAST_MANY + WARM,
+    "warm, 10 000 impacts, compiled": IMPACTS + COMPILED + FAST_MANY.replace("2000", "10_000") + WARM,
+    "warm, 20 impacts one by one, compiled": IMPACTS + COMPILED + FAST_ONE + WARM,
+    "warm, 20 impacts one by one to 1e-9, compiled": IMPACTS + COMPILED + FAST_ONE.replace("1e-6", "1e-9") + WARM,
+    "first impact, compiled": IMPACTS + COMPILED + FAST_ONE.replace("range(20)", "range(1)") + FIRST,
     "warm, 20 impacts one by one": IMPACTS + ONE + WARM,
     "warm, 20 impacts one by one to 1e-9": IMPACTS + ONE.replace("1e-6", "1e-9") + WARM,
     "warm, 20 impacts one by one, one Prony branch": IMPACTS + PRONY + ONE + WARM,

@@ -6,8 +6,9 @@ the length of its last step is found together with the stages, so that the step 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,12 +30,12 @@ from mdr.impact.collocation_step import (
 )
 
 # Safety factor on the next step that the error allows, and the bounds of its change; usual in step control, chosen.
-_SAFETY, _SHRINK, _GROW = 0.85, 0.5, 1.5
+SAFETY, SHRINK, GROW = 0.85, 0.5, 1.5
 # An event that lies less than a tenth of a step beyond it is landed on at once, without a short last step.
-_ALMOST = 1.1
+ALMOST = 1.1
 # A step that is shorter than this (in the variable of the problem) should converge by sweeps; where it does not,
 # Newton's method takes over. Chosen.
-_STIFF = 0.02
+STIFF = 0.02
 
 
 class Problem(Protocol):
@@ -104,6 +105,10 @@ class Trajectory:
             course=self.course.take(own),
             sweeps=self.sweeps,
         )
+
+
+# What advances every lane to its first event: `integrate`, or what does the same in other ways.
+Integrate: TypeAlias = Callable[..., "Trajectory"]
 
 
 def integrate(
@@ -177,7 +182,7 @@ class _Walk:
             start, size = self.state[:, self.active], self.size[self.active]
             course = self._course(start)
             due = self.due[self.active]
-            due = np.where(due < 0, self._first_event(start, start + _ALMOST * course.ahead(size)), due)
+            due = np.where(due < 0, self._first_event(start, start + ALMOST * course.ahead(size)), due)
             landing = self._landing(due, start)
             precision = self.tolerance[self.active] * np.maximum(1.0, np.abs(start))
             task = StepTask(start, course.aimed(size, landing), precision, landing, self.problem.chain)
@@ -194,7 +199,7 @@ class _Walk:
         self._keep(trial, end, kept)
         self.ended_by[lanes] = np.where(kept, due, -1)
         self.due[lanes] = passed
-        factor = np.minimum(np.maximum(_SAFETY * np.maximum(trial.error, 1e-9) ** (-1.0 / STAGES), _SHRINK), _GROW)
+        factor = np.minimum(np.maximum(SAFETY * np.maximum(trial.error, 1e-9) ** (-1.0 / STAGES), SHRINK), GROW)
         shortest = np.minimum(factor, 1.0) * np.minimum(trial.task.size, trial.size)
         next_size = np.where(good, np.where(passed < 0, factor, 1.0) * trial.size, shortest)
         self.size[lanes] = np.where(kept & (due >= 0), np.maximum(next_size, self.size[lanes]), next_size)
@@ -228,7 +233,7 @@ class _Walk:
         trial = swept_step(self.derivative, task, course)
         self.sweeps += trial.sweeps
         lost = ~np.isfinite(trial.error)
-        self.stiff[lanes] |= lost & (task.size < _STIFF)
+        self.stiff[lanes] |= lost & (task.size < STIFF)
         hard = _never_alone(np.flatnonzero(self.stiff[lanes] & lost))
         if hard.size:
             harder = newton_step(self.problem.derivative(lanes[hard]), task.take(hard))

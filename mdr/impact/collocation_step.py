@@ -28,39 +28,39 @@ STAGES = 10
 # Sweeps stop at this share of the tolerance of a step, so that they add little to its error; chosen.
 SWEEP_TOLERANCE = 0.05
 # A step that needs more sweeps is too long.
-_SWEEPS = 24
+SWEEPS = 24
 # After six sweeps, a lane whose change shrinks by less than this factor is given up; chosen.
-_PATIENCE, _SLOW = 6, 0.6
+PATIENCE, SLOW = 6, 0.6
 # Only 8 Legendre terms of the last step are extrapolated; higher ones amplify rounding.
 _CARRIED = 8
 # Newton steps towards an event on the polynomial of the step before: a start only, which sweeps correct.
-_AIMS = 3
+AIMS = 3
 # Share of a step at which an event is first looked for; chosen.
-_NEAREST = 0.01
+NEAREST = 0.01
 # A sweep may change the length of a step by these factors at most; chosen.
-_LEAST, _MOST = 0.5, 1.5
+LEAST, MOST = 0.5, 1.5
 # Relative change of a state by which its slopes are differentiated: about the root of a rounding times seven.
 _DIFFERENCE = 1e-7
 _NUMBERS = np.arange(1.0, STAGES + 1.0)[:, None]
 
 POINTS, _GAUSS_WEIGHTS = legendre_rule(STAGES)
 # Matrix from values at the Gauss points to Legendre coefficients, and from there to those of the integral from -1 on.
-_ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
-_INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ _ANALYSIS
+ANALYSIS = (np.arange(STAGES) + 0.5)[:, None] * (legendre.legvander(POINTS, STAGES - 1) * _GAUSS_WEIGHTS[:, None]).T
+_INTEGRALS = np.stack([legendre.legint(unit, lbnd=-1.0) for unit in np.eye(STAGES)], axis=1) @ ANALYSIS
 # Matrix from slopes to states, for a unit step.
 TO_STAGES = 0.5 * legendre.legvander(POINTS, STAGES) @ _INTEGRALS
 # Row from slopes to the change of state over a unit step.
 TO_END = 0.5 * _GAUSS_WEIGHTS
 # From slopes to the change of state over a unit step, and to the slope at its end, where all Legendre polynomials are
 # 1. The two stand in one matrix, because sums over columns of products with a single row depend on their number.
-_ENDS = np.stack([TO_END, np.ones(STAGES) @ _ANALYSIS])
+ENDS = np.stack([TO_END, np.ones(STAGES) @ ANALYSIS])
 # Matrix from Legendre coefficients to powers of z.
 _POWERS = np.stack([np.pad(legendre.leg2poly(u), (0, STAGES - i)) for i, u in enumerate(np.eye(STAGES + 1))], axis=1)
 # Matrix from slopes to powers of z of the change of state.
 CHANGE = 0.5 * _POWERS @ _INTEGRALS
 # Matrix from slopes to powers of z of themselves.
-_WITHIN = _POWERS[:STAGES, :STAGES] @ _ANALYSIS
-_ONWARD = _POWERS[:STAGES, :_CARRIED] @ _ANALYSIS[:_CARRIED]
+WITHIN = _POWERS[:STAGES, :STAGES] @ ANALYSIS
+ONWARD = _POWERS[:STAGES, :_CARRIED] @ ANALYSIS[:_CARRIED]
 
 
 @dataclass(frozen=True)
@@ -127,9 +127,9 @@ class Course:
 
     def follow(self, step: CollocationStep, lanes: IntArray, *, ended: NDArray[np.bool_]) -> None:
         """Remember a step of some lanes, ended or to be repeated; one that came to nothing says nothing."""
-        slopes = _ONWARD @ step.slopes
+        slopes = ONWARD @ step.slopes
         if np.count_nonzero(ended) < ended.size:
-            again = np.where(np.isfinite(step.error), _WITHIN @ step.slopes, np.nan)
+            again = np.where(np.isfinite(step.error), WITHIN @ step.slopes, np.nan)
             slopes = np.where(ended, slopes, again)
         self.slopes[:, :, lanes] = slopes
         self.size[lanes], self.origin[lanes] = step.size, np.where(ended, 1.0, -1.0)
@@ -151,14 +151,14 @@ class Course:
             return size
         slopes, from_start = landing.of(self.slopes), self.origin**_NUMBERS
         means, z = slopes / _NUMBERS, self.origin + 2.0 * size / self.size
-        for attempt in range(_AIMS + 1):
+        for attempt in range(AIMS + 1):
             ladder = powers(z, STAGES + 1)
             way = 0.5 * self.size * np.add.reduce(means * (ladder[1:] - from_start))
             at = 0.5 * self.size * (z - self.origin)
             # The first attempt is in proportion, the others are Newton's.
             if attempt == 0:
                 share = landing.span / way
-                at = at * np.minimum(np.maximum(np.where(share > 0.0, share, 1.0), _NEAREST), 1.0)
+                at = at * np.minimum(np.maximum(np.where(share > 0.0, share, 1.0), NEAREST), 1.0)
             else:
                 at = _lengthened(at, (landing.span - way) / np.add.reduce(slopes * ladder[:-1]))
             z = self.origin + 2.0 * at / self.size
@@ -200,7 +200,7 @@ class StepTask:
 
     def found(self, size: FloatArray, slopes: FloatArray, failed: NDArray[np.bool_], sweeps: int) -> CollocationStep:
         """The step with its error: the part that the last two of its polynomials have."""
-        tail = _largest(_ANALYSIS[-2:] @ slopes, self.precision / size)
+        tail = _largest(ANALYSIS[-2:] @ slopes, self.precision / size)
         return CollocationStep(self, size, slopes, np.where(failed, np.inf, tail / (2.0 * STAGES)), sweeps)
 
 
@@ -225,7 +225,7 @@ class CollocationStep:
     def end(self) -> FloatArray:
         """State at the end, exactly on its event where there is one."""
         start, landing = self.task.start, self.task.landing
-        end = start + self.size * (_ENDS @ self.slopes)[:, 0]
+        end = start + self.size * (ENDS @ self.slopes)[:, 0]
         if landing is not None:
             at = landing.component[landing.due], np.flatnonzero(landing.due)
             end[at] = start[at] + landing.span[landing.due]
@@ -252,7 +252,7 @@ def swept_step(derivative: Derivative, task: StepTask, course: Course) -> Colloc
     size, allowed = task.size, task.precision / task.size
     slopes, before = course.guess(size), np.full(size.size, np.inf)
     moving, failed = np.ones(size.size, dtype=np.bool_), np.zeros(size.size, dtype=np.bool_)
-    for sweep in range(1, _SWEEPS + 1):
+    for sweep in range(1, SWEEPS + 1):
         new = derivative(task.states(size, slopes))
         change = _largest(new - slopes, allowed)
         slopes = new if np.count_nonzero(moving) == moving.size else np.where(moving, new, slopes)
@@ -260,8 +260,8 @@ def swept_step(derivative: Derivative, task: StepTask, course: Course) -> Colloc
             size, missed = _corrected(task, task.landing, size, slopes, moving)
             change = np.maximum(change, missed)
         moving &= ~(change <= SWEEP_TOLERANCE)
-        if sweep > _PATIENCE:
-            failed |= moving & (~(change < _SLOW * before) | (sweep == _SWEEPS))
+        if sweep > PATIENCE:
+            failed |= moving & (~(change < SLOW * before) | (sweep == SWEEPS))
             moving &= ~failed
         if not np.count_nonzero(moving):
             break
@@ -275,7 +275,7 @@ def newton_step(derivative: Derivative, task: StepTask) -> CollocationStep:
     base, size, count = task.start[:, None], task.size, components * STAGES
     jacobian = _jacobian(derivative, task.start)
     slopes, failed, sweep = np.repeat(derivative(base), STAGES, axis=1), np.full(lanes, True), 0
-    while failed.any() and sweep < _SWEEPS:
+    while failed.any() and sweep < SWEEPS:
         sweep += 1
         residual = derivative(base + size * (TO_STAGES @ slopes)) - slopes
         if not np.all(np.isfinite(residual)):
@@ -297,7 +297,7 @@ def _corrected(
     task: StepTask, landing: Landing, size: FloatArray, slopes: FloatArray, moving: NDArray[np.bool_]
 ) -> tuple[FloatArray, FloatArray]:
     """Lengths nearer to the event, by Newton's method, and what the correction moves in units of the precision."""
-    both = _ENDS @ slopes
+    both = ENDS @ slopes
     change, at_end = both[:, 0], both[:, 1]
     miss = (landing.span - size * landing.of(change)) / landing.of(at_end)
     miss = np.where(landing.due & moving, miss, 0.0)
@@ -306,7 +306,7 @@ def _corrected(
 
 def _lengthened(size: FloatArray, miss: FloatArray) -> FloatArray:
     """Lengths after a correction that must not be wild."""
-    return np.where(np.isfinite(miss), np.minimum(np.maximum(size + miss, _LEAST * size), _MOST * size), size)
+    return np.where(np.isfinite(miss), np.minimum(np.maximum(size + miss, LEAST * size), MOST * size), size)
 
 
 def _jacobian(derivative: Derivative, start: FloatArray) -> FloatArray:

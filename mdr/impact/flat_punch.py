@@ -12,7 +12,7 @@ from bem.polynomials import chebyshev
 from contact import ImpactHistory, Scene, StageLog
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
-from mdr.impact.collocation import EndCondition, Trajectory, integrate, states
+from mdr.impact.collocation import EndCondition, Integrate, Trajectory, states
 from mdr.impact.collocation_step import STAGES
 from mdr.impact.energies import SAMPLES
 from mdr.impact.flat_punch_equations import FlatPunchBatch
@@ -40,11 +40,11 @@ class _Problem:
 
 
 def flat_punch_results(
-    scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: float, *, tolerance: float
+    scenes: Sequence[Scene], flat_punch: FlatPunchSource, integrate: Integrate, accuracy: float, *, tolerance: float
 ) -> ImpactResults:
     """Many flat punches with the same number of relaxation times."""
     problem = _problem(scenes, flat_punch)
-    return _results(problem, _motion(problem, tolerance), accuracy)
+    return _results(problem, _motion(problem, integrate, tolerance), accuracy)
 
 
 def flat_punch_history(
@@ -53,6 +53,7 @@ def flat_punch_history(
     log: StageLog,
     accuracy: float,
     *,
+    integrate: Integrate,
     tolerance: float,
     settings: Mapping[str, Setting],
 ) -> ImpactHistory:
@@ -60,7 +61,7 @@ def flat_punch_history(
     with log.stage("equivalent_system"):
         problem = _problem([scene], flat_punch)
     with log.stage("impact"):
-        motion = _motion(problem, tolerance)
+        motion = _motion(problem, integrate, tolerance)
     log.count("steps", int(motion.counts.sum()))
     log.count("sweeps", motion.sweeps)
     outcome = _results(problem, motion, accuracy)
@@ -113,7 +114,7 @@ def _problem(scenes: Sequence[Scene], flat_punch: FlatPunchSource) -> _Problem:
     return _Problem(lanes, time, stiffness, velocity, mass, radius, error)
 
 
-def _motion(problem: _Problem, tolerance: float) -> Trajectory:
+def _motion(problem: _Problem, integrate: Integrate, tolerance: float) -> Trajectory:
     """From first touch to the return of the force to zero, each impact once as asked and once more coarsely."""
     count = problem.mass.size
     lanes = problem.lanes.take(np.tile(np.arange(count), 2))

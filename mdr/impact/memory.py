@@ -45,6 +45,8 @@ class Memory:
 
     def take(self, lanes: IntArray) -> Memory:
         """Some of the lanes."""
+        if lanes.size == self.low.shape[1] and np.array_equal(lanes, np.arange(lanes.size)):
+            return self
         low, way, rest, places = (values[..., lanes] for values in (self.low, self.way, self.rest, self.places))
         return Memory(low, way, rest, places, self.powers[..., lanes])
 
@@ -64,12 +66,21 @@ class Memory:
         # A matrix product would round larger batches in another order than small ones.
         return replace(self, powers=np.einsum("ij,jrsl->irsl", _POWERS_FROM_VALUES, values))
 
-    def recall(self, step: int, lanes: IntArray) -> Derivative:
-        """From y within one step, shape (stages, len(lanes)), to the remembered rows, (rows, stages, len(lanes))."""
+    def within(self, step: int, lanes: IntArray) -> tuple[tuple[FloatArray, ...], FloatArray]:
+        """What one step of some lanes remembers.
+
+        Returns:
+            e, w, s and c of the argument c - s sqrt(e - y/w), shape (lanes,) each, and the powers of that argument,
+            shape (lanes, rows, 16).
+        """
         low, way, rest = self.low[step, lanes], self.way[step, lanes], self.rest[step, lanes]
         first, last, powers = np.sqrt(1.0 + rest), np.sqrt(rest), self.powers[:, :, step, lanes]
         end, scale, shift = 1.0 + rest + low / way, 2.0 / (first - last), (first + last) / (first - last)
-        by_lane = np.ascontiguousarray(powers.transpose(2, 1, 0))
+        return (end, way, scale, shift), np.ascontiguousarray(powers.transpose(2, 1, 0))
+
+    def recall(self, step: int, lanes: IntArray) -> Derivative:
+        """From y within one step, shape (stages, len(lanes)), to the remembered rows, (rows, stages, len(lanes))."""
+        (end, way, scale, shift), by_lane = self.within(step, lanes)
 
         def rows(y: FloatArray) -> FloatArray:
             """Values of every row at way y."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from contact import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
-from mdr.impact.collocation import EndCondition, Problem, Trajectory, integrate
+from mdr.impact.collocation import EndCondition, Integrate, Problem, Trajectory
 from mdr.impact.collocation_step import STAGES, Course
 from mdr.impact.equations import ImpactBatch, Pressing, Receding, drift, outline
 from mdr.impact.memory import Memory, memory_of
@@ -72,11 +72,12 @@ class Impacts:
     drift: FloatArray
 
 
-def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
+def impacts(lanes: ImpactBatch, integrate: Integrate, *, tolerance: float) -> Impacts:
     """Integrate all lanes.
 
     Args:
         lanes: The impacts.
+        integrate: By what.
         tolerance: Local error per step, in the impact's units.
 
     Raises:
@@ -84,7 +85,7 @@ def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
         NotConvergedError: If an impact does not end.
     """
     twice = lanes.take(np.tile(np.arange(lanes.count), 2))
-    run = _Motion(twice, np.repeat([tolerance, COARSER * tolerance], lanes.count))
+    run = _Motion(twice, integrate, np.repeat([tolerance, COARSER * tolerance], lanes.count))
     way_in, turn, turned_in = run.press()
     way_out, end = run.recede(way_in, turn, turned_in)
     within = np.zeros(twice.count)
@@ -96,8 +97,8 @@ def impacts(lanes: ImpactBatch, *, tolerance: float) -> Impacts:
 class _Motion:
     """IntArray under way; `size` is each lane's next trial step."""
 
-    def __init__(self, lanes: ImpactBatch, tolerance: FloatArray) -> None:
-        self.lanes, self.tolerance = lanes, tolerance
+    def __init__(self, lanes: ImpactBatch, integrate: Integrate, tolerance: FloatArray) -> None:
+        self.lanes, self.integrate, self.tolerance = lanes, integrate, tolerance
         self.size = _FIRST_STEP * tolerance ** (1.0 / STAGES)
         self.course = Course.unknown(0, self.size)
 
@@ -150,7 +151,7 @@ class _Motion:
         self, problem: Problem, state: FloatArray, going: IntArray, events: tuple[EndCondition, ...]
     ) -> Trajectory:
         """Advance some lanes to their events, in place."""
-        trajectory = integrate(
+        trajectory = self.integrate(
             problem,
             state[:, going],
             events,

@@ -15,6 +15,8 @@ import numpy as np
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import ImpactHistory, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.answer.solution import Setting
+from mdr.impact.collocation import Integrate
+from mdr.impact.compiled.choice import integrator
 from mdr.impact.flat_punch import flat_punch_history, flat_punch_results
 from mdr.impact.history import history
 from mdr.impact.motion import Impacts, TableTooShort, impacts
@@ -52,20 +54,23 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     Args:
         scene: A scene whose loading is an impact.
         flat_punch: Where the flat-punch data come from.
-        settings: Of the method; "accuracy" is the wanted relative accuracy of restitution and peaks.
+        settings: Of the method; "accuracy" is the wanted relative accuracy of restitution and peaks, "compiled"
+            whether numba's loops are to be used.
 
     Raises:
         NotConvergedError: If the indenter never rebounds.
-        InvalidInput: If it is pressed in beyond its rim.
+        InvalidInput: If it is pressed in beyond its rim, or compiled loops are asked for without numba.
         UnsupportedSceneError: If it would touch beside its largest circle of contact.
     """
     known = {"accuracy": DEFAULT_ACCURACY, **settings}
     log, accuracy = StageLog(), float(known["accuracy"] or DEFAULT_ACCURACY)
-    tolerance = step_tolerance(accuracy)
+    tolerance, integrate = step_tolerance(accuracy), integrator(compiled=bool(known.get("compiled")))
     if is_flat(scene):
         refuse_pulling_at(scene, flat_punch, scene.indenter.max_radius)
-        return flat_punch_history(scene, flat_punch, log, accuracy, tolerance=tolerance, settings=known)
-    problem, motion = _pressed(scene, flat_punch, log, tolerance)
+        return flat_punch_history(
+            scene, flat_punch, log, accuracy, integrate=integrate, tolerance=tolerance, settings=known
+        )
+    problem, motion = _pressed(scene, flat_punch, log, integrate, tolerance)
     legs = motion.way_in + motion.way_out
     log.count("steps", sum(int(leg.trajectory.counts.sum()) for leg in legs))
     log.count("sweeps", sum(leg.trajectory.sweeps for leg in legs))
@@ -76,7 +81,7 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
 
 
 def _pressed(
-    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, tolerance: float
+    scene: Scene, flat_punch: FlatPunchSource, log: StageLog, integrate: Integrate, tolerance: float
 ) -> tuple[ScaledImpacts, Impacts]:
     """One impact on springs that reach far enough, also in a layer that gets softer than expected on the way in."""
     for softest in SOFTEST:
@@ -85,7 +90,7 @@ def _pressed(
         with log.stage("impact"):
             problem = scaled([scene], [shared], table)
             try:
-                return problem, impacts(problem.lanes, tolerance=tolerance)
+                return problem, impacts(problem.lanes, integrate, tolerance=tolerance)
             except TableTooShort:
                 continue
     raise NotConvergedError(
@@ -99,6 +104,7 @@ def impact_batch(
     flat_punch: FlatPunchSource,
     *,
     accuracy: float = DEFAULT_ACCURACY,
+    compiled: bool = False,
     progress: Progress | None = None,
 ) -> ImpactResults:
     """Many impacts, those that share springs and the number of relaxation times together.
@@ -107,13 +113,14 @@ def impact_batch(
         scenes: Scenes whose loading is an impact, in any order.
         flat_punch: Where the flat-punch data come from.
         accuracy: Wanted relative accuracy of restitution and peaks.
+        compiled: Whether numba's loops are to be used.
         progress: Told how many of how many impacts are done.
 
     Returns:
         Arrays in the order of the scenes. Each entry is what the scene alone would give: lanes do not feel each other.
     """
     found, order = [], []
-    for members, solve in _groups(scenes, flat_punch, accuracy):
+    for members, solve in _groups(scenes, flat_punch, integrator(compiled=compiled), accuracy):
         for start in range(0, len(members), _CHUNK):
             chunk = members[start : start + _CHUNK]
             found.append(solve(chunk))
@@ -127,7 +134,9 @@ def impact_batch(
     return answer
 
 
-def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: float) -> list[tuple[list[int], _Solver]]:
+def _groups(
+    scenes: Sequence[Scene], flat_punch: FlatPunchSource, integrate: Integrate, accuracy: float
+) -> list[tuple[list[int], _Solver]]:
     """Scenes that can be advanced together, with the function that does it."""
     tolerance = step_tolerance(accuracy)
     flat = [i for i, scene in enumerate(scenes) if is_flat(scene)]
@@ -142,14 +151,14 @@ def _groups(scenes: Sequence[Scene], flat_punch: FlatPunchSource, accuracy: floa
         """Results of scenes on one table, advanced together; one by one where the table proves too short."""
         problem = scaled([scenes[i] for i in chunk], [shaped[i][0] for i in chunk], shaped[chunk[0]][1])
         try:
-            return results(problem, impacts(problem.lanes, tolerance=tolerance), accuracy)
+            return results(problem, impacts(problem.lanes, integrate, tolerance=tolerance), accuracy)
         # One of the layers softens more than expected.
         except TableTooShort:
-            alone = [_pressed(scenes[i], flat_punch, StageLog(), tolerance) for i in chunk]
+            alone = [_pressed(scenes[i], flat_punch, StageLog(), integrate, tolerance) for i in chunk]
             return joined([results(*found, accuracy) for found in alone], np.arange(len(chunk)))
 
     def flat_results(chunk: list[int]) -> ImpactResults:
-        return flat_punch_results([scenes[i] for i in chunk], flat_punch, accuracy, tolerance=tolerance)
+        return flat_punch_results([scenes[i] for i in chunk], flat_punch, integrate, accuracy, tolerance=tolerance)
 
     found: list[tuple[list[int], _Solver]] = []
     for members, solve in ((list(shaped), shaped_results), (flat, flat_results)):

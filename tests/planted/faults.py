@@ -486,7 +486,7 @@ TIME_STEPPING = [
     Fault(
         "quadrature of first order at a step's end",
         "time stepping",
-        set_to("mdr.impact.collocation_step:_ENDS", np.stack([np.full(10, 0.1), collocation_step._ENDS[1]])),
+        set_to("mdr.impact.collocation_step:ENDS", np.stack([np.full(10, 0.1), collocation_step.ENDS[1]])),
         Test(
             "verification.test_impact:test_flat_punch_restitution_of_the_closed_form_and_of_the_integration",
             (0.2, 0.571740),
