@@ -157,6 +157,9 @@ class HistoryCoefficients:
     edge_reading_at_kink: float = 1.0
     # How many cells from a kink count as beside it.
     kink_reach: float = 2.0
+    # Kinks below this share of a cell count as none.  Derived: a paraboloid with such a flat end is 4.03 times as high
+    # at a cell as at half of it, four times without.
+    unseen_kink: float = 0.05
 
 
 @dataclass(frozen=True)
