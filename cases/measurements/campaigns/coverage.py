@@ -67,6 +67,15 @@ class CoveragePlan:
     largest: float = CHEAP_RATIO
 
 
+# What suite nightly measures besides: bars that no plan of the larger study or of suite ci judges.
+NIGHTLY_PLANS: Final = (
+    CoveragePlan(method="bem", settings={"points": 256}, family="elastic", count=40, largest=5.0),
+    CoveragePlan(method="bem", settings={"points": 512}, family="elastic", count=16, largest=5.0),
+    CoveragePlan(
+        method="fem", settings={"accuracy": 1e-2}, family="adhering_table", count=16, smallest=0.1, largest=5.0
+    ),
+    CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=16, smallest=0.1, largest=5.0),
+)
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}
 PLANS: Final = (
     CoveragePlan(method="mdr", settings={}, family="elastic", count=400),
@@ -83,6 +92,7 @@ PLANS: Final = (
     CoveragePlan(method="fem", settings={"accuracy": 1e-4}, family="elastic", count=200, only_radii=True),
     CoveragePlan(method="fem", settings={"accuracy": 1e-3}, family="adhesive", count=40, largest=5.0),
     CoveragePlan(method="fem", settings={"growth": 1.0}, family="impact", count=60, smallest=0.1, largest=5.0),
+    *NIGHTLY_PLANS,
 )
 QUICK_PLANS: Final = (
     CoveragePlan(method="mdr", settings={"nodes": 12}, family="elastic", count=16, smallest=0.1, largest=1.0),
