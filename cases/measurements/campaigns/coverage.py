@@ -84,7 +84,7 @@ NIGHTLY_PLANS: Final = (
         largest=5.0,
         claims_sharpness=False,
     ),
-    CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=16, smallest=0.1, largest=5.0),
+    CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=24, smallest=0.1, largest=5.0),
 )
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}
 PLANS: Final = (

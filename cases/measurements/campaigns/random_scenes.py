@@ -201,9 +201,9 @@ def _static_loading(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Lo
 
 
 def _many_loads(draw: Draw, ratio: tuple[float, float]) -> Scene:
-    """Twenty to forty depths or forces over up to two decades, none on a flat punch or where a profile may fall."""
+    """Twenty to forty depths or forces over up to two decades, none on a flat or nearly flat punch or a table."""
     layer, indenter, a = _stage(draw, ratio)
-    while isinstance(indenter, FlatPunch | Tabulated):
+    while isinstance(indenter, FlatPunch | Tabulated) or indenter.flat_radius > 0.5 * a:
         indenter = _indenter(draw, a)
     largest = _typical_depth(indenter, a) * float(draw.uniform(0.3, 1.0))
     shares = np.geomspace(log_uniform(draw, 1e-2, 0.5), 1.0, int(draw.integers(20, 41)))
