@@ -64,6 +64,13 @@ def quick_coverage() -> CaseResult:
     return coverage_case(QUICK_PLANS)
 
 
+def nightly_coverage() -> CaseResult:
+    """The same, and stated errors on grids of many cells, of adhering measured profiles and between solved radii."""
+    from cases.measurements.campaigns.coverage import NIGHTLY_PLANS, QUICK_PLANS, coverage_case  # noqa: PLC0415
+
+    return coverage_case((*QUICK_PLANS, *NIGHTLY_PLANS))
+
+
 def quick_maps() -> CaseResult:
     """Where closed forms are good, and where friction does not matter."""
     from cases.measurements.advice.error_maps import FORMULAS, FRICTION, USUAL_RATIOS, map_case  # noqa: PLC0415
@@ -79,4 +86,4 @@ def code_verification() -> CaseResult:
 
 
 QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, quick_ladders, quick_maps)
-NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, all_ladders, quick_maps)
+NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, nightly_coverage, all_ladders, quick_maps)

@@ -8,6 +8,7 @@ elements, not by errors of stiffness, depth and force at a fixed radius, most of
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -44,7 +45,7 @@ class LoadedContact:
         values = np.array([depth, force, answer.radius, answer.stiffness])
         # Depth, force and stiffness are known as well as energies; the radius errs like the numbers at a fixed radius.
         rates = np.array([contact.rate_at_load, contact.rate_at_load, contact.rate, contact.rate_at_load])
-        absolute = rates * contact.changes_of(self._numbers) + self._outer_edge_error(depth) + self._remainder
+        absolute = rates * self._changes + self._outer_edge_error(depth) + self._remainder
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
@@ -82,6 +83,17 @@ class LoadedContact:
         moved = (depth - level.smooth_depth) / self.contact.answer.smooth_depth_slope
         stiffness = level.stiffness + level.stiffness_slope * moved
         return np.array([depth, level.force(depth), level.radius + moved, stiffness])
+
+    @cached_property
+    def _changes(self) -> FloatArray:
+        """Changes of `_numbers` by the last degree, times the safety factor.
+
+        The stiffness at a load follows its radius, in which it is not stationary: only what acts like another radius
+        cancels in it, by chance now and then nearly all.
+        """
+        changes = self.contact.changes_of(self._numbers)
+        by_radius = AT_LOAD.share_by_radius * self.contact.answer.stiffness_slope * changes[2]
+        return np.append(changes[:3], max(changes[3], by_radius))
 
     def _outer_edge_error(self, depth: float) -> FloatArray:
         """Absolute errors of `_numbers` by the end of the mesh, which takes some of the force at each depth."""

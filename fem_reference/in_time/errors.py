@@ -16,6 +16,8 @@ from typing import TypeVar
 import numpy as np
 
 from contact import HistoryPath, ImpactHistory
+from contact.scene.extent import radius_of_depth
+from fem_reference.discrete_layer.indenter import height
 from fem_reference.error_model import IN_TIME
 from fem_reference.in_time.relaxation import relaxation_of
 
@@ -100,7 +102,7 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
         size += known.everywhere * _share(fine, name)
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
     if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
-        error["contact_radius"] += _steep_end(fine, error["contact_time"][0])
+        error["contact_radius"][-1] += _steep_end(fine, error["contact_time"][0])
     if "contact_time" in error and known.heights > 0.0:
         times = [getattr(each, DERIVED[1]) for each in (fine, half_cells, half_both)]
         error["contact_time"] = np.array([_smooth_end(times, known.heights) + known.everywhere])
@@ -183,10 +185,15 @@ def _time_in_rounding(history: ImpactHistory) -> float:
 
 
 def _steep_end(history: ImpactHistory, time_error: float) -> float:
-    """What an error of the contact time means for the radius, which vanishes like the root of the time that is left."""
-    drop = history.contact_radius[-2] - history.contact_radius[-1]
+    """What an error of the contact time means for the last radius: indenter and surface part in proportion to the time.
+
+    A profile r^10 is half as wide a thousandth of the last step before its end.
+    """
+    indenter, before, last = history.scene.indenter, *history.contact_radius[-2:]
     shift = time_error * history.contact_time / (history.time[-1] - history.time[-2])
-    return float(drop * np.sqrt(min(1.0, shift)) / history.contact_radius.max())
+    left = min(1.0, shift) * height(indenter, before)
+    reached = radius_of_depth(indenter, left) if left > 0.0 else last
+    return float(max(reached - last, 0.0) / history.contact_radius.max())
 
 
 def _scalar_change(fine: H, coarse: H, name: str) -> float:

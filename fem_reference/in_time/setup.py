@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -104,13 +104,14 @@ class HistorySetup:
             "peak_contact_radius": isinstance(self.scene.indenter, FlatPunch),
         }
         cell = radius / self.resolution.cells
-        at_rim = any(abs(peak_radius - kink) < IN_TIME.kink_reach * cell for kink in self.scene.indenter.kinks)
+        kinks = self._seen(self.scene.indenter.kinks, cell)
+        at_rim = any(abs(peak_radius - kink) < IN_TIME.kink_reach * cell for kink in kinks)
         return KnownErrors(
             everywhere=thick + IN_TIME.outer_edge_safety * settings.truncation,
             radius=(IN_TIME.edge_reading_at_kink if at_rim else IN_TIME.edge_reading) * cell / peak_radius,
             exact=frozenset(name for name, is_exact in exact.items() if is_exact),
             cell=cell,
-            space=IN_TIME.kinked_profile if self.scene.indenter.kinks else 1.0,
+            space=IN_TIME.kinked_profile if kinks else 1.0,
             heights=self._heights(cell),
         )
 
@@ -118,9 +119,14 @@ class HistorySetup:
         """Height at a cell [m] over that at half a cell; zero where contact does not end like that of a power."""
         indenter = self.scene.indenter
         damped = self._branches > 0 or self.relaxation.viscosity > 0
-        if damped or indenter.kinks or indenter.breakpoints or isinstance(indenter, FlatPunch):
+        if damped or self._seen(indenter.breakpoints, cell) or isinstance(indenter, FlatPunch):
             return 0.0
         return height(indenter, cell) / height(indenter, cell / 2)
+
+    @staticmethod
+    def _seen(kinks: Sequence[float], cell: float) -> list[float]:
+        """Kinks [m] that cells [m] see: contact ends before it is as narrow as a flat end far inside the first."""
+        return [kink for kink in kinks if kink > IN_TIME.unseen_kink * cell]
 
     @property
     def _per_shear(self) -> float:

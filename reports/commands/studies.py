@@ -139,7 +139,8 @@ def campaign(
     family: Annotated[
         str,
         typer.Argument(
-            help="elastic, pressure, displacement, inside, adhesive, impact, history (of depth) or creep (force)."
+            help="elastic, many_loads, pressure, displacement, inside, adhesive, adhering_table, impact, history (of "
+            "depth) or creep (force)."
         ),
     ] = "elastic",
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",

@@ -56,6 +56,7 @@ class CoveragePlan:
         only_radii: Whether only prescribed radii and flat punches are drawn, no search for the contact radius.
         smallest: Of contact radius over thickness.
         largest: The same.
+        claims_sharpness: Whether errors are claimed to be sharp, or their sharpness is only shown.
     """
 
     method: str
@@ -65,8 +66,26 @@ class CoveragePlan:
     only_radii: bool = False
     smallest: float = _SMALLEST_RATIO
     largest: float = CHEAP_RATIO
+    claims_sharpness: bool = True
 
 
+# What suite nightly measures besides: bars that no other plan judges. At least 20 scenes, where there is time for them:
+# one in twenty may be exceeded. Pull-offs of measured profiles state what all that lies between solved radii may come
+# to, 6 to 27 times the true error in the median (seed 1401, accuracies 1e-2 and 1e-3, 2026-11-23).
+NIGHTLY_PLANS: Final = (
+    CoveragePlan(method="bem", settings={"points": 256}, family="elastic", count=40, largest=5.0),
+    CoveragePlan(method="bem", settings={"points": 512}, family="elastic", count=24, largest=5.0),
+    CoveragePlan(
+        method="fem",
+        settings={"accuracy": 1e-2},
+        family="adhering_table",
+        count=16,
+        smallest=0.1,
+        largest=5.0,
+        claims_sharpness=False,
+    ),
+    CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=24, smallest=0.1, largest=5.0),
+)
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}
 PLANS: Final = (
     CoveragePlan(method="mdr", settings={}, family="elastic", count=400),
@@ -83,6 +102,7 @@ PLANS: Final = (
     CoveragePlan(method="fem", settings={"accuracy": 1e-4}, family="elastic", count=200, only_radii=True),
     CoveragePlan(method="fem", settings={"accuracy": 1e-3}, family="adhesive", count=40, largest=5.0),
     CoveragePlan(method="fem", settings={"growth": 1.0}, family="impact", count=60, smallest=0.1, largest=5.0),
+    *NIGHTLY_PLANS,
 )
 QUICK_PLANS: Final = (
     CoveragePlan(method="mdr", settings={"nodes": 12}, family="elastic", count=16, smallest=0.1, largest=1.0),
@@ -101,19 +121,34 @@ def coverage_case(
         progress: Called with one line a record.
         at_work: Called with one line a scene before it is solved.
     """
+<<<<<<< HEAD
     found = (record for plan in plans for record in records_of(plan, seed, at_work))
     records = tuple(told(found, summary, progress))
+=======
+    found = [(plan, tuple(told(records_of(plan, seed), summary, progress))) for plan in plans]
+>>>>>>> w14f
     return study_case(
         NAME,
         "Error bars that hold and are sharp",
         "How often does the true error lie within the stated one, and how much is given away?",
         TEXT,
-        claims=tuple(claim(record) for record in records for claim in (errors_are_covered, errors_are_sharp)),
-        coverage=records,
+        claims=tuple(claim for plan, own in found for record in own for claim in claims_of(plan, record)),
+        coverage=tuple(record for _, own in found for record in own),
     )
 
 
+<<<<<<< HEAD
 def records_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[CoverageRecord]:
+=======
+def claims_of(plan: CoveragePlan, record: CoverageRecord) -> Iterator[Claim]:
+    """That a record's errors hold and, where the plan claims it, are sharp."""
+    yield errors_are_covered(record)
+    if plan.claims_sharpness:
+        yield errors_are_sharp(record)
+
+
+def records_of(plan: CoveragePlan, seed: int) -> Iterator[CoverageRecord]:
+>>>>>>> w14f
     """One record for each quantity the plan's method states an error for."""
     rows = list(rows_of(plan, seed, at_work))
     for quantity, found in by_quantity(rows).items():

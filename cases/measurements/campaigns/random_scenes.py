@@ -37,7 +37,9 @@ from contact import (
     TruncatedParaboloid,
 )
 
-Family: TypeAlias = Literal["elastic", "adhesive", "impact", "history", "creep", "reloading"]
+Family: TypeAlias = Literal[
+    "elastic", "many_loads", "adhesive", "adhering_table", "impact", "history", "creep", "reloading"
+]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 
 # Range of the contact radius over the thickness of the layer.
@@ -58,8 +60,9 @@ def random_scenes(seed: int, count: int, family: Family = "elastic", ratio: tupl
     Args:
         seed: Any integer.
         count: How many.
-        family: "elastic", "adhesive" (detachment), "impact", "history" or "creep" (prescribed depth or force in time),
-            or "reloading" (depth histories of several strokes on layers with extreme relaxation spectra).
+        family: "elastic", "many_loads" (so many that a method may interpolate between them), "adhesive" (detachment),
+            "adhering_table" (the same of measured profiles), "impact", "history" or "creep" (prescribed depth or force
+            in time), or "reloading" (depth histories of several strokes on layers with extreme relaxation spectra).
         ratio: Range of contact radius over thickness.
     """
     return [scene_of(seed, n, family, ratio) for n in range(count)]
@@ -197,9 +200,31 @@ def _static_loading(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Lo
     return NormalForces(values=2.0 * layer.contact_modulus * min(a, 1e3) * depths)
 
 
-def _adhesive(draw: Draw, ratio: tuple[float, float]) -> Scene:
-    """Critical elongation of the half-space between a hundredth of the typical depth and ten times it."""
+def _many_loads(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """Twenty to forty depths or forces over up to two decades, none on a flat or nearly flat punch or a table."""
     layer, indenter, a = _stage(draw, ratio)
+    while isinstance(indenter, FlatPunch | Tabulated) or indenter.flat_radius > 0.5 * a:
+        indenter = _indenter(draw, a)
+    largest = _typical_depth(indenter, a) * float(draw.uniform(0.3, 1.0))
+    shares = np.geomspace(log_uniform(draw, 1e-2, 0.5), 1.0, int(draw.integers(20, 41)))
+    if draw.random() < 0.5:
+        return Scene(layer=layer, indenter=indenter, loading=IndentationDepths(values=largest * shares))
+    forces = 2.0 * layer.contact_modulus * min(a, 1e3) * largest * shares
+    return Scene(layer=layer, indenter=indenter, loading=NormalForces(values=forces))
+
+
+def _adhesive(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    return _detached(draw, *_stage(draw, ratio))
+
+
+def _adhering_table(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """A measured profile is pulled off, between its breakpoints or at one of them."""
+    a = _contact_ratio(draw, *ratio)
+    return _detached(draw, _layer(draw, poissons_ratio(draw)), tabulated(draw, a, log_uniform(draw, *SLOPE)), a)
+
+
+def _detached(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Scene:
+    """Critical elongation of the half-space between a hundredth of the typical depth and ten times it."""
     elongation = _typical_depth(indenter, a) * log_uniform(draw, 1e-2, 10.0)
     work = layer.contact_modulus * elongation**2 / (2.0 * np.pi * a)
     control: Literal["displacement", "force"] = "displacement" if draw.random() < 0.5 else "force"
@@ -293,7 +318,9 @@ def _reloading(draw: Draw, ratio: tuple[float, float]) -> Scene:
 
 _MAKERS: dict[Family, Callable[[Draw, tuple[float, float]], Scene]] = {
     "elastic": _elastic,
+    "many_loads": _many_loads,
     "adhesive": _adhesive,
+    "adhering_table": _adhering_table,
     "impact": _impact,
     "history": _history,
     "creep": _creep,

@@ -61,7 +61,7 @@ class MeridianSection:
     @cached_property
     def nodal(self) -> FloatArray:
         """Values at the nodes, shape (node, 9)."""
-        numbers, local = self.node_numbers, self._at_nodes_of_triangles
+        numbers, local = self.node_numbers, self.by_triangle
         total = np.zeros((int(self.space.displacement_dofs.N), local.shape[-1]))
         np.add.at(total, numbers, local)
         total /= np.bincount(numbers.ravel())[:, None]
@@ -84,8 +84,8 @@ class MeridianSection:
     def _unknowns(self) -> FloatArray:
         return np.asarray(self.contact.solutions @ [self.depth, 1.0])
 
-    @property
-    def _at_nodes_of_triangles(self) -> FloatArray:
+    @cached_property
+    def by_triangle(self) -> FloatArray:
         """Values of each triangle by itself at its nodes, shape (triangle, basis, 9)."""
         space, numbers = self.space, self.node_numbers
         depth = node_positions(space)[1, numbers]

@@ -114,11 +114,7 @@ class LoadCurve:
         }
 
     def change_from(self, coarser: LoadCurve) -> FloatArray:
-        """Largest relative change of radius, depth, force and stiffness at one load by the radii added since.
-
-        Measured with the last two of 7 to 21 radii on exact data (MDR, 60 random layers and profiles, 2026-11-22):
-        the error that is left is at most this in 95 of 100 curves, and 0.02 to 0.23 of it in the median.
-        """
+        """Largest relative change of radius, depth, force and stiffness at one load by the radii added since."""
         loads = np.geomspace(self.loads[0], self.loads[-1], PLACES)
         return np.asarray(np.abs(coarser.at(loads) / self.at(loads) - 1).max(axis=1))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from contact import FlatPunch, IndentationDepths, NormalForces, Scene
 
 # Fewer loads are solved one by one.  Chosen: half as many radii as loads are solved at most, and seven, those of the
-# first two curves, are the fewest that tell an error.
+# first three curves, are the fewest that tell an error.
 MANY = 20
 
 

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from bem import Bem
 from cases.measurements.campaigns import coverage
 from cases.measurements.campaigns.coverage import (
     CoveragePlan,
@@ -15,6 +16,7 @@ from cases.measurements.campaigns.coverage import (
 from cases.results.records.reliability import PERCENTILES
 from cases.results.status import Status
 from contact import ContactRadii, FlatPunch
+from fem_reference import Fem
 from mdr import Mdr
 
 PLAN = CoveragePlan(method="mdr", settings={"nodes": 12}, family="elastic", count=12, smallest=0.1, largest=5.0)
@@ -127,3 +129,44 @@ def test_a_plan_without_search_draws_radii_and_punches_only():
     plan = dataclasses.replace(PLAN, only_radii=True)
     for scene in coverage._scenes(plan, 1, Mdr()):
         assert isinstance(scene.loading, ContactRadii) or isinstance(scene.indenter, FlatPunch)
+
+
+@pytest.mark.parametrize("claims_sharpness", [True, False])
+def test_sharpness_is_claimed_where_the_plan_says_so(record, claims_sharpness):
+    plan = dataclasses.replace(PLAN, claims_sharpness=claims_sharpness)
+    named = [claim.name.split(",")[0] for claim in coverage.claims_of(plan, record)]
+    assert named == ["stated errors hold", "stated errors are sharp"][: 1 + claims_sharpness]
+
+
+def test_suite_nightly_judges_what_no_other_plan_does():
+    kinds = {(plan.method, plan.family, plan.settings.get("points")) for plan in coverage.NIGHTLY_PLANS}
+    wanted = {("bem", "elastic", 256), ("bem", "elastic", 512)}
+    assert kinds == wanted | {("fem", "adhering_table", None), ("fem", "many_loads", None)}
+    assert all(plan in coverage.PLANS for plan in coverage.NIGHTLY_PLANS)
+
+
+def planted(solve, **changes):
+    """A method's answers, each named number times a factor."""
+
+    def wrong(self, scene):
+        path = solve(self, scene)
+        return dataclasses.replace(path, **{name: factor * getattr(path, name) for name, factor in changes.items()})
+
+    return wrong
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("number", "kind", "changes", "quantity"),
+    [
+        (0, Bem, {"normal_force": 1.01}, "normal force"),
+        (1, Bem, {"contact_radius": 1.001}, "contact radius"),
+        (2, Fem, {"pull_off_force": 1.1}, "pull off force"),
+        (3, Fem, {"contact_stiffness": 1.01}, "contact stiffness"),
+    ],
+)
+def test_nightly_plans_see_planted_errors(monkeypatch, number, kind, changes, quantity):
+    plan = dataclasses.replace(coverage.NIGHTLY_PLANS[number], count=2)
+    monkeypatch.setattr(kind, "solve", planted(kind.solve, **changes))
+    by_name = {claim.name: claim.status for claim in coverage_case([plan]).claims}
+    assert by_name[f"stated errors hold, {quantity}"] is Status.FAIL
