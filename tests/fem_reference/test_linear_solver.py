@@ -14,14 +14,14 @@ from contact import (
     UnsupportedSceneError,
 )
 from fem_reference import Fem
-from fem_reference.discrete_layer import linear_solver
-from fem_reference.discrete_layer.assembly import Space, stiffness_matrix
+from fem_reference.discrete_layer.assembly import Space, stiffness_elements
 from fem_reference.discrete_layer.elements import PAIRS, taylor_hood
-from fem_reference.discrete_layer.linear_solver import CheckedSolver
 from fem_reference.discrete_layer.material import moduli
 from fem_reference.discrete_layer.mesh import Grading, layer_mesh
-from fem_reference.discrete_layer.ordering import minimum_degree, nodes
 from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.solving import linear_solver
+from fem_reference.discrete_layer.solving.linear_solver import CheckedSolver
+from fem_reference.discrete_layer.solving.ordering import minimum_degree, nodes
 
 LAYER_MESH = layer_mesh(1.0, 6.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))
 
@@ -138,7 +138,7 @@ def test_unknown_or_missing_backends_are_named(monkeypatch):
 
 def test_displacement_formulation_refuses_incompressibility():
     with pytest.raises(InvalidInput, match="mixed"):
-        stiffness_matrix(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))
+        stiffness_elements(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))
 
 
 def out_of_memory(*_arguments):

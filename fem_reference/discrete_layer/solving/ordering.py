@@ -1,7 +1,8 @@
 """Minimum degree on the nodes of a mesh: an elimination order that needs no pivoting and little fill.
 
 Unknowns that belong to the same triangles (of one vertex, one edge or one interior) are one node, and the node with
-the fewest neighbours left is eliminated next (George and Liu, SIAM Review 31 (1989) 1-19).  Inside every node the
+the fewest neighbours left is eliminated next (George and Liu, SIAM Review 31 (1989) 1-19), after all interiors, which
+have none: they are condensed.  Inside every node the
 displacements come before the pressures: by the inf-sup condition each pressure pivot is then the (negative) Schur
 complement of displacements already eliminated, so the symmetric indefinite matrix factors without row exchanges.
 A minimum degree on single unknowns takes pressures before their displacements at nu = 1/2 and needs pivots.
@@ -37,9 +38,10 @@ def nodes(space: Space) -> IntArray:
 def _neighbours(space: Space, node: IntArray) -> sparse.csc_array:
     """How many triangles each two nodes share."""
     unknowns = space.element_unknowns
-    # One unknown stands for each node.
+    # One unknown stands for each node, none for interiors.
     stands = np.zeros(space.size, dtype=bool)
     stands[np.unique(node, return_index=True)[1]] = True
+    unknowns = unknowns[:, : unknowns.shape[1] - space.inner_count]
     triangle, place = np.nonzero(stands[unknowns])
     shape = (len(unknowns), int(node.max()) + 1)
     belongs = sparse.coo_array((np.ones(len(place)), (triangle, node[unknowns[triangle, place]])), shape=shape).tocsr()
