@@ -18,7 +18,8 @@ from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import ElasticConstants, Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.outer_edge import decay_rate
-from fem_reference.discrete_layer.solving.restricted import RestrictedSolver
+from fem_reference.discrete_layer.solving.ordering import minimum_degree
+from fem_reference.discrete_layer.solving.restricted import RestrictedSolver, System
 
 Support = Literal["bonded", "unbonded"]
 
@@ -141,9 +142,9 @@ class LayerProblem:
 
     def solver(self, held: IntArray) -> RestrictedSolver:
         """Factorise once with these unknowns prescribed."""
-        return RestrictedSolver(
-            self.space, self.elements, self.springs, held, backend=self.backend, least_share=self.least_share
-        )
+        order = minimum_degree(self.space, self.layer_mesh.elimination)
+        system = System(self.space, self.elements, self.springs, order)
+        return RestrictedSolver(system, held, self.backend, self.least_share)
 
 
 def problem_of(
@@ -163,7 +164,9 @@ def problem_of(
 
 def facet_nodes(space: Space, facets: IntArray) -> IntArray:
     """Scalar displacement unknowns on facets."""
-    return np.asarray(space.displacement_dofs.get_facet_dofs(facets).all(), dtype=np.int64)
+    dofs = space.displacement_dofs
+    ends = dofs.nodal_dofs[:, space.mesh.facets[:, facets]]
+    return np.unique(np.concatenate([ends.ravel(), dofs.facet_dofs[:, facets].ravel()])).astype(np.int64)
 
 
 def outer_edge_matrix(space: Space, shear_modulus: float) -> sparse.csc_array:

@@ -2,24 +2,40 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from scipy import sparse
 
-from contact.records.validation import FloatArray, IntArray
+from contact.records.validation import BoolArray, FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space, scatter
 from fem_reference.discrete_layer.solving.condensed import condensed, forces
 from fem_reference.discrete_layer.solving.linear_solver import CheckedSolver
-from fem_reference.discrete_layer.solving.ordering import minimum_degree
+
+
+@dataclass(frozen=True)
+class System:
+    """Equations of a discrete layer before any unknown is prescribed.
+
+    Attributes:
+        space: the unknowns.
+        elements: matrix of each triangle, shape (triangle, n, n).
+        springs: what is added to the matrix of all unknowns, or nothing.
+        order: all unknowns in their order of elimination.
+    """
+
+    space: Space
+    elements: FloatArray
+    springs: sparse.csc_array | None
+    order: IntArray
 
 
 class RestrictedSolver:
     """Solutions with prescribed unknowns.
 
     Args:
-        space: the unknowns.
-        elements: matrix of each triangle, shape (triangle, n, n).
-        springs: what is added to the matrix of all unknowns, or nothing.
-        held: those that are prescribed; none lies inside a triangle.
+        system: the equations.
+        held: what is prescribed; none of it lies inside a triangle.
         backend: a key of `linear_solver.BACKENDS`.
         least_share: see `CheckedSolver`.
 
@@ -28,31 +44,21 @@ class RestrictedSolver:
         checked: the factorised matrix of the others.
     """
 
-    def __init__(
-        self,
-        space: Space,
-        elements: FloatArray,
-        springs: sparse.csc_array | None,
-        held: IntArray,
-        *,
-        backend: str,
-        least_share: float,
-    ) -> None:
+    def __init__(self, system: System, held: IntArray, backend: str, least_share: float) -> None:
         self.held = held
-        self._size, self._springs = space.size, springs
-        self._condensed = condensed(elements, space)
-        is_free = np.ones(space.size, dtype=bool)
+        self._size, self._springs = system.space.size, system.springs
+        self._condensed = condensed(system.elements, system.space)
+        is_free = np.ones(self._size, dtype=bool)
         is_free[held] = False
         self._beside = self._cut_free(is_free)
         is_free[self._condensed.inner] = False
-        order = minimum_degree(space)
-        self._free = order[is_free[order]]
+        self._free = system.order[is_free[system.order]]
         matrix = scatter(self._condensed.matrices, self._places(), len(self._free))
-        if springs is not None:
-            matrix = matrix + springs[self._free][:, self._free]
+        if self._springs is not None:
+            matrix = matrix + self._springs[self._free][:, self._free]
         self.checked = CheckedSolver(matrix, backend, least_share)
 
-    def _cut_free(self, is_free: FloatArray) -> tuple[FloatArray, IntArray]:
+    def _cut_free(self, is_free: BoolArray) -> tuple[FloatArray, IntArray]:
         """Takes the prescribed unknowns out of the triangles; those that had any, as they were."""
         free = is_free[self._condensed.unknowns]
         beside = np.flatnonzero(~free.all(axis=1))
