@@ -173,7 +173,7 @@ class Space:
         """Unknowns inside a triangle."""
         return sum(self.inner)
 
-    @property
+    @cached_property
     def local_order(self) -> tuple[tuple[int, slice], ...]:
         """Parts of a triangle's displacements (0) and pressures (1): those it shares, then those inside it."""
         shared = [
@@ -183,7 +183,7 @@ class Space:
         inside = [slice(part.stop, None) for part in shared]
         return tuple(enumerate(shared)) + tuple(enumerate(inside))
 
-    @property
+    @cached_property
     def _by_kind(self) -> tuple[IntArray, IntArray]:
         return self.element_displacements, self.element_pressures
 
