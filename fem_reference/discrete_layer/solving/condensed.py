@@ -52,7 +52,8 @@ class CondensedElements:
 def condensed(elements: FloatArray, space: Space) -> CondensedElements:
     """Eliminates the inner unknowns of element matrices (triangle, n, n) in the order of `Space.element_unknowns`."""
     outer = elements.shape[1] - space.inner_count
-    inverse, coupling = np.linalg.inv(elements[:, outer:, outer:]), elements[:, outer:, :outer]
+    inverse = np.asarray(np.linalg.inv(elements[:, outer:, outer:]), dtype=np.float64)
+    coupling = elements[:, outer:, :outer]
     matrices = elements[:, :outer, :outer].copy()
     if space.inner_count:
         matrices -= coupling.transpose(0, 2, 1) @ (inverse @ coupling)

@@ -56,7 +56,8 @@ def _tags(space: Space) -> FloatArray:
     """A number for each unknown: the sum of random numbers of its triangles, added in the order of the triangles."""
     triangles, unknowns = space.element_unknowns.shape
     numbers = np.random.default_rng(0).random(triangles)
-    return np.bincount(space.element_unknowns.ravel(), weights=np.repeat(numbers, unknowns), minlength=space.size)
+    weights = np.repeat(numbers, unknowns)
+    return np.asarray(np.bincount(space.element_unknowns.ravel(), weights, space.size), dtype=np.float64)
 
 
 def _neighbours(space: Space, node: IntArray) -> sparse.csc_array:
