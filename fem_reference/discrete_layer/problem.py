@@ -165,8 +165,9 @@ def problem_of(
 def facet_nodes(space: Space, facets: IntArray) -> IntArray:
     """Scalar displacement unknowns on facets."""
     dofs = space.displacement_dofs
-    ends = dofs.nodal_dofs[:, space.mesh.facets[:, facets]]
-    return np.unique(np.concatenate([ends.ravel(), dofs.facet_dofs[:, facets].ravel()])).astype(np.int64)
+    between = dofs.facet_dofs[:, facets].ravel() if len(dofs.facet_dofs) else []
+    ends = dofs.nodal_dofs[:, space.mesh.facets[:, facets]].ravel()
+    return np.unique(np.concatenate([ends, between])).astype(np.int64)
 
 
 def outer_edge_matrix(space: Space, shear_modulus: float) -> sparse.csc_array:
