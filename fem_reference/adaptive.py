@@ -78,7 +78,8 @@ def solve_to_accuracy(
                 raise
             settings = _finer(settings, UNSETTLED)
             continue
-        excess = {name: errors(answer)[name] / accuracy for name, accuracy in wanted.items()}
+        found = errors(answer)
+        excess = {name: found[name] / accuracy for name, accuracy in wanted.items()}
         worst = max(excess, key=lambda name: excess[name])
         if excess[worst] <= 1:
             return answer

@@ -39,10 +39,10 @@ from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
 from fem_reference.adaptive import meshes_that_fit, settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.linear_solver import BACKENDS
 from fem_reference.discrete_layer.material import contact_modulus
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.settings import Discretisation, narrowest_radius
+from fem_reference.discrete_layer.solving.linear_solver import BACKENDS
 from fem_reference.elastic.answer import contact_path
 from fem_reference.elastic.beside_contact import refuse_pulled_contacts, refuse_touching_contacts
 from fem_reference.elastic.error_estimate import ContactWithErrors, solve_contact_with_errors

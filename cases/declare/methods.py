@@ -6,8 +6,10 @@ class (a frozen record of settings that follows ``contact.Method``).  Nothing is
 
 import importlib
 import re
-from collections.abc import Iterable, Mapping
+import sys
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Final
 
@@ -72,12 +74,21 @@ def registered() -> dict[str, EntryPoint]:
         InvalidInput: if two packages, or a package and this project, use one name, or if a name could not name a file.
     """
     found = dict(REFEREES)
-    for entry in entry_points(group=ENTRY_POINT_GROUP):
+    for entry in _entries(entry_points, tuple(sys.path)):
         check_name(entry.name, entry.value)
         if entry.name in BUILT_IN or entry.name in found:
             raise InvalidInput(f"two methods are called {entry.name!r}; rename the entry point of {entry.value}")
         found[entry.name] = entry
     return found
+
+
+@cache
+def _entries(read: Callable[..., Iterable[EntryPoint]], _path: tuple[str, ...]) -> tuple[EntryPoint, ...]:
+    """What installed packages register; asked twice for every task, and read once for each path of packages.
+
+    Reading takes 4 ms among a hundred packages, a third of what the run adds to a solution of milliseconds.
+    """
+    return tuple(read(group=ENTRY_POINT_GROUP))
 
 
 def check_name(name: str, place: str) -> None:

@@ -163,11 +163,36 @@ class Space:
         return np.asarray(self.pressure_dofs.element_dofs.T.astype(np.int64) + self.displacement_count)
 
     @cached_property
+    def inner(self) -> tuple[int, int]:
+        """How many displacements and pressures lie inside a triangle; pressures alone there are left to the others."""
+        displacements = 2 * int(self.pair.displacement.interior_dofs)
+        return displacements, int(self.pair.pressure.interior_dofs) if self.pair.pressure and displacements else 0
+
+    @property
+    def inner_count(self) -> int:
+        """Unknowns inside a triangle."""
+        return sum(self.inner)
+
+    @cached_property
+    def local_order(self) -> tuple[tuple[int, slice], ...]:
+        """Parts of a triangle's displacements (0) and pressures (1): those it shares, then those inside it."""
+        shared = [
+            slice(0, len(of_triangle[0]) - inside)
+            for of_triangle, inside in zip(self._by_kind, self.inner, strict=True)
+        ]
+        inside = [slice(part.stop, None) for part in shared]
+        return tuple(enumerate(shared)) + tuple(enumerate(inside))
+
+    @cached_property
+    def _by_kind(self) -> tuple[IntArray, IntArray]:
+        return self.element_displacements, self.element_pressures
+
+    @cached_property
     def element_unknowns(self) -> IntArray:
-        """All unknowns of each triangle, displacements first."""
+        """All unknowns of each triangle, in the order of `local_order`."""
         if not self.pair.is_mixed:
             return self.element_displacements
-        return np.hstack([self.element_displacements, self.element_pressures])
+        return np.hstack([self._by_kind[kind][:, part] for kind, part in self.local_order])
 
 
 def shear_elements(space: Space, shear_modulus: float | FloatArray) -> FloatArray:
@@ -203,17 +228,14 @@ def stiffness_elements(space: Space, moduli: Moduli) -> FloatArray:
     shear = shear_elements(space, moduli.shear)
     if not space.pair.is_mixed:
         return shear + volume_elements(space, moduli.bulk)
-    return saddle_elements(shear, constraint_elements(space), moduli.compressibility * pressure_mass_elements(space))
+    compliance = moduli.compressibility * pressure_mass_elements(space)
+    return saddle_elements(space, shear, constraint_elements(space), compliance)
 
 
-def saddle_elements(shear: FloatArray, constraint: FloatArray, compliance: FloatArray) -> FloatArray:
-    """``[[A, B^T], [B, -C]]`` of each triangle."""
-    return np.block([[shear, constraint.transpose(0, 2, 1)], [constraint, -compliance]])
-
-
-def stiffness_matrix(space: Space, moduli: Moduli) -> sparse.csc_array:
-    """Symmetric matrix of the whole formulation (outer edge spring not included)."""
-    return scatter(stiffness_elements(space, moduli), space.element_unknowns, space.size)
+def saddle_elements(space: Space, shear: FloatArray, constraint: FloatArray, compliance: FloatArray) -> FloatArray:
+    """``[[A, B^T], [B, -C]]`` of each triangle, in the order of `Space.local_order`."""
+    kinds, parts = ((shear, constraint.transpose(0, 2, 1)), (constraint, -compliance)), space.local_order
+    return np.block([[kinds[i][j][:, rows, columns] for j, columns in parts] for i, rows in parts])
 
 
 def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_array:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from itertools import pairwise
 from signal import SIGPIPE, getsignal, signal
 from threading import current_thread, main_thread
@@ -22,7 +22,8 @@ from skfem import MeshTri
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space
-from fem_reference.discrete_layer.elements import ElementPair
+from fem_reference.discrete_layer.elements import ElementPair, element_pair
+from fem_reference.discrete_layer.solving.ordering import Elimination, elimination
 
 MISSING_LIBRARIES = (
     "gmsh could not be loaded ({reason}). On Debian or Ubuntu install its system libraries: "
@@ -99,6 +100,11 @@ class LayerMesh:
     def space(self, pair: ElementPair) -> Space:
         """Unknowns and basis of an element pair on it."""
         return Space(self.mesh, pair)
+
+    @cached_property
+    def elimination(self) -> Elimination:
+        """In which order its nodes are eliminated, whatever the pair."""
+        return elimination(self.space(element_pair("P3P2")))
 
 
 @cache

@@ -13,13 +13,13 @@ from skfem import ElementVector, FacetBasis
 from contact import ElasticLayer, Layer
 from contact.records.validation import BoolArray, FloatArray, IntArray
 from fem_reference.discrete_layer import weak_forms
-from fem_reference.discrete_layer.assembly import Space, node_positions, stiffness_matrix
+from fem_reference.discrete_layer.assembly import Space, node_positions, scatter, stiffness_elements
 from fem_reference.discrete_layer.elements import ElementPair
-from fem_reference.discrete_layer.linear_solver import CheckedSolver
 from fem_reference.discrete_layer.material import ElasticConstants, Moduli, moduli
 from fem_reference.discrete_layer.mesh import LayerMesh
-from fem_reference.discrete_layer.ordering import minimum_degree
 from fem_reference.discrete_layer.outer_edge import decay_rate
+from fem_reference.discrete_layer.solving.ordering import minimum_degree
+from fem_reference.discrete_layer.solving.restricted import RestrictedSolver, System
 
 Support = Literal["bonded", "unbonded"]
 
@@ -48,7 +48,7 @@ class LayerProblem:
         pair: element pair.
         poissons_ratio: nu.
         support: "bonded" or "unbonded" base.
-        backend: linear solver, a key of `linear_solver.BACKENDS`.
+        backend: linear solver, a key of `solving.linear_solver.BACKENDS`.
     """
 
     # Each row of the linear system is judged by its own terms.
@@ -76,15 +76,25 @@ class LayerProblem:
         return self.layer_mesh.space(self.pair)
 
     @cached_property
-    def matrix(self) -> sparse.csc_array:
-        """Stiffness matrix of all unknowns, the outer edge of an unbonded layer included."""
-        matrix = stiffness_matrix(self.space, self.moduli)
-        return matrix + self.outer_edge_matrix if self.has_elastic_edge else matrix
+    def elements(self) -> FloatArray:
+        """Stiffness of each triangle, in the order of `Space.element_unknowns`."""
+        return stiffness_elements(self.space, self.moduli)
 
     @property
-    def uniform_matrix(self) -> sparse.csc_array:
-        """That of the surface's material everywhere, for the patch test."""
-        return self.matrix
+    def uniform_elements(self) -> FloatArray:
+        """Those of the surface's material everywhere, for the patch test."""
+        return self.elements
+
+    @cached_property
+    def matrix(self) -> sparse.csc_array:
+        """Stiffness matrix of all unknowns, the outer edge of an unbonded layer included."""
+        matrix = scatter(self.elements, self.space.element_unknowns, self.space.size)
+        return matrix if self.springs is None else matrix + self.springs
+
+    @property
+    def springs(self) -> sparse.csc_array | None:
+        """What carries on the layer beyond the mesh, in the numbering of all unknowns."""
+        return self.outer_edge_matrix if self.has_elastic_edge else None
 
     @property
     def has_elastic_edge(self) -> bool:
@@ -132,7 +142,9 @@ class LayerProblem:
 
     def solver(self, held: IntArray) -> RestrictedSolver:
         """Factorise once with these unknowns prescribed."""
-        return RestrictedSolver(self, held)
+        order = minimum_degree(self.space, self.layer_mesh.elimination)
+        system = System(self.space, self.elements, self.springs, order)
+        return RestrictedSolver(system, held, self.backend, self.least_share)
 
 
 def problem_of(
@@ -152,7 +164,10 @@ def problem_of(
 
 def facet_nodes(space: Space, facets: IntArray) -> IntArray:
     """Scalar displacement unknowns on facets."""
-    return np.asarray(space.displacement_dofs.get_facet_dofs(facets).all(), dtype=np.int64)
+    dofs = space.displacement_dofs
+    between = dofs.facet_dofs[:, facets].ravel() if len(dofs.facet_dofs) else []
+    ends = dofs.nodal_dofs[:, space.mesh.facets[:, facets]].ravel()
+    return np.unique(np.concatenate([ends, between])).astype(np.int64)
 
 
 def outer_edge_matrix(space: Space, shear_modulus: float) -> sparse.csc_array:
@@ -160,42 +175,3 @@ def outer_edge_matrix(space: Space, shear_modulus: float) -> sparse.csc_array:
     edge = FacetBasis(space.mesh, ElementVector(space.pair.displacement), facets="outer")
     spring = weak_forms.outer_edge_spring.assemble(edge, mu=shear_modulus).tocoo()
     return sparse.coo_array((spring.data, (spring.row, spring.col)), shape=(space.size, space.size)).tocsc()
-
-
-class RestrictedSolver:
-    """Solutions with prescribed unknowns, all from one factorisation.
-
-    Attributes:
-        problem: the discrete layer.
-        held: the prescribed unknowns.
-        checked: the factorised matrix of the others.
-    """
-
-    def __init__(self, problem: LayerProblem, held: IntArray) -> None:
-        order = minimum_degree(problem.space)
-        is_free = np.ones(problem.space.size, dtype=bool)
-        is_free[held] = False
-        self.problem = problem
-        self.held = held
-        self._free = order[is_free[order]]
-        # The transpose is the same symmetric matrix, stored by rows.
-        rows = problem.matrix.T[self._free]
-        self._coupling = rows[:, held]
-        self.checked = CheckedSolver(rows[:, self._free].T, problem.backend, problem.least_share)
-
-    def solve_displaced(self, values: FloatArray) -> FloatArray:
-        """All unknowns, shape (size, m), for prescribed values of shape (held, m)."""
-        solution = np.zeros((self.problem.space.size, values.shape[1]))
-        solution[self.held] = values
-        solution[self._free] = self.checked.solve(-(self._coupling @ values))
-        return solution
-
-    def solve_loaded(self, loads: FloatArray) -> FloatArray:
-        """All unknowns, shape (size, m), for loads of that shape, the prescribed unknowns at zero."""
-        solution = np.zeros_like(loads)
-        solution[self._free] = self.checked.solve(loads[self._free])
-        return solution
-
-    def reactions(self, solution: FloatArray, unknowns: IntArray) -> FloatArray:
-        """Nodal forces that act on the layer at these unknowns."""
-        return np.asarray(self.problem.matrix[unknowns] @ solution)

@@ -19,6 +19,12 @@ def _lagrange(degree: int) -> FloatArray:
     return np.asarray(np.linalg.inv(np.vander(np.linspace(0, 1, degree + 1), increasing=True)))
 
 
+@cache
+def _gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
+    """Gauss nodes and weights on [-1, 1]."""
+    return np.polynomial.legendre.leggauss(points)
+
+
 @dataclass(frozen=True)
 class TraceSpace:
     """Continuous piecewise polynomials of ``degree`` along the top.
@@ -52,7 +58,7 @@ class TraceSpace:
 
     def gauss(self, points: int) -> tuple[FloatArray, FloatArray]:
         """Radii (cell, point) and weights ``2 pi r dr`` of a Gauss rule on every cell."""
-        x, w = np.polynomial.legendre.leggauss(points)
+        x, w = _gauss_rule(points)
         length = np.diff(self.vertices)[:, None]
         radius = self.vertices[:-1, None] + length * (x + 1) / 2
         return radius, 2 * np.pi * radius * length * w / 2
@@ -60,7 +66,7 @@ class TraceSpace:
     def moments(self, function_values: FloatArray, points: int) -> FloatArray:
         """``int f v 2 pi r dr`` for every basis function v, f given at ``gauss(points)``."""
         _, weights = self.gauss(points)
-        x, _ = np.polynomial.legendre.leggauss(points)
+        x, _ = _gauss_rule(points)
         local = (weights * function_values) @ self.basis((x + 1) / 2)
         loads = np.bincount(self._cell_nodes.ravel(), local.ravel(), minlength=len(self.radii))
         return np.asarray(loads, dtype=np.float64)
@@ -72,7 +78,7 @@ class TraceSpace:
         """
         hats, parts, points = TraceSpace(self.radii[::stride], 1), self.degree // stride, self.degree + 1
         weights = hats.gauss(points)[1]
-        x = (np.polynomial.legendre.leggauss(points)[0] + 1) / 2
+        x = (_gauss_rule(points)[0] + 1) / 2
         piece = np.arange(len(weights))
         basis = self.basis((piece[:, None] % parts + x) / parts)
         local = np.einsum("cq,cqi,qj->cij", weights, basis, hats.basis(x))
@@ -88,7 +94,7 @@ class TraceSpace:
     def mass_matrix(self) -> coo_array:
         """``int u v 2 pi r dr``."""
         points = self.degree + 2
-        x, _ = np.polynomial.legendre.leggauss(points)
+        x, _ = _gauss_rule(points)
         basis = self.basis((x + 1) / 2)
         local = np.einsum("cq,qi,qj->cij", self.gauss(points)[1], basis, basis)
         nodes = self._cell_nodes

@@ -11,6 +11,7 @@ import numpy as np
 
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.solving.condensed import forces
 
 # The radial strain s, any number of the size of the volume strain 1 - 2 nu: with c = (1 - 2 nu) - 2 s the pressure is
 # finite at nu = 1/2.
@@ -19,11 +20,14 @@ STRETCH = 0.1
 
 def patch_defect(problem: LayerProblem) -> float:
     """Largest residual of the constant-strain state over the sum of its terms' magnitudes, of all inner equations."""
-    state = constant_strain(problem)
-    matrix = problem.uniform_matrix
+    state, unknowns, elements = (
+        constant_strain(problem)[:, None],
+        problem.space.element_unknowns,
+        problem.uniform_elements,
+    )
+    left, terms = forces(elements, unknowns, state), forces(np.abs(elements), unknowns, np.abs(state))
     inner = np.setdiff1d(np.arange(problem.space.size), [*_boundary_unknowns(problem), *problem.supported_unknowns])
-    terms = abs(matrix) @ np.abs(state)
-    return float(np.max(np.abs(matrix @ state)[inner] / terms[inner], initial=0.0))
+    return float(np.max(np.abs(left[inner]) / terms[inner], initial=0.0))
 
 
 def constant_strain(problem: LayerProblem) -> FloatArray:

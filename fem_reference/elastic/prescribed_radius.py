@@ -146,7 +146,7 @@ def solve_prescribed_contact(problem: LayerProblem, indenter: ScaledIndenter, lo
     radii = problem.positions[0, contact]
     pressed = 2 * contact + 1
     with log.stage("assemble"):
-        log.hold(problem.matrix.data.nbytes)
+        log.hold(problem.elements.nbytes)
     with log.stage("factor"):
         solver = problem.solver(np.concatenate([problem.supported_unknowns, pressed]))
     log.count("factorisations", solver.checked.factorisations)

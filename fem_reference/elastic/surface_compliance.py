@@ -96,7 +96,7 @@ def condense(layer: ElasticLayer, mesh: LayerMesh, backend: str, log: StageLog) 
     """Factorise the layer once and load it by every pressure function of the strip of radius one."""
     problem = problem_of(layer, mesh, taylor_hood(STRIP_ORDER), backend)
     with log.stage("assemble"):
-        log.hold(problem.matrix.data.nbytes)
+        log.hold(problem.elements.nbytes)
     with log.stage("factor"):
         solver = problem.solver(problem.supported_unknowns)
     log.count("factorisations", solver.checked.factorisations)

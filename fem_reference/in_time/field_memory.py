@@ -19,7 +19,8 @@ from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.assembly import pressure_mass_elements, scatter, shear_elements
 from fem_reference.discrete_layer.elements import taylor_hood
 from fem_reference.discrete_layer.mesh import LayerMesh
-from fem_reference.discrete_layer.problem import LayerProblem, RestrictedSolver
+from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.solving.restricted import RestrictedSolver
 from fem_reference.elastic.surface_compliance import STRIP_ORDER, strip_loads, strip_vertices
 from fem_reference.in_time.relaxation_step import RelaxationStep
 

@@ -3,10 +3,14 @@
 The notation is that of CODATA: `1.480210(21)` means 1.480210 with an uncertainty of 0.000021.
 """
 
+from __future__ import annotations
+
 import math
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
-from cases.results.records.scene_run import Quantity
+if TYPE_CHECKING:
+    from cases.results.records.scene_run import Quantity
 
 # What stands where a number should be and is none; the letters of a floating point NaN never reach a page.
 NOT_FINITE = "not finite"

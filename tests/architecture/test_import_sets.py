@@ -41,7 +41,9 @@ def test_lapack_is_scipys_where_its_file_is_not_found_alone():
 def test_a_command_that_solves_loads_neither_storage_nor_scipys_linear_algebra():
     run = "from typer.testing import CliRunner; from reports.command_line import app; "
     run += "assert CliRunner().invoke(app, ['solve', 'examples/cartilage.toml']).exit_code == 0"
-    assert not loaded_after(run) & {"h5py", "matplotlib", "skfem", "scipy.linalg", "scipy.sparse", "scipy.optimize"}
+    loaded = loaded_after(run)
+    assert not loaded & {"h5py", "matplotlib", "skfem", "cases.results.records.scene_run"}
+    assert not loaded & {"scipy.linalg", "scipy.sparse", "scipy.optimize", "scipy.special"}
 
 
 def test_an_answer_of_boundary_elements_loads_compiled_files_alone():
@@ -66,4 +68,13 @@ def test_an_answer_of_finite_elements_loads_no_optimiser():
         "matplotlib",
         "h5py",
         "bem",
+        "numpy.f2py",
+        "numpy.testing",
+        "unittest",
     }
+
+
+def test_numpy_is_whole_after_a_lean_scipy():
+    code = "import numpy; before = dir(numpy), list(numpy.__all__); import fem_reference, numpy as np; "
+    told = "assert (dir(np), np.__all__) == before and np.testing.assert_equal and np.f2py"
+    assert {"numpy.f2py", "numpy.testing"} <= loaded_after(f"{code}{told}")

@@ -242,3 +242,10 @@ def test_the_command_blames_it_in_one_line(stranger_solves, capsys, deed, code, 
     told = capsys.readouterr().err
     assert words in told
     assert len(told.splitlines()) == 1
+
+
+def test_installed_packages_are_read_once(monkeypatch):
+    asked = []
+    monkeypatch.setattr(methods, "entry_points", lambda group: asked.append(group) or [])
+    assert methods.registered() == methods.registered() == dict(methods.REFEREES)
+    assert len(asked) == 1

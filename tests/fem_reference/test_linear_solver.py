@@ -14,14 +14,14 @@ from contact import (
     UnsupportedSceneError,
 )
 from fem_reference import Fem
-from fem_reference.discrete_layer import linear_solver
-from fem_reference.discrete_layer.assembly import Space, stiffness_matrix
+from fem_reference.discrete_layer.assembly import Space, stiffness_elements
 from fem_reference.discrete_layer.elements import PAIRS, taylor_hood
-from fem_reference.discrete_layer.linear_solver import CheckedSolver
 from fem_reference.discrete_layer.material import moduli
 from fem_reference.discrete_layer.mesh import Grading, layer_mesh
-from fem_reference.discrete_layer.ordering import minimum_degree, nodes
 from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.solving import linear_solver
+from fem_reference.discrete_layer.solving.linear_solver import CheckedSolver
+from fem_reference.discrete_layer.solving.ordering import minimum_degree, nodes
 
 LAYER_MESH = layer_mesh(1.0, 6.0, Grading(points=((1.0, 1e-5),), growth=0.5, max_cell=0.5))
 
@@ -138,7 +138,7 @@ def test_unknown_or_missing_backends_are_named(monkeypatch):
 
 def test_displacement_formulation_refuses_incompressibility():
     with pytest.raises(InvalidInput, match="mixed"):
-        stiffness_matrix(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))
+        stiffness_elements(Space(LAYER_MESH.mesh, PAIRS["P2"]), moduli(0.5))
 
 
 def out_of_memory(*_arguments):
@@ -165,3 +165,27 @@ def test_no_memory_error_leaves_the_method(monkeypatch):
     )
     with pytest.raises(UnsupportedSceneError, match="does not fit into memory"):
         Fem().solve(scene)
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+@pytest.mark.parametrize("name", ["P2P1", "P3P2", "P4P3"])
+def test_condensed_triangles_solve_the_whole_system(name, nu):
+    """Random loads, inside triangles as well, and random prescribed values: every equation of the full matrix holds."""
+    problem = LayerProblem(LAYER_MESH, PAIRS[name], nu, "unbonded")
+    held, rng = problem.supported_unknowns, np.random.default_rng(1)
+    solver, loads = problem.solver(held), rng.normal(size=(problem.space.size, 2))
+    values = rng.normal(size=(len(held), 2))
+    for found, asked, right in (
+        (solver.solve_loaded(loads), 0.0, loads),
+        (solver.solve_displaced(values), values, np.zeros_like(loads)),
+    ):
+        left = np.delete(problem.matrix @ found - right, held, axis=0)
+        size = np.delete(abs(problem.matrix) @ np.abs(found) + np.abs(right), held, axis=0)
+        assert np.abs(left / size).max() < 1e-11
+        assert np.array_equal(found[held], asked + np.zeros_like(values))
+
+
+def test_linear_elements_have_nodes_at_vertices_only():
+    problem = LayerProblem(LAYER_MESH, PAIRS["P1P1"], 0.3, "bonded")
+    ends = np.unique(LAYER_MESH.mesh.facets[:, LAYER_MESH.mesh.boundaries["base"]])
+    assert len(problem.nodes_on("base")) == len(ends)

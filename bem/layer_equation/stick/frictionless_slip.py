@@ -20,6 +20,7 @@ from bem.kernels.tangential import StickingKernel
 from bem.layer_equation.stick.adhered_punch import BasisTransforms, Material, basis_transforms, functions_for
 from bem.layer_equation.triangular import positive_factor, solve_factored
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
+from contact.answer.compiled_files import compiled
 from contact.records.validation import FloatArray
 
 # Gauss nodes of the density between a radius and the edge.
@@ -158,9 +159,8 @@ def rung_of(ratio: float) -> float:
 @lru_cache(maxsize=16)
 def slip_tables(rung: float, longest: float) -> SlipTables:
     """Tables up to a/h = rung; a kernel smooth on the scale of 1/longest asks for narrower panels."""
-    # Only the statement about friction needs Bessel functions.
-    from scipy.special import j1  # noqa: PLC0415
-
+    # The package around it takes as long to load as all of an elastic answer.
+    j1 = compiled("scipy.special._special_ufuncs", "scipy.special").j1
     # Panels are as wide as the smallest punch of the range bears: half a rung.
     transforms = basis_transforms(0.0, rung, functions_for(rung), longest=2.0 * longest)
     even = transforms.cosine[::2]

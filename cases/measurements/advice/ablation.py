@@ -1,13 +1,18 @@
 """What each listed effect costs and what it moves, from one cheap solution without it."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from functools import partial
+from typing import TYPE_CHECKING
 
 from cases.declare.quantities import relative_change, single_numbers, values_of
 from cases.measurements.advice.simpler_layers import layer_parts, simpler
-from cases.results.records.cost import EffectEntry
 from cases.run.empty_caches import forget
 from contact import Adhesion, ContactError, Detachment, ElasticLayer, Method, Scene, Solution
+
+if TYPE_CHECKING:
+    from cases.results.records.cost import EffectEntry
 
 # A solution of more seconds than this hides the imports.
 _IMPORTS_COUNT = 2.0
@@ -60,6 +65,8 @@ def without(scene: Scene, parts: Sequence[str]) -> Scene:
 
 
 def _ablation(method: Method, whole: Solution, part: str) -> EffectEntry:
+    from cases.results.records.cost import EffectEntry  # noqa: PLC0415 - a single answer needs no records of runs
+
     entry = partial(EffectEntry, scene="", method=method.name, effect=part, seconds=_seconds(whole))
     if part == Adhesion.__name__ and isinstance(whole.scene.loading, Detachment):
         return entry(seconds_without=None, remark=NOTHING_PULLS)

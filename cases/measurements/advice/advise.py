@@ -1,11 +1,16 @@
 """Which effects, and which finite thickness, a scene needs at a wanted accuracy: solved with and without."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from cases.measurements.advice.ablation import ablations_of, change_without, first_solution
 from cases.measurements.advice.dimensionless_numbers import Number, numbers
-from cases.results.records.cost import EffectEntry
 from contact import InvalidInput, Method, Scene, Solution
+
+if TYPE_CHECKING:
+    from cases.results.records.cost import EffectEntry
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,9 +15,8 @@ from fem_reference.discrete_layer.assembly import (
     Space,
     constraint_elements,
     saddle_elements,
-    scatter,
     shear_elements,
-    stiffness_matrix,
+    stiffness_elements,
 )
 from fem_reference.discrete_layer.elements import ElementPair
 from fem_reference.discrete_layer.material import PointModuli
@@ -81,11 +80,9 @@ class SeveralLayersProblem(LayerProblem):
         return PartsModuli(self.parts_mesh, _depth(self.space))
 
     @cached_property
-    def matrix(self) -> sparse.csc_array:
-        """Stiffness matrix of all unknowns; rows of unused ones are zero."""
-        moduli = self.constants.on(np.arange(len(self.parts_mesh.part)))
-        matrix = parts_matrix(self.space, moduli)
-        return matrix + self.outer_edge_matrix if self.has_elastic_edge else matrix
+    def elements(self) -> FloatArray:
+        """Stiffness of each triangle."""
+        return parts_elements(self.space, self.constants.on(np.arange(len(self.parts_mesh.part))))
 
     @cached_property
     def joined(self) -> JoinedSpace:
@@ -101,9 +98,9 @@ class SeveralLayersProblem(LayerProblem):
         return far_spring(self.joined, parts[-1], sides)
 
     @property
-    def uniform_matrix(self) -> sparse.csc_array:
-        """That of the surface's material everywhere, for the patch test: it passes through the joined faces."""
-        return stiffness_matrix(self.space, self.moduli)
+    def uniform_elements(self) -> FloatArray:
+        """Those of the surface's material everywhere, for the patch test: it passes through the joined faces."""
+        return stiffness_elements(self.space, self.moduli)
 
     @cached_property
     def supported_unknowns(self) -> IntArray:
@@ -133,12 +130,11 @@ def several_layers(layer: ElasticLayer, mesh: LayerMesh, pair: ElementPair, back
     return SeveralLayersProblem(mesh, pair, nu, "unbonded" if slides else "bonded", backend)
 
 
-def parts_matrix(space: Space, moduli: PointModuli) -> sparse.csc_array:
-    """Symmetric matrix of the mixed formulation with moduli at quadrature points."""
+def parts_elements(space: Space, moduli: PointModuli) -> FloatArray:
+    """Element matrices of the mixed formulation with moduli at quadrature points."""
     weight = (moduli.compressibility * space.measure)[:, None, :]
     compliance = (space.pressure_values * weight) @ space.pressure_values.T
-    elements = saddle_elements(shear_elements(space, moduli.shear), constraint_elements(space), compliance)
-    return scatter(elements, space.element_unknowns, space.size)
+    return saddle_elements(space, shear_elements(space, moduli.shear), constraint_elements(space), compliance)
 
 
 def _depth(space: Space) -> FloatArray:

@@ -17,9 +17,12 @@ from contact.records.validation import FloatArray
 # Componentwise backward error that a solution must reach.  Refined solutions end below 1e-14 (paraboloids at a/h = 0.2
 # to 20, nu = 0.3 to 1/2, 2026-11-22); one that misses this has lost digits to small pivots.
 BACKWARD_ERROR = 1e-11
-# Bytes for each entry of a matrix in the order of `ordering` while it is factorised.  Measured: peaks of 1.2 and 2.2 GB
-# at 9.5 and 20.3 million entries (degree 4 beside a ring of 3e-5 radii, growth 0.18 and 0.12, 2026-11-23).
-BYTES_PER_ENTRY = 110
+# Bytes for each entry of a condensed matrix in the order of `ordering` while it is factorised.  Measured: peaks of 0.76
+# and 1.48 GB at 4.2 and 9.0 million entries (punch, degree 4, growth 0.18 and 0.12, 2026-11-23).
+BYTES_PER_ENTRY = 165
+# Columns that SuperLU works on at a time.  At its own 20 it takes 1.1 times as long for 3,400 to 98,000 unknowns (least
+# of two, 2026-11-23); 8 and 12 lie between, and some sizes above 20 end the process.
+PANEL = 4
 
 
 class Factors(Protocol):
@@ -32,7 +35,7 @@ class Factors(Protocol):
 def without_pivoting(matrix: sparse.csc_array) -> Factors:
     """SuperLU in the given order with diagonal pivots: fast, right in the order of `ordering`."""
     options = {"SymmetricMode": True, "Equil": False}
-    factors: Factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options=options)
+    factors: Factors = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, panel_size=PANEL, options=options)
     return factors
 
 
