@@ -5,10 +5,8 @@ Enters: a scene. Leaves: contact paths, detachments, impacts and histories with 
 stated error. Nothing here knows the layer kernel, the integral equation or the method of dimensionality reduction.
 """
 
-from contact.answer.compiled_files import lean_scipy
 from contact.records.extras import missing_extra
 
-lean_scipy()
 try:
     from fem_reference.method import Fem
 except ModuleNotFoundError as error:

@@ -15,11 +15,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-
 _NAME = "scipy.linalg._flapack"
-# Parts of NumPy that neither SciPy's sparse and dense algebra nor scikit-fem asks for.
-_UNASKED = frozenset({"f2py", "testing"})
 
 
 @cache
@@ -37,26 +33,6 @@ def compiled(name: str, otherwise: str) -> Any:
         otherwise: The public module with the same functions, as "scipy.linalg.lapack".
     """
     return _alone(name) or importlib.import_module(otherwise)
-
-
-def lean_scipy() -> None:
-    """Loads what SciPy's packages share without NumPy's Fortran wrapper and test tools.
-
-    SciPy copies all that NumPy says it has into a module of its own (`scipy._lib.array_api_compat.numpy`), and so loads
-    parts that none of ours asks for: 0.07 s of processor time.  NumPy itself still has them where they are asked for.
-    """
-    name, told = "scipy._lib.array_api_compat.numpy", vars(np)
-    names, parts = told.get("__all__"), told.get("__numpy_submodules__")
-    if name in sys.modules or not isinstance(names, list) or not isinstance(parts, set):
-        return
-    told.update(__all__=[each for each in names if each not in _UNASKED], __numpy_submodules__=parts - _UNASKED)
-    try:
-        importlib.import_module(name)
-    except ImportError:
-        # Another release arranges it in another way: its packages load what they need.
-        return
-    finally:
-        told.update(__all__=names, __numpy_submodules__=parts)
 
 
 def is_loaded() -> bool:

@@ -68,13 +68,4 @@ def test_an_answer_of_finite_elements_loads_no_optimiser():
         "matplotlib",
         "h5py",
         "bem",
-        "numpy.f2py",
-        "numpy.testing",
-        "unittest",
     }
-
-
-def test_numpy_is_whole_after_a_lean_scipy():
-    code = "import numpy; before = dir(numpy), list(numpy.__all__); import fem_reference, numpy as np; "
-    told = "assert (dir(np), np.__all__) == before and np.testing.assert_equal and np.f2py"
-    assert {"numpy.f2py", "numpy.testing"} <= loaded_after(f"{code}{told}")

@@ -121,12 +121,7 @@ def coverage_case(
         progress: Called with one line a record.
         at_work: Called with one line a scene before it is solved.
     """
-<<<<<<< HEAD
-    found = (record for plan in plans for record in records_of(plan, seed, at_work))
-    records = tuple(told(found, summary, progress))
-=======
-    found = [(plan, tuple(told(records_of(plan, seed), summary, progress))) for plan in plans]
->>>>>>> w14f
+    found = [(plan, tuple(told(records_of(plan, seed, at_work), summary, progress))) for plan in plans]
     return study_case(
         NAME,
         "Error bars that hold and are sharp",
@@ -137,9 +132,6 @@ def coverage_case(
     )
 
 
-<<<<<<< HEAD
-def records_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[CoverageRecord]:
-=======
 def claims_of(plan: CoveragePlan, record: CoverageRecord) -> Iterator[Claim]:
     """That a record's errors hold and, where the plan claims it, are sharp."""
     yield errors_are_covered(record)
@@ -147,8 +139,7 @@ def claims_of(plan: CoveragePlan, record: CoverageRecord) -> Iterator[Claim]:
         yield errors_are_sharp(record)
 
 
-def records_of(plan: CoveragePlan, seed: int) -> Iterator[CoverageRecord]:
->>>>>>> w14f
+def records_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[CoverageRecord]:
     """One record for each quantity the plan's method states an error for."""
     rows = list(rows_of(plan, seed, at_work))
     for quantity, found in by_quantity(rows).items():
