@@ -144,24 +144,6 @@ class VolterraFactor:
         edge: FloatArray = (self.edge_matrix[: len(values)] @ values[..., None])[..., 0]
         return edge
 
-    def resolvent_at(self, panel: int, edge: FloatArray, points: FloatArray) -> FloatArray:
-        """Resolvent G(edge, point) of one panel by its polynomials in edge and point/edge.
-
-        Args:
-            panel: Number of the panel.
-            edge: Edges in [0, 1], relative to the panel, shape (k,).
-            points: Points in [0, edge], relative to the panel, shape (k, l).
-
-        Returns:
-            Shape (k, l).
-        """
-        rows = lagrange_matrix(self.count, edge) @ self.resolvent[panel]
-        # At a panel's start the edges are rounding errors or zero.
-        edges = np.broadcast_to(edge[:, None], points.shape)
-        share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
-        values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, share), rows)
-        return values
-
     @cached_property
     def truncation(self) -> FloatArray:
         """Error of the edge values at each panel's nodes, relative, from the orders that K~ has there; shape (P,).

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.layer_equation.one_factorisation import VolterraFactor
-from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
+from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix, lagrange_terms
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact.records.validation import FloatArray
 
@@ -46,10 +46,11 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     values = factor.edge_values(averages + inherited)[panel]
     polynomial = factor.edge_values(inherited)
     cut = np.flatnonzero(~whole)
-    for piece, within in zip(cut, load.within_nodes(cut), strict=True):
-        smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
-        own = _own_integral(factor, load, panel, position, piece, within=within)
-        values[piece] = load.node_values[piece] + smooth + own
+    at_edges = lagrange_matrix(factor.count, position[cut])
+    smooth = (at_edges @ polynomial[panel[cut]][..., None])[..., 0]
+    resolvent = at_edges @ factor.resolvent[panel[cut]]
+    own = _own_integrals(load, panel, position, factor.widths(panel[-1] + 1), cut=cut, resolvent=resolvent)
+    values[cut] = load.node_values[cut] + smooth + own
     return values
 
 
@@ -69,7 +70,7 @@ def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: 
     grid = load.grid
     ratio = flat_radius + grid.end
     panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
-    starts, widths = factor.starts(panel[-1] + 1), factor.widths(panel[-1] + 1)
+    starts, widths = factor.starts(panel[-1] + 1), factor.widths(panel[-1] + 1).copy()
     widths[-1] = ratio - starts[-1]
     position = (grid.nodes + flat_radius - starts[panel][:, None]) / widths[panel][:, None]
     return panel_averages(load, panel, position, widths)
@@ -93,31 +94,58 @@ def panel_averages(
     return averages / (widths[:, None] * gauss_nodes(load.grid.count)[1])
 
 
-def _own_integral(
-    factor: VolterraFactor,
+def _own_integrals(
     load: MappedFunction,
     panel: NDArray[np.intp],
     position: FloatArray,
-    piece: np.intp,
+    widths: FloatArray,
     *,
-    within: FloatArray,
+    cut: NDArray[np.intp],
+    resolvent: FloatArray,
 ) -> FloatArray:
-    """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x.
+    """int_X^x G(x, t) W(t) dt for the nodes x of some pieces: whole pieces before each, and its own part up to x.
 
-    `within` are the values of W there at u = tau_i tau_j.
+    Args:
+        load: W.
+        panel: Number of the panel that each piece lies in, shape (q,).
+        position: The grid's nodes relative to their panels, shape (q, m).
+        widths: Of the panels, shape (panels,).
+        cut: Numbers of the pieces, shape (c,).
+        resolvent: G(x, t) at t/x = tau_j relative to their panels, shape (c, m, m).
     """
-    grid, own = load.grid, panel[piece]
-    before = np.flatnonzero(panel[:piece] == own)
-    points = np.broadcast_to(position[before].ravel(), (grid.count, before.size * grid.count))
-    G = factor.resolvent_at(own, position[piece], points)
-    earlier = G @ (load.node_values * grid.weights)[before].ravel()
-
-    u, omega = gauss_nodes(grid.count)
-    inner = np.multiply.outer(u, u)
-    stretch = grid.width[piece] / factor.widths(own + 1)[own]
-    origin = position[piece, 0] - stretch * u[0] ** grid.power[piece]
-    points = origin + stretch * inner ** grid.power[piece]
-    weights = grid.width[piece] * grid.power[piece] * inner ** (grid.power[piece] - 1) * np.multiply.outer(u, omega)
-    G = factor.resolvent_at(own, position[piece], np.maximum(points, 0.0))
-    values: FloatArray = earlier + np.sum(G * weights * within, axis=1)
+    grid, (u, omega) = load.grid, gauss_nodes(load.grid.count)
+    inner, power = np.multiply.outer(u, u), grid.power[cut, None, None]
+    stretch = grid.width[cut] / widths[panel[cut]]
+    origin = position[cut, 0] - stretch * u[0] ** grid.power[cut]
+    weights = grid.width[cut, None, None] * power * inner ** (power - 1) * np.multiply.outer(u, omega)
+    moved = resolvent.copy()
+    # Where a plain piece begins its panel, its nodes are the resolvent's own.
+    inside = (grid.power[cut] > 1) | (np.abs(origin) > WHOLE * stretch)
+    if inside.any():
+        points = origin[inside, None, None] + stretch[inside, None, None] * inner ** power[inside]
+        moved[inside] = _at_points(resolvent[inside], position[cut[inside]], np.maximum(points, 0.0))
+    values = np.sum(moved * weights * load.within_nodes(cut), axis=2)
+    masses = (load.node_values * grid.weights).reshape(-1, 1)
+    for number, piece in enumerate(cut):
+        before = slice(int(panel.searchsorted(panel[piece])), int(piece))
+        if before.start < before.stop:
+            points = np.broadcast_to(position[before].ravel(), (grid.count, position[before].size))
+            G = _at_points(resolvent[number], position[piece], points)
+            values[number] += (G @ masses[before.start * grid.count : before.stop * grid.count])[:, 0]
     return values
+
+
+def _at_points(resolvent: FloatArray, edge: FloatArray, points: FloatArray) -> FloatArray:
+    """G(x, t) at points t, shape (.., m, l), from its values at t/x = tau_j, by barycentric sums.
+
+    Args:
+        resolvent: Values, shape (.., m, m).
+        edge: x, shape (.., m).
+        points: t, shape (.., m, l).
+    """
+    count, edges = resolvent.shape[-1], np.broadcast_to(edge[..., None], points.shape)
+    # At a panel's start the edges are rounding errors or zero.
+    share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
+    terms = lagrange_terms(count, share)
+    sums = terms @ np.stack([resolvent, np.ones_like(resolvent)], axis=-1)
+    return np.asarray(sums[..., 0] / sums[..., 1])
