@@ -152,7 +152,7 @@ def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer) -> FloatArray:
 def _between_octaves(chi: Callable[[FloatArray], FloatArray], wavenumber: FloatArray) -> FloatArray:
     """A kernel that takes long for each wavenumber, from `NODES_OF_OCTAVES` for each factor of two."""
     low = log2(float(wavenumber.min()))
-    octaves = int(ceil(log2(float(wavenumber.max())) - low)) + 1
+    octaves = ceil(log2(float(wavenumber.max())) - low) + 1
     u = gauss_nodes(NODES_OF_OCTAVES)[0]
     logarithms = np.log(chi(2.0 ** (low + np.arange(octaves)[:, None] + u)))
     place = np.log2(wavenumber) - low

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.triangular import equation_factor, solve_lower
-from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix, partial_panel_interpolation
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
