@@ -91,9 +91,9 @@ def test_tables_are_integrated_between_their_points():
         np.testing.assert_allclose(found, surface_kernel(layer).chi(k), rtol=2e-11, atol=0)
 
 
-@pytest.mark.parametrize("thickness", [0.37e-3, 4711.3])
+@pytest.mark.parametrize("thickness", [0.37e-3, 4711.3, 206.1, 61.3 / 0.3, 17.7])
 def test_a_layer_in_other_units_has_the_same_kernel(thickness):
-    """It was made anew for every radius of a punch on cells."""
+    """It was made anew for every radius of a punch on cells, and a table that ends at the base was too short in some."""
     table = TabulatedDepth(depths=[0.0, 0.3, 0.6, 1.0], values=[1.0, 3.0, 2.0, 5.0])
     layer = GradedLayer(thickness=1.0, youngs_modulus=table, poissons_ratio=0.3, support=BASE)
     assert surface_kernel(layer) == surface_kernel(layer.in_own_units().stretched(thickness))
