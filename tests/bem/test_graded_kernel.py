@@ -93,7 +93,7 @@ def test_tables_are_integrated_between_their_points():
 
 @pytest.mark.parametrize("thickness", [0.37e-3, 4711.3, 206.1, 61.3 / 0.3, 17.7])
 def test_a_layer_in_other_units_has_the_same_kernel(thickness):
-    """It was made anew for every radius of a punch on cells, and a table that ends at the base was too short in some."""
+    """It was made anew for every radius of a punch on cells, and in some units a table ended above the base."""
     table = TabulatedDepth(depths=[0.0, 0.3, 0.6, 1.0], values=[1.0, 3.0, 2.0, 5.0])
     layer = GradedLayer(thickness=1.0, youngs_modulus=table, poissons_ratio=0.3, support=BASE)
     assert surface_kernel(layer) == surface_kernel(layer.in_own_units().stretched(thickness))
