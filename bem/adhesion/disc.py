@@ -31,8 +31,8 @@ import numpy as np
 from bem.grid.calibrated_disc import TOLERANCE, PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
+from bem.grid.other_layers import edge_logarithm
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
-from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from contact import ElasticLayer, Layer, Profile
@@ -153,9 +153,7 @@ class AdheringDisc:
         The kernel is then c_1 ln|s|, so that at a distance d from the edge phi is its value there times
         ``1 + k d ln d + (k d ln d)^2/4 + ...``, k = c_1/(pi h), and Abel's integral makes 2 and 8/3 of the two terms.
         """
-        if self.layer.is_half_space:
-            return 0.0
-        return surface_kernel(self.layer).edge_slope * self.contact_radius / (np.pi * self.layer.surface.thickness)
+        return edge_logarithm(self.layer) * self.contact_radius / np.pi
 
 
 def is_measured(layer: ElasticLayer, indenter: Profile) -> bool:

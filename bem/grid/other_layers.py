@@ -101,6 +101,11 @@ def _mean_logarithm(points: FloatArray, weights: FloatArray) -> float:
     return float(weights @ np.log(np.hypot(points[:, None], points)) @ weights)
 
 
+def edge_logarithm(layer: ElasticLayer) -> float:
+    """c_1/h [1/m] with chi = 1 + c_1/(k h) + ...: zero but under a graded surface."""
+    return 0.0 if layer.is_half_space else surface_kernel(layer).edge_slope / layer.surface.thickness
+
+
 def point_response(layer: ElasticLayer, distance: FloatArray) -> FloatArray:
     """1/r + V(r/h)/h [1/m], what a point force does at a distance r [m]."""
     h = layer.surface.thickness

@@ -122,7 +122,7 @@ _DIGITS = 13
 def _without_roundings(record: _R) -> _R:
     """A record with its numbers, and those of records in it, to `_DIGITS`."""
     return record.replace(
-        **{field.name: _to_digits(getattr(record, field.name)) for field in dataclasses.fields(record)}
+        **{field.name: _to_digits(getattr(record, field.name)) for field in dataclasses.fields(type(record))}
     )
 
 
