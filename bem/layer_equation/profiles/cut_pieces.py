@@ -51,7 +51,7 @@ def own_integrals(
             points = np.broadcast_to(position[before].ravel(), (grid.count, position[before].size))
             G = _at_points(resolvent[number], position[piece], points)
             values[number] += (G @ masses[before.start * grid.count : before.stop * grid.count])[:, 0]
-    return values
+    return np.asarray(values)
 
 
 def _at_points(resolvent: FloatArray, edge: FloatArray, points: FloatArray) -> FloatArray:
