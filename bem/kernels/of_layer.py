@@ -121,9 +121,9 @@ _DIGITS = 13
 
 def _without_roundings(record: _R) -> _R:
     """A record with its numbers, and those of records in it, to `_DIGITS`."""
-    return record.replace(
-        **{field.name: _to_digits(getattr(record, field.name)) for field in dataclasses.fields(type(record))}
-    )
+    # Every record is a dataclass.
+    names = [field.name for field in dataclasses.fields(record)]  # type: ignore[arg-type]
+    return record.replace(**{name: _to_digits(getattr(record, name)) for name in names})
 
 
 def _to_digits(value: object) -> object:
