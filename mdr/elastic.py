@@ -12,6 +12,7 @@ import numpy as np
 from bem.layer_equation.profiles.half_space_slope import has_closed_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from bem.polynomials.chebyshev import BLOCK
+from bem.polynomials.mapped import MappedFunction
 from contact import (
     ContactPath,
     ContactRadii,
@@ -62,7 +63,7 @@ def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         found = _in_blocks(partial(_equilibria, system, scene), values=values, chosen=chosen)
         excess, radius, depth, force, stiffness = (found[name] for name in ("excess", *ContactPath.ARRAYS))
     fields = PathFields(scene, system.flat_punch, excess, depth, partial(density_errors, system, scene, radius))
-    fields = replace(fields, finer=by_finer_data(solve_elastic, scene, flat_punch, settings))
+    fields = replace(fields, load=system.load, finer=by_finer_data(solve_elastic, scene, flat_punch, settings))
     if chosen is None:
         refuse_touching_beside(scene, system, radius, depth, fields.contact)
     state = {"radius": radius, "depth": depth, "force": force, "contact_stiffness": stiffness}
@@ -116,6 +117,7 @@ class PathFields:
         edge_error: Error of the density's value at the edge [m], shape (n,).
         singular_edge: Whether the pressure may be singular at the edge; by default only under a flat punch.
         finer: The body under one step by refined flat punches; what fields differ then tells their errors.
+        load: g_hs on pieces that all contacts share, where they do.
     """
 
     scene: Scene
@@ -126,6 +128,7 @@ class PathFields:
     edge_error: FloatArray | None = None
     singular_edge: bool | None = None
     finer: Callable[[int], ContactInterior] | None = None
+    load: MappedFunction | None = None
     _contacts: dict[int, ContactFields] = field(default_factory=dict)
 
     def pressure(self, radius: FloatArray, step: int) -> FloatArray:
@@ -187,6 +190,7 @@ class PathFields:
                 excess=float(self.excess[step]),
                 depth=float(self.indentation_depth[step]),
                 edge=is_punch if self.singular_edge is None else self.singular_edge,
+                load=self.load,
             )
         return self._contacts[step]
 

@@ -7,7 +7,9 @@ m = cells/2, and the first cell's centre lies half a cell from both axes.
 
 from __future__ import annotations
 
-from math import pi
+from collections.abc import Callable
+from functools import partial
+from math import ceil, log2, pi
 from typing import ClassVar, Final, Protocol
 
 import numpy as np
@@ -24,12 +26,17 @@ from bem.grid.transforms import (
 )
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import surface_kernel
+from bem.polynomials.chebyshev import piecewise_sum
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact import ElasticLayer, InvalidInput, Layer
 from contact.records.validation import FloatArray
 
 # Least answer of the mean mode over that of the next mode. Below it conjugate gradients with the mean mode's inverse
 # stall.
 LEAST_ANSWER: Final = 0.1
+# Nodes on each factor of two of the wavenumbers: chi is analytic in ln k, and these leave 1e-13 of it (six graded
+# layers, tests/bem/test_operators_on_stacks.py).
+NODES_OF_OCTAVES: Final = 16
 
 
 class Operator(Protocol):
@@ -138,7 +145,20 @@ def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer) -> FloatArray:
         return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, 0.0, 1.0 / k))
     kernel, h = surface_kernel(layer), layer.surface.thickness
     at_zero = 0.0 if layer.has_elastic_base else h * kernel.zero_mode
-    return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, at_zero, kernel.chi(k * h) / k))
+    chi = kernel.chi if kernel.is_smooth else partial(_between_octaves, kernel.chi)
+    return np.asarray(2.0 / contact_modulus(layer) * np.where(zero, at_zero, chi(k * h) / k))
+
+
+def _between_octaves(chi: Callable[[FloatArray], FloatArray], wavenumber: FloatArray) -> FloatArray:
+    """A kernel that takes long for each wavenumber, from `NODES_OF_OCTAVES` for each factor of two."""
+    low = log2(float(wavenumber.min()))
+    octaves = ceil(log2(float(wavenumber.max())) - low) + 1
+    u = gauss_nodes(NODES_OF_OCTAVES)[0]
+    logarithms = np.log(chi(2.0 ** (low + np.arange(octaves)[:, None] + u)))
+    place = np.log2(wavenumber) - low
+    octave = np.clip(place.astype(np.intp), 0, octaves - 1)
+    coefficients = logarithms @ chebyshev_from_nodes(NODES_OF_OCTAVES).T
+    return np.exp(piecewise_sum(coefficients, octave, 2.0 * (place - octave) - 1.0))
 
 
 def _wavenumbers(transform: Transform, cell_size: float) -> FloatArray:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil
+from math import ceil, log
 from typing import Final
 
 import numpy as np
@@ -31,6 +31,9 @@ NEAR: Final = 1e-4
 # than the material at the surface is thick are refused.
 MOST_POINTS: Final = 8.0
 FAR: Final = 2.0**12
+# Mean of ln r on a unit square about its centre. V is -c_1 ln(rho) at the axis under a graded surface, and Gauss points
+# leave 0.045 of that on the loaded cell itself: 4e-7 of a stiffness on 256 cells.
+MEAN_LOGARITHM: Final = (np.pi / 2 - 3.0 - log(2.0)) / 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +81,8 @@ def other_layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -
         Influence [cell sizes], shape (m + 1, m + 1).
     """
     influence, thickness = rectangle_influence(offsets), layer.surface.thickness / cell_size
-    correction = point_correction(surface_kernel(layer))
+    kernel = surface_kernel(layer)
+    correction = point_correction(kernel)
     # An even number leaves out the centre, where the logarithm of a graded layer is infinite.
     points, weights = legendre_rule(2 + 2 * ceil(min(2.0 / thickness, MOST_POINTS / 2)))
     i, j = np.tril_indices(offsets + 1)
@@ -86,9 +90,20 @@ def other_layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -
     for x, wx in zip(points / 2, weights / 2, strict=True):
         for y, wy in zip(points / 2, weights / 2, strict=True):
             total += wx * wy * correction(np.hypot(i + x, j + y) / thickness)
+    total[0] += kernel.edge_slope * (_mean_logarithm(points / 2, weights / 2) - MEAN_LOGARITHM)
     influence[i, j] += total / (np.pi * thickness)
     influence[j, i] = influence[i, j]
     return influence
+
+
+def _mean_logarithm(points: FloatArray, weights: FloatArray) -> float:
+    """What this rule on [-1/2, 1/2] makes of the mean of ln r on a unit square about its centre."""
+    return float(weights @ np.log(np.hypot(points[:, None], points)) @ weights)
+
+
+def edge_logarithm(layer: ElasticLayer) -> float:
+    """c_1/h [1/m] with chi = 1 + c_1/(k h) + ...: zero but under a graded surface."""
+    return 0.0 if layer.is_half_space else surface_kernel(layer).edge_slope / layer.surface.thickness
 
 
 def point_response(layer: ElasticLayer, distance: FloatArray) -> FloatArray:

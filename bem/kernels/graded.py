@@ -13,6 +13,7 @@ half-space of the local material: so 1 - chi, which falls like 1/k only, keeps i
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import inf
 from typing import Any, Final, Protocol
 
@@ -109,7 +110,7 @@ class GradedKernel:
         """-D_WW/(2 (1 - nu) k) at the surface, from the local half-space, or from the base, at depths `start`."""
         beta0 = 1 - float(self.layer.ratio_at(0.0))
         D = self.difference_on(k, base) if on_base else np.zeros((3, k.size), dtype=k.dtype)
-        top = _integrated(self.difference_rates(k), D, start)
+        top = _integrated(self.difference_rates(k), D, start, self.layer.breakpoints)
         return np.asarray(-top[2] / (2 * beta0 * k))
 
     def difference_on(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
@@ -144,7 +145,9 @@ class GradedKernel:
     def _mixed(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
         """1 - C_WW/(2 (1 - nu)) by the mixed form, from a frictionless base upwards."""
         beta0 = 1 - float(self.layer.ratio_at(0.0))
-        qu, qp, wu, wp = _integrated(self.mixed_rates(k), self.mixed_on(k, base), np.ones(k.shape))
+        qu, qp, wu, wp = _integrated(
+            self.mixed_rates(k), self.mixed_on(k, base), np.ones(k.shape), self.layer.breakpoints
+        )
         return np.asarray(1 - (wp - qp * wu / qu) / (2 * beta0))
 
     def mixed_on(self, k: NDArray[Any], base: ElasticBase | None) -> NDArray[Any]:
@@ -197,8 +200,26 @@ def logarithmic_slope(layer: GradedLayer, depth: NDArray[Any]) -> NDArray[Any]:
     return np.asarray(slope - layer.ratio_slope(depth) / (1 + layer.ratio_at(depth)))
 
 
-def _integrated(rates: Rates, start_values: NDArray[Any], start: NDArray[Any]) -> NDArray[Any]:
-    """Values at the surface of all wavenumbers together; each goes its own depth in the same shares.
+def _integrated(
+    rates: Rates, start_values: NDArray[Any], start: NDArray[Any], breakpoints: tuple[float, ...]
+) -> NDArray[Any]:
+    """Values at the surface of all wavenumbers together; between breakpoints each goes its own way in the same shares.
+
+    Steps that hit a breakpoint shrink until it does not matter, and every wavenumber would hit it at another share.
+    """
+    values = start_values
+    for upper, lower in pairwise((inf, *reversed(breakpoints), 0.0)):
+        # A wavenumber whose way starts above a stretch stays where it is.
+        begin, end = np.minimum(start, upper), np.minimum(start, lower)
+        if np.any(begin > end):
+            values = _integrated_between(rates, values, begin, end)
+    return values
+
+
+def _integrated_between(
+    rates: Rates, start_values: NDArray[Any], begin: NDArray[Any], end: NDArray[Any]
+) -> NDArray[Any]:
+    """Values at the depths `end` from those at `begin`, where the constants are analytic.
 
     Raises:
         NotConvergedError: If the tolerance is not met.
@@ -206,11 +227,11 @@ def _integrated(rates: Rates, start_values: NDArray[Any], start: NDArray[Any]) -
     # Only graded layers pay for this import.
     from scipy.integrate import solve_ivp  # noqa: PLC0415
 
-    shape = start_values.shape
+    shape, way = start_values.shape, begin - end
 
     def shared(share: float, values: NDArray[Any]) -> NDArray[Any]:
-        slopes = rates(start * (1 - share), values.reshape(shape))
-        return np.asarray((-start * slopes).ravel())
+        slopes = rates(begin - way * share, values.reshape(shape))
+        return np.asarray((-way * slopes).ravel())
 
     found = solve_ivp(
         shared, (0.0, 1.0), start_values.ravel(), method="DOP853", rtol=TOLERANCE, atol=ABSOLUTE, t_eval=[1.0]

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import dataclasses
 from functools import singledispatch
 from math import inf
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
 from numpy.typing import NDArray
 
 from bem.kernels.layer import compliance_kernel, one_minus_kernel, zero_mode
 from bem.kernels.protocol import SurfaceKernel
 from contact.records.errors import UnsupportedSceneError
+from contact.records.record import Record
 from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.graded_layer import GradedLayer
 from contact.scene.layer import Layer, Support
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from bem.kernels.graded import GradedKernel
     from bem.kernels.stack import StackKernel
     from bem.kernels.tangential import StickingKernel, TangentialKernel
+
+_R = TypeVar("_R", bound=Record)
 
 
 @singledispatch
@@ -33,7 +37,7 @@ def surface_kernel(layer: ElasticLayer) -> SurfaceKernel:
     raise UnsupportedSceneError(f"no kernel is known of a {type(layer).__name__}")
 
 
-@dataclass(frozen=True)
+@dataclasses.dataclass(frozen=True)
 class UniformKernel:
     """Kernel of one layer on a rigid base.
 
@@ -54,6 +58,11 @@ class UniformKernel:
     def is_smooth(self) -> bool:
         """1 - chi falls exponentially."""
         return True
+
+    @property
+    def edge_slope(self) -> float:
+        """Zero: 1 - chi falls exponentially."""
+        return 0.0
 
     @property
     def zero_mode(self) -> float:
@@ -102,7 +111,27 @@ def _(layer: LayerStack) -> StackKernel:
 def _(layer: GradedLayer) -> GradedKernel:
     from bem.kernels.graded import GradedKernel  # noqa: PLC0415
 
-    return GradedKernel(layer.in_own_units())
+    return GradedKernel(_without_roundings(layer.in_own_units()))
+
+
+# A kernel that was made for a layer serves the same layer in other units, whose numbers are a rounding or two off: so
+# many decimal digits are kept. What the others would change is a twentieth of the kernel's own tolerance.
+_DIGITS = 13
+
+
+def _without_roundings(record: _R) -> _R:
+    """A record with its numbers, and those of records in it, to `_DIGITS`."""
+    # Every record is a dataclass.
+    names = [field.name for field in dataclasses.fields(record)]  # type: ignore[arg-type]
+    return record.replace(**{name: _to_digits(getattr(record, name)) for name in names})
+
+
+def _to_digits(value: object) -> object:
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}")
+    if isinstance(value, np.ndarray):
+        return np.array([float(f"{one:.{_DIGITS}g}") for one in value.tolist()])
+    return _without_roundings(value) if isinstance(value, Record) else value
 
 
 def stack_of(layer: ElasticLayer) -> StackKernel:

@@ -27,6 +27,10 @@ class SurfaceKernel(Hashable, Protocol):
     def zero_mode(self) -> float:
         """chi/k at k = 0, the answer to a uniform pressure; infinite on an elastic base."""
 
+    @property
+    def edge_slope(self) -> float:
+        """c_1 in chi = 1 + c_1/(k h) + ..., zero where 1 - chi falls exponentially."""
+
     def chi(self, wavenumber: NDArray[Any]) -> NDArray[Any]:
         """chi at wavenumbers k > 0, or complex ones with 0 <= arg k < pi/2, any shape."""
 

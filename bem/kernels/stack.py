@@ -93,6 +93,11 @@ class StackKernel:
         return self.sheets[0].poissons_ratio
 
     @property
+    def edge_slope(self) -> float:
+        """Zero: 1 - chi falls exponentially."""
+        return 0.0
+
+    @property
     def zero_mode(self) -> float:
         """chi/k at k = 0: uniaxial strain, less what groups of layers give that may slide sideways."""
         if self.base is not None:

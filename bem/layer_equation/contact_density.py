@@ -108,7 +108,7 @@ class ContactDensity:
             own = grid.width == width
             shared = self.kernel.decay_within(float(width), grid.count, keep=width in grid.width[:-1])
             moments += np.sum(after[own] * (mass[own, ::-1] @ shared) + before[own] * (mass[own] @ shared), axis=0)
-        return -np.asarray((self.kernel.decay(distance) @ (self.kernel.weights * moments)).real) / np.pi
+        return -np.asarray((self.kernel.decay_again(distance) @ (self.kernel.weights * moments)).real) / np.pi
 
 
 def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:

@@ -54,6 +54,9 @@ class FredholmKernel:
     _kept: dict[tuple[float, int], NDArray[np.complex128]] = field(
         default_factory=dict, init=False, repr=False, compare=False
     )
+    _asked: dict[str, tuple[bytes, NDArray[np.complex128]]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @classmethod
     def of_layer(cls, support: Support, poissons_ratio: float) -> FredholmKernel:
@@ -97,6 +100,14 @@ class FredholmKernel:
         """exp(-rates s) at distances s, shape (n, terms)."""
         exponents = np.multiply.outer(distance, -self.rates)
         return np.exp(exponents, out=exponents)
+
+    def decay_again(self, distance: FloatArray) -> NDArray[np.complex128]:
+        """The same, kept for those who ask for the same distances next: contacts wider than the layer is thick do."""
+        asked = distance.tobytes()
+        kept = self._asked.get("last")
+        if kept is None or kept[0] != asked:
+            kept = self._asked["last"] = asked, self.decay(distance)
+        return kept[1]
 
     def decay_within(self, width: float, count: int, *, keep: bool) -> NDArray[np.complex128]:
         """The same at the Gauss nodes of a panel.

@@ -30,7 +30,7 @@ from numpy.typing import NDArray
 from bem.layer_equation.factors.blocks import BlockLower, block_factor
 from bem.layer_equation.factors.dense import DenseLower, dense_factor
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix, partial_panel_interpolation
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
 from bem.polynomials.truncation import integrated, orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
@@ -143,24 +143,6 @@ class VolterraFactor:
         """
         edge: FloatArray = (self.edge_matrix[: len(values)] @ values[..., None])[..., 0]
         return edge
-
-    def resolvent_at(self, panel: int, edge: FloatArray, points: FloatArray) -> FloatArray:
-        """Resolvent G(edge, point) of one panel by its polynomials in edge and point/edge.
-
-        Args:
-            panel: Number of the panel.
-            edge: Edges in [0, 1], relative to the panel, shape (k,).
-            points: Points in [0, edge], relative to the panel, shape (k, l).
-
-        Returns:
-            Shape (k, l).
-        """
-        rows = lagrange_matrix(self.count, edge) @ self.resolvent[panel]
-        # At a panel's start the edges are rounding errors or zero.
-        edges = np.broadcast_to(edge[:, None], points.shape)
-        share = np.minimum(np.divide(points, edges, out=np.zeros(points.shape), where=edges > 0.0), 1.0)
-        values: FloatArray = np.einsum("klj,kj->kl", lagrange_matrix(self.count, share), rows)
-        return values
 
     @cached_property
     def truncation(self) -> FloatArray:

@@ -33,12 +33,18 @@ def lagrange_matrix(count: int, points: FloatArray) -> FloatArray:
     Returns:
         Matrix of shape (*points.shape, m), each row adding up to 1.
     """
+    terms = lagrange_terms(count, points)
+    terms /= terms.sum(axis=-1, keepdims=True)
+    return terms
+
+
+def lagrange_terms(count: int, points: FloatArray) -> FloatArray:
+    """Rows of that matrix before they are divided by their sums."""
     nodes, _ = gauss_nodes(count)
     distance = points[..., None] - nodes
-    # At a point that is a node its own term dominates.
-    distance[distance == 0] = np.finfo(float).tiny
+    # At a point that is a node its own term dominates, and may be multiplied by any value.
+    distance[distance == 0] = np.sqrt(np.finfo(float).tiny)
     terms: FloatArray = np.divide(_barycentric_weights(count), distance, out=distance)
-    terms /= terms.sum(axis=-1, keepdims=True)
     return terms
 
 

@@ -8,13 +8,13 @@ relative accuracy there.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.polynomials.chebyshev import differentiation, piecewise_sum
+from bem.polynomials.chebyshev import FEW_POINTS, differentiation, piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
@@ -116,10 +116,24 @@ class MappedFunction:
     grid: MappedGrid
     node_values: FloatArray
     lead: float
+    _last: dict[str, tuple[tuple[tuple[int, ...], bytes], FloatArray]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def __call__(self, d: FloatArray) -> FloatArray:
         """Values at points of any shape."""
-        return self.at(*self.grid.locate(d))
+        return self._again("values", d, lambda: self.at(*self.grid.locate(d)))
+
+    def _again(self, name: str, d: FloatArray, compute: Callable[[], FloatArray]) -> FloatArray:
+        """Values at a few points, remembered until others are asked for: errors need those of the answer again."""
+        if d.size > FEW_POINTS:
+            return compute()
+        asked, last = (d.shape, d.tobytes()), self._last.get(name)
+        if last is None or last[0] != asked:
+            found = compute()
+            found.setflags(write=False)
+            last = self._last[name] = asked, found
+        return last[1]
 
     def derivative(self, d: FloatArray) -> FloatArray:
         """First derivative with respect to d."""
@@ -128,6 +142,17 @@ class MappedFunction:
     def at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Values at mapped positions."""
         return piecewise_sum(self.coefficients, piece, 2 * u - 1) * self._factor(piece, u)
+
+    def up_to(self, end: float, function: Callable[[FloatArray], FloatArray]) -> MappedFunction:
+        """The same function on [0, end], end > 0: whole pieces as they are, and the last one anew where it is cut."""
+        grid = self.grid
+        pieces = max(int(grid.left.searchsorted(end * (1 - GAP))), 1)
+        if pieces == grid.left.size and end == grid.end:
+            return self
+        width = np.append(grid.width[: pieces - 1], end - grid.left[pieces - 1])
+        kept = MappedGrid(grid.left[:pieces], width, grid.power[:pieces], grid.count)
+        last = function(kept.nodes[-1])
+        return MappedFunction(kept, np.vstack([self.node_values[: pieces - 1], last]), self.lead)
 
     def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
         """Derivative with respect to u at mapped positions."""
@@ -183,7 +208,7 @@ class MappedFunction:
 
     def left_out(self, d: FloatArray) -> FloatArray:
         """Size of what the polynomials leave out at points d, as the decay of all their coefficients tells."""
-        return self._on_both_sides(self._left_out, d)
+        return self._again("left out", d, lambda: self._on_both_sides(self._left_out, d))
 
     def _left_out(self, d: FloatArray) -> FloatArray:
         piece, u = self.grid.locate(d)

@@ -108,11 +108,12 @@ class GradedLayer(ElasticLayer):
 
     def stretched(self, factor: float) -> Self:
         """The same layer with all depths so many times as large."""
-        nu = self.poissons_ratio
+        # One division for all depths, so that a table that ends at the base still does.
+        nu, length = self.poissons_ratio, 1.0 / factor
         return self.replace(
-            thickness=self.thickness * factor,
-            youngs_modulus=self.youngs_modulus.scaled(1 / factor, 1.0),
-            poissons_ratio=nu.scaled(1 / factor, 1.0) if isinstance(nu, TabulatedDepth) else nu,
+            thickness=self.thickness / length,
+            youngs_modulus=self.youngs_modulus.scaled(length, 1.0),
+            poissons_ratio=nu.scaled(length, 1.0) if isinstance(nu, TabulatedDepth) else nu,
         )
 
 

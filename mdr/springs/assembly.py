@@ -79,6 +79,7 @@ def equivalent_system(
         moment=moment,
         profile_error=own_error,
         position_rounding=partial(_rounding_near_equator, indenter),
+        load=g_hs if _shares_pieces(layer, indenter) else None,
     )
     return _with_variants(system, indenter, g_hs)
 
@@ -102,8 +103,20 @@ def _with_variants(system: EquivalentSystem, indenter: Profile, g_hs: MappedFunc
     return replace(system, variants=tuple(variants))
 
 
+def _shares_pieces(layer: ElasticLayer, indenter: Profile) -> bool:
+    """Whether contacts of all radii have their pieces between the same radii: those of a stack's panels."""
+    return layer.is_piecewise_uniform and not (layer.is_uniform or isinstance(indenter, FlatPunch))
+
+
 def contact_fields(
-    layer: ElasticLayer, indenter: Profile, flat_punch: FlatPunchSolution, *, excess: float, depth: float, edge: bool
+    layer: ElasticLayer,
+    indenter: Profile,
+    flat_punch: FlatPunchSolution,
+    *,
+    excess: float,
+    depth: float,
+    edge: bool,
+    load: MappedFunction | None = None,
 ) -> ContactFields:
     """Pressure and displacement of one contact under a depth.
 
@@ -114,12 +127,16 @@ def contact_fields(
         excess: a - b [m] over the radius b of the flat end, which says more than the rounded a close to it.
         depth: delta [m].
         edge: Whether the pressure may be singular at the contact's edge: flat punch or adhesion. Else phi(a) = 0.
+        load: g_hs on pieces that can be cut there, where the system has it.
     """
     contact_radius, indenter = indenter.flat_radius + excess, _touching(indenter, excess)
     unit = contact_radius if layer.is_half_space else layer.surface.thickness
     ratio, delta, flat = contact_radius / unit, depth / unit, indenter.flat_radius / unit
     flat_punch = flat_punch.one_contact(ratio)
-    profile = half_space_function(flat_punch, indenter, unit, excess)
+    if load is None or load.grid.count != flat_punch.nodes or excess <= 0.0:
+        profile = half_space_function(flat_punch, indenter, unit, excess)
+    else:
+        profile = load.up_to(excess / unit, lambda d: half_space_profile(indenter, unit * d) / unit)
     if flat_punch.superposed:
         profile, _ = _profile(flat_punch, indenter, unit, profile, _springs_at_nodes(flat_punch, profile, flat))
     density = flat_punch.contact_density(None if isinstance(indenter, FlatPunch) else profile, flat, ratio, delta)

@@ -56,6 +56,7 @@ class EquivalentSystem:
         profile_error: Relative error of g and of the moment at fitted radii, beyond those of flat-punch data and grid.
         variants: Systems made of coarser flat-punch tables, each with the share of its difference that counts as an
             error (`table_errors`); none with other flat-punch data.
+        load: The half-space's g over the excess x - b, where contacts within the largest may use its pieces.
     """
 
     contact_modulus: float
@@ -68,6 +69,7 @@ class EquivalentSystem:
     profile_error: float = 0.0
     position_rounding: Callable[[FloatArray], FloatArray] = np.zeros_like
     variants: tuple[tuple[float, EquivalentSystem], ...] = ()
+    load: MappedFunction | None = None
 
     def spring_stiffness(self, x: ArrayLike) -> FloatArray:
         """c_N(x; h) [Pa], Eq. (6)."""

@@ -5,6 +5,7 @@ import pytest
 
 from bem.adhesion.branch import half_space_values
 from bem.adhesion.disc import AdheringDisc
+from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from bem.method import Bem
@@ -14,7 +15,9 @@ from contact import (
     Cone,
     ContactRadii,
     Detachment,
+    ExponentialDepth,
     FlatPunch,
+    GradedLayer,
     IndentationDepths,
     InvalidInput,
     Layer,
@@ -26,6 +29,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from mdr import Mdr
+from mdr.springs.assembly import equivalent_system
 
 WORK = 0.1
 HALF_SPACE = Layer.half_space(youngs_modulus=0.75e6, poissons_ratio=0.5)  # E* = 1 MPa
@@ -312,3 +316,16 @@ def test_a_profile_of_parabolic_pieces_lets_go_once_under_each_control(method):
     )
     met = sorted((point.control, point.kind) for point in path.critical_points)
     assert met == [(control, kind) for control in ("displacement", "force") for kind in ("pull-off", "snap-in")]
+
+
+@pytest.mark.parametrize("indenter", [SPHERE, pytest.param(CONE, marks=pytest.mark.slow)], ids=["sphere", "cone"])
+def test_edges_on_graded_layers_have_their_logarithms(indenter):
+    """By polynomials alone the edge value was off by 2.3e-2, and numbers under adhesion by up to 4e-2 on 256 cells."""
+    graded = GradedLayer(
+        thickness=1e-3, youngs_modulus=ExponentialDepth(surface=1e6, base=4e6), poissons_ratio=0.3, support="bonded"
+    )
+    a, system = 6e-4, equivalent_system(graded, indenter, 6e-4, IntegralEquation())
+    edge = np.sqrt(system.spring_stiffness(a) / graded.contact_modulus)
+    disc = AdheringDisc.solved(graded, indenter, a, 128, 1)
+    assert disc.edge_flat == pytest.approx(float(edge), rel=1e-3, abs=0)
+    assert disc.edge_risen == pytest.approx(float(edge * system.mdr_profile(a)), rel=3e-3, abs=0)

@@ -9,6 +9,7 @@ import pytest
 
 from bem.kernels.graded import GradedKernel
 from bem.kernels.layer import one_minus_kernel
+from bem.kernels.of_layer import surface_kernel
 from bem.kernels.stack import Sheet, StackKernel
 from contact import ElasticBase, ExponentialDepth, GradedLayer, LinearDepth, PowerLawDepth, TabulatedDepth
 
@@ -76,3 +77,23 @@ def test_long_waves_press_uniaxially():
     strain = (1 - 1 / 4) / np.log(4.0)
     expected = strain * (1 - 2 * 0.3) / (2 * (1 - 0.3) ** 2)
     assert GradedKernel(EXPONENTIAL).zero_mode == pytest.approx(expected, rel=1e-5, abs=0.0)
+
+
+def test_tables_are_integrated_between_their_points():
+    """Steps across them lost 2.6e-10 of chi = 1e-4 here, and were six times as many."""
+    nu = TabulatedDepth(depths=[0.0, 0.5, 1.0], values=[0.3, 0.45, 0.5])
+    layer = GradedLayer(thickness=1.0, youngs_modulus=LinearDepth(surface=1.0, base=3.0), poissons_ratio=nu)
+    k = np.array([1e-3, 1.3e-3, 0.5, 30.0])
+    found = surface_kernel(layer).chi(k)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("bem.kernels.graded.TOLERANCE", 1e-13)
+        patch.setattr("bem.kernels.graded.ABSOLUTE", 1e-15)
+        np.testing.assert_allclose(found, surface_kernel(layer).chi(k), rtol=2e-11, atol=0)
+
+
+@pytest.mark.parametrize("thickness", [0.37e-3, 4711.3, 206.1, 61.3 / 0.3, 17.7])
+def test_a_layer_in_other_units_has_the_same_kernel(thickness):
+    """It was made anew for every radius of a punch on cells, and in some units a table ended above the base."""
+    table = TabulatedDepth(depths=[0.0, 0.3, 0.6, 1.0], values=[1.0, 3.0, 2.0, 5.0])
+    layer = GradedLayer(thickness=1.0, youngs_modulus=table, poissons_ratio=0.3, support=BASE)
+    assert surface_kernel(layer) == surface_kernel(layer.in_own_units().stretched(thickness))

@@ -8,18 +8,22 @@ from contact import (
     Cone,
     ContactRadii,
     FlatPunch,
+    IndentationDepths,
     InvalidInput,
     Layer,
+    LayerStack,
     Paraboloid,
     PowerLaw,
     Scene,
     Sphere,
+    Sublayer,
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
     UnsupportedSceneError,
 )
 from mdr import Mdr
+from mdr.springs import assembly
 from mdr.springs.assembly import equivalent_system
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=1e6, poissons_ratio=0.5)
@@ -140,3 +144,28 @@ def test_beyond_the_range_is_refused_with_the_value():
         system.excess_at_depth(1.0)
     with pytest.raises(InvalidInput, match="normal_force"):
         system.excess_at_force(-1.0)
+
+
+def test_contacts_with_a_stack_share_the_pieces_of_one_load(monkeypatch):
+    """Each contact had its own before, which took a tenth of an answer."""
+    layer = LayerStack(
+        sublayers=tuple(Sublayer(thickness=0.5, youngs_modulus=E, poissons_ratio=0.3) for E in (2.0, 1.0)),
+        interfaces=("bonded",),
+    )
+    indenter = TruncatedCone(flat_radius=0.3, slope=0.1)
+    scene = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([0.05]))
+    whole = Mdr().solve(scene)
+    made, loads = [], assembly.half_space_function
+    monkeypatch.setattr(assembly, "half_space_function", lambda *args: made.append(args) or loads(*args))
+    path = Mdr().solve(scene)
+    assert len(made) == 1
+    radius = np.array([0.1, 0.5, 0.95]) * float(path.contact_radius[0])
+    alone = assembly.contact_fields(
+        layer,
+        indenter,
+        path.fields.flat_punch,
+        excess=float(path.fields.excess[0]),
+        depth=0.05,
+        edge=False,
+    )
+    np.testing.assert_allclose(whole.pressure(radius), alone.pressure(radius), rtol=1e-12, atol=0)

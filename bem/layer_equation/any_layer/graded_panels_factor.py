@@ -87,7 +87,21 @@ class GradedFactor(VolterraFactor):
 
     def widths(self, panels: int) -> FloatArray:
         """Of the first panels."""
-        return np.diff(self.ends[: panels + 1])
+        return self._all_widths[:panels]
+
+    @cached_property
+    def _all_widths(self) -> FloatArray:
+        """Shape (P,), read-only."""
+        widths = np.diff(self.ends)
+        widths.setflags(write=False)
+        return widths
+
+    @cached_property
+    def _all_roots(self) -> FloatArray:
+        """Square roots of all weights, shape (P, m), read-only."""
+        roots = np.sqrt(np.multiply.outer(self._all_widths, gauss_nodes(self.count)[1]))
+        roots.setflags(write=False)
+        return roots
 
     def starts(self, panels: int) -> FloatArray:
         """Where the first panels begin."""
@@ -99,7 +113,7 @@ class GradedFactor(VolterraFactor):
 
     def position(self, x: FloatArray, panel: NDArray[np.intp]) -> FloatArray:
         """Of points relative to their panels."""
-        return np.asarray((x - self.ends[panel]) / np.diff(self.ends)[panel])
+        return np.asarray((x - self.ends[panel]) / self._all_widths[panel])
 
     def panels_to(self, x: float) -> int:
         """How many panels cover [0, x]."""
@@ -107,7 +121,7 @@ class GradedFactor(VolterraFactor):
 
     def root_weights(self, panels: int) -> FloatArray:
         """Square roots of the weights of the first panels, shape (panels, m)."""
-        return np.sqrt(np.multiply.outer(self.widths(panels), gauss_nodes(self.count)[1]))
+        return self._all_roots[:panels]
 
     @cached_property
     def truncation(self) -> FloatArray:

@@ -15,12 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bem.layer_equation.one_factorisation import VolterraFactor
+from bem.layer_equation.profiles.cut_pieces import WHOLE, own_integrals
 from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from contact.records.validation import FloatArray
-
-# Relative difference that rounding may make between the width of a piece that fills its panel and the panel's.
-WHOLE = 1e-12
 
 
 def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float) -> FloatArray:
@@ -46,10 +44,11 @@ def edge_values(factor: VolterraFactor, load: MappedFunction, flat_radius: float
     values = factor.edge_values(averages + inherited)[panel]
     polynomial = factor.edge_values(inherited)
     cut = np.flatnonzero(~whole)
-    for piece, within in zip(cut, load.within_nodes(cut), strict=True):
-        smooth = lagrange_matrix(factor.count, position[piece]) @ polynomial[panel[piece]]
-        own = _own_integral(factor, load, panel, position, piece, within=within)
-        values[piece] = load.node_values[piece] + smooth + own
+    at_edges = lagrange_matrix(factor.count, position[cut])
+    smooth = (at_edges @ polynomial[panel[cut]][..., None])[..., 0]
+    resolvent = at_edges @ factor.resolvent[panel[cut]]
+    own = own_integrals(load, panel, position, factor.widths(panel[-1] + 1), cut=cut, resolvent=resolvent)
+    values[cut] = load.node_values[cut] + smooth + own
     return values
 
 
@@ -77,7 +76,7 @@ def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: 
     grid = load.grid
     ratio = flat_radius + grid.end
     panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
-    starts, widths = factor.starts(panel[-1] + 1), factor.widths(panel[-1] + 1)
+    starts, widths = factor.starts(panel[-1] + 1), factor.widths(panel[-1] + 1).copy()
     widths[-1] = ratio - starts[-1]
     position = (grid.nodes + flat_radius - starts[panel][:, None]) / widths[panel][:, None]
     return panel_averages(load, panel, position, widths)
@@ -99,33 +98,3 @@ def panel_averages(
     averages = np.zeros((len(widths), load.grid.count))
     np.add.at(averages, panel, moments)
     return averages / (widths[:, None] * gauss_nodes(load.grid.count)[1])
-
-
-def _own_integral(
-    factor: VolterraFactor,
-    load: MappedFunction,
-    panel: NDArray[np.intp],
-    position: FloatArray,
-    piece: np.intp,
-    *,
-    within: FloatArray,
-) -> FloatArray:
-    """int_X^x G(x, t) W(t) dt for the nodes x of one piece: whole pieces before it, and its own part up to x.
-
-    `within` are the values of W there at u = tau_i tau_j.
-    """
-    grid, own = load.grid, panel[piece]
-    before = np.flatnonzero(panel[:piece] == own)
-    points = np.broadcast_to(position[before].ravel(), (grid.count, before.size * grid.count))
-    G = factor.resolvent_at(own, position[piece], points)
-    earlier = G @ (load.node_values * grid.weights)[before].ravel()
-
-    u, omega = gauss_nodes(grid.count)
-    inner = np.multiply.outer(u, u)
-    stretch = grid.width[piece] / factor.widths(own + 1)[own]
-    origin = position[piece, 0] - stretch * u[0] ** grid.power[piece]
-    points = origin + stretch * inner ** grid.power[piece]
-    weights = grid.width[piece] * grid.power[piece] * inner ** (grid.power[piece] - 1) * np.multiply.outer(u, omega)
-    G = factor.resolvent_at(own, position[piece], np.maximum(points, 0.0))
-    values: FloatArray = earlier + np.sum(G * weights * within, axis=1)
-    return values
