@@ -120,7 +120,7 @@ def _solution(settings: IntegralEquation, support: Support, nu: float, ratio: fl
     return IntegralEquationSolution(kernel, factor)
 
 
-# The factors and densities of each take some 40 MB.
+# Each holds the factors and densities of one layer.
 @lru_cache(maxsize=2)
 def _large_solution(settings: IntegralEquation, support: Support, nu: float) -> LargeRatioSolution:
     return LargeRatioSolution(support, nu, lambda: _solution(settings, support, nu, RUNGS[-1]))
