@@ -34,8 +34,8 @@ from contact.records.validation import FloatArray
 # Least answer of the mean mode over that of the next mode. Below it conjugate gradients with the mean mode's inverse
 # stall.
 LEAST_ANSWER: Final = 0.1
-# Nodes on each factor of two of the wavenumbers: chi is analytic in ln k, and these leave 1.2e-12 of it at most (six graded
-# layers, tests/bem/test_operators_on_stacks.py, 2026-11-23).
+# Nodes on each factor of two of the wavenumbers: chi is analytic in ln k, and these leave 1.2e-12 of it at most (six
+# graded layers, tests/bem/test_operators_on_stacks.py, 2026-11-23).
 NODES_OF_OCTAVES: Final = 16
 
 

@@ -36,8 +36,8 @@ from contact.records.validation import FloatArray
 
 # The kernel's half of the strip around the real axis where it is analytic: it is a transform of exp(-2k) times powers.
 STRIP = 2.0
-# Unknowns up to which the factor is one dense matrix; chosen: with 24 nodes on a panel up to a/h = 40, where blocks would
-# save little.
+# Unknowns up to which the factor is one dense matrix; chosen: with 24 nodes on a panel up to a/h = 40, where blocks
+# would save little.
 DENSE = 1024
 # Panels whose resolvents are made at a time: of 24 nodes they take 15 MB; chosen.
 TOGETHER = 32
