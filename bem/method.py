@@ -282,7 +282,7 @@ def _errors(kind: str, fine: CircularContact, coarse: CircularContact, unresolve
     """
     differences = {name: abs(1.0 - getattr(coarse, name) / getattr(fine, name)) for name in ContactPath.ARRAYS}
     if kind == "radius":
-        by_slope = {"indentation_depth": fine.stiffness_exponent, "normal_force": fine.stiffness_exponent}
+        by_slope = {"indentation_depth": fine.depth_exponent, "normal_force": fine.force_exponent}
     else:
         by_slope = {"contact_radius": 1.0, "contact_stiffness": fine.stiffness_exponent}
     own = DIRECT.second_order * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved
@@ -291,7 +291,10 @@ def _errors(kind: str, fine: CircularContact, coarse: CircularContact, unresolve
         name: difference if kind == "radius" and name == "contact_stiffness" else difference + own
         for name, difference in differences.items()
     }
-    errors |= {name: errors[name] + times * scatter for name, times in by_slope.items()}
+    # A kink beside the edge moves the radius, and with it what the radius tells.
+    errors |= {
+        name: errors[name] + times * scatter + max(times - 1.0, 0.0) * unresolved for name, times in by_slope.items()
+    }
     prescribed = {"depth": "indentation_depth", "force": "normal_force", "radius": "contact_radius"}[kind]
     return errors | {prescribed: 0.0}
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from bem.grid.calibrated_disc import FILL as DISC_FILL
 from bem.grid.conjugate_gradients import GridSolution, solve_contact
-from bem.grid.contact_edge import STEP, area_radius, slope
+from bem.grid.contact_edge import STEP, WIDER, StepExcess, area_radius, excess_on_half_space, slope, told_excess
 from bem.grid.error_model import DIRECT
 from bem.grid.flat_punch import StiffnessNearby, contact_stiffness, radius_of_stiffness, stiffness_exponent
 from bem.grid.operators import FreeSpaceOperator, Operator, PeriodicOperator
@@ -29,10 +29,6 @@ COARSE_TOLERANCE: Final = 1e-5
 # The first coarse box holds a contact of this times the radius where f equals the depth. Not round on purpose: a cell
 # centre exactly on that radius would let rounding decide whether it touches.
 FIRST_BOX: Final = 1.0973
-# So many times as far the slope is taken once more, on half as many cells, for what its step alone makes of it: the
-# noise of the cells counts 1/15 of itself in that. Twice as far, where a third of it counts, radii became three times
-# worse on uniform layers (60 scenes on 128 cells, `slope_scatter`, seed 4, 2026-11-22).
-WIDER: Final = 4.0
 # Tolerance of the states beside a contact over the scatter that is stated for their slope: the radius then lost less
 # than a tenth of that scatter (12 contacts on 128 and 256 cells, 2026-11-22).
 BESIDE_SHARE: Final = 0.05
@@ -58,6 +54,9 @@ NOISE: Final = 5e-3
 LEAST_RADIUS: Final = 3.0
 # From so many cells inside the edge on, every cell of one full circle is pressed.
 RAGGED: Final = 2.0
+# Least d ln(k_N)/d ln(depth) that the bend of force over depth may tell: that of a truncated cone whose edge lies half a
+# percent outside its rim, where a - b goes with the square of the depth.
+LEAST_GROWTH: Final = 0.01
 # The indenter is continued beyond its end by its slope over this last part of its radius.
 END_SHARE: Final = 0.02
 
@@ -75,10 +74,17 @@ class Beside:
 
 
 class SlopeExcess(NamedTuple):
-    """Relative error of a slope by its step: what is taken off it, and how much may be left."""
+    """What the step of a slope makes of it, and what the wider step tells besides.
+
+    Attributes:
+        taken: Relative error of the slope that is taken off it.
+        left: How much of it may be left.
+        depth_growth: d ln(depth)/d ln(k_N).
+    """
 
     taken: float = 0.0
     left: float = 0.0
+    depth_growth: float = 1.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,16 +137,31 @@ class IndenterOnGrid:
         less, more = cells * float(beside.less.sum()), cells * float(beside.more.sum())
         return slope(state.indentation_depth, self.force(state), less, more, step)
 
-    def slope_excess(self, state: GridSolution, near: Beside) -> SlopeExcess:
-        """Of the slope by its step, which goes with its square, from a step `WIDER` times as far."""
+    def slope_excess(self, state: GridSolution, near: Beside, alike: StepExcess, ratio: float) -> SlopeExcess:
+        """Of the slope by its step: that of the half-space, and what a wider step tells of the layer's difference.
+
+        Args:
+            state: The equilibrium.
+            near: The states beside it.
+            alike: Of the same profile on the half-space.
+            ratio: a/h.
+        """
         p = state.pressure
         start = Beside(*(np.maximum(p + WIDER * (other - p), 0.0) for other in (near.less, near.more)))
         far = self.beside(state, start, WIDER * STEP)
-        told = (self.stiffness(state, far, WIDER * STEP) / self.stiffness(state, near) - 1.0) / (WIDER**2 - 1.0)
+        told = told_excess(self.stiffness(state, near), self.stiffness(state, far, WIDER * STEP)) - alike.told
         noise = DIRECT.excess_noise * (self.grid.cell_size / area_radius(p, self.grid.cell_size)) ** 3
         # What the cells may have made of it is left in, and counts as an error.
-        taken = copysign(max(abs(told) - noise / (WIDER**2 - 1.0), 0.0), told)
-        return SlopeExcess(taken, DIRECT.excess_share * abs(taken) + abs(told - taken))
+        layer = copysign(max(abs(told) - noise / (WIDER**2 - 1.0), 0.0), told)
+        left = DIRECT.excess_share * abs(layer) + abs(told - layer)
+        left += DIRECT.excess_rest * min(ratio, 0.5) * abs(alike.own - alike.told)
+        return SlopeExcess(alike.own + layer, left, self.depth_growth(state, far, WIDER * STEP))
+
+    def depth_growth(self, state: GridSolution, beside: Beside, step: float) -> float:
+        """d ln(depth)/d ln(k_N) from the curvature of ln(force) over ln(depth)."""
+        less, here, more = (log(float(p.sum())) for p in (beside.less, state.pressure, beside.more))
+        rise, bend = (more - less) / (2.0 * step), (more - 2.0 * here + less) / step**2
+        return 1.0 / max(rise - 1.0 + bend / rise, LEAST_GROWTH)
 
     def _counted(self, answer: GridSolution) -> GridSolution:
         self.log.count("iterations", answer.iterations)
@@ -159,6 +180,7 @@ class CircularContact:
         normal_force: F_N [N].
         contact_stiffness: dF/d(delta) [N/m].
         stiffness_exponent: Bound of d ln(k_N)/d ln(a).
+        depth_exponent: Bound of d ln(delta)/d ln(a).
     """
 
     grid: QuadrantGrid
@@ -168,11 +190,17 @@ class CircularContact:
     normal_force: float
     contact_stiffness: float
     stiffness_exponent: float
+    depth_exponent: float
 
     @property
     def indentation_depth(self) -> float:
         """delta [m]."""
         return self.equilibrium.indentation_depth
+
+    @property
+    def force_exponent(self) -> float:
+        """Bound of d ln(F_N)/d ln(a), since dF_N = k_N d(delta)."""
+        return self.depth_exponent * self.contact_stiffness * self.indentation_depth / self.normal_force
 
 
 @dataclass(frozen=True)
@@ -230,11 +258,11 @@ class GridContactSearch:
             with self.log.stage("contact_stiffness"):
                 beside = on_grid.beside(answer, beside)
                 if cells == points // 2:
-                    excess = on_grid.slope_excess(answer, beside)
+                    excess = self._slope_excess(on_grid, answer, beside)
                 stiffness = on_grid.stiffness(answer, beside) / (1.0 + excess.taken)
                 beside = beside.prolonged()
                 radius, known = self._radius(stiffness, radius, cells, known)
-            states.append(self._state(on_grid, answer, radius, stiffness, excess.left))
+            states.append(self._state(on_grid, answer, radius, stiffness, excess))
         return states[1], states[0]
 
     def _reach_radius(self, _: Prescribed, radius: float, points: int) -> tuple[CircularContact, CircularContact]:
@@ -252,11 +280,11 @@ class GridContactSearch:
                     on_grid, stiffness * (1.0 + excess.taken), on_grid.at_depth(depth, start), beside, exponent
                 )
                 if cells == points // 2:
-                    excess = on_grid.slope_excess(answer, on_grid.beside(answer, beside))
+                    excess = self._slope_excess(on_grid, answer, on_grid.beside(answer, beside))
                     deeper = answer.indentation_depth * (1.0 + excess.taken) ** exponent
                     answer = on_grid.at_depth(deeper, answer.pressure)
             depth, start, beside = answer.indentation_depth, prolonged(answer.pressure), beside.prolonged()
-            states.append(self._state(on_grid, answer, radius, stiffness, excess.left))
+            states.append(self._state(on_grid, answer, radius, stiffness, excess))
         with self.log.stage("contact_stiffness"):
             coarse = contact_stiffness(self.layer, radius, self._punch_cells(points, radius) // 2)
         return states[-1], replace(states[-2], contact_stiffness=coarse)
@@ -326,7 +354,7 @@ class GridContactSearch:
         return radius_of_stiffness(self.layer, stiffness, near, self._punch_cells(cells, near), known)
 
     def _state(
-        self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float, excess: float
+        self, on_grid: IndenterOnGrid, answer: GridSolution, radius: float, stiffness: float, excess: SlopeExcess
     ) -> CircularContact:
         self._check_inside(answer, on_grid.grid, radius)
         if radius < LEAST_RADIUS * on_grid.grid.cell_size:
@@ -338,10 +366,25 @@ class GridContactSearch:
         scatter = (
             DIRECT.scatter(on_grid.grid.cell_size / radius) * radius
             + DIRECT.thin_scatter * punch_cell * (punch_cell / self.layer.surface.thickness) ** 2
-            + excess * radius
+            + excess.left * radius
         )
         exponent = stiffness_exponent(radius / self.layer.thickness)
-        return CircularContact(on_grid.grid, answer, radius, scatter, on_grid.force(answer), stiffness, exponent)
+        return CircularContact(
+            grid=on_grid.grid,
+            equilibrium=answer,
+            contact_radius=radius,
+            radius_scatter=scatter,
+            normal_force=on_grid.force(answer),
+            contact_stiffness=stiffness,
+            stiffness_exponent=exponent,
+            depth_exponent=exponent * excess.depth_growth,
+        )
+
+    def _slope_excess(self, on_grid: IndenterOnGrid, answer: GridSolution, beside: Beside) -> SlopeExcess:
+        """Of the slope by its step."""
+        radius = area_radius(answer.pressure, on_grid.grid.cell_size)
+        alike = excess_on_half_space(self.indenter, radius)
+        return on_grid.slope_excess(answer, beside, alike, radius / self.layer.thickness)
 
     def _punch_cells(self, cells: int, radius: float) -> int:
         """Cells of the flat punch behind k_N."""

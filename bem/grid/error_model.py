@@ -19,7 +19,7 @@ class DirectContactCoefficients:
 
     # A kink of the profile within this many cells of the contact edge, on either side, is not resolved.
     kink_cells: float = 6.0
-    # Such a kink costs every quantity this part of a cell over the radius. At a prescribed depth force, radius and
+    # Such a kink costs the radius this part of a cell over it, other quantities what the radius costs them. At a prescribed depth force, radius and
     # stiffness of a truncated cone were off by 0.07 s/a at most with the rim within six cells, 0.023 s/a beyond (nu =
     # 0.45, h/b = 0.6 and 4, 128 cells, rim 3 to 10 cells inside, 2026-11-22).
     kink_error: float = 0.1
@@ -42,9 +42,13 @@ class DirectContactCoefficients:
     # scenes, seed 4, 2026-11-22).
     slope_scatter: float = 0.001
     slope_square: float = 0.2
-    # Share of what is taken off the slope for its step that counts as an error of the radius: the next power of both
-    # steps is 17 times 0.03 squared, 1.5 %, of it for every unit by which that varies faster; chosen.
+    # Share of what is taken off the slope for its step beyond the half-space's that counts as an error of the radius:
+    # the next power of both steps is 17 times 0.03 squared, 1.5 %, of it for every unit by which that varies faster;
+    # chosen.
     excess_share: float = 0.1
+    # Times a/h, up to a half, and what the wider step leaves on the half-space: how much more it may leave on a layer.
+    # That was at most 2.6 at a/h = 0.1, 3.1 at 0.3 and 2.0 in all at 1 and 3 (`contact_edge`, 2026-11-23).
+    excess_rest: float = 4.0
     # Times (s/a)^3 of the grid where that is measured: what its cells may make of a slope. Under r^4.7 and r^5 that was
     # 62 on 64, 128 and 256 cells (seed 9, 2026-11-22); the rest is a margin.
     excess_noise: float = 90.0

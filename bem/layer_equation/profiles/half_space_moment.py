@@ -1,4 +1,4 @@
-"""What a profile takes off the half-space's force at a given depth: an integral of its heights."""
+"""Depth and force of a profile on the half-space as integrals over its heights and slopes, stretch by stretch."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 
 from bem.polynomials.gauss import legendre_rule
 from contact import Profile
+from contact.records.validation import FloatArray
 
 # Nodes of an integral over the profile between its breakpoints: that of a power of 1 or more is off by 32^-6 = 1e-9 of
 # itself at most, a tenth of the linear solutions' error.
@@ -19,8 +20,24 @@ def half_space_moment(indenter: Profile, radius: float) -> float:
 
     With r = a sin(theta) the integrand is analytic between breakpoints; at a tip f begins like a power of theta.
     """
+    lengths, sine, weight = _stretches(indenter, radius)
+    return float(radius * lengths @ (sine * indenter.height(radius * sine)) @ weight)
+
+
+def half_space_depth(indenter: Profile, radius: float) -> float:
+    """g_hs(a) [m], half the derivative of that moment: int_0^(pi/2) (f + r f') sin(theta) d(theta).
+
+    Unlike a int_0^(pi/2) f' d(theta) it begins at a tip like a power of two or more.
+    """
+    lengths, sine, weight = _stretches(indenter, radius)
+    r = radius * sine
+    return float(0.5 * lengths @ (sine * (indenter.height(r) + r * indenter.slope_at(r))) @ weight)
+
+
+def _stretches(indenter: Profile, radius: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Lengths in theta of the stretches between breakpoints, r/a at their nodes, and the weights of Gauss's rule."""
     inside = [r for r in indenter.breakpoints if r < radius]
     ends = np.append(np.arcsin(np.array([0.0, *inside]) / radius), np.pi / 2)
     x, weight = legendre_rule(MOMENT_NODES)
-    sine = np.sin(ends[:-1, None] + 0.5 * np.diff(ends)[:, None] * (1.0 + x))
-    return float(radius * np.diff(ends) @ (sine * indenter.height(radius * sine)) @ weight)
+    lengths = np.diff(ends)
+    return lengths, np.sin(ends[:-1, None] + 0.5 * lengths[:, None] * (1.0 + x)), weight
