@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from bem.grid.contact_edge import slope
+from bem.grid.contact_edge import excess_on_half_space, slope
 from bem.grid.transforms import QuarterTransform
 from bem.layer_equation.profiles.half_space_moment import half_space_depth
 from bem.method import Bem
@@ -384,3 +384,11 @@ def test_a_prescribed_radius_costs_depth_and_force_what_they_grow_by():
 def test_depths_on_the_half_space_are_those_of_mdr(indenter):
     exact = Mdr().solve(Scene(layer=HALF_SPACE, indenter=indenter, loading=ContactRadii([1e-3])))
     assert half_space_depth(indenter, 1e-3) == pytest.approx(exact.indentation_depth[0], rel=1e-8, abs=0.0)
+
+
+def test_the_step_on_the_half_space_is_the_same_in_all_units():
+    """A root found to 2e-12 m lost radii of 1e-11 m: one was 4 % off."""
+    radii, heights = np.array([0.0, 0.82, 1.0176, 1.7, 2.0]), np.array([0.0, 0.07, 0.12, 0.52, 0.6])
+    told = [excess_on_half_space(Tabulated(radii=u * radii, heights=u * heights), u) for u in (1.0, 2.0**-40)]
+    assert told[0] == told[1]
+    assert told[0].own > 1.2 * told[0].told > 1e-5

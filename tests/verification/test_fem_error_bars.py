@@ -29,6 +29,7 @@ from contact import (
     StageLog,
     Tabulated,
     TruncatedCone,
+    TruncatedParaboloid,
     UnsupportedSceneError,
 )
 from fem_reference import Fem
@@ -259,6 +260,19 @@ def test_a_load_on_a_coarse_mesh_beside_a_flat_end_is_found():
     for name, expected in second_opinion(path).values.items():
         stated, error = path.error_estimate[name], np.abs(getattr(path, name) / expected - 1)
         assert np.all(error <= stated + 1e-14), name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_load_whose_fine_mesh_mistakes_its_growth_is_found(number):
+    """At a/b - 1 = 9e-6 and 7e-7 the solution's own growth of the force was 0.2 and 5 where it is 1/2."""
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
+    indenter = TruncatedParaboloid(flat_radius=2.8, radius_of_curvature=1e5)
+    radii = ContactRadii(values=[2.8 * 1.00000939, 2.8 * 1.00000066])
+    exact = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=radii))
+    path = Fem().solve(exact.scene.replace(loading=NormalForces(exact.normal_force[number : number + 1])))
+    for name, expected in second_opinion(path).values.items():
+        assert np.all(np.abs(getattr(path, name) / expected - 1) <= path.error_estimate[name] + 1e-14), name
 
 
 @pytest.mark.slow
