@@ -65,7 +65,7 @@ def slope(depth: float, force: float, less: float, more: float, step: float = ST
 
 
 def told_excess(near: float, far: float) -> float:
-    """Relative error of the slope `near` by its step, which goes with its square, from the slope `far`, over `WIDER`."""
+    """Relative error of a slope by its step, which goes with its square, from the slope over a step `WIDER` as far."""
     return (far / near - 1.0) / (WIDER**2 - 1.0)
 
 

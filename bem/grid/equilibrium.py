@@ -54,8 +54,8 @@ NOISE: Final = 5e-3
 LEAST_RADIUS: Final = 3.0
 # From so many cells inside the edge on, every cell of one full circle is pressed.
 RAGGED: Final = 2.0
-# Least d ln(k_N)/d ln(depth) that the bend of force over depth may tell: that of a truncated cone whose edge lies half a
-# percent outside its rim, where a - b goes with the square of the depth.
+# Least d ln(k_N)/d ln(depth) that the bend of force over depth may tell: that of a truncated cone whose edge lies half
+# a percent outside its rim, where a - b goes with the square of the depth.
 LEAST_GROWTH: Final = 0.01
 # The indenter is continued beyond its end by its slope over this last part of its radius.
 END_SHARE: Final = 0.02

@@ -19,9 +19,9 @@ class DirectContactCoefficients:
 
     # A kink of the profile within this many cells of the contact edge, on either side, is not resolved.
     kink_cells: float = 6.0
-    # Such a kink costs the radius this part of a cell over it, other quantities what the radius costs them. At a prescribed depth force, radius and
-    # stiffness of a truncated cone were off by 0.07 s/a at most with the rim within six cells, 0.023 s/a beyond (nu =
-    # 0.45, h/b = 0.6 and 4, 128 cells, rim 3 to 10 cells inside, 2026-11-22).
+    # Such a kink costs the radius this part of a cell over it, other quantities what the radius costs them. At a
+    # prescribed depth force, radius and stiffness of a truncated cone were off by 0.07 s/a at most with the rim within
+    # six cells, 0.023 s/a beyond (nu = 0.45, h/b = 0.6 and 4, 128 cells, rim 3 to 10 cells inside, 2026-11-22).
     kink_error: float = 0.1
     # Times (s/a)^2 with the cell size s, because the difference may be small by accident: 0.01 was needed at most (200
     # steps of smooth profiles on 128 cells, seeds 1 and 5, 2026-11-22).
