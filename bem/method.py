@@ -197,7 +197,11 @@ class Bem(Record):
             cost=log.cost(unknowns=self.points**2 // 4),
             stages=log.records,
             fields=FieldSequence(
-                tuple(step.fields for step in steps), scene, tuple(arrays["indentation_depth"].tolist())
+                tuple(step.fields for step in steps),
+                scene,
+                tuple(arrays["indentation_depth"].tolist()),
+                coarser=tuple(step.coarser for step in steps),
+                shared=tuple(max(step.errors["indentation_depth"], step.errors["normal_force"]) for step in steps),
             ),
             error_estimate={name: np.array([s.errors[name] for s in steps]) for name in steps[0].errors},
             contact_radius=arrays["contact_radius"],
@@ -219,7 +223,7 @@ class Bem(Record):
         errors["pressure"] += DIRECT.pressure_exponent * fine.radius_scatter / fine.contact_radius
         moved = max(errors["indentation_depth"], errors["normal_force"])
         errors["surface_displacement"] = DIRECT.displacement * _displacement_difference(fields, other, fine) + moved
-        return PathStep({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields)
+        return PathStep({name: getattr(fine, name) for name in ContactPath.ARRAYS}, errors, fields, coarser=other)
 
     def _punch_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
         """Flat punch: F = k_N delta with k_N of the grid disc measured by the half-space."""
@@ -258,6 +262,7 @@ class PathStep:
     values: dict[str, float]
     errors: dict[str, float]
     fields: AxisymmetricFields
+    coarser: SmoothIndenterFields | None = None
 
 
 def _prescription(scene: Scene) -> tuple[Prescribed, FloatArray]:

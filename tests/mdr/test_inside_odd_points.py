@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from bem import Bem
 from contact import (
     Cone,
     ContactRadii,
@@ -59,10 +60,10 @@ ODD = {
 }
 
 
-@pytest.fixture(scope="module")
-def on_a_layer():
+@pytest.fixture(scope="module", params=[Mdr(), Bem(points=128)], ids=lambda method: method.name)
+def on_a_layer(request):
     scene = Scene(layer=LAYER, indenter=TruncatedCone(flat_radius=0.3, slope=0.1), loading=ContactRadii([0.5, 1.0]))
-    return Mdr().solve(scene)
+    return request.param.solve(scene)
 
 
 @pytest.mark.parametrize("odd", ODD.values(), ids=ODD)

@@ -1,4 +1,4 @@
-"""Fields inside with errors by comparison: with those of finer data, whose own errors are added."""
+"""Fields inside with errors by comparison: with those of finer data, whose own errors are added, or of coarser."""
 
 from __future__ import annotations
 
@@ -33,13 +33,38 @@ class ComparedInterior:
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
         found, finer = self.own.at(radius, depth), self.finer.at(radius, depth)
-        length = self.own.unit * min(self.own.density.radius, self.own.scene.layer.thickness / self.own.unit)
-        scales = scales_of(finer, length, self.own.unit * self.own.depth)
-        error = {
-            kind: (1.0 + LEFT) * change(found, finer, names) / (scale or np.inf) + finer.error_estimate[kind]
-            for kind, (names, scale) in scales.items()
-        }
+        changed = _changes(self.own, found, finer, of=finer)
+        error = {kind: (1.0 + LEFT) * change + finer.error_estimate[kind] for kind, change in changed.items()}
         return replace(found, error_estimate=error)
+
+
+@dataclass(frozen=True, eq=False)
+class HalvedInterior:
+    """Fields of one contact, and of the same by data half as fine.
+
+    Attributes:
+        own: What is returned, with the errors that both share.
+        coarser: What tells the rest of its error.
+        left: Share of the change that is left as error.
+    """
+
+    own: ContactInterior
+    coarser: ContactInterior
+    left: float
+
+    def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
+        """At points [m] of shape (n,)."""
+        found, coarser = self.own.at(radius, depth), self.coarser.at(radius, depth)
+        changed = _changes(self.own, found, coarser, of=found)
+        error = {kind: self.left * change + found.error_estimate[kind] for kind, change in changed.items()}
+        return replace(found, error_estimate=error)
+
+
+def _changes(own: ContactInterior, found: InsideFields, other: InsideFields, of: InsideFields) -> dict[str, float]:
+    """Differences of each kind of field, over what errors are stated over."""
+    length = own.unit * min(own.density.radius, own.scene.layer.thickness / own.unit)
+    scales = scales_of(of, length, own.unit * own.depth)
+    return {kind: change(found, other, names) / (scale or np.inf) for kind, (names, scale) in scales.items()}
 
 
 def scales_of(found: InsideFields, length: float, depth: float) -> dict[str, tuple[tuple[str, ...], float]]:

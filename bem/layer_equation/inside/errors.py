@@ -95,13 +95,41 @@ class Magnitudes(NamedTuple):
     displacement_left_out: FloatArray | float = 0.0
 
 
+class Causes(NamedTuple):
+    """What fields at n points err by, whatever their kind.
+
+    Attributes:
+        density_error: Relative error of the density.
+        grown: Share of fields by which they change with a contact radius that is off.
+        rounding: Relative rounding of integrals over the contact.
+        mean_pressure: That integrals are rounded against.
+        raised: How much deeper than the points fields are evaluated at the surface, shape (n,).
+        away: Distance from there to the nearest rim, shape (n,).
+        rises: Factor of the gradient on that way, see `_rises`.
+        felt: Error of the density's value at the edge, as much of it as a layer leaves, shape (n,).
+        thrown: The same with what a rigid base throws back, shape (n,).
+    """
+
+    density_error: float
+    grown: float
+    rounding: float
+    mean_pressure: float
+    raised: FloatArray
+    away: FloatArray
+    rises: float
+    felt: FloatArray
+    thrown: FloatArray
+
+    @property
+    def share(self) -> float:
+        """Of fields, by which density, quadrature and contact radius make them err."""
+        return self.density_error + _QUADRATURE + self.grown
+
+
 def stated_errors(
     density: Density, points: Points, found: Magnitudes, known: KnownContact, unit: float
 ) -> Mapping[str, float]:
     """Relative errors of each kind of field, as `InsideFields` has it.
-
-    Fields are linear in the density's slope. What is solved for errs by a share of it, and so do fields, however small
-    they are beside the mean pressure. An edge that is off, or its value, adds the fields of a singular edge.
 
     Args:
         density: Of the contact's pressure.
@@ -110,47 +138,85 @@ def stated_errors(
         known: Errors of the contact.
         unit: Length unit [m].
     """
-    a, z = density.radius, points.z
+    causes = _causes(density, points, found, known, unit)
     largest = max(found.largest_stress, float(np.finfo(float).tiny))
-    mean, rounding = density.mean_pressure, (_ROUNDINGS + _OF_WAVES * a / found.thickness) * _EPS
-    grown = _DERIVATIVE * known.radius_error * a / found.length
-    share = known.density_error + _QUADRATURE + grown
+    steepest = max(found.largest_gradient, largest / found.length)
+    stress = float(_of_stress(causes, found).max(initial=0.0)) / largest
+    gradient = float(_of_gradient(causes, found).max(initial=0.0)) / steepest
+    moved = float(_of_displacement(causes, found).max(initial=0.0)) / abs(found.depth) + _QUADRATURE
+    return {
+        "displacement": moved,
+        "stress": stress,
+        "hydrostatic_pressure": stress,
+        "pressure_gradient": gradient,
+    }
+
+
+def _causes(density: Density, points: Points, found: Magnitudes, known: KnownContact, unit: float) -> Causes:
+    """What the contact's errors, roundings and the look below the surface amount to at these points."""
+    a, z = density.radius, points.z
+    # The surface is looked at a little below, where gradients are other ones beside rims and tips.
     lowest = np.maximum(z, SURFACE * a)
-    # The surface is looked at a little below, where gradients are other ones beside rims and tips. Stresses change by
-    # what the gradient tells.
-    away = np.hypot(points.ends[_rims(density, found.tip_order)], lowest).min(axis=0)
-    shifted = (lowest - z) * (1.0 / away + _DERIVATIVE / found.length)
-    below = (lowest - z) * (_DERIVATIVE / found.length * found.stress + _rises(found.tip_order) * found.gradient)
-    edge = _of_edge(density, known, unit)
-    felt = edge * left_by(found.thickness, points)
-    # A rigid base throws back what arrives, so that stresses there are up to twice those of the half-space.
-    thrown = (1.0 + points.z / found.thickness) * felt
-    stress = share * found.stress + below + thrown * found.edge_stress + rounding * mean + found.left_out
-    gradient = (_ALIKE * share + _DERIVATIVE * shifted) * found.gradient + thrown * found.edge_gradient
-    gradient += _DERIVATIVE * rounding * mean / found.length
-    # A radius that is off moves all fields by as much over the length, those where the gradient passes zero as well.
-    unlike = _UNLIKE * (share - grown) + grown / _DERIVATIVE + _DERIVATIVE * _QUADRATURE
+    felt = _of_edge(density, known, unit) * left_by(found.thickness, points)
+    return Causes(
+        density_error=known.density_error,
+        grown=_DERIVATIVE * known.radius_error * a / found.length,
+        rounding=(_ROUNDINGS + _OF_WAVES * a / found.thickness) * _EPS,
+        mean_pressure=density.mean_pressure,
+        raised=lowest - z,
+        away=np.hypot(points.ends[_rims(density, found.tip_order)], lowest).min(axis=0),
+        rises=_rises(found.tip_order),
+        felt=felt,
+        # Stresses at a rigid base are up to twice those of the half-space.
+        thrown=(1.0 + z / found.thickness) * felt,
+    )
+
+
+def _of_stress(causes: Causes, found: Magnitudes) -> FloatArray:
+    """Error of the stresses at each point, in the unit of stress.
+
+    Stresses are linear in the density's slope: what is solved for errs by a share of it, and so do they, however small
+    they are beside the mean pressure. Looking deeper changes them by that way times the gradient. An edge value that is
+    off adds the stress of a singular edge. Integrals over the contact are rounded against the mean pressure, and
+    integrals over waves leave out what they say.
+    """
+    below = causes.raised * (_DERIVATIVE / found.length * found.stress + causes.rises * found.gradient)
+    stress = causes.share * found.stress + below + causes.thrown * found.edge_stress
+    return np.asarray(stress + causes.rounding * causes.mean_pressure + found.left_out)
+
+
+def _of_gradient(causes: Causes, found: Magnitudes) -> FloatArray:
+    """Error of the pressure's gradient at each point, in the unit of stress over the length unit.
+
+    It errs by shares of itself and of the stress over the length, for a derivative of what is off passes zero elsewhere
+    than the gradient does: a radius that is off moves all fields by as much over the length. Looking deeper changes a
+    gradient by the way over the distance from the nearest rim and over the length. The edge, roundings and integrals
+    over waves add what they add to stresses, and each of its own terms, which cancel, its rounding.
+    """
+    shifted = causes.raised * (1.0 / causes.away + _DERIVATIVE / found.length)
+    gradient = (_ALIKE * causes.share + _DERIVATIVE * shifted) * found.gradient + causes.thrown * found.edge_gradient
+    gradient += _DERIVATIVE * causes.rounding * causes.mean_pressure / found.length
+    unlike = _UNLIKE * (causes.share - causes.grown) + causes.grown / _DERIVATIVE + _DERIVATIVE * _QUADRATURE
     unlike += _SUBTRACTED * (found.thickness < math.inf)
     gradient += unlike * found.stress / found.length
-    gradient += _TERM * _EPS * found.gradient_terms + found.gradient_left_out
-    # A thin layer yields far less than a half-space would under the same force: what is computed is a difference of two
-    # integrals, each of them rounded.
-    own = _MOVED * known.density_error + _QUADRATURE + grown
-    moved = own * found.displacement + felt * found.edge_displacement + found.displacement_left_out
+    return np.asarray(gradient + (_TERM * _EPS * found.gradient_terms + found.gradient_left_out))
+
+
+def _of_displacement(causes: Causes, found: Magnitudes) -> FloatArray:
+    """Error of the displacements at each point, in the length unit.
+
+    They err by a share of themselves, by the displacement of a singular edge, and by what integrals over waves leave
+    out. A thin layer yields far less than a half-space would under the same force: what is computed is a difference of
+    two integrals, each of them rounded. Looking deeper changes them by that way times strain and tilt. Beside a rim
+    stresses are of the size of their gradient times its distance, though some vanish on the surface, and so are tilts;
+    elsewhere tilts are of the size of the depth over a length, at the edge that of the indenter.
+    """
+    own = _MOVED * causes.density_error + _QUADRATURE + causes.grown
+    moved = own * found.displacement + causes.felt * found.edge_displacement + found.displacement_left_out
     moved += _ROUNDINGS * _EPS * found.displacement_terms
-    # Beside a rim stresses are of the size of their gradient times its distance, though some vanish on the surface, and
-    # so are tilts; elsewhere tilts are of the size of the depth over a length, at the edge that of the indenter.
-    strain = found.yields * (found.stress + np.minimum(away, found.length) * found.gradient)
+    strain = found.yields * (found.stress + np.minimum(causes.away, found.length) * found.gradient)
     tilt = found.tilt + _DERIVATIVE * abs(found.depth) / found.length
-    moved += (lowest - z) * (_rises(found.tip_order) * strain + tilt)
-    steepest = max(found.largest_gradient, largest / found.length)
-    stresses = float(stress.max(initial=0.0)) / largest
-    return {
-        "displacement": float(moved.max(initial=0.0)) / abs(found.depth) + _QUADRATURE,
-        "stress": stresses,
-        "hydrostatic_pressure": stresses,
-        "pressure_gradient": float(gradient.max(initial=0.0)) / steepest,
-    }
+    return np.asarray(moved + causes.raised * (causes.rises * strain + tilt))
 
 
 def _rims(density: Density, tip_order: float) -> list[bool]:
