@@ -39,6 +39,8 @@ from contact.scene.loading import Controlled
 
 # Least thickness of the layer in cells: with it the ring of the coarse grid begins within half the layer's thickness.
 LEAST_LAYER: Final = 12.0
+# Radii looked at from a given one down to `DISCS.nearby` below it, since errors change sign along a branch; chosen.
+BELOW: Final = 4
 # States along a detachment.
 STATES: Final = 100
 PRESCRIBED: Final = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
@@ -84,6 +86,8 @@ class AdheringDiscs:
         floors = self._floors(fine, radius)
         errors = {name: DISCS.difference * change + floors[name] for name, change in changes.items()}
         errors["pressure"] = self._pressure_errors(fields, others) + floors["pressure"]
+        if isinstance(self.scene.loading, ContactRadii):
+            errors |= self._given_errors(fine, coarse, radius)
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -175,18 +179,40 @@ class AdheringDiscs:
         Two grids agree on what the ring of their edge values leaves out; stiffness and moment do not tell errors beside
         a rim or a kink.
         """
-        depth, force, errors = fine.depth(radius), fine.force(radius), {}
-        truncated, released = fine.truncation(radius), edge_errors(fine, coarse, radius)
+        edges = self._edge_errors(fine, coarse, radius)
+        truncated, errors = fine.truncation(radius), {}
+        for name, (values, terms, edge) in edges.items():
+            errors[name] = (edge + truncated * np.max(terms)) / np.max(np.abs(values))
+        return errors
+
+    def _given_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
+        """The same at given radii: their share of the terms is the largest down to `DISCS.nearby` below each.
+
+        Errors change sign along a branch, where they are small by accident.
+        """
+        below = np.multiply.outer(np.geomspace(1.0 / DISCS.nearby, 1.0, BELOW), radius)
+        truncated, errors = fine.truncation(radius), {}
+        for name, found in self._edge_errors(fine, coarse, below.ravel()).items():
+            values, terms, edge = (of.reshape(below.shape) for of in found)
+            largest = np.max(edge / terms, axis=0) + truncated
+            errors[name] = largest * terms[-1] / np.max(np.abs(values[-1]))
+        return errors
+
+    def _edge_errors(
+        self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray
+    ) -> dict[str, tuple[FloatArray, FloatArray, FloatArray]]:
+        """Depth [m] and force [N] along a branch, the terms whose differences they are, and errors by edge values."""
+        depth, force, found = fine.depth(radius), fine.force(radius), {}
+        released = edge_errors(fine, coarse, radius)
         displaced = np.abs(depth) + fine.elongation(radius)
         for name, values, others, terms, by_energy in (
-            ("indentation_depth", depth, coarse.depth(radius), displaced, [bound[0] for bound in released]),
+            ("indentation_depth", depth, coarse.depth(radius), displaced, [b[0] for b in released]),
             ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, [b[1] for b in released]),
         ):
             nearby = _largest_nearby(np.abs(values - others) / terms, radius)
             by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
-            edge = np.clip(by_grids, *by_energy) + DISCS.floor * terms
-            errors[name] = (edge + truncated * np.max(terms)) / np.max(np.abs(values))
-        return errors
+            found[name] = values, terms, np.clip(by_grids, *by_energy) + DISCS.floor * terms
+        return found
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:
         """What the coarse grid changes in the pressures of these states, as much of it as counts as error."""

@@ -44,9 +44,9 @@ def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> t
 
     The moment 2 int c_N g counts by what its own polynomials leave out.
 
-    delta = g - dl, and dl goes with c_N^(-1/2), Eq. (40). F = int k_N dg - k_N dl: the first term is the contact
-    without adhesion, and k_N is a factor of both. They oscillate along the radius with different phases, so that they
-    add up like independent errors.
+    delta = g - dl, and dl goes with c_N^(-1/2), Eq. (40). F = k_N (g - dl) - 2 int c_N g: errors of g oscillate along
+    the radius and hardly move the integral, so that they count k_N times; those of k_N count in the contact without
+    adhesion and in k_N dl. They oscillate with different phases, so that they add up like independent errors.
 
     An error dK of the kernel moves the edge values of g and dl alike, and most of it cancels. It displaces the surface
     by int dK phi dt, with the density phi of the adhering contact itself, so that it counts against the size of phi.
@@ -60,7 +60,7 @@ def _terms(system: EquivalentSystem, radius: FloatArray, depth: FloatArray) -> t
     terms = np.array(
         [
             [g, elongation, none, density, none],
-            [elastic, pull, stiffness * density, stiffness * density, moment],
+            [stiffness * g, pull, stiffness * density, stiffness * density, moment],
         ]
     )
     errors = [

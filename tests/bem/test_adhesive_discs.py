@@ -149,6 +149,17 @@ def test_errors_along_a_branch_on_a_layer_are_covered_and_sharp(poissons_ratio):
         assert stated[0] < 10.0 * error[0], name
 
 
+def test_errors_at_given_radii_are_those_of_the_branch():
+    """Stiffness and moment tell them there as well; the ring of the edge value alone stated up to fifty times more."""
+    scene_ = scene(LAYER.replace(poissons_ratio=0.29), SPHERE, ContactRadii(np.linspace(4e-4, 8e-4, 5)))
+    path, exact = Bem(points=96).solve(scene_), Mdr().solve(scene_)
+    for name in ("indentation_depth", "normal_force"):
+        error = np.abs(getattr(path, name) - getattr(exact, name)) / path.scale(name)
+        stated = path.error_estimate[name]
+        assert np.all(error < stated), name
+        assert np.median(stated / error) < 4.0, name
+
+
 @pytest.mark.parametrize("control", ["displacement", "force"])
 def test_a_contact_lost_at_the_rim_is_as_wide_as_the_rim(control):
     """No edge value says so: of such radii 2e-5 was stated where 1e-8 is true."""

@@ -135,6 +135,22 @@ def test_errors_of_adhering_contacts_tell_what_cancels_as_well():
     assert np.quantile(ratio, 0.9) < 40.0
 
 
+def test_forces_of_adhering_cones_at_given_radii_are_covered():
+    """Errors of g counted in F as in int k_N dg, but they oscillate and count in k_N g: twice as much under a cone."""
+    rng, stated, true = np.random.default_rng(5), [], []
+    for _ in range(10):
+        layer = random_stack(rng)
+        radii = ContactRadii(np.linspace(0.7, 1.4, 15) * min(1.0, 5.0 * layer.surface.thickness))
+        weak = Adhesion(work_of_adhesion=1e-5 * layer.contact_modulus)
+        scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=radii, effects=(weak,))
+        fine, coarse = (Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene) for nodes in (24, 12))
+        stated.append(coarse.error_estimate["normal_force"] + fine.error_estimate["normal_force"])
+        true.append(np.abs(coarse.normal_force - fine.normal_force) / np.abs(fine.normal_force).max())
+    stated, true = np.concatenate(stated), np.concatenate(true)
+    assert np.mean(true <= stated) >= 0.95
+    assert np.median((stated / true)[true > 2e-14]) < 10.0
+
+
 @pytest.mark.parametrize(("given", "told"), [(IndentationDepths, "normal_force"), (NormalForces, "indentation_depth")])
 def test_weak_adhesion_hardly_changes_stated_errors(given, told):
     """They were four times those without it in the median: what cancels under a given load was not told."""
