@@ -44,11 +44,6 @@ COARSER: Final = 9
 DENSITY_COUNT: Final = 16
 # Shares of the largest edge that are compared.
 CHECKED: Final = (0.02, 0.2, 0.6, 1.0)
-# Added to the relative error of a profile beyond a flat end or a bend, for what interpolating the resolvent between
-# nodes leaves. Without it depths were up to 1.8e-10 off where 0.2 of that was stated, forces 2.8e-10 (two flat ends and
-# a table of points on four layers, 96 radii, a/h = 0.5 to 3.7, seed 31, against the direct integral equation,
-# 2026-11-23).
-RIM: Final = 3e-10
 # Share of that difference that is stated. Three nodes fewer on panels graded by a quarter err at least 27 times as much
 # where a density is interpolated.
 # Against another grading with 14 nodes, k_bar, depth and force erred by up to 0.15 of it (three layers, a/h = 0.05 to
@@ -87,6 +82,21 @@ class LogPieces:
         """What the polynomials leave out at x."""
         piece = np.clip(np.searchsorted(self.ends, np.log(np.maximum(x, 1e-300))) - 1, 0, len(self.coefficients) - 1)
         return np.asarray(orders_beyond(self.coefficients)[piece] * at_end(self.coefficients.shape[1]))
+
+
+@dataclass(frozen=True)
+class ResolvedProfile(MappedFunction):
+    """A profile whose edge values come from the tabulated resolvent.
+
+    Attributes:
+        left_out: What that leaves out of them at the grid's nodes, relative to them, shape (q m,).
+    """
+
+    left_out: FloatArray
+
+    def resolvent_error(self, d: FloatArray) -> FloatArray:
+        """The same at points d."""
+        return np.interp(d, self.grid.nodes.ravel(), self.left_out)
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,15 +159,15 @@ class GradedSolution(FlatPunchSolution):
         return np.asarray(2 * (self.discretisation_error + own))
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """As that of the springs, since profiles are interpolated likewise; beyond a flat end what was seen, too."""
-        return np.asarray(self.spring_error(ratio) + RIM * (np.asarray(start) > 0))
+        """As that of the springs, since profiles are interpolated likewise."""
+        return self.spring_error(ratio)
 
     def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
-        """Beyond bends as beyond a flat end."""
-        grid = profile.grid
-        bends = grid.left[1:][grid.power[1:] > 1]
-        bent = np.asarray(ratio) > flat_radius + np.min(bends, initial=np.inf)
-        return np.maximum(super().error_of_profile(ratio, profile, flat_radius), self.profile_error(ratio) + RIM * bent)
+        """With what the resolvent leaves out, beyond flat ends and bends."""
+        found = super().error_of_profile(ratio, profile, flat_radius)
+        if not isinstance(profile, ResolvedProfile):
+            return found
+        return found + profile.resolvent_error(np.asarray(ratio) - flat_radius)
 
     def panel_ends(self, ratio: float) -> FloatArray:
         """A profile and its moment have the logarithm's kink at the axis: pieces double from close to it."""
@@ -179,9 +189,10 @@ class GradedSolution(FlatPunchSolution):
         bends = tuple(k for k in indenter.breakpoints if k > 0)
         if indenter.flat_radius or bends:
             flat = indenter.flat_radius / unit
-            shares = [self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()]
-            edge = load.node_values + np.reshape(shares, load.node_values.shape)
-            return MappedFunction(load.grid, edge / np.sqrt(springs), load.lead), 0.0
+            found = np.array([self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()])
+            edge, left_out = load.node_values.ravel() + found[:, 0], found[:, 1]
+            values = edge.reshape(load.node_values.shape) / np.sqrt(springs)
+            return ResolvedProfile(load.grid, values, load.lead, left_out / edge), 0.0
         share = self._smooth_share(load)(load.grid.nodes)
         values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)
         return MappedFunction(load.grid, values, load.lead), 0.0
