@@ -102,7 +102,7 @@ def _moments(count: int, panel: NDArray[np.intp], s: FloatArray, weighted: Float
     terms = np.polynomial.chebyshev.chebvander(s, count - 1).T * weighted
     moments = np.array([np.bincount(panel, weights=term) for term in terms]).T
     last = np.polynomial.legendre.legval(s, np.append(np.zeros(count), 1.0))
-    return moments, at_end(count) * np.bincount(panel, weights=last * weighted)
+    return moments, np.asarray(at_end(count) * np.bincount(panel, weights=last * weighted))
 
 
 def _rule(load: MappedFunction, excess: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -109,14 +109,14 @@ class ResolvedProfile(MappedFunction):
     """A profile whose edge values come from the tabulated resolvent.
 
     Attributes:
-        left_out: What that leaves out of them at the grid's nodes, relative to them, shape (q m,).
+        unresolved: What that leaves out of them at the grid's nodes, relative to them, shape (q m,).
     """
 
-    left_out: FloatArray
+    unresolved: FloatArray
 
     def resolvent_error(self, d: FloatArray) -> FloatArray:
         """The same at points d."""
-        return np.interp(d, self.grid.nodes.ravel(), self.left_out)
+        return np.interp(d, self.grid.nodes.ravel(), self.unresolved)
 
 
 @dataclass(frozen=True, eq=False)
