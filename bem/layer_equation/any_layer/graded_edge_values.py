@@ -12,12 +12,13 @@ from functools import lru_cache
 from typing import Final
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bem.layer_equation.any_layer.edge_systems import EdgeSystems
 from bem.layer_equation.any_layer.relative_panels import RelativePanels
-from bem.polynomials.chebyshev import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from bem.polynomials.mapped import MappedFunction
+from bem.polynomials.truncation import at_end, between_nodes, orders_beyond
 from contact.records.validation import FloatArray
 
 # Panels towards the logarithm shrink by this ratio, so many times: the last one holds 1e-12 of the integral.
@@ -58,17 +59,11 @@ class ResolventTable:
             panels.append(common)
         return cls(edges, ends, tuple(tables), tuple(panels))
 
-    def rest(self, x: float) -> tuple[FloatArray, FloatArray]:
-        """Coefficients of rho(x, t) on panels of t/x, and the panels' ends."""
-        u = float(np.clip(np.log(x), self.ends[0], self.ends[-1]))
-        piece = int(np.clip(np.searchsorted(self.ends, u) - 1, 0, len(self.panels) - 1))
-        s = 2 * (u - self.ends[piece]) / (self.ends[piece + 1] - self.ends[piece]) - 1
-        table = self.coefficients[piece]
-        orders = np.polynomial.chebyshev.chebvander(np.array([s]), len(table) - 1)[0]
-        return np.einsum("m,mpc->pc", orders, table), self.panels[piece].ends
+    def layer_share(self, load: MappedFunction, flat: float, excess: float) -> tuple[float, float]:
+        """yg - W at one edge, and what the polynomials of rho leave out of it.
 
-    def layer_share(self, load: MappedFunction, flat: float, excess: float) -> float:
-        """yg - W at one edge.
+        The integral of rho is summed order by order in ln x, so that their decay tells what those beyond amount to. In
+        t/x a panel leaves out a multiple of P_m, which is orthogonal to smooth loads: rims and bends alone count.
 
         Args:
             load: W over the excess t - b, zero within the flat radius.
@@ -77,11 +72,37 @@ class ResolventTable:
         """
         points, weighted, distance = _rule(load, excess)
         x, N = flat + excess, self.edges.kernel
-        coefficients, ends = self.rest(x)
+        piece, s = self._locate(x)
+        ends = self.panels[piece].ends
         share = np.minimum((flat + points) / x, 1.0)
-        panel = np.clip(np.searchsorted(ends, share) - 1, 0, len(coefficients) - 1)
-        rho = piecewise_sum(coefficients, panel, 2 * (share - ends[panel]) / np.diff(ends)[panel] - 1)
-        return float(((N(distance) + N(x + flat + points)) / np.pi + rho) @ weighted)
+        panel = np.clip(np.searchsorted(ends, share) - 1, 0, len(ends) - 2)
+        moments, beyond = _moments(
+            self.edges.count, panel, 2 * (share - ends[panel]) / np.diff(ends)[panel] - 1, weighted
+        )
+        near = (N(distance) + N(x + flat + points)) @ weighted / np.pi
+        orders = np.polynomial.chebyshev.chebvander(np.array([s]), self.coefficients[piece].shape[0] - 1)[0]
+        table = self.coefficients[piece][:, : len(moments)]
+        by_order = np.einsum("mpc,pc->m", table, moments)
+        in_logarithm = orders_beyond(by_order) * between_nodes(by_order.size, np.array(s))
+        in_share = orders_beyond(np.einsum("m,mpc->pc", orders, table)) @ np.abs(beyond)
+        return float(near + orders @ by_order), float(in_logarithm + in_share)
+
+    def _locate(self, x: float) -> tuple[int, float]:
+        """Number of the piece in ln x, and the position in [-1, 1] there."""
+        u = float(np.clip(np.log(x), self.ends[0], self.ends[-1]))
+        piece = int(np.clip(np.searchsorted(self.ends, u) - 1, 0, len(self.panels) - 1))
+        return piece, 2 * (u - self.ends[piece]) / (self.ends[piece + 1] - self.ends[piece]) - 1
+
+
+def _moments(count: int, panel: NDArray[np.intp], s: FloatArray, weighted: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Weighted sums over points s on panels of each order up to `count`, (panels, count), and of what is beyond.
+
+    The first order left out errs by sqrt(pi m)/2 P_m between m Gauss nodes.
+    """
+    terms = np.polynomial.chebyshev.chebvander(s, count - 1).T * weighted
+    moments = np.array([np.bincount(panel, weights=term) for term in terms]).T
+    last = np.polynomial.legendre.legval(s, np.append(np.zeros(count), 1.0))
+    return moments, np.asarray(at_end(count) * np.bincount(panel, weights=last * weighted))
 
 
 def _rule(load: MappedFunction, excess: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -11,9 +11,9 @@ from functools import cached_property
 from typing import ClassVar, Final
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
-from bem.layer_equation.any_layer.edge_systems import WIDEST, EdgeSystems
+from bem.layer_equation.any_layer.edge_systems import MIDDLE, WIDEST, EdgeSystems
 from bem.layer_equation.any_layer.graded_density import GradedDensity
 from bem.layer_equation.any_layer.graded_edge_values import ResolventTable
 from bem.layer_equation.any_layer.point_kernel import PointKernel
@@ -22,7 +22,7 @@ from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.chebyshev import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from bem.polynomials.mapped import MappedFunction
-from bem.polynomials.truncation import at_end, orders_beyond
+from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact import InvalidInput, Profile
 from contact.records.validation import FloatArray
 
@@ -42,13 +42,20 @@ COARSER: Final = 9
 # Nodes of a panel where a density's slope is asked for, as pressures do. From 0.005 a to 0.999 a pressures are up to
 # 3e-10 off with 16, and 1.5e-8 with 12 (E = 100^z, a paraboloid at a = H against the direct equation, 2026-11-22).
 DENSITY_COUNT: Final = 16
+# Where the panels in the middle are as wide as they may be and are split, and the shares of it at which edges are
+# solved with more nodes: errors grow towards it by powers, fall behind it, and grow again.
+SPLIT: Final = WIDEST / MIDDLE
+SHARES_OF_SPLIT: Final = (0.1, 0.25, 0.5, 1.0, 1.0 + 1e-9)
 # Shares of the largest edge that are compared.
 CHECKED: Final = (0.02, 0.2, 0.6, 1.0)
-# Added to the relative error of a profile beyond a flat end or a bend, for what interpolating the resolvent between
-# nodes leaves. Without it depths were up to 1.8e-10 off where 0.2 of that was stated, forces 2.8e-10 (two flat ends and
-# a table of points on four layers, 96 radii, a/h = 0.5 to 3.7, seed 31, against the direct integral equation,
-# 2026-11-23).
-RIM: Final = 3e-10
+# Times the difference from more nodes: an error between the edges where both are solved. With it and what the resolvent
+# leaves out, stated errors of depth and force covered 97 % and 98 % and were 6 and 8 times the true ones in the median
+# (six layers, two flat ends, a table of points and a paraboloid, 192 radii, a/h = 0.05 to 3.7, seed 1414, against one
+# dense solution on other panels, 2026-11-23).
+MARGIN: Final = 2.0
+# Added to it: what a kernel that is right to 2e-13 at most, and to 2e-14 on most layers, leaves where differences are
+# roundings (against `split_kernel`, 2026-11-23).
+KERNEL_ERROR: Final = 1e-13
 # Share of that difference that is stated. Three nodes fewer on panels graded by a quarter err at least 27 times as much
 # where a density is interpolated.
 # Against another grading with 14 nodes, k_bar, depth and force erred by up to 0.15 of it (three layers, a/h = 0.05 to
@@ -75,18 +82,41 @@ class LogPieces:
 
     def __call__(self, x: FloatArray) -> FloatArray:
         """Values at x > 0; below the first end they continue linearly."""
-        u = np.log(np.maximum(x, 1e-300))
-        inside = np.clip(u, self.ends[0], self.ends[-1])
-        piece = np.clip(np.searchsorted(self.ends, inside) - 1, 0, len(self.coefficients) - 1)
-        s = 2 * (inside - self.ends[piece]) / np.diff(self.ends)[piece] - 1
+        piece, s = self._locate(x)
         first = np.polynomial.chebyshev.chebder(self.coefficients[0]) * 2 / (self.ends[1] - self.ends[0])
         slope = float(np.polynomial.chebyshev.chebval(-1.0, first))
-        return np.asarray(piecewise_sum(self.coefficients, piece, s) + slope * np.minimum(u - self.ends[0], 0.0))
+        below = np.minimum(_logarithm(x) - self.ends[0], 0.0)
+        return np.asarray(piecewise_sum(self.coefficients, piece, s) + slope * below)
 
     def error(self, x: FloatArray) -> FloatArray:
         """What the polynomials leave out at x."""
-        piece = np.clip(np.searchsorted(self.ends, np.log(np.maximum(x, 1e-300))) - 1, 0, len(self.coefficients) - 1)
-        return np.asarray(orders_beyond(self.coefficients)[piece] * at_end(self.coefficients.shape[1]))
+        piece, s = self._locate(x)
+        return np.asarray(orders_beyond(self.coefficients)[piece] * between_nodes(self.coefficients.shape[1], s))
+
+    def _locate(self, x: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
+        """Number of the piece, and the position in [-1, 1] there."""
+        inside = np.clip(_logarithm(x), self.ends[0], self.ends[-1])
+        piece = np.clip(np.searchsorted(self.ends, inside) - 1, 0, len(self.coefficients) - 1)
+        return piece, 2 * (inside - self.ends[piece]) / np.diff(self.ends)[piece] - 1
+
+
+def _logarithm(x: FloatArray) -> FloatArray:
+    return np.asarray(np.log(np.maximum(x, 1e-300)))
+
+
+@dataclass(frozen=True)
+class ResolvedProfile(MappedFunction):
+    """A profile whose edge values come from the tabulated resolvent.
+
+    Attributes:
+        unresolved: What that leaves out of them at the grid's nodes, relative to them, shape (q m,).
+    """
+
+    unresolved: FloatArray
+
+    def resolvent_error(self, d: FloatArray) -> FloatArray:
+        """The same at points d."""
+        return np.interp(d, self.grid.nodes.ravel(), self.unresolved)
 
 
 @dataclass(frozen=True, eq=False)
@@ -140,24 +170,24 @@ class GradedSolution(FlatPunchSolution):
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar."""
         x = self._covered(ratio)
-        return self.discretisation_error + x * self._tables[1].error(x) / self.normalized_contact_stiffness(x)
+        return self._error_of_nodes(x) + x * self._tables[1].error(x) / self.normalized_contact_stiffness(x)
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of c_bar."""
         x = self._covered(ratio)
-        own = x * self._tables[0].error(x) / np.sqrt(self.normalized_spring_stiffness(x))
-        return np.asarray(2 * (self.discretisation_error + own))
+        return np.asarray(2 * (self._error_of_nodes(x) + self._error_between_edges(x)))
 
     def profile_error(self, ratio: ArrayLike, start: ArrayLike = 0.0) -> FloatArray:
-        """As that of the springs, since profiles are interpolated likewise; beyond a flat end what was seen, too."""
-        return np.asarray(self.spring_error(ratio) + RIM * (np.asarray(start) > 0))
+        """As that of the springs, since profiles are interpolated likewise."""
+        return self.spring_error(ratio)
 
     def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
-        """Beyond bends as beyond a flat end."""
-        grid = profile.grid
-        bends = grid.left[1:][grid.power[1:] > 1]
-        bent = np.asarray(ratio) > flat_radius + np.min(bends, initial=np.inf)
-        return np.maximum(super().error_of_profile(ratio, profile, flat_radius), self.profile_error(ratio) + RIM * bent)
+        """Beyond flat ends and bends only y1 of g = yg/y1 is interpolated, and yg has what the resolvent leaves out."""
+        if not isinstance(profile, ResolvedProfile):
+            return super().error_of_profile(ratio, profile, flat_radius)
+        x = self._covered(ratio)
+        own = 2 * self._error_of_nodes(x) + self._error_between_edges(x)
+        return np.asarray(own + profile.resolvent_error(x - flat_radius))
 
     def panel_ends(self, ratio: float) -> FloatArray:
         """A profile and its moment have the logarithm's kink at the axis: pieces double from close to it."""
@@ -179,9 +209,10 @@ class GradedSolution(FlatPunchSolution):
         bends = tuple(k for k in indenter.breakpoints if k > 0)
         if indenter.flat_radius or bends:
             flat = indenter.flat_radius / unit
-            shares = [self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()]
-            edge = load.node_values + np.reshape(shares, load.node_values.shape)
-            return MappedFunction(load.grid, edge / np.sqrt(springs), load.lead), 0.0
+            found = np.array([self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()])
+            edge, left_out = load.node_values.ravel() + found[:, 0], found[:, 1]
+            values = edge.reshape(load.node_values.shape) / np.sqrt(springs)
+            return ResolvedProfile(load.grid, values, load.lead, left_out / edge), 0.0
         share = self._smooth_share(load)(load.grid.nodes)
         values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)
         return MappedFunction(load.grid, values, load.lead), 0.0
@@ -216,6 +247,30 @@ class GradedSolution(FlatPunchSolution):
         edges = [share * self.max_ratio for share in CHECKED]
         changes = [abs(coarse.at(x).edge_density / self._edges.at(x).edge_density - 1) for x in edges]
         return SHARE * max(changes) + 1e-14
+
+    def _error_between_edges(self, ratio: FloatArray) -> FloatArray:
+        """Relative error of y1 that polynomials in ln x leave."""
+        return np.asarray(ratio * self._tables[0].error(ratio) / np.sqrt(self.normalized_spring_stiffness(ratio)))
+
+    def _error_of_nodes(self, ratio: FloatArray) -> FloatArray:
+        """Relative error of edge values and of k_bar that the nodes of panels leave, by powers between known edges."""
+        edges, errors = self._node_errors
+        position = np.log(np.maximum(ratio, edges[0]))
+        return np.asarray(np.exp(np.interp(position, np.log(edges), np.log(errors))))
+
+    @cached_property
+    def _node_errors(self) -> tuple[FloatArray, FloatArray]:
+        """At some edges, from more nodes on a panel."""
+        edges = np.append(
+            [share * SPLIT for share in SHARES_OF_SPLIT if share * SPLIT < self.max_ratio], self.max_ratio
+        )
+        finer = EdgeSystems(self.kernel, DENSITY_COUNT)
+        errors = []
+        for x in edges.tolist():
+            ours, other = self._edges.at(x), finer.at(x)
+            changes = ours.edge_density / other.edge_density - 1, ours.stiffness / other.stiffness - 1
+            errors.append(MARGIN * max(np.abs(changes)) + KERNEL_ERROR)
+        return edges, np.array(errors)
 
     def _density(self, ratio: float, panels: RelativePanels, load: FloatArray) -> GradedDensity:
         phi, psi = self._edges.density(ratio, panels, load)

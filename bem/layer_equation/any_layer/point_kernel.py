@@ -14,14 +14,15 @@ from bem.polynomials.chebyshev import piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
 from contact.records.validation import FloatArray
 
-# Wavenumbers end at 2 to this power: below 2^-SHORTEST thicknesses N is taken as constant, which moves no integral by
-# more than that.
+# Wavenumbers end at 2 to this power, and octaves start at 2^-SHORTEST thicknesses: below N continues like the logarithm
+# that it is there. As a constant it moved edge values by 2e-11 (E = 1 + 10 z, 2026-11-23).
 COARSEST: Final = 44
 SHORTEST: Final = 40
 # Largest distance, a power of two as well.
 FARTHEST: Final = 13
 # Nodes on each octave: the logarithm's singularity at the octave's own length leaves 5.8^-18.
 OCTAVE_NODES: Final = 18
+TINY: Final = float(np.finfo(float).tiny)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,15 +42,27 @@ class PointKernel:
 
     def __call__(self, distance: FloatArray) -> FloatArray:
         """N at distances s > 0, any shape."""
-        s = np.maximum(distance, 2.0**-SHORTEST)
+        first = 2.0**-SHORTEST
+        s = np.maximum(distance, first)
         mantissa, exponent = np.frexp(s)
         # The mantissa lies in [1/2, 1).
-        return piecewise_sum(self._coefficients, exponent.astype(np.intp) + SHORTEST - 1, 4 * mantissa - 3)
+        values = piecewise_sum(self._coefficients, exponent.astype(np.intp) + SHORTEST - 1, 4 * mantissa - 3)
+        close = distance < first
+        if np.any(close):
+            values = np.asarray(values)
+            values[close] += self._slope * np.log(np.maximum(distance[close], TINY) / first)
+        return values
 
     def integral(self, length: FloatArray) -> FloatArray:
         """int_0^length N ds."""
         z, w = self.exponentials.rates, self.exponentials.weights
         return np.asarray((-np.expm1(-np.multiply.outer(length, z)) @ (w / z)).real)
+
+    @cached_property
+    def _slope(self) -> float:
+        """dN/d(ln s) at the smallest distances, from an octave that the last wavenumbers do not reach."""
+        near, far = self.exponentials(2.0 ** (2.0 - SHORTEST) * np.array([1.0, 2.0]))
+        return float((far - near) / np.log(2.0))
 
     @cached_property
     def _coefficients(self) -> FloatArray:

@@ -24,8 +24,10 @@ LEVELS: Final = 8
 AXIS_LEVELS: Final = 6
 BEND_LEVELS: Final = 11
 EDGE_LEVELS: Final = 9
-# Nodes and power of the rule s = v^power from a logarithm's singularity, and from a panel's end close to one.
-SINGULAR_NODES: Final = 20
+# Nodes and power of the rule s = v^power from a logarithm's singularity, and from a panel's end close to one. There
+# polynomials are of six times their degree in v: 20 nodes left 1e-11 of an edge value at a/h = 4, 28 leave 2e-13 (power
+# law with the exponent 1 and an incompressible layer, against 48 nodes, 2026-11-23).
+SINGULAR_NODES: Final = 28
 SINGULAR_POWER: Final = 6
 CLOSE_NODES: Final = 28
 CLOSE_POWER: Final = 4
