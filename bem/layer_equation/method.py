@@ -339,17 +339,21 @@ def _displacement_errors(
     Each change is the largest beside the edge, since changes pass zero there. An error of the radius moves the surface
     of smooth contact to second order only.
     """
-    e, f = (np.array([_moved(*pair) for pair in zip(fine, coarse, strict=True)]) for coarse in fewer)
+    heights = [_beside(contact, contact) for contact in fine]
+    e, f = (np.array([_moved(*three) for three in zip(fine, heights, coarse, strict=True)]) for coarse in fewer)
     left = e * np.minimum(1.0, np.divide(e, f, out=np.ones_like(e), where=f > 0.0))
     rounding = ONE_RADIUS.rounding + np.array([_rounding(contact.density) for contact in fine])
     return np.asarray(ONE_RADIUS.safety * left + rounding + errors["indentation_depth"])
 
 
-def _moved(fine: DirectContact, coarse: DirectContact) -> float:
+def _moved(fine: DirectContact, heights: FloatArray, coarse: DirectContact) -> float:
     """Largest change of the displacement beside the contact, over the depth."""
-    radius = fine.density.contact_radius * BESIDE
-    one, other = (contact.density.beside_height(radius, contact.depth) for contact in (fine, coarse))
-    return float(np.abs(one - other).max() / fine.depth)
+    return float(np.abs(heights - _beside(coarse, fine)).max() / fine.depth)
+
+
+def _beside(contact: DirectContact, fine: DirectContact) -> FloatArray:
+    """Displacement, above the profile's, at the radii beside the contact on the finest panels."""
+    return contact.density.beside_height(fine.density.contact_radius * BESIDE, contact.depth)
 
 
 def _rounding(density: DirectDensity) -> float:

@@ -10,11 +10,12 @@ from typing import Final, Self
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from bem.grid.calibrated_disc import FILL, GAP, THIN, PunchSolution, measured_disc
+from bem.grid.calibrated_disc import FILL, GAP, THIN, measured_disc
 from bem.grid.error_model import TABLES
+from bem.tables.grid_rows import grid_rows
 from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
 from bem.tables.tabulated_layer import Tabulable, lowest_face, tabulable
-from contact import ElasticLayer, InvalidInput, Layer, LayerStack
+from contact import ElasticLayer, InvalidInput, LayerStack
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
 
@@ -86,7 +87,7 @@ class FftTable(Record):
 @lru_cache(maxsize=32)
 def _build(settings: FftTable, layer: Tabulable, rows: int) -> FlatPunchTable:
     ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
-    fine, *coarse = (_on_grid(settings.cells // times, ratios, settings.radii, layer) for times in (1, 2, 4))
+    fine, *coarse = (_on_grid(settings, times, layer, rows) for times in (1, 2, 4))
     shares = TABLES.half_share, TABLES.quarter_share
     half, quarter = (_weighed(fine, *pair, settings.cells) for pair in zip(coarse, shares, (2, 4), strict=True))
     row_share = float(np.clip(np.log(ratios[1] / ratios[0]) ** 2, TABLES.least_row_share, TABLES.largest_row_share))
@@ -97,10 +98,11 @@ def _build(settings: FftTable, layer: Tabulable, rows: int) -> FlatPunchTable:
     )
 
 
-def _on_grid(cells: int, ratios: FloatArray, radii: int, layer: Tabulable) -> FlatPunchTable:
-    """The table of one grid, its errors still unknown."""
-    punches = _punches(cells, ratios, layer)
-    rho = chebyshev_radii(radii)
+def _on_grid(settings: FftTable, times: int, layer: Tabulable, rows: int) -> FlatPunchTable:
+    """The table of one grid, of `times` fewer cells, its errors still unknown."""
+    grid = grid_rows(settings.cells // times, SMALLEST_RATIO, LARGEST_RATIO, settings.ratios, layer)
+    punches, ratios = grid.first(rows), grid.ratios[:rows]
+    rho, radii = chebyshev_radii(settings.radii), settings.radii
     q = np.array([np.polynomial.chebyshev.chebval(2.0 * rho**2 - 1.0, punch.shape) for punch in punches])
     # Under a flat end a stack may pull, one layer never does.
     q = np.maximum(q, 0.0) if layer.is_uniform else q
@@ -116,20 +118,6 @@ def _on_grid(cells: int, ratios: FloatArray, radii: int, layer: Tabulable) -> Fl
         mean_error=np.zeros((len(ratios), radii)),
         stack=layer if isinstance(layer, LayerStack) else None,
     )
-
-
-def _punches(cells: int, ratios: FloatArray, layer: Tabulable) -> list[PunchSolution]:
-    """One solution a ratio, each starting from the one before. An elastic base is felt beyond any period."""
-    thin = THIN if layer.is_uniform else np.inf
-    discs = {periodic: measured_disc(cells, periodic) for periodic in {False, bool(ratios[-1] > thin)}}
-    punches: list[PunchSolution] = []
-    for ratio in ratios.tolist():
-        start = punches[-1].pressure if punches else None
-        disc = discs[ratio > thin]
-        thickness = disc.radius / ratio
-        stretched = layer.replace(thickness=thickness) if isinstance(layer, Layer) else layer.stretched(thickness)
-        punches.append(disc.on_layer(stretched, ratio, start))
-    return punches
 
 
 def _weighed(fine: FlatPunchTable, coarse: FlatPunchTable, share: float, times: int, cells: int) -> FlatPunchTable:

@@ -10,6 +10,7 @@ from pathlib import Path
 from pydantic import TypeAdapter
 
 from cases.gate.write_permission import WriteConditions
+from cases.results.canonical import indented
 from cases.results.files import write_whole
 from cases.results.records.run import Acceptance
 from cases.results.sealed import digest_of, parsed, validated
@@ -62,7 +63,8 @@ def _sealed_lines(path: Path) -> list[bytes]:
 def _seal(lines: Iterable[bytes]) -> bytes:
     # Latin-1 has a letter for every byte: damaged bytes, too, have a digest of their own.
     text = b"".join(lines).decode("latin-1")
-    return f'{{"digest": "{digest_of(text)}"}}\n'.encode()
+    digest = digest_of(indented(text) + "\n")
+    return f'{{"digest": "{digest}"}}\n'.encode()
 
 
 def blank_entry(now: WriteConditions, case: str, method: str, quantity: str, reason: str) -> Acceptance:

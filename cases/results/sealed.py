@@ -9,6 +9,7 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
+from cases.results.canonical import indented, key_text
 from contact import InvalidInput
 from contact.records.record import shown
 
@@ -27,17 +28,25 @@ def sealed_text(content: Mapping[str, Any], covered: str = "") -> str:
         content: plain values; an entry "digest" is added.
         covered: name of the entry that the digest is computed from; empty for the whole content.
     """
-    return canonical_text({**content, "digest": digest_of(content[covered] if covered else content)})
+    entries = {name: indented(value, 1) for name, value in content.items()}
+    return _of_entries({**entries, "digest": f'"{_seal(entries, covered)}"'})
 
 
-def canonical_text(tree: Any) -> str:
-    """Return plain values as JSON with sorted keys; every float keeps all its digits, none can be non-finite."""
-    return json.dumps(tree, sort_keys=True, indent=1, allow_nan=False) + "\n"
+def digest_of(text: str) -> str:
+    """Return the digest that tells whether a text was changed: half of a SHA-256, 32 hexadecimal digits."""
+    return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
-def digest_of(tree: Any) -> str:
-    """Return the digest that tells whether a file was changed: half of a SHA-256, 32 hexadecimal digits."""
-    return hashlib.sha256(canonical_text(tree).encode()).hexdigest()[:32]
+def _seal(entries: Mapping[str, str], covered: str) -> str:
+    """Return the digest of the entry that it covers, or of them all."""
+    # A line ends between values only: within words its end is written as a backslash and a letter.
+    return digest_of(entries[covered].replace("\n ", "\n") + "\n" if covered else _of_entries(entries))
+
+
+def _of_entries(entries: Mapping[str, str]) -> str:
+    """Return the canonical text of an object from those of its entries."""
+    lines = (f" {key_text(name)}{entries[name]}" for name in sorted(entries))
+    return "{\n" + ",\n".join(lines) + "\n}\n" if entries else "{}\n"
 
 
 def read_sealed(path: Path, *, remedy: str, covered: str = "") -> dict[str, Any]:
@@ -58,15 +67,17 @@ def unsealed(data: bytes, *, place: str, remedy: str, covered: str = "") -> dict
     """Return the content of ``data``, the bytes of a sealed text; arguments and errors as of `read_sealed`."""
     try:
         tree = parsed(data)
-        whole = isinstance(tree, dict) and canonical_text(tree).encode() == data
+        entries = {name: indented(value, 1) for name, value in tree.items()} if isinstance(tree, dict) else {}
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{place} is not readable: {_words(error)}; {remedy}") from None
     if not isinstance(tree, dict) or "digest" not in tree:
         raise InvalidInput(f"{place} has no seal: an older version or something else wrote it; {remedy}")
+    whole = _of_entries(entries).encode() == data
+    del entries["digest"]
     digest = tree.pop("digest")
     if covered and tree.keys() != {covered}:
         raise InvalidInput(f"{place} has other entries than {covered!r} and its digest; {remedy}")
-    if not whole or digest != digest_of(tree[covered] if covered else tree):
+    if not whole or digest != _seal(entries, covered):
         raise InvalidInput(f"{place} was changed after it was written: its seal does not fit; {remedy}")
     return tree
 

@@ -8,6 +8,7 @@ import json
 import platform
 from collections.abc import Mapping
 from functools import cache
+from importlib.machinery import ModuleSpec, PathFinder
 from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
@@ -102,22 +103,48 @@ def import_closure(module: str) -> Closure:
         if name.partition(".")[0] not in own:
             foreign.add(name.partition(".")[0])
             continue
-        path = _source_file(name)
-        if path is None or name in sources:
+        if name in sources or (source := _source(name)) is None:
             continue
-        text = path.read_text(encoding="utf-8")
-        sources[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
-        waiting += _imports(ast.parse(text), path, name)
+        sources[name] = source.digest
+        waiting += source.imports
     return Closure(tuple(sorted(sources.items())), tuple(sorted(_versions(foreign).items())))
 
 
+@dataclasses.dataclass(frozen=True)
+class ModuleSource:
+    """What a source file says of a closure: its hash, and the modules that it imports or may import."""
+
+    digest: str
+    imports: tuple[str, ...]
+
+
+@cache
+def _source(module: str) -> ModuleSource | None:
+    """Return a module's source, read once for all closures; None for a name that is no own module."""
+    path = _source_file(module)
+    if path is None:
+        return None
+    text = path.read_text(encoding="utf-8")
+    digest = hashlib.sha256(text.encode()).hexdigest()[:16]
+    return ModuleSource(digest, tuple(_imports(ast.parse(text), path, module)))
+
+
 def _source_file(module: str) -> Path | None:
-    try:
-        spec = importlib.util.find_spec(module)
-    except ModuleNotFoundError:
+    spec = _place(module)
+    return Path(spec.origin) if spec and spec.origin and spec.origin.endswith(".py") else None
+
+
+@cache
+def _place(module: str) -> ModuleSpec | None:
+    """Return where a module is, without importing the packages above it; None for a name that is no module."""
+    package = module.rpartition(".")[0]
+    if not package:
+        return importlib.util.find_spec(module)
+    above = _place(package)
+    if above is None or above.submodule_search_locations is None:
         # An import "from package import name" may name a function, not a module.
         return None
-    return Path(spec.origin) if spec and spec.origin and spec.origin.endswith(".py") else None
+    return PathFinder.find_spec(module, above.submodule_search_locations)
 
 
 def _imports(tree: ast.Module, path: Path, module: str) -> list[str]:
@@ -129,7 +156,8 @@ def _imports(tree: ast.Module, path: Path, module: str) -> list[str]:
             found += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.ImportFrom):
             package = module if path.name == "__init__.py" else module.rpartition(".")[0]
-            found.append(importlib.util.resolve_name("." * node.level + (node.module or ""), package))
+            origin = importlib.util.resolve_name("." * node.level + (node.module or ""), package)
+            found += [origin, *(f"{origin}.{alias.name}" for alias in node.names)]
         elif isinstance(node, ast.FunctionDef) and node.name == "__getattr__" and path.name == "__init__.py":
             found += [f"{module}.{file.stem}" for file in path.parent.glob("*.py") if file.stem != "__init__"]
     return [*found, *_parents(module)]
@@ -140,7 +168,11 @@ def _parents(module: str) -> list[str]:
     return [".".join(parts[:depth]) for depth in range(1, len(parts))]
 
 
+# Reading what is installed takes a tenth of a second.
+_installed = cache(packages_distributions)
+
+
 def _versions(names: set[str]) -> dict[str, str]:
-    installed = packages_distributions()
+    installed = _installed()
     found = {name: version(installed[name][0]) for name in names if name in installed}
     return {**found, "python": platform.python_version()}

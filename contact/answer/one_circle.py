@@ -18,6 +18,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact.answer.solution import ContactPath
 from contact.records.errors import UnsupportedSceneError
@@ -107,9 +108,10 @@ def touching_radius(scene: Scene, circle: Circle) -> float | None:
     near[0] = False
     gap = np.where(near, 0.0, clear)
     gap[near] = _gap(profile, circle, r[near])
-    gap[0] = 0.0
+    near[0], gap[0] = True, 0.0
+    minima = _found_minima(profile, circle, r, gap, near)
     lowest = [(float(gap[i]), float(r[i])) for i in np.flatnonzero(gap < 0)]
-    lowest += [_narrowed(profile, circle, r[i - 1], r[i + 1]) for i in _minima(gap) if gap[i] >= 0]
+    lowest += [_narrowed(profile, circle, r[i - 1], r[i + 1]) for i in minima if gap[i] >= 0]
     overlap, where = min(lowest, default=(0.0, a))
     return where if overlap < -circle.tolerance else None
 
@@ -138,6 +140,21 @@ def _gap(profile: Profile, circle: Circle, radius: FloatArray) -> FloatArray:
     if not radius.size:
         return radius
     return np.asarray(profile.height(radius) - circle.indentation_depth + circle.displacement(radius))
+
+
+def _found_minima(
+    profile: Profile, circle: Circle, r: FloatArray, gap: FloatArray, known: NDArray[np.bool_]
+) -> list[int]:
+    """`_minima` once the gap itself, not the height above the contact's depth, is known at them and their neighbours.
+
+    Where heights follow gaps they make a step, which looks like a minimum.
+    """
+    while True:
+        minima = _minima(gap)
+        asked = [j for j in sorted({j for i in minima for j in (i - 1, i, i + 1)}) if not known[j]]
+        if not asked:
+            return minima
+        gap[asked], known[asked] = _gap(profile, circle, r[asked]), True
 
 
 def _minima(gap: FloatArray) -> list[int]:

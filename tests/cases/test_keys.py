@@ -1,6 +1,7 @@
 import pytest
 
 from cases.results.files import write_whole
+from cases.run import keys
 from cases.run.keys import content_key, differences, import_closure, key_parts
 from cases.run.store import TaskStore
 from contact import InvalidInput
@@ -64,3 +65,33 @@ def test_explain_says_what_changed(tmp_path):
     assert store.explain("k", new) == [f'versions.numpy: "{old["versions"]["numpy"]}" -> "99"']
     with pytest.raises(InvalidInput, match="no finished task"):
         store.explain("absent", old)
+
+
+def test_reading_a_closure_imports_none_of_it(tmp_path, monkeypatch):
+    package = tmp_path / "loud_package"
+    package.mkdir()
+    write_whole(package / "__init__.py", "raise RuntimeError\n")
+    write_whole(package / "inner.py", "from loud_package.other import x\n")
+    write_whole(package / "other.py", "x = 1\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    own = {name for name, _ in import_closure("loud_package.inner").sources if name.startswith("loud_package")}
+    assert own == {"loud_package", "loud_package.inner", "loud_package.other"}
+
+
+def test_a_file_that_two_closures_share_is_read_once(tmp_path, monkeypatch):
+    read, right = [], keys._imports
+    monkeypatch.setattr(keys, "_imports", lambda tree, path, name: read.append(name) or right(tree, path, name))
+    package = tmp_path / "sharing_package"
+    package.mkdir()
+    for name, text in {
+        "__init__": "",
+        "shared": "",
+        "one": "from . import shared",
+        "two": "from . import shared",
+    }.items():
+        write_whole(package / f"{name}.py", text)
+    monkeypatch.syspath_prepend(tmp_path)
+    for name in ("one", "two"):
+        assert "sharing_package.shared" in dict(import_closure(f"sharing_package.{name}").sources)
+    assert read.count("sharing_package.shared") == 1
+    assert len(set(read)) == len(read)

@@ -32,5 +32,5 @@ def test_an_undamaged_file_would_be_seen(kind, monkeypatch):
 
 
 def test_a_reader_that_believes_its_file_would_be_seen(monkeypatch):
-    monkeypatch.setattr("cases.results.sealed.digest_of", lambda tree: "0")
+    monkeypatch.setattr("cases.results.sealed.digest_of", lambda text: "0")
     assert ends("results", seed=1, count=60)[0]["accepted"] > 5

@@ -759,7 +759,7 @@ BASELINES = [
     Fault(
         "files edited by hand accepted",
         "baselines",
-        set_to("cases.results.sealed:digest_of", lambda tree: "0"),
+        set_to("cases.results.sealed:digest_of", lambda text: "0"),
         Test(
             "cases.gate.test_baseline:test_a_file_edited_by_hand_is_refused",
             (baseline_file, "1.5\n", "1.6\n", "changed after it was written"),
