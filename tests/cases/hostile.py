@@ -336,7 +336,7 @@ def _json_trial(draw: Draw) -> tuple[End, str]:
 def _sealed(tree: Any) -> str:
     """Under a right seal where there can be one, so that the reader looks at the content."""
     try:
-        return sealed_text(tree)
+        return sealed_text(tree) if isinstance(tree, dict) else json.dumps(tree)
     except (TypeError, ValueError):
         return json.dumps(tree, skipkeys=True)
 

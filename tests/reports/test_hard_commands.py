@@ -71,7 +71,8 @@ def test_a_campaign_of_fields_inside_has_a_door(capsys):
 
 def test_an_unknown_family_names_those_there_are(capsys):
     assert run(["campaign", "plastic"]) == 4
-    assert "elastic, adhesive, impact, history, creep" in capsys.readouterr().err.replace("\n", " ")
+    told = capsys.readouterr().err.replace("\n", " ")
+    assert "elastic, many_loads, adhesive, adhering_table, impact, history, creep" in told
 
 
 def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
