@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Literal, Self, TypeAlias
+from typing import Annotated, Any, Literal, Self, TypeAlias
 
-from pydantic import model_validator
+from pydantic import field_validator, model_validator
 
 from contact.records.record import Record, record
 from contact.records.validation import PositiveLength, in_range, positive
@@ -65,6 +65,12 @@ class LayerStack(ElasticLayer):
     sublayers: tuple[Sublayer, ...]
     interfaces: tuple[Interface, ...] = ()
     support: Support | ElasticBase = "bonded"
+
+    @field_validator("sublayers", "interfaces", mode="before")
+    @classmethod
+    def _listed(cls, given: Any) -> Any:
+        """A list as well as a tuple."""
+        return tuple(given) if isinstance(given, list) else given
 
     @model_validator(mode="after")
     def _check(self) -> Self:

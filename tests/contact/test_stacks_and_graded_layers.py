@@ -61,6 +61,10 @@ def scene_of(layer):
     return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e-2), loading=ContactRadii([1e-3]))
 
 
+def test_sublayers_and_interfaces_may_be_lists():
+    assert LayerStack(sublayers=[TOP, LOWER], interfaces=["bonded"]) == STACK
+
+
 @pytest.mark.parametrize("layer", LAYERS.values(), ids=LAYERS)
 def test_files_hold_every_layer(layer):
     scene = scene_of(layer)
