@@ -44,6 +44,10 @@ _EXACT = 1e-12
 # Share of the stated error of a radius by which one errs where roundings alone are stated, since they seldom add up:
 # 0.18 at worst of 155 contacts under a given force (campaign of the fields inside, seeds 19201 and 19401, 2026-11-22).
 _ROUNDED_RADIUS = 0.25
+# But a radius that was found is no better than its last digit, and it and a point's place are rounded once more in the
+# density's unit: 1.5 of that digit. The share alone gave 1.2 where 1.26 were missing, 6e-7 a from the edge of a sphere
+# pressed nearly to its equator (scene 738 of seed 19701, 2026-11-23).
+_LAST_DIGITS = 1.5 * float(np.finfo(float).eps)
 
 
 def solve_elastic(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ContactPath:
@@ -165,8 +169,8 @@ class PathFields:
             known = known._replace(density_error=float(self._density_errors[step]))
         if self.edge_error is not None:
             known = known._replace(edge_error=float(self.edge_error[step]))
-        elif known.radius_error < self._rounded(contact.contact_radius):
-            known = known._replace(radius_error=_ROUNDED_RADIUS * known.radius_error)
+        elif 0.0 < known.radius_error < self._rounded(contact.contact_radius):
+            known = known._replace(radius_error=max(_ROUNDED_RADIUS * known.radius_error, _LAST_DIGITS))
         return ContactInterior(
             self.scene, density_of(contact, self.scene.layer), contact.unit, contact.indentation_depth, known
         )

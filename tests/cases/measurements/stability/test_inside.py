@@ -146,6 +146,11 @@ def test_an_adhering_contact_states_what_its_two_parts_err_by_where_they_cancel(
     assert beyond(inside_campaign(Mdr(), seed=19501, count=1000, numbers=[733])) == []
 
 
+def test_a_found_radius_is_no_better_than_its_last_digit():
+    """Beside the edge of a sphere pressed nearly to its equator 8.2e-11 of the stress was off, 7.9e-11 stated."""
+    assert beyond(inside_campaign(Mdr(), seed=19701, count=1000, numbers=[738])) == []
+
+
 def test_stated_errors_of_displacements_are_sharp_under_punches_on_thin_layers():
     """They were 30 times the true ones: the edge's field was counted twice, and so were growth and quadrature."""
     rows = inside_campaign(Mdr(), seed=19501, count=1000, numbers=[192, 777])
