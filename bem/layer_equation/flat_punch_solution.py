@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar, TypeVar
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,15 +17,12 @@ from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.layer_equation.profiles.at_radii import RadiusWeights
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
-from bem.polynomials.chebyshev import BLOCK
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.truncation import integrated, integrated_share, rate_of_decay
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.profiles import Profile
-
-Known = TypeVar("Known")
 
 EPS = float(np.finfo(float).eps)
 # By this much, relative, the last panel reaches beyond the radius at which it ends, so that rounding takes no further.
@@ -61,7 +58,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def normalized_contact_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """k_bar = (1/ratio) int_0^ratio c_bar dx, Eqs. (6) and (10)."""
-        return 1 + self._remembered("stiffness", self._covered(ratio), self._stiffness_share)
+        return 1 + self._stiffness_share(self._covered(ratio))
 
     def normalized_spring_stiffness(self, ratio: ArrayLike) -> FloatArray:
         """c_bar = y1^2, y1 the edge value of the density under a unit displacement."""
@@ -69,7 +66,7 @@ class IntegralEquationSolution(FlatPunchSolution):
 
     def edge_density(self, ratio: ArrayLike) -> FloatArray:
         """y1(x) = phi(x; a = x) of a flat punch pressed in by 1."""
-        return 1 + self._remembered("edge", self._covered(ratio), self._edge_share)
+        return 1 + self._edge_share(self._covered(ratio))
 
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
         """q = p_bar sqrt(1 - rho^2) from the density, one solution for each different ratio."""
@@ -106,7 +103,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         k = self.normalized_contact_stiffness(ratio)
         panels, _ = self._panels.locate(ratio)
         share = self.factor.widths(self.factor.panels)[panels] / np.maximum(ratio, np.finfo(float).tiny)
-        own, of_kernel = self._remembered("truncation", ratio, self._spring_truncation)
+        own, of_kernel = self._spring_truncation(ratio)
         springs = np.minimum(0.5, integrated(self.nodes) * share) * own
         springs += np.minimum(0.5, self.shares.own_panel * share) * of_kernel
         truncated = self._left_out(self._stiffness_share, ratio) / k + springs
@@ -242,25 +239,9 @@ class IntegralEquationSolution(FlatPunchSolution):
     def _edge_error(
         self, ratio: FloatArray, own_share: float | FloatArray, kernel_share: float | FloatArray
     ) -> FloatArray:
-        own, of_kernel = self._remembered("truncation", ratio, self._spring_truncation)
+        own, of_kernel = self._spring_truncation(ratio)
         rounded = 2 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return own_share * own + kernel_share * of_kernel + EPS * rounded
-
-    def _remembered(self, name: str, ratio: FloatArray, compute: Callable[[FloatArray], Known]) -> Known:
-        """What was computed last under this name, where it was for the same ratios: errors ask in a row."""
-        last = self._last.get(name)
-        if last is not None and np.array_equal(last[0], ratio):
-            known: Known = last[1]
-            return known
-        found = compute(ratio)
-        if ratio.size <= BLOCK:
-            self._last[name] = ratio.copy(), found
-        return found
-
-    @cached_property
-    def _last(self) -> dict[str, tuple[FloatArray, Any]]:
-        """The last ratios asked for under a name, and what was answered."""
-        return {}
 
     def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Of c_bar = y1^2, relative: orders of y1 left out, and of the kernel that gives its values at the nodes."""

@@ -14,7 +14,7 @@ from functools import cache, cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.polynomials.chebyshev import FEW_POINTS, differentiation, piecewise_sum
+from bem.polynomials.chebyshev import BLOCK, differentiation, piecewise_sum
 from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, partial_panel_interpolation
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact.records.validation import FloatArray
@@ -125,8 +125,8 @@ class MappedFunction:
         return self._again("values", d, lambda: self.at(*self.grid.locate(d)))
 
     def _again(self, name: str, d: FloatArray, compute: Callable[[], FloatArray]) -> FloatArray:
-        """Values at a few points, remembered until others are asked for: errors need those of the answer again."""
-        if d.size > FEW_POINTS:
+        """Values at no more than a block of points, remembered until others are asked for: errors need them again."""
+        if d.size > BLOCK:
             return compute()
         asked, last = (d.shape, d.tobytes()), self._last.get(name)
         if last is None or last[0] != asked:

@@ -95,13 +95,13 @@ def test_what_was_asked_last_is_not_computed_again_and_never_mixed_up():
     solution = IntegralEquation(nodes=12).solution(LAYERS[3], 1.5)
     ratios = np.array([0.3, 1.2])
     first = solution.normalized_contact_stiffness(ratios)
-    known = solution._last["stiffness"][1]
+    known = solution._stiffness_share._last["values"][1]
     solution.relative_error(ratios.copy())
-    assert solution._last["stiffness"][1] is known
+    assert solution._stiffness_share._last["values"][1] is known
     ratios[0] = 0.7
     alone = [float(solution.normalized_contact_stiffness(ratio)) for ratio in (0.7, 1.2)]
     assert solution.normalized_contact_stiffness(ratios).tolist() == alone
     assert first[1] == alone[1]
     assert first[0] != alone[0]
     assert solution.normalized_contact_stiffness(np.linspace(0.0, 1.0, 9000)).shape == (9000,)
-    assert solution._last["stiffness"][0].size < 9000
+    assert solution._stiffness_share._last["values"][1].size < 9000
