@@ -29,7 +29,7 @@ def refuse_touching_beside(scene: Scene, radius: FloatArray, depth: FloatArray, 
     """
     if scene.indenter.is_convex:
         return
-    chosen = np.unique(np.linspace(0, radius.size - 1, min(radius.size, STATES)).round().astype(int))
+    chosen = np.linspace(0, radius.size - 1, min(radius.size, STATES)).round().astype(int)
     held = ((float(radius[i]), float(depth[i])) for i in chosen if radius[i] > 0.0)
     refuse_touching(scene, (_circle(scene, *state, min(points, CELLS), threads) for state in held))
 

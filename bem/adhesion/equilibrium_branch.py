@@ -202,7 +202,7 @@ class EquilibriumBranch:
     def _sign_changes(self, candidates: FloatArray, quantity: int) -> FloatArray:
         end = self.section_ends[-1]
         inside = candidates[(candidates > _TIP * end) & (candidates < end)]
-        points = np.unique(np.concatenate([[0.0], inside, [end]]))
+        points = np.sort(np.concatenate([[0.0], inside, [end]]))
         points = points[np.append(True, np.diff(points) > _EDGE * points[-1])]
         signs = np.sign(self.slopes(0.5 * (points[1:] + points[:-1]))[quantity])
         return np.asarray(points[1:-1][signs[1:] != signs[:-1]])

@@ -72,7 +72,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         """q = p_bar sqrt(1 - rho^2) from the density, one solution for each different ratio."""
         rho, ratio = np.broadcast_arrays(np.asarray(rho, dtype=float), self._covered(ratio))
         q = np.empty(rho.shape)
-        for a in np.unique(ratio):
+        for a in sorted(set(ratio.ravel().tolist())):
             q[ratio == a] = self._smooth_pressure(rho[ratio == a], float(a))
         return q
 

@@ -49,7 +49,7 @@ def pressure_errors(
         moved: Errors of the radii [m], shape (n,).
     """
     scene = fields.scene
-    chosen = np.unique(np.linspace(0, radius.size - 1, min(radius.size, _SAMPLES)).round().astype(int))
+    chosen = np.linspace(0, radius.size - 1, min(radius.size, _SAMPLES)).round().astype(int)
     norms = [_norms(system, fields, float(radius[n]), int(n)) for n in chosen]
     a, g = radius[chosen], np.asarray(system.mdr_profile(radius[chosen]))
     elongation = np.abs(g - fields.indentation_depth[chosen])

@@ -37,12 +37,15 @@ class Modes:
         rates: lambda [one over the unit of time], shape (m,).
         of_surface: Amplitudes that a unit surface displacement has, shape (m, 1).
         of_dashpots: Amplitudes that unit stretches q_j of the dashpots have, shape (m, n).
+        of_force: Rates at which they grow under a unit force, shape (m,). Without eta the surface yields by the force
+            over the instantaneous modulus besides.
         strains: Elastic strains u - q_j of the branches in each mode of unit surface displacement, shape (n, m).
     """
 
     rates: FloatArray
     of_surface: FloatArray
     of_dashpots: FloatArray
+    of_force: FloatArray
     strains: FloatArray
 
     def amplitudes(self, surface: FloatArray, strains: FloatArray) -> FloatArray:
@@ -81,6 +84,7 @@ def modes(long_term: float, viscosity: float, weights: FloatArray, rates: FloatA
         rates=origin + way,
         of_surface=viscosity / size[:, None],
         of_dashpots=found / distances.T / size[:, None],
+        of_force=1.0 / size,
         strains=-(origin + way) / distances,
     )
 

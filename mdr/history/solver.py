@@ -7,15 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.kernels.moduli import contact_modulus
+from bem.kernels.moduli import contact_modulus, relaxation_of
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import (
     DepthHistory,
+    FlatPunch,
     ForceHistory,
     HistoryPath,
     InvalidInput,
@@ -29,8 +31,8 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.followed import FollowedHistory, states_at
+from mdr.history.growing import FollowedLater, growing_history, only_grows
 from mdr.history.springs_in_time import BedState, SpringLaw
-from mdr.impact.units import is_flat, relaxation_of
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.error_model import (
@@ -98,10 +100,25 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         UnsupportedSceneError: If the contact would leave a gap inside itself, or touch beside itself.
         NotConvergedError: If four times as many springs still do not resolve the history.
     """
-    log, loading = StageLog(), scene.loading
+    loading, law = scene.loading, SpringLaw.of(relaxation_of(scene))
     if not isinstance(loading, DepthHistory | ForceHistory):
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
-    law, doublings = SpringLaw.of(relaxation_of(scene)), _doublings(settings)
+    _refuse_idle(loading)
+    follow = partial(followed_history, scene, loading, law, flat_punch, settings)
+    if isinstance(loading, ForceHistory) and only_grows(law, loading):
+        return growing_history(scene, law, flat_punch, settings, FollowedLater(follow))
+    return follow()
+
+
+def followed_history(
+    scene: Scene,
+    loading: DepthHistory | ForceHistory,
+    law: SpringLaw,
+    flat_punch: FlatPunchSource,
+    settings: Mapping[str, Setting],
+) -> HistoryPath:
+    """The same spring by spring, whatever happens."""
+    log, doublings = StageLog(), _doublings(settings)
     gaps, fineness = int(_GAPS * 2.0**doublings), int(_FINENESS * 2.0**doublings)
     for times in _TIMES_SPRINGS:
         with log.stage("equivalent_system"):
@@ -256,8 +273,7 @@ def _beds(
 ) -> tuple[SpringTable | None, list[SpringBed], float]:
     """Springs out to the largest radius that the history can reach, by `SPRING_SHARES`, and their own error."""
     prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
-    _refuse_idle(loading, prescribed)
-    if is_flat(scene):
+    if isinstance(scene.indenter, FlatPunch):
         end = scene.indenter.max_radius
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
@@ -304,7 +320,8 @@ def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed
     )
 
 
-def _refuse_idle(loading: DepthHistory | ForceHistory, prescribed: FloatArray) -> None:
+def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
+    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     if isinstance(loading, ForceHistory) and prescribed.min() < 0.0:
         worst = int(prescribed.argmin())
         raise InvalidInput(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bem.kernels.moduli import relaxation_of
 from bem.layer_equation.protocol import FlatPunchSource
 from bem.polynomials import chebyshev
 from contact import ImpactHistory, Scene, StageLog
@@ -19,7 +20,7 @@ from mdr.impact.flat_punch_equations import FlatPunchBatch
 from mdr.impact.history import distinct, estimates
 from mdr.impact.motion import COARSER
 from mdr.impact.results import ImpactResults, fine_and_change, refuse_rest
-from mdr.impact.units import impact_of, relaxation_of
+from mdr.impact.units import impact_of
 from mdr.springs.assembly import equivalent_system
 
 # First step for a tolerance of one, in units of time; with the tolerance it goes as its tenth root. Chosen.

@@ -12,6 +12,7 @@ from typing import TypeAlias
 
 import numpy as np
 
+from bem.kernels.moduli import relaxation_of
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import ImpactHistory, InvalidInput, NotConvergedError, Scene, StageLog
 from contact.answer.solution import Setting
@@ -21,7 +22,7 @@ from mdr.impact.flat_punch import flat_punch_history, flat_punch_results
 from mdr.impact.history import history
 from mdr.impact.motion import Impacts, TableTooShort, impacts
 from mdr.impact.results import ImpactResults, joined, results
-from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, relaxation_of, scaled, table_of
+from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, scaled, table_of
 from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.error_model import DEFAULT_ACCURACY
 from mdr.springs.pulling import refuse_pulling_at

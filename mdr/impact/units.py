@@ -7,11 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bem.kernels.moduli import shear_modulus
+from bem.kernels.moduli import relaxation_of, shear_modulus
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import FlatPunch, Impact, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
-from contact.scene.effects import Relaxation, Viscoelasticity
 from mdr.impact.equations import ImpactBatch
 from mdr.springs.shared_tables import (
     SharedTable,
@@ -48,31 +47,6 @@ class ScaledImpacts:
     stiffness: FloatArray
     velocity: FloatArray
     mass: FloatArray
-
-
-def relaxation_of(scene: Scene) -> Relaxation:
-    """The scene's shear relaxation, constant for an elastic layer.
-
-    Branches stand in the order of their relaxation times and each time stands once, so the order in which a user lists
-    them makes no difference.
-    """
-    model = scene.effect(Viscoelasticity)
-    if model is None:
-        return Relaxation(
-            long_term_modulus=shear_modulus(scene.layer), moduli=np.empty(0), times=np.empty(0), viscosity=0.0
-        )
-    relaxation = model.relaxation
-    if relaxation.moduli.size == 1 and relaxation.moduli[0] > 0.0:
-        return relaxation
-    order = np.lexsort((relaxation.moduli, relaxation.times))
-    order = order[relaxation.moduli[order] > 0.0]
-    times, first = np.unique(relaxation.times[order], return_index=True)
-    return Relaxation(
-        long_term_modulus=relaxation.long_term_modulus,
-        moduli=np.add.reduceat(relaxation.moduli[order], first) if first.size else np.empty(0),
-        times=times,
-        viscosity=relaxation.viscosity,
-    )
 
 
 def impact_of(scene: Scene) -> Impact:

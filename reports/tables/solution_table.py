@@ -68,7 +68,8 @@ def _title(solution: Solution) -> str:
 
 def _shown(states: int, longest: int) -> np.ndarray[tuple[int], np.dtype[np.intp]]:
     """Indices of the printed states, first and last among them."""
-    return np.unique(np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp))
+    # Their distances are one at least, so that none comes twice.
+    return np.linspace(0, states - 1, min(states, longest)).round().astype(np.intp)
 
 
 def _column(solution: Solution, name: str, factor: float, shown: Iterable[int]) -> list[str]:

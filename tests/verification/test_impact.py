@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from scipy.special import gamma
 
+from bem.kernels.moduli import relaxation_of
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import (
     Cone,
@@ -23,7 +24,6 @@ from contact import (
 from mdr import equivalent_system
 from mdr.closed_forms.flat_punch_restitution import damping_ratio, kelvin_voigt_restitution
 from mdr.impact.solver import impact_batch, solve_impact
-from mdr.impact.units import relaxation_of
 from tests.mdr.impact_explicit import explicit_impact
 from tests.mdr.viscoelastic_scenes import (
     GLASSY_BRANCH,
