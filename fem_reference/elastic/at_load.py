@@ -1,7 +1,7 @@
 """The contact at a prescribed depth or force: solved at a prescribed radius, on a mesh with a vertex at its edge.
 
 Newton's method with coarse solutions finds the radius; a full solution there is corrected to first order where its
-load misses by less than 1e-4 or its own error, else repeated.  At smooth contact dF/da = 0 at given depth, so
+load misses by little, else repeated.  At smooth contact dF/da = 0 at given depth, so
 ``F(delta) = F_0 + k_N (delta - delta_0)`` errs only in the square of what is left.
 """
 
@@ -24,6 +24,12 @@ from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_sol
 BELIEVED = 1.5
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
+# The same over the accuracy wanted.  Derived: a correction errs by `uncertain_slope`, a hundredth of it, and by its
+# square, hence by a tenth of accuracies up to 1e-2.
+PER_ACCURACY = 3.0
+# From this accuracy on a full solution costs no more than a quick one and, without a flat end, the load of the searched
+# radius misses by 2e-4 to 2e-3 (paraboloid, cone and sphere, 2026-11-23), about its own error: no quick one is made.
+AS_SEARCHED = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -35,14 +41,16 @@ class Load:
         target: a depth [m] or a force / E* [m^2].
         by_depth: which of them.
         radius: contact radius [m] by coarse solutions.
-        growth: d ln(load) / d ln(a - flat) by the last of them.
+        growth: d ln(load) / d ln(a - flat) by the last of them; None where the contact search alone found the radius.
+        accuracy: relative accuracy wanted, if any.
     """
 
     scene: Scene
     target: float
     by_depth: bool
     radius: float
-    growth: float
+    growth: float | None = None
+    accuracy: float | None = None
 
     def equilibrium(self, solve: ContactSolver) -> FemEquilibrium:
         """The state at the load, by full solutions.
@@ -62,10 +70,11 @@ class Load:
                 contact = contact.narrowed(1 / defect)
                 defect = getattr(contact.answer, name) / scaled
             own = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
-            exponent = float(np.clip(own, self.growth / BELIEVED, self.growth * BELIEVED))
+            near = own if self.growth is None else self.growth
+            exponent = float(np.clip(own, near / BELIEVED, near * BELIEVED))
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own, and misses the load by what its mesh misses it by.
-            if abs(defect - 1) <= max(LEFT_OVER, contact.error[name]):
+            if abs(defect - 1) <= max(LEFT_OVER, PER_ACCURACY * (self.accuracy or 0.0), contact.error[name]):
                 factor = corrected / radius
                 return LoadedContact(
                     contact=contact, load=scaled, by_depth=self.by_depth, radius_factor=factor
@@ -74,8 +83,15 @@ class Load:
         raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
 
-def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load:
+def found_load(scene: Scene, target: float, start: float, accuracy: float | None, log: StageLog) -> Load:
     """A depth [m] or force / E* [m^2], as the loading says, from a first guess of the contact radius [m].
+
+    Args:
+        scene: the scene.
+        target: the depth or force.
+        start: radius [m] by the contact search, good to about 1e-3.
+        accuracy: relative accuracy wanted, if any; at `AS_SEARCHED` the start serves.
+        log: of the stages.
 
     Raises:
         NotConvergedError: the radius does not settle.
@@ -83,6 +99,8 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
     by_depth = isinstance(scene.loading, IndentationDepths)
 
     flat = scene.indenter.flat_radius
+    if accuracy is not None and accuracy >= AS_SEARCHED and not flat:
+        return Load(scene=scene, target=target, by_depth=by_depth, radius=start, accuracy=accuracy)
 
     def load_at(radius: float) -> tuple[float, float]:
         contact = quick_solution(scene, radius, log)
@@ -90,7 +108,7 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
     radius, growth = radius_of_load(load_at, start, flat, narrowest_radius(scene.layer, scene.indenter))
-    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, growth=growth)
+    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, growth=growth, accuracy=accuracy)
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
