@@ -269,7 +269,8 @@ class Fem:
         from fem_reference.elastic.at_load import found_load  # noqa: PLC0415 - only scenes that search pay for it
         from fem_reference.elastic.contact_search import searched_radius  # noqa: PLC0415
 
-        return found_load(scene, target, searched_radius(scene, target, self.discretisation, self.solver, log), log)
+        start = searched_radius(scene, target, self.discretisation, self.solver, log)
+        return found_load(scene, target, start, self.accuracy, log)
 
     def refined(self) -> Self:
         """A copy with cells half as large; the edge cell shrinks by 2^(2k), so that errors fall at the formal order 2k.

@@ -58,7 +58,8 @@ class PointFields:
     @property
     def energy_products(self) -> FloatArray:
         """Twice the mutual energy density, ``2 mu dev(u_i) : dev(u_j) + p_i p_j / K``; (m, m, triangle, point)."""
-        deviatoric = np.einsum("itqs,jtqs->ijtq", self.deviator, self.deviator)
+        deviator = self.deviator
+        deviatoric = np.einsum("itqs,jtqs->ijtq", deviator, deviator)
         volumetric = np.einsum("itq,jtq->ijtq", self.pressure, self.pressure)
         return np.asarray(2 * self.shear_modulus * deviatoric + self.compressibility * volumetric)
 

@@ -1,7 +1,7 @@
 """The contact at a prescribed depth or force: solved at a prescribed radius, on a mesh with a vertex at its edge.
 
-A secant iteration with coarse solutions finds the radius; a full solution there is corrected to first order where its
-load misses by less than 1e-4, else repeated.  At smooth contact dF/da = 0 at given depth, so
+Newton's method with coarse solutions finds the radius; a full solution there is corrected to first order where its
+load misses by little, else repeated.  At smooth contact dF/da = 0 at given depth, so
 ``F(delta) = F_0 + k_N (delta - delta_0)`` errs only in the square of what is left.
 """
 
@@ -18,15 +18,18 @@ from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 
-# Largest relative load by which coarse meshes of neighbouring radii may differ.  Beside a flat end they scatter by 1e-4
-# (a/b - 1 = 3e-5, growth 0.7, 2026-11-22), more than the secants asked for; full solutions settle the rest.
-SCATTER = 1e-2
 # Factor by which a full solution's own growth of the load may differ from that of coarse solutions.  Within 1e-5 of a
 # flat end its edge cells leave 0.2 to 5.1, where coarse solutions say 0.50 to 0.57 and the truth is 1/2 (default
 # settings, a/b - 1 = 7e-7 to 3e-5, random elastic scene 17 of seed 5, 2026-11-23).
 BELIEVED = 1.5
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
+# The same over the accuracy wanted.  Derived: a correction errs by `uncertain_slope`, a hundredth of it, and by its
+# square, hence by a tenth of accuracies up to 1e-2.
+PER_ACCURACY = 3.0
+# From this accuracy on a full solution costs no more than a quick one and, without a flat end, the load of the searched
+# radius misses by 2e-4 to 2e-3 (paraboloid, cone and sphere, 2026-11-23), about its own error: no quick one is made.
+AS_SEARCHED = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,14 +41,16 @@ class Load:
         target: a depth [m] or a force / E* [m^2].
         by_depth: which of them.
         radius: contact radius [m] by coarse solutions.
-        growth: d ln(load) / d ln(a - flat) by the last of them.
+        growth: d ln(load) / d ln(a - flat) by the last of them; None where the contact search alone found the radius.
+        accuracy: relative accuracy wanted, if any.
     """
 
     scene: Scene
     target: float
     by_depth: bool
     radius: float
-    growth: float
+    growth: float | None = None
+    accuracy: float | None = None
 
     def equilibrium(self, solve: ContactSolver) -> FemEquilibrium:
         """The state at the load, by full solutions.
@@ -56,7 +61,7 @@ class Load:
         radius, flat = self.radius, self.scene.indenter.flat_radius
         narrowest = narrowest_radius(self.scene.layer, self.scene.indenter)
         name = "smooth_depth" if self.by_depth else "smooth_force"
-        for is_last in (False, False, True):
+        for _ in range(3):
             radius = max(radius, narrowest)
             contact = solve(radius)
             scaled = self.target / radius if self.by_depth else self.target / radius**2
@@ -65,10 +70,11 @@ class Load:
                 contact = contact.narrowed(1 / defect)
                 defect = getattr(contact.answer, name) / scaled
             own = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
-            exponent = float(np.clip(own, self.growth / BELIEVED, self.growth * BELIEVED))
+            near = own if self.growth is None else self.growth
+            exponent = float(np.clip(own, near / BELIEVED, near * BELIEVED))
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
-            # Each radius has a mesh of its own: the last may miss the load by what its mesh misses it by.
-            if abs(defect - 1) <= max(LEFT_OVER, is_last * contact.error[name]):
+            # Each radius has a mesh of its own, and misses the load by what its mesh misses it by.
+            if abs(defect - 1) <= max(LEFT_OVER, PER_ACCURACY * (self.accuracy or 0.0), contact.error[name]):
                 factor = corrected / radius
                 return LoadedContact(
                     contact=contact, load=scaled, by_depth=self.by_depth, radius_factor=factor
@@ -77,25 +83,32 @@ class Load:
         raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
 
-def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load:
+def found_load(scene: Scene, target: float, start: float, accuracy: float | None, log: StageLog) -> Load:
     """A depth [m] or force / E* [m^2], as the loading says, from a first guess of the contact radius [m].
 
+    Args:
+        scene: the scene.
+        target: the depth or force.
+        start: radius [m] by the contact search, good to about 1e-3.
+        accuracy: relative accuracy wanted, if any; at `AS_SEARCHED` the start serves.
+        log: of the stages.
+
     Raises:
-        NotConvergedError: the secant iteration on the radius does not settle.
+        NotConvergedError: the radius does not settle.
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
 
     flat = scene.indenter.flat_radius
-    slopes: list[float] = []
+    if accuracy is not None and accuracy >= AS_SEARCHED and not flat:
+        return Load(scene=scene, target=target, by_depth=by_depth, radius=start, accuracy=accuracy)
 
-    def ratio(radius: float) -> float:
+    def load_at(radius: float) -> tuple[float, float]:
         contact = quick_solution(scene, radius, log)
-        slopes.append(grows_like(contact, flat / radius, by_depth=by_depth))
-        return (contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2) / target
+        load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
+        return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
-    narrowest = narrowest_radius(scene.layer, scene.indenter)
-    radius, _ = radius_of_load(ratio, start, flat, narrowest, first_exponent=lambda: slopes[0])
-    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, growth=slopes[-1])
+    radius, growth = radius_of_load(load_at, start, flat, narrowest_radius(scene.layer, scene.indenter))
+    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, growth=growth, accuracy=accuracy)
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
@@ -110,35 +123,31 @@ def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> fl
 
 
 def radius_of_load(
-    ratio_at: Callable[[float], float],
-    start: float,
-    flat: float,
-    narrowest: float = 0.0,
-    *,
-    first_exponent: Callable[[], float] = lambda: 2.0,
+    load_at: Callable[[float], tuple[float, float]], start: float, flat: float, narrowest: float = 0.0
 ) -> tuple[float, float]:
-    """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat): secants in logarithms.
+    """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat) there: Newton's method in logarithms.
 
     Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  The narrowest radius is
-    returned where even that carries more.  ``first_exponent`` guesses the power once the first ratio is known.
+    returned where even that carries more.
+
+    Args:
+        load_at: load ratio at a radius, and its power of a - flat.
+        start: first radius.
+        flat: radius of the flat end.
+        narrowest: smallest radius.
+
+    Raises:
+        NotConvergedError: the radius does not settle.
     """
     least = float(np.log(narrowest - flat)) if flat else -np.inf
     x = max(float(np.log(max(start - flat, 1e-6 * start))), least)
-    y = float(np.log(ratio_at(flat + np.exp(x))))
-    exponent = float(np.clip(first_exponent(), 0.2, 20))
-    step = float(np.clip(-y / exponent, -1, 1)) or 1e-3
-    for number in range(15):
+    for _ in range(16):
+        ratio, growth = load_at(flat + float(np.exp(x)))
+        y = float(np.log(ratio))
         if x == least and y > 0:
-            return narrowest, 0.5
-        step = max(step, least - x)
-        following = float(np.log(ratio_at(flat + np.exp(x + step))))
-        # Every radius has a mesh of its own: secants end where its errors hide what a step gains.
-        if number and abs(y) < SCATTER and abs(following) >= abs(y):
-            return flat + float(np.exp(x)), exponent
-        exponent = float(np.clip((following - y) / step, 0.2, 20))
-        x, y = x + step, following
-        step = float(np.clip(-y / exponent, -1, 1))
-        # The last step takes most of that away.
-        if abs(y) < LEFT_OVER:
-            return flat + float(np.exp(x + step)), exponent
+            return narrowest, growth
+        # A last step leaves about the square of this.
+        if y**2 < LEFT_OVER:
+            return flat + float(np.exp(max(x - y / growth, least))), growth
+        x = max(x - float(np.clip(y / growth, -1, 1)), least)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})

@@ -20,7 +20,7 @@ from fem_reference.elastic.surface_compliance import STRIP_CELLS, SurfaceComplia
 # compressible layers, where it is right to 0.06 cells.
 EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 # Cells of a strip that tells a radius only, and the share of the stiffness that its outer edge may cost.  Chosen: radii
-# are then within 1e-3 of those of fine meshes, where the first secant ends.
+# are then within 1e-3 of those of fine meshes, where one step of Newton's method ends.
 DISC_CELLS = 60
 DISC_TRUNCATION = 1e-3
 

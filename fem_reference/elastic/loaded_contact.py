@@ -49,7 +49,7 @@ class LoadedContact:
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
-        uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - answer.radius)
+        uncertain = self._uncertain_slope * abs(self.radius_factor - answer.radius)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
         # The last term is the rounding of the radius, whatever its slope.
         radius_error += contact.edge_shift + correction + 1e-15
@@ -71,6 +71,13 @@ class LoadedContact:
         return FemEquilibrium(
             contact=contact, depth=depth, force=force, error=reported, radius_factor=self.radius_factor
         )
+
+    @property
+    def _uncertain_slope(self) -> float:
+        """Relative error of the smooth depth's slope, by what degrees change of it: much on coarse meshes."""
+        slopes = [level.smooth_depth_slope for _, level in sorted(self.contact.levels.items())]
+        *before, last = np.abs(np.diff(slopes)) / abs(self.contact.answer.smooth_depth_slope)
+        return float(max(AT_LOAD.uncertain_slope, last, *(AT_LOAD.earlier_slope * change for change in before)))
 
     def _depth(self, level: PrescribedContact) -> float:
         if self.by_depth:

@@ -26,7 +26,8 @@ def patch_defect(problem: LayerProblem) -> float:
         problem.uniform_elements,
     )
     left, terms = forces(elements, unknowns, state), forces(np.abs(elements), unknowns, np.abs(state))
-    inner = np.setdiff1d(np.arange(problem.space.size), [*_boundary_unknowns(problem), *problem.supported_unknowns])
+    inner = np.ones(problem.space.size, dtype=bool)
+    inner[_boundary_unknowns(problem)] = inner[problem.supported_unknowns] = False
     return float(np.max(np.abs(left[inner]) / terms[inner], initial=0.0))
 
 

@@ -61,9 +61,10 @@ class FemEquilibrium:
 
     @property
     def stiffness(self) -> float:
-        """k_N / (E* a) at the corrected radius."""
+        """k_N / (E* a) at the corrected radius, by its power of the radius here: one where h >> a, two to four else."""
         answer = self.contact.answer
-        return answer.stiffness + answer.stiffness_slope * (self.radius_factor - answer.radius)
+        power = answer.stiffness_slope * answer.radius / answer.stiffness
+        return float(answer.stiffness * (self.radius_factor / answer.radius) ** power)
 
     def at_surface(self, modulus: float) -> SurfaceState:
         """What fields of this state are computed from; ``modulus`` is E* [Pa]."""

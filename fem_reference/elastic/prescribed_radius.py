@@ -32,6 +32,10 @@ from fem_reference.elastic.shape_derivative import cut_off, energy_shape_derivat
 ENERGY_AGREEMENT = 1e-8
 # Largest residual of a constant strain over the size of its terms: a hundred thousand roundings.
 PATCH_AGREEMENT = 1e-11
+# Share of the smallest length at the edge at which the slope of the smooth depth is read.  Closer, the singular cells
+# err: three cells inside it was 5 to 8 per cent off in quick solutions, here 0.1 to 0.4 (paraboloid, cone and truncated
+# cone, 2026-11-23); farther, the next term does.
+SLOPE_DISTANCE = 1e-3
 # Settings of quick solutions, on which the radius of a load is searched.  Depth and force are within 4e-5 and 1.6e-4 of
 # fine ones (paraboloids at a/h = 0.2 to 20, nu = 0.3 to 1/2, 2026-11-22), so that one or two full solutions suffice.
 COARSE = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
@@ -58,6 +62,7 @@ class PrescribedContact:
         pair: element pair.
         constants: moduli at the points of the mesh, at E* = 1.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
+        edge_scale: smallest length at the edge: the radius, the thickness or the distance to the last kink.
         radius: contact radius over that of the mesh: below one where the ring around a flat end is too narrow for it.
     """
 
@@ -77,6 +82,7 @@ class PrescribedContact:
     pair: ElementPair
     constants: ElasticConstants
     solutions: FloatArray
+    edge_scale: float
     radius: float = 1.0
 
     @property
@@ -97,9 +103,11 @@ class PrescribedContact:
     def smooth_depth_slope(self) -> float:
         """d(delta_0)/da, from the pressures of smooth contact and flat punch: p / p_1 = 2 (a - r) delta_0' at the edge.
 
-        Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one.
+        Both are superpositions of flat punches of radii up to a.  Read `SLOPE_DISTANCE` inside, three cells at least.
         """
-        inside = self.contact_trace.vertices[-4:][:1]
+        vertices = self.contact_trace.vertices
+        near = np.searchsorted(vertices, 1 - SLOPE_DISTANCE * self.edge_scale)
+        inside = vertices[: max(1, min(near, len(vertices) - 3))][-1:]
         punch = self.contact_trace.evaluate(self.pressures[:, 0], inside)
         return float((self.pressure(inside, self.smooth_depth) / punch / (2 * (1 - inside)))[0])
 
@@ -171,7 +179,9 @@ def _evaluate(
     patch = patch_defect(problem)
     if not patch < PATCH_AGREEMENT:
         raise NotConvergedError("a constant strain is not in equilibrium on this mesh", {"patch_defect": patch})
-    derivative, moving_slope = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact])
+    edge_scale = min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
+    moving = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact], 0.6 * edge_scale)
+    derivative, moving_slope = moving
     profile_force_slope = derivative[0, 1] - reactions[:, 0] @ moving_slope
     top, degree = problem.top_nodes(np.inf), problem.pair.degree
     contact_trace = TraceSpace(problem.positions[0, contact], degree)
@@ -192,15 +202,15 @@ def _evaluate(
         pair=problem.pair,
         constants=problem.constants,
         solutions=solutions,
+        edge_scale=edge_scale,
     )
 
 
 def _shape_derivative(
-    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray
+    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray, reach: float
 ) -> tuple[FloatArray, FloatArray]:
     """A'(u_i, u_j), and ``eta f'`` at the contact nodes: the change of the profile seen by nodes that move."""
     mesh = problem.layer_mesh.mesh
-    reach = 0.6 * min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
     derivative = energy_shape_derivative(problem, solutions, cut_off(mesh.p, 1.0, reach))
     vertices = TraceSpace(radii, problem.pair.degree).vertices
     eta = np.interp(radii, vertices, cut_off(np.array([vertices, np.zeros_like(vertices)]), 1.0, reach))
