@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial import chebyshev as series
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, SampledPanel, resolved_panels
@@ -59,7 +59,13 @@ class EquilibriumBranch:
 
     @classmethod
     def sampled(
-        cls, sample: Sampler, *, breakpoints: tuple[float, ...], radius: float, error: float = 0.0
+        cls,
+        sample: Sampler,
+        *,
+        breakpoints: tuple[float, ...],
+        radius: float,
+        error: float = 0.0,
+        seams: ArrayLike = (),
     ) -> EquilibriumBranch:
         """All equilibria with contact radii in (0, radius].
 
@@ -68,6 +74,7 @@ class EquilibriumBranch:
             breakpoints: Radii [m] where the profile is not analytic, its flat end included.
             radius: Largest contact radius [m].
             error: Relative error of the samples.
+            seams: Radii [m] at which the samples pass from one polynomial to another.
 
         Raises:
             NotConvergedError: If the samples are rougher than that.
@@ -76,7 +83,8 @@ class EquilibriumBranch:
         ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
         panels: list[SampledPanel] = []
         for start, low, high in zip(radii, ends, ends[1:], strict=False):
-            panels += resolved_panels(_section(sample, start, low), low, high, error)
+            beyond = np.sqrt(np.maximum(np.asarray(seams, dtype=float) - start, 0.0))
+            panels += resolved_panels(_section(sample, start, low), low, high, error, low + beyond)
         # Of shape (panels, 2, nodes).
         values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])
         derivative = chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
@@ -177,8 +185,14 @@ class EquilibriumBranch:
 
     @cached_property
     def _folds(self) -> tuple[FloatArray, ...]:
-        kinks = self.section_ends[1:-1]
-        return tuple(self._sign_changes(np.concatenate([kinks, *self._roots(q)]), q) for q in (DEPTH, FORCE))
+        kinks, both = self.section_ends[1:-1], (DEPTH, FORCE)
+        return tuple(self._sign_changes(np.concatenate([kinks, self._jumps(q), *self._roots(q)]), q) for q in both)
+
+    def _jumps(self, quantity: int) -> FloatArray:
+        """Where the slope changes sign from one panel to the next, so that neither has a root."""
+        own = self.coefficients[:, quantity]
+        before, after = own.sum(axis=0)[:-1], series.chebval(-1.0, own)[1:]
+        return self.functions.edges[1:-1][before * after < 0.0]
 
     def _roots(self, quantity: int) -> list[FloatArray]:
         """Real roots of the slope on every panel where its mean does not exclude them."""
