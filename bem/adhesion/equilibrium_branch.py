@@ -191,8 +191,8 @@ class EquilibriumBranch:
     def _jumps(self, quantity: int) -> FloatArray:
         """Where the slope changes sign from one panel to the next, so that neither has a root."""
         own = self.coefficients[:, quantity]
-        before, after = own.sum(axis=0)[:-1], series.chebval(-1.0, own)[1:]
-        return self.functions.edges[1:-1][before * after < 0.0]
+        before, after = own.sum(axis=0)[:-1], np.asarray(series.chebval(-1.0, own))[1:]
+        return np.asarray(self.functions.edges[1:-1][before * after < 0.0])
 
     def _roots(self, quantity: int) -> list[FloatArray]:
         """Real roots of the slope on every panel where its mean does not exclude them."""
