@@ -308,9 +308,23 @@ def test_displacements_beside_an_adhering_contact_keep_their_stated_error(kind):
         assert stated[step] < 1e-3
 
 
+def test_densities_tell_what_their_polynomials_leave_of_wide_contacts():
+    """Seen to fail: 43 times the true error in the median, by a bound on the slope that forgot how phi ends."""
+    coarse, fine, ratio = build("mdr", {"nodes": 12}), build("mdr", {"nodes": 40}), []
+    for a in (5.0, 8.0, 13.0):
+        for indenter in (Paraboloid(radius_of_curvature=30.0 * a), Cone(slope=0.03)):
+            layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+            weak = (Adhesion(work_of_adhesion=1e-6 * a),)
+            scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]), effects=weak)
+            one, other = coarse.solve(scene), fine.solve(scene)
+            ratio.append(float(one.error_estimate["pressure"][0]) / distance(one, a, other.pressure))
+    assert min(ratio) > 1.0
+    assert np.median(ratio) < 25.0
+
+
 @pytest.mark.slow
 def test_errors_of_adhering_pressures_are_covered_and_told_less_loosely():
-    """Seen to fail at 20.8 in the median, as parts that oscillate each by itself were added up."""
+    """Seen to fail at 13 in the median, as what polynomials leave was bounded in place of asked of the density."""
     rng, stated, true = np.random.default_rng(14), [], []
     coarse, fine = build("mdr", {"nodes": 12}), build("mdr", {"nodes": 40})
     for number in range(90):
@@ -328,5 +342,5 @@ def test_errors_of_adhering_pressures_are_covered_and_told_less_loosely():
         stated.append(float(one.error_estimate["pressure"][0]))
     ratio = np.array(stated) / np.maximum(true, 1e-300)
     assert np.mean(ratio >= 1) >= 0.95
-    assert np.median(ratio) < 16.0
-    assert np.quantile(ratio, 0.9) < 120.0
+    assert np.median(ratio) < LARGEST_MEDIAN
+    assert np.quantile(ratio, 0.9) < LARGEST_AT_90
