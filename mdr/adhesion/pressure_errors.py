@@ -2,7 +2,8 @@
 
 The pressure is that of the contact without adhesion less that of a flat punch lifted by the elongation dl, which is
 infinite at the edge. Distances are therefore measured with the weight 2 pi r (a^2 - r^2), as under a flat punch without
-adhesion, and between the same shares r/a of the contact radius.
+adhesion, and between the same shares of the way from the last rim or bend, which stays where it is, to the edge: beside
+a rim pressures have a logarithm.
 """
 
 from __future__ import annotations
