@@ -47,7 +47,7 @@ class EquilibriumBranch:
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
         section_radii: a [m] there.
         tails: What the polynomials of each panel leave out of delta [m] and F [N], shape (2, panels).
-        rounding: What the rounding of y moves in them, shape (2,).
+        rounding: What the rounding of y moves in them, shape (2, panels).
     """
 
     functions: Piecewise
@@ -125,7 +125,7 @@ class EquilibriumBranch:
 
     def truncation(self, y: FloatArray) -> FloatArray:
         """What the polynomials leave out of delta [m] and F [N] at y, and roundings of y, shape (2, n)."""
-        return np.asarray(self.tails[:, self.functions.panel(y)] + self.rounding[:, None])
+        return np.asarray((self.tails + self.rounding)[:, self.functions.panel(y)])
 
     def through_machine(self, compliance: float) -> EquilibriumBranch:
         """The branch with the displacement delta + F/K of a machine in place of the depth; its compliance is 1/K."""
@@ -238,8 +238,8 @@ class EquilibriumBranch:
 
 
 def _steepest(panels: list[SampledPanel]) -> FloatArray:
-    """Largest slopes of depth and force by y: a section beside a flat end hardly outgrown is short and steep."""
-    return np.asarray(np.max([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels], axis=0))
+    """Slopes by y, shape (2, panels): a section beside a flat end hardly outgrown is short and steep."""
+    return np.array([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels]).T
 
 
 def _section(sample: Sampler, start: float, low: float) -> Callable[[FloatArray], FloatArray]:
