@@ -103,12 +103,13 @@ def _norms(system: EquivalentSystem, fields: PathFields, radius: float, step: in
     r, weight = _compared(scene, radius)
     pressure, lifted = fields.pressure(r, step), unit.pressure(r)
     elongation = float(system.mdr_profile(radius)) - float(fields.indentation_depth[step])
-    whole, elastic, punch = (
-        float(np.sqrt(weight @ part**2)) for part in (pressure, pressure + elongation * lifted, lifted)
-    )
     density, scale = fields.contact(step).density, system.contact_modulus / np.pi * system.length_unit**2
     left_out = scale * density.abel_left_out() if isinstance(density, ContactDensity) else np.inf
-    return _Norms(whole, elastic, punch, left_out)
+
+    def norm(part: FloatArray) -> float:
+        return float(np.sqrt(weight @ part**2))
+
+    return _Norms(norm(pressure), norm(pressure + elongation * lifted), norm(lifted), left_out)
 
 
 def _compared(scene: Scene, radius: float) -> tuple[FloatArray, FloatArray]:
