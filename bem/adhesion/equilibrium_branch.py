@@ -15,7 +15,7 @@ from typing import TypeAlias
 
 import numpy as np
 from numpy.polynomial import chebyshev as series
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bem.polynomials import chebyshev
 from bem.polynomials.adaptive import NODES, Piecewise, SampledPanel, resolved_panels
@@ -47,7 +47,7 @@ class EquilibriumBranch:
         section_ends: y at zero, at the breakpoints and at the largest radius, shape (sections + 1,).
         section_radii: a [m] there.
         tails: What the polynomials of each panel leave out of delta [m] and F [N], shape (2, panels).
-        rounding: What the rounding of y moves in them, shape (2,).
+        rounding: What the rounding of y moves in them, shape (2, panels).
     """
 
     functions: Piecewise
@@ -59,7 +59,13 @@ class EquilibriumBranch:
 
     @classmethod
     def sampled(
-        cls, sample: Sampler, *, breakpoints: tuple[float, ...], radius: float, error: float = 0.0
+        cls,
+        sample: Sampler,
+        *,
+        breakpoints: tuple[float, ...],
+        radius: float,
+        error: float = 0.0,
+        seams: ArrayLike = (),
     ) -> EquilibriumBranch:
         """All equilibria with contact radii in (0, radius].
 
@@ -68,6 +74,7 @@ class EquilibriumBranch:
             breakpoints: Radii [m] where the profile is not analytic, its flat end included.
             radius: Largest contact radius [m].
             error: Relative error of the samples.
+            seams: Radii [m] at which the samples pass from one polynomial to another.
 
         Raises:
             NotConvergedError: If the samples are rougher than that.
@@ -76,7 +83,8 @@ class EquilibriumBranch:
         ends = np.concatenate([[0.0], np.cumsum(np.sqrt(np.diff(radii)))])
         panels: list[SampledPanel] = []
         for start, low, high in zip(radii, ends, ends[1:], strict=False):
-            panels += resolved_panels(_section(sample, start, low), low, high, error)
+            beyond = np.sqrt(np.maximum(np.asarray(seams, dtype=float) - start, 0.0))
+            panels += resolved_panels(_section(sample, start, low), low, high, error, low + beyond)
         # Of shape (panels, 2, nodes).
         values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])
         derivative = chebyshev.differentiation(NODES).T / np.array([panel.half for panel in panels])[:, None, None]
@@ -117,7 +125,7 @@ class EquilibriumBranch:
 
     def truncation(self, y: FloatArray) -> FloatArray:
         """What the polynomials leave out of delta [m] and F [N] at y, and roundings of y, shape (2, n)."""
-        return np.asarray(self.tails[:, self.functions.panel(y)] + self.rounding[:, None])
+        return np.asarray((self.tails + self.rounding)[:, self.functions.panel(y)])
 
     def through_machine(self, compliance: float) -> EquilibriumBranch:
         """The branch with the displacement delta + F/K of a machine in place of the depth; its compliance is 1/K."""
@@ -177,8 +185,14 @@ class EquilibriumBranch:
 
     @cached_property
     def _folds(self) -> tuple[FloatArray, ...]:
-        kinks = self.section_ends[1:-1]
-        return tuple(self._sign_changes(np.concatenate([kinks, *self._roots(q)]), q) for q in (DEPTH, FORCE))
+        kinks, both = self.section_ends[1:-1], (DEPTH, FORCE)
+        return tuple(self._sign_changes(np.concatenate([kinks, self._jumps(q), *self._roots(q)]), q) for q in both)
+
+    def _jumps(self, quantity: int) -> FloatArray:
+        """Where the slope changes sign from one panel to the next, so that neither has a root."""
+        own = self.coefficients[:, quantity]
+        before, after = own.sum(axis=0)[:-1], np.asarray(series.chebval(-1.0, own))[1:]
+        return np.asarray(self.functions.edges[1:-1][before * after < 0.0])
 
     def _roots(self, quantity: int) -> list[FloatArray]:
         """Real roots of the slope on every panel where its mean does not exclude them."""
@@ -224,8 +238,8 @@ class EquilibriumBranch:
 
 
 def _steepest(panels: list[SampledPanel]) -> FloatArray:
-    """Largest slopes of depth and force by y: a section beside a flat end hardly outgrown is short and steep."""
-    return np.asarray(np.max([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels], axis=0))
+    """Slopes by y, shape (2, panels): a section beside a flat end hardly outgrown is short and steep."""
+    return np.array([np.ptp(panel.values, axis=1) / (2.0 * panel.half) for panel in panels]).T
 
 
 def _section(sample: Sampler, start: float, low: float) -> Callable[[FloatArray], FloatArray]:

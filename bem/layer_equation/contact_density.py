@@ -19,8 +19,9 @@ from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
 from bem.polynomials.abel_integral import even_abel_integral
 from bem.polynomials.even_slopes import EvenSlopes
-from bem.polynomials.gauss_panels import gauss_nodes, lagrange_matrix
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from bem.polynomials.mapped import MappedFunction, MappedGrid
+from bem.polynomials.truncation import orders_beyond, rate_of_decay
 from contact.records.validation import FloatArray
 
 EPS = float(np.finfo(float).eps)
@@ -34,11 +35,15 @@ class ContactDensity:
         kernel: Kernel of the layer.
         load: Averages of W over the panels' Lagrange basis, shape (q, m).
         psi: On the panels that cover [0, a], equally wide but for the last.
+        last: psi at the nodes of the factor's panel that the last one is cut from, shape (m,).
+        last_width: Width of that panel.
     """
 
     kernel: FredholmKernel
     load: FloatArray
     psi: MappedFunction
+    last: FloatArray
+    last_width: float
 
     @classmethod
     def of_load(cls, kernel: FredholmKernel, factor: VolterraFactor, ratio: float, load: FloatArray) -> ContactDensity:
@@ -51,7 +56,9 @@ class ContactDensity:
             load: Averages of W on the panels that cover [0, a], shape (q, m); the last panel ends at a.
         """
         panels = MappedGrid.between(np.append(factor.starts(len(load)), ratio), factor.count)
-        return cls(kernel, load, MappedFunction(panels, _solve(factor, panels.width[-1], load) - load, 0.0))
+        phi, last = _solve(factor, panels.width[-1], load)
+        width = float(factor.widths(len(load))[-1])
+        return cls(kernel, load, MappedFunction(panels, phi - load, 0.0), last, width)
 
     @property
     def ratio(self) -> float:
@@ -78,6 +85,20 @@ class ContactDensity:
     def abel_integral(self, radius: FloatArray) -> FloatArray:
         """int_r^a psi'(t)/sqrt(t^2 - r^2) dt for radii in [0, a], shape (n,)."""
         return even_abel_integral(self.slope_over_position, self.psi.grid, radius)
+
+    def abel_left_out(self) -> float:
+        """What polynomials leave of `abel_integral`, in the norm with the weight r (a^2 - r^2).
+
+        In t^2 that integral is half a derivative, so that an order m of size A on a panel becomes about sqrt(m) A: with
+        the wave number pi m/(2 t H) in t^2 its square adds pi m/4 A^2 (a^2 - t^2). Between nodes the kernel is
+        interpolated on the whole of the panel that the last one is cut from.
+        """
+        grid, count = self.psi.grid, self.psi.grid.count
+        orders = orders_beyond(self.psi.coefficients)
+        whole = chebyshev_from_nodes(count) @ self.last
+        orders[-1] = max(orders[-1], float(orders_beyond(whole, rate_of_decay(2 * STRIP / self.last_width))))
+        middle = grid.left + grid.width / 2
+        return float(np.sqrt(np.pi / 4 * count * np.sum(orders**2 * (self.ratio - middle) * (self.ratio + middle))))
 
     @cached_property
     def slope_over_position(self) -> EvenSlopes:
@@ -111,15 +132,20 @@ class ContactDensity:
         return -np.asarray((self.kernel.decay_again(distance) @ (self.kernel.weights * moments)).real) / np.pi
 
 
-def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> FloatArray:
-    """phi on whole panels and the last, shorter one: that from its Schur system, the others by back-substitution."""
+def _solve(factor: VolterraFactor, last_width: float, load: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """phi on whole panels and the last, shorter one: that from its Schur system, the others by back-substitution.
+
+    And psi on the whole of the panel that the last one is cut from.
+    """
     m, before = factor.count, (len(load) - 1) * factor.count
     tau, omega = gauss_nodes(m)
     E = lagrange_matrix(m, last_width / factor.widths(len(load))[-1] * tau)
     z, inherited = factor.eliminate(load)
-    schur = E @ factor.schur[len(load) - 1] @ E.T
+    own = factor.schur[len(load) - 1]
+    schur = E @ own @ E.T
     last = np.linalg.solve(np.eye(m) - schur * (last_width * omega), load[-1] + E @ inherited[-1])
     root = np.broadcast_to(factor.root_weights(len(load)), load.shape)
-    returned = factor.lower.row(before, before + m).T @ (E.T @ (last_width * omega * last) / root[-1])
+    mass = E.T @ (last_width * omega * last)
+    returned = factor.lower.row(before, before + m).T @ (mass / root[-1])
     earlier = factor.lower.solve(z[:before] - returned, transposed=True)
-    return np.vstack([earlier.reshape(-1, m) / root[:-1], last])
+    return np.vstack([earlier.reshape(-1, m) / root[:-1], last]), inherited[-1] + own @ mass

@@ -19,7 +19,7 @@ from bem.layer_equation.profiles.edge_values import contact_averages, edge_value
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
-from bem.polynomials.truncation import integrated, integrated_share, rate_of_decay
+from bem.polynomials.truncation import integrated, integrated_share
 from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.profiles import Profile
@@ -218,11 +218,13 @@ class IntegralEquationSolution(FlatPunchSolution):
 
         Interpolation leaves rho^-m on the ellipse of Bernstein through 2i, its derivative m times as much, and beside
         the axis, where all of a narrow contact lies, 2 m^2 times (Markov). In a wide one psi varies as fast as that
-        only within a thickness of the edge.
+        only within a thickness of the edge. H is the width of the panel that the edge lies on.
         """
-        width, m = self.factor.panel_width, self.factor.count
+        panels, _ = self._panels.locate(ratio)
+        width, m = self._panels.width[panels], self.factor.count
         steepest = np.minimum(2.0 * m, width / np.maximum(ratio, np.finfo(float).tiny))
-        return np.asarray(self.shares.slope_safety * m * steepest * rate_of_decay(2 * STRIP / width) ** m)
+        distance = 2 * STRIP / width
+        return np.asarray(self.shares.slope_safety * m * steepest * (distance + np.hypot(distance, 1.0)) ** -m)
 
     def panel_error(self, ratio: float) -> float:
         """The largest `spring_error` at ends and middles of all panels up to a ratio, and there."""

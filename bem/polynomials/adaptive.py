@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from bem.polynomials import chebyshev
 from contact.records.errors import NotConvergedError
@@ -53,15 +53,22 @@ class SampledPanel:
 
 
 def resolved_panels(
-    sample: Callable[[FloatArray], FloatArray], low: float, high: float, error: float = 0.0
+    sample: Callable[[FloatArray], FloatArray],
+    low: float,
+    high: float,
+    error: float = 0.0,
+    seams: ArrayLike = (),
 ) -> list[SampledPanel]:
     """Halve four panels until every function's last Chebyshev coefficients are small, or until halving helps no more.
+
+    A panel with seams is cut at the one closest to its middle: no polynomial resolves a jump.
 
     Args:
         sample: From points, shape (n,), to values of all functions, shape (functions, n).
         low: Left end of the interval.
         high: Right end.
         error: Relative, of the functions themselves; they need not be resolved any finer.
+        seams: Where the functions pass from one polynomial to another, which may jump by that error.
 
     Raises:
         NotConvergedError: If a function is too rough.
@@ -79,7 +86,8 @@ def resolved_panels(
         halvable = min(right - left for left, right in waiting) > _SMALLEST * (high - low)
         fine = unresolved <= (_RESOLVED if room and halvable else max(_USABLE, error))
         done += [panel for panel, enough in zip(panels, fine, strict=True) if enough]
-        waiting = [half for panel, enough in zip(panels, fine, strict=True) if not enough for half in _halves(panel)]
+        rough = [panel for panel, enough in zip(panels, fine, strict=True) if not enough]
+        waiting = [half for panel in rough for half in _halves(panel, np.asarray(seams, dtype=float))]
     if waiting:
         raise NotConvergedError(
             "the equivalent springs are too rough for a table", {"unresolved part": float(unresolved.max())}
@@ -94,8 +102,12 @@ def relative_tail(panels: list[SampledPanel]) -> float:
     return float(np.max(tails / np.where(sizes > 0.0, sizes, 1.0)))
 
 
-def _halves(panel: SampledPanel) -> list[tuple[float, float]]:
-    middle = 0.5 * (panel.low + panel.high)
+def _halves(panel: SampledPanel, seams: FloatArray) -> list[tuple[float, float]]:
+    middle, nodes = 0.5 * (panel.low + panel.high), panel.nodes
+    # Samples that all lie on one side of a seam do not see it.
+    inside = seams[(seams > nodes.min()) & (seams < nodes.max())]
+    if inside.size:
+        middle = float(inside[np.abs(inside - middle).argmin()])
     return [(panel.low, middle), (middle, panel.high)]
 
 

@@ -55,7 +55,8 @@ def pull_off_table(layer: Layer, indenter: Profile, radius: float, flat_punch: F
         return np.stack([system.mdr_profile(a), softness, system.contact_stiffness(a), system.profile_moment(a)])
 
     end = float(np.sqrt(radius))
-    panels = resolved_panels(sample, 0.0, end, system.relative_error["spring_stiffness"])
+    error = system.relative_error["spring_stiffness"]
+    panels = resolved_panels(sample, 0.0, end, error, np.sqrt(system.seams))
     values = np.stack([panel.values @ chebyshev.analysis(NODES).T for panel in panels])
     halves = np.array([panel.half for panel in panels])[:, None, None]
     slopes = values @ chebyshev.differentiation(NODES).T / halves

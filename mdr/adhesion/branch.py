@@ -17,6 +17,10 @@ class AdheringSprings(Protocol):
     def flat_radius(self) -> float:
         """b [m], where the profile begins to rise."""
 
+    @property
+    def seams(self) -> FloatArray:
+        """Radii [m] at which polynomials of springs and profile change, shape (n,)."""
+
     def spring_stiffness(self, x: FloatArray) -> FloatArray:
         """c_N(x) [Pa]."""
 
@@ -63,4 +67,4 @@ def adhesive_branch(
         depth = springs.profile_beyond(excess) - critical_elongation(springs, radius, work_of_adhesion)
         return np.stack([depth, springs.contact_stiffness(radius) * depth - springs.moment_beyond(excess)])
 
-    return EquilibriumBranch.sampled(sample, breakpoints=breakpoints, radius=radius, error=error)
+    return EquilibriumBranch.sampled(sample, breakpoints=breakpoints, radius=radius, error=error, seams=springs.seams)

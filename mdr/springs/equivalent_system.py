@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
-from bem.polynomials.mapped import MappedFunction, MappedGrid
+from bem.polynomials.mapped import MappedFunction, MappedGrid, apart
 from bem.polynomials.root_steps import MOST_STEPS
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import FloatArray
@@ -138,6 +138,12 @@ class EquivalentSystem:
         return self._invert(
             force, _Curve(self._force_at, self._force_with_slope_at, lead), "normal_force", self._force_unit
         )
+
+    @cached_property
+    def seams(self) -> FloatArray:
+        """Radii [m] at which polynomials of springs and profile change, where they may jump by their errors."""
+        pieces = self.flat_radius / self.length_unit + self.profile.grid.left[1:]
+        return self.length_unit * np.sort(np.append(pieces, apart(self.flat_punch.panel_ends(self._last), pieces)))
 
     @cached_property
     def relative_error(self) -> Mapping[str, float]:

@@ -167,13 +167,17 @@ def test_a_flat_end_that_is_hardly_outgrown_detaches_like_a_punch(growth):
 
 
 def distance(path, radius, expected):
-    """Of a pressure from the right one, over the latter, in the norm with the weight r (a^2 - r^2)."""
+    """Of a pressure from the right one, over the latter, in the norm with the weight r (a^2 - r^2).
+
+    Between the same shares of the way from the last rim to the edge.
+    """
     nodes, weights = np.polynomial.legendre.leggauss(6)
     a = float(path.contact_radius[0])
     ends = np.array([0.0, *(k for k in path.scene.indenter.kinks if k < a), a])
     r = (ends[:-1, None] + np.diff(ends)[:, None] * (1 + nodes) / 2).ravel()
     weight = (np.diff(ends)[:, None] * weights).ravel() * r * (a - r) * (a + r)
-    right = expected(r * (radius / a))
+    rim = ends[-2]
+    right = expected(np.where(r <= rim, r, rim + (r - rim) * ((radius - rim) / (a - rim))))
     return np.sqrt(weight @ (path.pressure(r) - right) ** 2 / (weight @ right**2))
 
 
@@ -308,15 +312,31 @@ def test_displacements_beside_an_adhering_contact_keep_their_stated_error(kind):
         assert stated[step] < 1e-3
 
 
+def test_densities_tell_what_their_polynomials_leave_of_wide_contacts():
+    """Seen to fail: 130 times the true error in the median, by a bound on the slope that forgot how phi ends."""
+    coarse, fine, ratio = build("mdr", {"nodes": 12}), build("mdr", {"nodes": 40}), []
+    for a in (5.0, 8.0, 13.0):
+        for indenter in (Paraboloid(radius_of_curvature=30.0 * a), Cone(slope=0.03)):
+            layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3)
+            weak = (Adhesion(work_of_adhesion=1e-6 * a),)
+            scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]), effects=weak)
+            one, other = coarse.solve(scene), fine.solve(scene)
+            ratio.append(float(one.error_estimate["pressure"][0]) / distance(one, a, other.pressure))
+    assert min(ratio) > 1.0
+    assert np.median(ratio) < 60.0
+
+
 @pytest.mark.slow
 def test_errors_of_adhering_pressures_are_covered_and_told_less_loosely():
-    """Seen to fail at 20.8 in the median, as parts that oscillate each by itself were added up."""
+    """Seen to fail at 13 in the median, as what polynomials leave was bounded in place of asked of the density."""
     rng, stated, true = np.random.default_rng(14), [], []
     coarse, fine = build("mdr", {"nodes": 12}), build("mdr", {"nodes": 40})
     for number in range(90):
         a = float(np.exp(rng.uniform(np.log(0.02), np.log(20.0))))
         layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=float(rng.choice([0.0, 0.3, 0.45, 0.5])))
         indenter = Paraboloid(radius_of_curvature=30.0 * a) if number % 2 else Cone(slope=0.03)
+        if number % 4 == 0:
+            indenter = TruncatedCone(flat_radius=0.6 * a, slope=0.03)
         bare = fine.solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([a])))
         work = float(bare.indentation_depth[0]) ** 2 / a * 10.0 ** rng.uniform(-5.0, 0.0)
         scene = bare.scene.replace(effects=(Adhesion(work_of_adhesion=work),))
@@ -328,5 +348,5 @@ def test_errors_of_adhering_pressures_are_covered_and_told_less_loosely():
         stated.append(float(one.error_estimate["pressure"][0]))
     ratio = np.array(stated) / np.maximum(true, 1e-300)
     assert np.mean(ratio >= 1) >= 0.95
-    assert np.median(ratio) < 16.0
-    assert np.quantile(ratio, 0.9) < 120.0
+    assert np.median(ratio) < LARGEST_MEDIAN
+    assert np.quantile(ratio, 0.9) < LARGEST_AT_90

@@ -97,7 +97,7 @@ def wide_pressure(exact, ratio, rho):
     density = exact.densities[ratio]
     width = np.full(len(density), ratio / len(density))
     panels = MappedGrid.between(np.append(0.0, np.cumsum(width)), density.shape[1])
-    known = ContactDensity(None, np.ones_like(density), MappedFunction(panels, density - 1.0, 0.0))
+    known = ContactDensity(None, np.ones_like(density), MappedFunction(panels, density - 1.0, 0.0), np.zeros(1), 1.0)
     edge = ratio * np.sqrt(1.0 - rho**2)
     return (1.0 + known.edge_value - edge * known.abel_integral(ratio * rho)) / (
         2.0 * exact.normalized_contact_stiffness(ratio)
