@@ -27,6 +27,7 @@ from functools import cached_property, lru_cache
 from typing import Final
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from bem.grid.calibrated_disc import TOLERANCE, PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
@@ -117,6 +118,18 @@ class AdheringDisc:
         """The half-space's moment over that of the grid: what the layer adds is an integral of the same pressures."""
         measured = self._total(self.measured)
         return self.known_moment / measured if measured > 0.0 else 1.0
+
+    def density(self, degree: int) -> FloatArray:
+        """Coefficients of phi(t; a) = sum_n c_n P_2n(t/a) under a unit depth, shape (degree + 1,).
+
+        P_2n(sqrt(1 - rho^2)) in the quotient of the pressures is P_2n(0) P_2n(t/a) in the density.
+        """
+        rho = self.grid.radius[self.disc.contact] / self.contact_radius
+        inside = (1.0 - rho) * self.disc.radius > EDGE_CELLS
+        even = np.arange(0, 2 * degree + 1, 2)
+        columns = legendre.legvander(np.sqrt(1.0 - rho[inside] ** 2), even[-1])[:, even]
+        fitted = np.linalg.lstsq(columns, self.quotient(self.flat)[inside], rcond=None)[0]
+        return np.asarray(fitted * legendre.legvander(np.zeros(1), even[-1])[0, even])
 
     def quotient(self, pressure: FloatArray) -> FloatArray:
         """Pressure over that of the half-space under a unit depth, on the cells of the disc."""

@@ -164,13 +164,13 @@ class AdheringDiscs:
         least, most = (np.add(errors, (depth, tension, 0.0, at_loss)) / sizes for errors in released)
         for row, name in enumerate(names):
             by_grids[name] = float(np.clip(by_grids[name], least[row], most[row]))
-        by_grids["pull_off_contact_radius"] += DISCS.radius_floor
+        by_grids["pull_off_contact_radius"] += DISCS.radius_floors * branch.floor
         return {name: np.array([error]) for name, error in by_grids.items()}
 
     def _solved(self, branch: DiscBranch, radius: FloatArray) -> FloatArray:
         """Errors of depth [m] and force [N] by linear solutions and the branch's polynomials at one radius [m]."""
         terms = np.abs(branch.depth(radius)) + branch.elongation(radius)
-        error = (DISCS.floor + branch.truncation(radius)) * terms
+        error = (branch.floor + branch.truncation(radius)) * terms
         return np.concatenate([error, branch.stiffness(radius) * error])
 
     def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
@@ -211,7 +211,7 @@ class AdheringDiscs:
         ):
             nearby = _largest_nearby(np.abs(values - others) / terms, radius)
             by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
-            found[name] = values, terms, np.clip(by_grids, *by_energy) + DISCS.floor * terms
+            found[name] = values, terms, np.clip(by_grids, *by_energy) + fine.floor * terms
         return found
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:
@@ -229,7 +229,7 @@ class AdheringDiscs:
         Edge values say nothing where the radius is prescribed, of the stiffness, or held at a rim, of all but the
         pressure: then flat punches of a known radius are what is left.
         """
-        solved, by_edge = DISCS.floor + fine.truncation(radius), self._by_ring(radius)
+        solved, by_edge = fine.floor + fine.truncation(radius), self._by_ring(radius)
         given = isinstance(self.scene.loading, ContactRadii)
         known = 0.0 if given else np.where(self._at_rim(radius), 0.0, by_edge)
         of_load = by_edge if given else known
@@ -239,7 +239,7 @@ class AdheringDiscs:
 
     def _pull_off_floors(self, fine: DiscBranch, places: FloatArray) -> dict[str, float]:
         """The same of a pull-off lost and strongest at these radii [m]; its depth is a difference, of two terms."""
-        lost, strongest = DISCS.floor + fine.truncation(places) + self._by_ring(places)
+        lost, strongest = fine.floor + fine.truncation(places) + self._by_ring(places)
         depth = np.abs(fine.depth(places[:1]))
         terms = (depth + fine.elongation(places[:1])) / depth
         return {
@@ -264,7 +264,7 @@ class AdheringDiscs:
             radius = self._largest_radius()
         with self.log.stage("adhesion"):
             fine = DiscBranch.up_to(radius, self.scene, self.points, self.threads)
-            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads)
+            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads, fine)
         return fine, coarse
 
     def _largest_radius(self) -> float:

@@ -92,9 +92,11 @@ class AdheringDiscCoefficients:
     # Relative error of depth and force by the linear solutions, which are solved to 1e-10; 2.5e-10 was needed at most
     # (22 detachments, seed 8501, 2026-11-22).
     floor: float = 5e-10
-    # Relative error of a radius at which depth or force is found least: the square of the step of slopes, and
-    # roundings.
-    radius_floor: float = 1e-9
+    # The same of a measured profile on the half-space, where polynomials follow integrals over it to 1e-12.
+    known_floor: float = 1e-12
+    # Times that floor: relative error of a radius at which depth or force is found least, for the square of the step of
+    # slopes and for roundings.
+    radius_floors: float = 2.0
     # Differences of grids cross zero along a branch, so the largest within this factor in the radius, either way,
     # counts.
     nearby: float = 1.5
