@@ -27,6 +27,8 @@ from contact.scene.extent import radius_of_elongation
 # derivatives. What these polynomials leave out is stated as an error.
 NODES: Final = 16
 BROKEN_NODES: Final = 32
+# Where the stiffness stands among edge values, stiffness and moment.
+STIFFNESS: Final = slice(2, 3)
 # Relative distance within which two radii are one and the same: the rim of a flat end, or where the contact was.
 RIM: Final = 1e-7
 # Factor by which the largest radius grows while the branch is too short.
@@ -90,7 +92,7 @@ class DiscBranchPiece:
         if self.broken is None:
             return values
         risen, moment, _ = self.broken(radius)
-        return np.asarray(values + [np.ones_like(radius), risen, 2.0 * radius, moment])
+        return np.asarray(values + np.stack([np.ones_like(radius), risen, 2.0 * radius, moment]))
 
     def slopes(self, radius: FloatArray) -> FloatArray:
         """Derivatives of stiffness and moment by the radius, shape (2, n)."""
@@ -100,10 +102,10 @@ class DiscBranchPiece:
         by_radius = np.asarray(by_t / (2.0 * width * t), dtype=np.float64)
         if self.broken is None:
             return by_radius
-        return np.asarray(by_radius + [np.full_like(radius, 2.0), self.broken(radius)[2]])
+        return np.asarray(by_radius + np.stack([np.full_like(radius, 2.0), self.broken(radius)[2]]))
 
-    def truncation(self, radius: FloatArray) -> FloatArray:
-        """What is left out beyond the last orders at radii [m], relative to the largest value.
+    def truncation(self, radius: FloatArray, of: slice) -> FloatArray:
+        """What is left out of some of the four beyond the last orders at radii [m], relative to the largest value.
 
         It is told by the last two of them, or by the last quarter where breakpoints make them fall like a power.
         Profile and moment vanish where the piece begins: what they are there is left out of them up to the third node.
@@ -112,7 +114,7 @@ class DiscBranchPiece:
         last = np.abs(self.series[-2 if is_smooth else -len(self.series) // 4 :]).sum(axis=0)
         begin = np.abs(chebyshev.chebval(-1.0, self.series)) * np.array([0.0, 1.0, 0.0, 1.0])
         middle, beside = (
-            float(np.max(part / np.maximum(self.scales, np.finfo(float).tiny)))
+            float(np.max((part / np.maximum(self.scales, np.finfo(float).tiny))[of]))
             for part in (last, np.maximum(last, begin))
         )
         third = 0.5 - 0.5 * np.cos(2.5 * pi / len(self.series))
@@ -187,9 +189,9 @@ class DiscBranch:
         pieces = (replace(fine, series=fine.series + (fine.series - half.series) / 3.0) for fine, half in pairs)
         return replace(self, pieces=tuple(pieces))
 
-    def truncation(self, radius: FloatArray) -> FloatArray:
+    def truncation(self, radius: FloatArray, of: slice = slice(4)) -> FloatArray:
         """Relative error of the polynomials of the piece that each radius [m] lies on, at a rim of the inner one."""
-        return self._by_piece(lambda piece: piece.truncation(radius), radius / (1.0 + RIM))
+        return self._by_piece(lambda piece: piece.truncation(radius, of), radius / (1.0 + RIM))
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""

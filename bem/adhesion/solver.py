@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import RIM, DiscBranch, long_enough
+from bem.adhesion.branch import RIM, STIFFNESS, DiscBranch, long_enough
 from bem.adhesion.disc import FARTHEST
 from bem.adhesion.energy_balance import edge_errors, pull_off_errors
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE
@@ -235,7 +235,10 @@ class AdheringDiscs:
         of_load = by_edge if given else known
         floors = {"contact_radius": known, "contact_stiffness": known, "indentation_depth": of_load}
         floors |= {"normal_force": of_load, "pressure": by_edge}
-        return {name: solved + floor for name, floor in floors.items()}
+        floors = {name: solved + floor for name, floor in floors.items()}
+        if given:
+            floors["contact_stiffness"] = fine.floor + fine.truncation(radius, STIFFNESS)
+        return floors
 
     def _pull_off_floors(self, fine: DiscBranch, places: FloatArray) -> dict[str, float]:
         """The same of a pull-off lost and strongest at these radii [m]; its depth is a difference, of two terms."""
