@@ -18,7 +18,10 @@ from bem.adhesion.equilibrium_branch import FORCE, EquilibriumBranch
 from bem.adhesion.withdrawal import Route
 from bem.grid.calibrated_disc import shape_degree
 from bem.grid.error_model import DISCS
+from bem.grid.other_layers import edge_logarithm
 from bem.grid.quadrant import COARSE_CELLS
+from bem.layer_equation.one_radius import half_space_load
+from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from contact import Adhesion, Detachment, FlatPunch, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_elongation
@@ -79,6 +82,8 @@ class DiscBranchPiece:
         radius = inner + (outer - inner) * t**2
         discs = [solve(a) for a in radius.tolist()]
         values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in discs])
+        if is_told_by_energy(scene):
+            values[:, :2] = _edges_by_energy(indenter, radius, t * (outer - inner), values[:, 2:])
         if is_broken:
             known = finer.broken if finer else _told_by_punches(indenter, outer, discs)
             empty = replace(empty, broken=known)
@@ -129,6 +134,37 @@ def _told_by_punches(indenter: Profile, outer: float, discs: list[AdheringDisc])
     t = np.array([sqrt(disc.contact_radius / outer) for disc in discs])
     series = chebyshev.chebfit(2.0 * t - 1.0, densities, len(discs) - 1)
     return BrokenProfile.pressed(indenter, outer, PunchDensities(np.asarray(series, dtype=np.float64), outer))
+
+
+def is_told_by_energy(scene: Scene) -> bool:
+    """Whether stiffness and moment tell the edge values: under a graded surface, whose pressures have logarithms."""
+    return edge_logarithm(scene.layer) != 0.0
+
+
+def _edges_by_energy(indenter: Profile, radius: FloatArray, stretch: FloatArray, values: FloatArray) -> FloatArray:
+    """Edge values of flat punches and of a profile from stiffness and moment, where the pressure has logarithms.
+
+    By Eqs. (5) and (6) they grow with the radius by 2 phi_1^2 and 2 phi_1 phi_f. Over those of the half-space they are
+    polynomials of t = sqrt((a - inner)/(outer - inner)).
+
+    Args:
+        indenter: The profile.
+        radius: a [m] at Chebyshev points of t, shape (n,).
+        stretch: t (outer - inner) [m].
+        values: Stiffness [m] and moment [m^2] over E*, shape (n, 2).
+
+    Returns:
+        phi_1 [-] and phi_f [m], shape (n, 2).
+    """
+    load = half_space_load(indenter, np.maximum(radius - indenter.flat_radius, 0.0))
+    moment = np.array([half_space_moment(indenter, a) for a in radius.tolist()])
+    known, growth = np.stack([2.0 * radius, moment]), np.stack([np.full_like(radius, 2.0), 2.0 * load])
+    share = np.divide(values.T, known, out=np.zeros_like(known), where=known != 0.0)
+    nodes = chebyshev.chebpts1(radius.size)
+    series = chebyshev.chebfit(nodes, share.T, radius.size - 1)
+    by_stiffness, by_moment = chebyshev.chebval(nodes, chebyshev.chebder(series)) / stretch * known + share * growth
+    edge = np.sqrt(0.5 * by_stiffness)
+    return np.stack([edge, 0.5 * by_moment / edge], axis=1)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import RIM, STIFFNESS, DiscBranch, long_enough
+from bem.adhesion.branch import RIM, STIFFNESS, DiscBranch, is_told_by_energy, long_enough
 from bem.adhesion.disc import FARTHEST
 from bem.adhesion.energy_balance import edge_errors, pull_off_errors
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE
@@ -210,7 +210,7 @@ class AdheringDiscs:
             ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, [b[1] for b in released]),
         ):
             nearby = _largest_nearby(np.abs(values - others) / terms, radius)
-            by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
+            by_grids = (DISCS.difference * nearby + self._of_edges(radius)) * terms
             found[name] = values, terms, np.clip(by_grids, *by_energy) + fine.floor * terms
         return found
 
@@ -231,8 +231,9 @@ class AdheringDiscs:
         """
         solved, by_edge = fine.floor + fine.truncation(radius), self._by_ring(radius)
         given = isinstance(self.scene.loading, ContactRadii)
-        known = 0.0 if given else np.where(self._at_rim(radius), 0.0, by_edge)
-        of_load = by_edge if given else known
+        told = self._of_edges(radius)
+        known = 0.0 if given else np.where(self._at_rim(radius), 0.0, told)
+        of_load = told if given else known
         floors = {"contact_radius": known, "contact_stiffness": known, "indentation_depth": of_load}
         floors |= {"normal_force": of_load, "pressure": by_edge}
         floors = {name: solved + floor for name, floor in floors.items()}
@@ -242,7 +243,7 @@ class AdheringDiscs:
 
     def _pull_off_floors(self, fine: DiscBranch, places: FloatArray) -> dict[str, float]:
         """The same of a pull-off lost and strongest at these radii [m]; its depth is a difference, of two terms."""
-        lost, strongest = fine.floor + fine.truncation(places) + self._by_ring(places)
+        lost, strongest = fine.floor + fine.truncation(places) + self._of_edges(places)
         depth = np.abs(fine.depth(places[:1]))
         terms = (depth + fine.elongation(places[:1])) / depth
         return {
@@ -315,6 +316,10 @@ class AdheringDiscs:
     def _refuse_thin_layer(self, radius: float) -> None:
         """The ring that tells the edge value has to lie where the edge value is made: within about one thickness."""
         refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
+
+    def _of_edges(self, radius: FloatArray) -> FloatArray:
+        """Relative error of the edge values at radii [m] beyond what two grids show."""
+        return np.zeros_like(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""
