@@ -232,7 +232,7 @@ class AdheringDiscs:
         solved, by_edge = fine.floor + fine.truncation(radius), self._by_ring(radius)
         given = isinstance(self.scene.loading, ContactRadii)
         told = self._of_edges(radius)
-        known = 0.0 if given else np.where(self._at_rim(radius), 0.0, told)
+        known = np.where(self._at_rim(radius) | given, 0.0, told)
         of_load = told if given else known
         floors = {"contact_radius": known, "contact_stiffness": known, "indentation_depth": of_load}
         floors |= {"normal_force": of_load, "pressure": by_edge}
