@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from bem.grid.equilibrium import Boundary, CircularContact, GridContactSearch, Prescribed
-from bem.grid.error_model import DIRECT
+from bem.grid.error_model import DIRECT, TABLES
 from bem.grid.flat_punch import cell_pressure, grid_punch, punch_stiffness
 from bem.grid.quadrant import LEAST_CELLS, QuadrantGrid, UnresolvedLayer
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
@@ -216,7 +216,7 @@ class Bem(Record):
         fine, coarse = press.reach(kind, value, self.points)
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
-        errors = _errors(kind, fine, coarse, _unresolved(scene, fine))
+        errors = _errors(kind, fine, coarse, _unresolved(scene, fine), _punch_floor(scene))
         reached = fine.contact_radius + DIRECT.kink_cells * fine.grid.cell_size
         times = DIRECT.kink_difference if any(kink < reached for kink in scene.indenter.kinks) else 1.0
         errors["pressure"] = times * _pressure_difference(fields, other, fine)
@@ -245,7 +245,7 @@ class Bem(Record):
             grid=QuadrantGrid(2 * len(punch.pressure), cell_size),
             cell_pressure=cell_pressure(scene.layer, depth, cell_size, punch),
         )
-        error = abs(coarse.stiffness / punch.stiffness - 1.0)
+        error = abs(coarse.stiffness / punch.stiffness - 1.0) + _punch_floor(scene)
         values = {"contact_radius": a, "indentation_depth": depth, "normal_force": stiffness * depth}
         errors = {"contact_radius": 0.0, "indentation_depth": 0.0 if kind == "depth" else error}
         errors |= {"normal_force": 0.0 if kind == "force" else error, "contact_stiffness": error}
@@ -280,7 +280,14 @@ def _unresolved(scene: Scene, state: CircularContact) -> float:
     return DIRECT.kink_error * state.grid.cell_size / state.contact_radius if near else 0.0
 
 
-def _errors(kind: str, fine: CircularContact, coarse: CircularContact, unresolved: float) -> dict[str, float]:
+def _punch_floor(scene: Scene) -> float:
+    """Relative error of a flat punch's stiffness that two grids do not show; on the half-space it is exact."""
+    return 0.0 if scene.layer.is_half_space else TABLES.stiffness_floor
+
+
+def _errors(
+    kind: str, fine: CircularContact, coarse: CircularContact, unresolved: float, punch_floor: float
+) -> dict[str, float]:
     """Relative errors: the difference to the coarser grid, and what the slope that tells the radius may be off.
 
     Where the radius is prescribed, k_N is that of a flat punch, whose own two grids show all of its error.
@@ -293,7 +300,8 @@ def _errors(kind: str, fine: CircularContact, coarse: CircularContact, unresolve
     own = DIRECT.second_order * (fine.grid.cell_size / fine.contact_radius) ** 2 + unresolved
     scatter = fine.radius_scatter / fine.contact_radius
     errors = {
-        name: difference if kind == "radius" and name == "contact_stiffness" else difference + own
+        name: difference * (DIRECT.slope_difference if name in by_slope else 1.0)
+        + (punch_floor if kind == "radius" and name == "contact_stiffness" else own)
         for name, difference in differences.items()
     }
     # A kink beside the edge moves the radius, and with it what the radius tells.

@@ -6,16 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from math import pi
+from math import pi, sqrt
 from typing import Final
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from bem.adhesion.broken_profile import BrokenProfile, PunchDensities
 from bem.adhesion.disc import AdheringDisc
 from bem.adhesion.equilibrium_branch import FORCE, EquilibriumBranch
 from bem.adhesion.withdrawal import Route
+from bem.grid.calibrated_disc import shape_degree
 from bem.grid.error_model import DISCS
+from bem.grid.other_layers import edge_logarithm
 from bem.grid.quadrant import COARSE_CELLS
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
@@ -27,8 +30,8 @@ from contact.scene.extent import radius_of_elongation
 # derivatives. What these polynomials leave out is stated as an error.
 NODES: Final = 16
 BROKEN_NODES: Final = 32
-# Nodes between two breakpoints of a measured profile for its values on the half-space: 24 follow them to 1e-12.
-LOAD_NODES: Final = 24
+# Where the stiffness stands among edge values, stiffness and moment.
+STIFFNESS: Final = slice(2, 3)
 # Relative distance within which two radii are one and the same: the rim of a flat end, or where the contact was.
 RIM: Final = 1e-7
 # Factor by which the largest radius grows while the branch is too short.
@@ -42,61 +45,81 @@ class DiscBranchPiece:
     """Edge values, stiffness and moment between two radii as polynomials of t = sqrt((a - inner)/(outer - inner)).
 
     In t nothing is singular where a contact begins: neither at the axis nor at the rim of a flat end. A profile with
-    breakpoints in between is followed by no polynomial; there only what the layer adds to the half-space is one. That
-    is an integral over the half-space's share and smoother by one order than it; their quotient would keep its kinks.
+    breakpoints in between is followed by no polynomial; there what the flat punches tell of it is taken off first.
 
     Attributes:
         inner: Least radius [m].
         outer: Largest radius [m].
-        series: Chebyshev coefficients of edge values, stiffness and moment, less those of the half-space if it counts.
-        half_space: What is added to them at radii, shape (4, n): the half-space's share, or zeros.
+        series: Chebyshev coefficients of edge values, stiffness and moment, less what is known of them.
+        broken: What is known of a profile with breakpoints.
         scales: Largest values of the four, shape (4,).
     """
 
     inner: float
     outer: float
     series: FloatArray
-    half_space: Callable[[FloatArray], FloatArray]
+    broken: BrokenProfile | None
     scales: FloatArray
 
     @classmethod
     def through(
-        cls, inner: float, outer: float, indenter: Profile, solve: Callable[[float], AdheringDisc]
+        cls,
+        inner: float,
+        outer: float,
+        scene: Scene,
+        solve: Callable[[float], AdheringDisc],
+        finer: DiscBranchPiece | None,
     ) -> DiscBranchPiece:
-        """Through solutions at Chebyshev points."""
-        broken = any(inner < r < outer for r in indenter.breakpoints)
-        half_space = half_space_values(indenter, outer) if broken else _zeros
-        nodes = BROKEN_NODES if broken else NODES
+        """Through solutions at Chebyshev points; on coarser grids with what finer ones know of the profile."""
+        indenter = scene.indenter
+        is_broken = any(inner < r < outer for r in indenter.breakpoints)
+        nodes = BROKEN_NODES if is_broken else NODES
+        empty = cls(inner, outer, np.zeros((nodes, 4)), None, np.ones(4))
+        if scene.layer.is_half_space and indenter.breakpoints and indenter.flat_radius == 0.0:
+            # Everything is known there, and no cell is asked.
+            return replace(empty, broken=BrokenProfile.pressed(indenter, outer))
         t = 0.5 + 0.5 * chebyshev.chebpts1(nodes)
         radius = inner + (outer - inner) * t**2
-        values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in map(solve, radius.tolist())])
-        series = chebyshev.chebfit(2.0 * t - 1.0, values - half_space(radius).T, nodes - 1)
-        scales = np.abs(values).max(axis=0)
-        return cls(inner, outer, np.asarray(series, dtype=np.float64), half_space, scales)
+        discs = [solve(a) for a in radius.tolist()]
+        values = np.array([[d.edge_flat, d.edge_risen, d.stiffness, d.moment] for d in discs])
+        if is_told_by_energy(scene):
+            values[:, :2] = _edges_by_energy(indenter, radius, t * (outer - inner), values[:, 2:])
+        if is_broken:
+            known = finer.broken if finer else _told_by_punches(indenter, outer, discs)
+            empty = replace(empty, broken=known)
+        series = chebyshev.chebfit(2.0 * t - 1.0, values - empty.at(radius).T, nodes - 1)
+        return replace(empty, series=np.asarray(series, dtype=np.float64), scales=np.abs(values).max(axis=0))
 
     def at(self, radius: FloatArray) -> FloatArray:
         """The four at radii of this piece, shape (4, n)."""
         t = np.sqrt(np.clip((radius - self.inner) / (self.outer - self.inner), 0.0, 1.0))
-        return np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series) + self.half_space(radius))
+        values = np.asarray(chebyshev.chebval(2.0 * t - 1.0, self.series), dtype=np.float64)
+        if self.broken is None:
+            return values
+        risen, moment, _ = self.broken(radius)
+        return np.asarray(values + np.stack([np.ones_like(radius), risen, 2.0 * radius, moment]))
 
     def slopes(self, radius: FloatArray) -> FloatArray:
-        """Derivatives of stiffness and moment by the radius, shape (2, n); those of the half-space are 2 and 2 g_hs."""
+        """Derivatives of stiffness and moment by the radius, shape (2, n)."""
         width = self.outer - self.inner
         t = np.sqrt(np.clip((radius - self.inner) / width, 0.0, 1.0))
         by_t = 2.0 * chebyshev.chebval(2.0 * t - 1.0, chebyshev.chebder(self.series[:, 2:]))
-        return np.asarray(by_t / (2.0 * width * t) + 2.0 * self.half_space(radius)[:2])
+        by_radius = np.asarray(by_t / (2.0 * width * t), dtype=np.float64)
+        if self.broken is None:
+            return by_radius
+        return np.asarray(by_radius + np.stack([np.full_like(radius, 2.0), self.broken(radius)[2]]))
 
-    def truncation(self, radius: FloatArray) -> FloatArray:
-        """What is left out beyond the last orders at radii [m], relative to the largest value.
+    def truncation(self, radius: FloatArray, of: slice) -> FloatArray:
+        """What is left out of some of the four beyond the last orders at radii [m], relative to the largest value.
 
         It is told by the last two of them, or by the last quarter where breakpoints make them fall like a power.
         Profile and moment vanish where the piece begins: what they are there is left out of them up to the third node.
         """
-        is_smooth = self.half_space is _zeros
+        is_smooth = self.broken is None
         last = np.abs(self.series[-2 if is_smooth else -len(self.series) // 4 :]).sum(axis=0)
         begin = np.abs(chebyshev.chebval(-1.0, self.series)) * np.array([0.0, 1.0, 0.0, 1.0])
         middle, beside = (
-            float(np.max(part / np.maximum(self.scales, np.finfo(float).tiny)))
+            float(np.max((part / np.maximum(self.scales, np.finfo(float).tiny))[of]))
             for part in (last, np.maximum(last, begin))
         )
         third = 0.5 - 0.5 * np.cos(2.5 * pi / len(self.series))
@@ -104,32 +127,44 @@ class DiscBranchPiece:
         return share * np.where(radius - self.inner < (self.outer - self.inner) * third**2, beside, middle)
 
 
-def _zeros(radius: FloatArray) -> FloatArray:
-    return np.zeros((4, *radius.shape))
+def _told_by_punches(indenter: Profile, outer: float, discs: list[AdheringDisc]) -> BrokenProfile:
+    """What the flat punches at the nodes tell of a profile."""
+    degree = shape_degree(outer / discs[0].layer.surface.thickness)
+    densities = np.array([disc.density(degree) for disc in discs])
+    t = np.array([sqrt(disc.contact_radius / outer) for disc in discs])
+    series = chebyshev.chebfit(2.0 * t - 1.0, densities, len(discs) - 1)
+    return BrokenProfile.pressed(indenter, outer, PunchDensities(np.asarray(series, dtype=np.float64), outer))
 
 
-def half_space_values(indenter: Profile, outer: float) -> Callable[[FloatArray], FloatArray]:
-    """What a pointed profile does on the half-space up to a radius [m], at radii: shape (4, n).
+def is_told_by_energy(scene: Scene) -> bool:
+    """Whether stiffness and moment tell the edge values: under a graded surface, whose pressures have logarithms."""
+    return edge_logarithm(scene.layer) != 0.0
 
-    phi under a unit depth is 1, of the profile g_hs [m]; k_N/E* is 2 a [m], and the moment 2 int_0^a g_hs da [m^2].
+
+def _edges_by_energy(indenter: Profile, radius: FloatArray, stretch: FloatArray, values: FloatArray) -> FloatArray:
+    """Edge values of flat punches and of a profile from stiffness and moment, where the pressure has logarithms.
+
+    By Eqs. (5) and (6) they grow with the radius by 2 phi_1^2 and 2 phi_1 phi_f. Over those of the half-space they are
+    polynomials of t = sqrt((a - inner)/(outer - inner)).
+
+    Args:
+        indenter: The profile.
+        radius: a [m] at Chebyshev points of t, shape (n,).
+        stretch: t (outer - inner) [m].
+        values: Stiffness [m] and moment [m^2] over E*, shape (n, 2).
+
+    Returns:
+        phi_1 [-] and phi_f [m], shape (n, 2).
     """
-    # Beyond a breakpoint c both begin with odd powers of sqrt(a - c), and are analytic in it up to the next.
-    ends = np.array([0.0, *(r for r in indenter.breakpoints if 0.0 < r < outer), outer])
-    width, t = np.diff(ends), 0.5 + 0.5 * chebyshev.chebpts1(LOAD_NODES)
-    radii = ends[:-1] + width * t[:, None] ** 2
-    load = half_space_load(indenter, radii.ravel())
-    moment = np.array([half_space_moment(indenter, a) for a in radii.ravel().tolist()])
-    known = np.stack([load, moment], axis=1).reshape(LOAD_NODES, -1)
-    series = chebyshev.chebfit(2.0 * t - 1.0, known, LOAD_NODES - 1).reshape(LOAD_NODES, -1, 2)
-
-    def values(a: FloatArray) -> FloatArray:
-        """The four at radii [m]."""
-        i = np.clip(np.searchsorted(ends, a, side="right") - 1, 0, width.size - 1)
-        inside = np.sqrt(np.clip((a - ends[i]) / width[i], 0.0, 1.0))
-        g_hs, total = (chebyshev.chebval(2.0 * inside - 1.0, series[:, i, k], tensor=False) for k in (0, 1))
-        return np.array([np.ones_like(a), g_hs, 2.0 * a, total])
-
-    return values
+    load = half_space_load(indenter, np.maximum(radius - indenter.flat_radius, 0.0))
+    moment = np.array([half_space_moment(indenter, a) for a in radius.tolist()])
+    known, growth = np.stack([2.0 * radius, moment]), np.stack([np.full_like(radius, 2.0), 2.0 * load])
+    share = np.divide(values.T, known, out=np.zeros_like(known), where=known != 0.0)
+    nodes = chebyshev.chebpts1(radius.size)
+    series = chebyshev.chebfit(nodes, share.T, radius.size - 1)
+    by_stiffness, by_moment = chebyshev.chebval(nodes, chebyshev.chebder(series)) / stretch * known + share * growth
+    edge = np.sqrt(0.5 * by_stiffness)
+    return np.stack([edge, 0.5 * by_moment / edge], axis=1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -147,24 +182,32 @@ class DiscBranch:
     pieces: tuple[DiscBranchPiece, ...]
 
     @classmethod
-    def up_to(cls, radius: float, scene: Scene, cells: int, threads: int) -> DiscBranch:
-        """The branch from the axis to a radius [m]."""
+    def up_to(
+        cls, radius: float, scene: Scene, cells: int, threads: int, finer: DiscBranch | None = None
+    ) -> DiscBranch:
+        """The branch from the axis to a radius [m], between its nodes with what a finer one knows."""
 
         def solve(a: float) -> AdheringDisc:
             return AdheringDisc.solved(scene.layer, scene.indenter, a, cells, threads)
 
         flat = scene.indenter.flat_radius
         ends = [0.0, *([flat] if 0.0 < flat < radius else []), radius]
-        return cls(
-            scene,
-            cells,
-            tuple(DiscBranchPiece.through(low, high, scene.indenter, solve) for low, high in pairwise(ends)),
+        known = finer.pieces if finer else [None] * (len(ends) - 1)
+        pieces = (
+            DiscBranchPiece.through(low, high, scene, solve, own)
+            for (low, high), own in zip(pairwise(ends), known, strict=True)
         )
+        return cls(scene, cells, tuple(pieces))
 
     @property
     def largest_radius(self) -> float:
         """Where the branch ends [m]."""
         return self.pieces[-1].outer
+
+    @property
+    def floor(self) -> float:
+        """Relative error of depth and force by linear solutions, or of what is known without any."""
+        return DISCS.floor if any(piece.series.any() for piece in self.pieces) else DISCS.known_floor
 
     def cut(self, dropped: int | None = None) -> DiscBranch:
         """The branch without so many of its orders, by default a quarter: what it changes shows what is left out.
@@ -182,9 +225,9 @@ class DiscBranch:
         pieces = (replace(fine, series=fine.series + (fine.series - half.series) / 3.0) for fine, half in pairs)
         return replace(self, pieces=tuple(pieces))
 
-    def truncation(self, radius: FloatArray) -> FloatArray:
+    def truncation(self, radius: FloatArray, of: slice = slice(4)) -> FloatArray:
         """Relative error of the polynomials of the piece that each radius [m] lies on, at a rim of the inner one."""
-        return self._by_piece(lambda piece: piece.truncation(radius), radius / (1.0 + RIM))
+        return self._by_piece(lambda piece: piece.truncation(radius, of), radius / (1.0 + RIM))
 
     def stiffness(self, radius: FloatArray) -> FloatArray:
         """k_N [N/m]."""

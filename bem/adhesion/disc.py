@@ -9,8 +9,8 @@ of the two computed pressures is a smooth function of r^2, and its value at the 
 By Griffith the edge rests where G equals the work of adhesion: phi = -sqrt(2 pi dgamma a/E*). Kendall's flat punch on
 the half-space is the measure here and hence exact; other contacts are of about order 1.5 in the cell size.
 
-Under a graded surface the quotient has logarithms at the edge. That of first order, and the square of second, are known
-multiples of the edge value; another of second order is fitted with the polynomial.
+Under a graded surface the quotient has logarithms at the edge, and stiffness and moment tell the edge values instead
+(`bem.adhesion.branch`).
 
 The displacement f of a profile leaves in the quotient what the grid makes of its tip, its kinks and the root-like part
 of the pressure. The half-space suffers the same, and its phi = g_hs(a) is an integral of the profile's slope; so on a
@@ -23,15 +23,15 @@ two moments: a ring of few cells beyond a rim has a wrong one on the grid.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
+from numpy.polynomial import legendre
 
 from bem.grid.calibrated_disc import TOLERANCE, PixelDisc, measured_disc
 from bem.grid.conjugate_gradients import solve_on_contact
 from bem.grid.operators import FreeSpaceOperator
-from bem.grid.other_layers import edge_logarithm
 from bem.grid.quadrant import EDGE_CELLS, QuadrantGrid
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
@@ -110,13 +110,25 @@ class AdheringDisc:
     @property
     def edge_risen(self) -> float:
         """phi of the displacement f [m]."""
-        return self.known + self._layer_share * self._edge_value(self.risen - self.measured, self.known)
+        return self.known + self._layer_share * self._edge_value(self.risen - self.measured)
 
     @property
     def _layer_share(self) -> float:
         """The half-space's moment over that of the grid: what the layer adds is an integral of the same pressures."""
         measured = self._total(self.measured)
         return self.known_moment / measured if measured > 0.0 else 1.0
+
+    def density(self, degree: int) -> FloatArray:
+        """Coefficients of phi(t; a) = sum_n c_n P_2n(t/a) under a unit depth, shape (degree + 1,).
+
+        P_2n(sqrt(1 - rho^2)) in the quotient of the pressures is P_2n(0) P_2n(t/a) in the density.
+        """
+        rho = self.grid.radius[self.disc.contact] / self.contact_radius
+        inside = (1.0 - rho) * self.disc.radius > EDGE_CELLS
+        even = np.arange(0, 2 * degree + 1, 2)
+        columns = legendre.legvander(np.sqrt(1.0 - rho[inside] ** 2), even[-1])[:, even]
+        fitted = np.linalg.lstsq(columns, self.quotient(self.flat)[inside], rcond=None)[0]
+        return np.asarray(fitted * legendre.legvander(np.zeros(1), even[-1])[0, even])
 
     def quotient(self, pressure: FloatArray) -> FloatArray:
         """Pressure over that of the half-space under a unit depth, on the cells of the disc."""
@@ -126,34 +138,15 @@ class AdheringDisc:
     def _total(self, pressure: FloatArray) -> float:
         return 4.0 * self.grid.cell_size**2 * float(pressure.sum())
 
-    def _edge_value(self, pressure: FloatArray, taken: float = 0.0) -> float:
-        """The quotient as a polynomial of x = (a^2 - r^2)/a^2 near the edge, at the edge, with the layer's logarithms.
-
-        Args:
-            pressure: Whose quotient [1/m or -].
-            taken: What was taken from its edge value; the logarithms are those of the whole.
-        """
+    def _edge_value(self, pressure: FloatArray) -> float:
+        """The quotient as a polynomial of x = (a^2 - r^2)/a^2 near the edge, at the edge."""
         rho = self.grid.radius[self.disc.contact] / self.contact_radius
         inside = (1.0 - rho) * self.disc.radius
         reach = min(FARTHEST, max(LARGEST_SHARE * self.disc.radius, 3.0 * EDGE_CELLS))
         ring = (inside > EDGE_CELLS) & (inside < reach)
         degree = 3 if reach >= CUBIC_FROM else 2
         x, quotient = 1.0 - rho[ring] ** 2, self.quotient(pressure)[ring]
-        if self.logarithm == 0.0:
-            return float(np.polynomial.polynomial.polyfit(x, quotient, degree)[0])
-        swing = self.logarithm * x * np.log(x)
-        swing += swing**2 / 6.0
-        columns = [1.0 + swing, *(x**n for n in range(1, degree + 1)), x**2 * np.log(x)]
-        return float(np.linalg.lstsq(np.stack(columns, axis=1), quotient - taken * swing, rcond=None)[0][0])
-
-    @cached_property
-    def logarithm(self) -> float:
-        """c_1 a/(pi h) with chi = 1 + c_1/(k h) + ...: the quotient over its edge value is 1 + that times x ln x + ...
-
-        The kernel is then c_1 ln|s|, so that at a distance d from the edge phi is its value there times
-        ``1 + k d ln d + (k d ln d)^2/4 + ...``, k = c_1/(pi h), and Abel's integral makes 2 and 8/3 of the two terms.
-        """
-        return edge_logarithm(self.layer) * self.contact_radius / np.pi
+        return float(np.polynomial.polynomial.polyfit(x, quotient, degree)[0])
 
 
 def is_measured(layer: ElasticLayer, indenter: Profile) -> bool:

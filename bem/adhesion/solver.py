@@ -9,7 +9,7 @@ from typing import Final
 import numpy as np
 
 from bem.adhesion.beside_contact import refuse_touching_beside
-from bem.adhesion.branch import RIM, DiscBranch, long_enough
+from bem.adhesion.branch import RIM, STIFFNESS, DiscBranch, is_told_by_energy, long_enough
 from bem.adhesion.disc import FARTHEST
 from bem.adhesion.energy_balance import edge_errors, pull_off_errors
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE
@@ -164,13 +164,13 @@ class AdheringDiscs:
         least, most = (np.add(errors, (depth, tension, 0.0, at_loss)) / sizes for errors in released)
         for row, name in enumerate(names):
             by_grids[name] = float(np.clip(by_grids[name], least[row], most[row]))
-        by_grids["pull_off_contact_radius"] += DISCS.radius_floor
+        by_grids["pull_off_contact_radius"] += DISCS.radius_floors * branch.floor
         return {name: np.array([error]) for name, error in by_grids.items()}
 
     def _solved(self, branch: DiscBranch, radius: FloatArray) -> FloatArray:
         """Errors of depth [m] and force [N] by linear solutions and the branch's polynomials at one radius [m]."""
         terms = np.abs(branch.depth(radius)) + branch.elongation(radius)
-        error = (DISCS.floor + branch.truncation(radius)) * terms
+        error = (branch.floor + branch.truncation(radius)) * terms
         return np.concatenate([error, branch.stiffness(radius) * error])
 
     def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
@@ -210,8 +210,8 @@ class AdheringDiscs:
             ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, [b[1] for b in released]),
         ):
             nearby = _largest_nearby(np.abs(values - others) / terms, radius)
-            by_grids = (DISCS.difference * nearby + self._by_ring(radius)) * terms
-            found[name] = values, terms, np.clip(by_grids, *by_energy) + DISCS.floor * terms
+            by_grids = (DISCS.difference * nearby + self._of_edges(radius)) * terms
+            found[name] = values, terms, np.clip(by_grids, *by_energy) + fine.floor * terms
         return found
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:
@@ -229,17 +229,21 @@ class AdheringDiscs:
         Edge values say nothing where the radius is prescribed, of the stiffness, or held at a rim, of all but the
         pressure: then flat punches of a known radius are what is left.
         """
-        solved, by_edge = DISCS.floor + fine.truncation(radius), self._by_ring(radius)
+        solved, by_edge = fine.floor + fine.truncation(radius), self._by_ring(radius)
         given = isinstance(self.scene.loading, ContactRadii)
-        known = 0.0 if given else np.where(self._at_rim(radius), 0.0, by_edge)
-        of_load = by_edge if given else known
+        told = self._of_edges(radius)
+        known = np.where(self._at_rim(radius) | given, 0.0, told)
+        of_load = told if given else known
         floors = {"contact_radius": known, "contact_stiffness": known, "indentation_depth": of_load}
         floors |= {"normal_force": of_load, "pressure": by_edge}
-        return {name: solved + floor for name, floor in floors.items()}
+        floors = {name: solved + floor for name, floor in floors.items()}
+        if given:
+            floors["contact_stiffness"] = fine.floor + fine.truncation(radius, STIFFNESS)
+        return floors
 
     def _pull_off_floors(self, fine: DiscBranch, places: FloatArray) -> dict[str, float]:
         """The same of a pull-off lost and strongest at these radii [m]; its depth is a difference, of two terms."""
-        lost, strongest = DISCS.floor + fine.truncation(places) + self._by_ring(places)
+        lost, strongest = fine.floor + fine.truncation(places) + self._of_edges(places)
         depth = np.abs(fine.depth(places[:1]))
         terms = (depth + fine.elongation(places[:1])) / depth
         return {
@@ -264,7 +268,7 @@ class AdheringDiscs:
             radius = self._largest_radius()
         with self.log.stage("adhesion"):
             fine = DiscBranch.up_to(radius, self.scene, self.points, self.threads)
-            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads)
+            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads, fine)
         return fine, coarse
 
     def _largest_radius(self) -> float:
@@ -312,6 +316,10 @@ class AdheringDiscs:
     def _refuse_thin_layer(self, radius: float) -> None:
         """The ring that tells the edge value has to lie where the edge value is made: within about one thickness."""
         refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
+
+    def _of_edges(self, radius: FloatArray) -> FloatArray:
+        """Relative error of the edge values at radii [m] beyond what two grids show."""
+        return np.zeros_like(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""

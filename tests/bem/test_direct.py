@@ -402,3 +402,17 @@ def test_the_step_on_the_half_space_is_the_same_in_all_units():
     told = [excess_on_half_space(Tabulated(radii=u * radii, heights=u * heights), u) for u in (1.0, 2.0**-40)]
     assert told[0] == told[1]
     assert told[0].own > 1.2 * told[0].told > 1e-5
+
+
+def test_bars_at_given_radii_count_what_coarse_cells_make_of_a_slope_once():
+    """Counted once more in the grids' difference, it made them 19 to 22 times the true error of the depth here."""
+    scene = Scene(
+        layer=Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3),
+        indenter=Tabulated(radii=[0.0, 0.2, 0.7, 3.0], heights=[0.0, 0.03, 0.17, 1.7]),
+        loading=ContactRadii([0.9, 1.05, 1.2]),
+    )
+    path, exact = Bem(points=128).solve(scene), Mdr().solve(scene)
+    error = abs(path.indentation_depth / exact.indentation_depth - 1.0)
+    stated = path.error_estimate["indentation_depth"]
+    assert np.all(error <= stated)
+    assert np.median(stated / error) <= 15.0

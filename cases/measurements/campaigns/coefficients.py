@@ -96,7 +96,7 @@ GROUPS: Final = (
         place="bem.grid.error_model:DISCS",
         methods=("bem",),
         families=("adhesive",),
-        quantities={"radius_floor": ("pull_off_contact_radius",)},
+        quantities={"radius_floors": ("pull_off_contact_radius",)},
     ),
     Group(place="bem.grid.error_model:CELLS", methods=("bem",)),
     Group(

@@ -75,6 +75,7 @@ class CoveragePlan:
 NIGHTLY_PLANS: Final = (
     CoveragePlan(method="bem", settings={"points": 256}, family="elastic", count=40, largest=5.0),
     CoveragePlan(method="bem", settings={"points": 512}, family="elastic", count=24, largest=5.0),
+    CoveragePlan(method="bem", settings={"points": 128}, family="adhering_table", count=24, smallest=0.1, largest=5.0),
     CoveragePlan(
         method="fem",
         settings={"accuracy": 1e-2},
