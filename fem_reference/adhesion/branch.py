@@ -246,16 +246,20 @@ class InterpolatedBranch:
         """Of the depth between the solved radii, relative to its largest term in each piece."""
         found = []
         for piece in self.pieces:
-            terms = np.abs(self._evaluate("smooth_depth", piece.radii)) + self.elongation(piece.radii)
-            found.append(self.errors_between(piece.radii, BranchPiece.last_terms)[0].max() / terms.max())
+            error = self.errors_between(piece.radii, BranchPiece.last_terms)[0].max()
+            found.append(error / self.terms(piece.radii)[0].max())
         return float(max(found))
 
     @property
     def force_interpolation_error(self) -> float:
         """Of the force between the solved radii, relative to the terms whose difference it is there."""
         radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, 41)
-        terms = np.abs(self.force(radius)) + self.stiffness(radius) * self.elongation(radius)
-        return float(np.max(self.errors_between(radius, BranchPiece.last_terms)[1] / terms))
+        return float(np.max(self.errors_between(radius, BranchPiece.last_terms)[1] / self.terms(radius)[1]))
+
+    def terms(self, radius: FloatArray) -> FloatArray:
+        """Size of the terms whose difference depth [m] and force / E* [m^2] are, shape (2, radius)."""
+        depth, elongation = np.abs(self._evaluate("smooth_depth", radius)), self.elongation(radius)
+        return np.array([depth + elongation, np.abs(self.force(radius)) + self.stiffness(radius) * elongation])
 
     def _by_piece(self, radius: FloatArray) -> list[tuple[BranchPiece, BoolArray]]:
         """Each piece with the radii [m] that lie in it."""
