@@ -130,14 +130,15 @@ class BranchPiece:
         """Errors of such numbers between the solved radii: their last terms, less what these owe to the meshes.
 
         Every radius has a mesh of its own, whose error differs from the next one's: that is no error of interpolation.
-        Between many breakpoints coefficients fall too slowly to tell the two apart.
+        It is taken off each interpolant apart, since what is left may have any sign.  Between many breakpoints
+        coefficients fall too slowly to tell the two apart.
         """
         if self.is_rough:
             return self.last_terms(counts)
         low, high = (replace(self, degree=k).last_coefficients for k in sorted(self.contacts[0].levels)[-2:])
         share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
-        meshes = share * np.abs(counts.T @ (high - low)).sum(axis=1)
-        return np.maximum(0.0, self.last_terms(counts) - meshes)
+        left = np.abs(self.last_coefficients).sum(axis=1) - share * np.abs(high - low).sum(axis=1)
+        return np.asarray(np.maximum(left, 0.0) @ np.abs(counts))
 
     def counts(self, radius: FloatArray, elongation: FloatArray) -> FloatArray:
         """How often depth [m] and force / E* [m^2] at radii take each interpolant, to first order, shape (2, 4, n).
