@@ -80,13 +80,6 @@ class LoadCoefficients:
     # 1e-2 to 1e-4, and 60 forces on a truncated cone, 2026-11-23): the two that were exceeded, 2.5 and 3.2 times, need
     # 0.07 and 0.14; all are covered, and stated errors grow by a tenth in the median.
     share_by_radius: float = 0.2
-    # Relative error of the depth's slope, by which the last correction of the radius is made.  Measured at the default
-    # settings on 13 loads (random elastic scenes of seed 5, 2026-11-22): 0.002 to 0.007 of the correction.
-    uncertain_slope: float = 0.01
-    # On coarse meshes it errs by up to the last change by the degree, or by this share of the one before.  Measured at
-    # accuracies 1e-2 to 1e-4 on 24 contacts (cones and paraboloids at a/h = 0.3 to 20, 2026-11-23): all are
-    # covered, one just so; without this term 22.
-    earlier_slope: float = 0.5
 
 
 @dataclass(frozen=True)

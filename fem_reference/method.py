@@ -260,7 +260,11 @@ class Fem:
         load = self._found_load(scene, target, log)
 
         def attempt(settings: Discretisation) -> FemEquilibrium:
-            return load.equilibrium(lambda radius: self._contact(scene, radius, settings, log))
+            """A finer mesh begins at the radius found before: what its last correction errs by falls, too."""
+            nonlocal load
+            state = load.equilibrium(lambda radius: self._contact(scene, radius, settings, log))
+            load = replace(load, radius=state.radius_factor * state.contact.indenter.contact_radius)
+            return state
 
         return self._to_accuracy(attempt, lambda state: state.error)
 

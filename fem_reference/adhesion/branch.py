@@ -25,7 +25,7 @@ import numpy as np
 from numpy.polynomial import Chebyshev
 from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 from contact.scene.loading import Controlled
 from fem_reference.adhesion.half_space import half_space_parts
 from fem_reference.elastic.error_estimate import ContactWithErrors
@@ -118,24 +118,40 @@ class BranchPiece:
         return {name: float(np.sqrt(np.mean([c.far_error[name] ** 2 for c in self.contacts]))) for name in names}
 
     @cached_property
-    def last_coefficients(self) -> dict[str, float]:
-        """Size of the last Chebyshev coefficients: relative for k_N and k_N', in [m] for delta_0 and [m^2] for F_2."""
-        return {name: float(np.abs(fit.coef[-2:]).sum()) for name, fit in self._interpolants.items()}
+    def last_coefficients(self) -> FloatArray:
+        """The last two Chebyshev coefficients of each interpolant, in the order of `POWERS`, shape (4, 2)."""
+        return np.array([fit.coef[-2:] for fit in self._interpolants.values()])
 
-    @cached_property
-    def between(self) -> dict[str, float]:
-        """Errors between the solved radii, in units of `last_coefficients`, less what these owe to the meshes.
+    def last_terms(self, counts: FloatArray) -> FloatArray:
+        """Size of the last two terms of numbers that take the interpolants ``counts`` (4, n) times, shape (n,)."""
+        return np.asarray(np.abs(counts.T @ self.last_coefficients).sum(axis=1))
+
+    def between(self, counts: FloatArray) -> FloatArray:
+        """Errors of such numbers between the solved radii: their last terms, less what these owe to the meshes.
 
         Every radius has a mesh of its own, whose error differs from the next one's: that is no error of interpolation.
-        Between many breakpoints coefficients fall too slowly to tell the two apart.
+        It is taken off each interpolant apart, since what is left may have any sign.  Between many breakpoints
+        coefficients fall too slowly to tell the two apart.
         """
         if self.is_rough:
-            return self.last_coefficients
-        degrees = sorted(self.contacts[0].levels)[-2:]
-        low, high = (replace(self, degree=degree)._interpolants for degree in degrees)
+            return self.last_terms(counts)
+        low, high = (replace(self, degree=k).last_coefficients for k in sorted(self.contacts[0].levels)[-2:])
         share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
-        meshes = {name: share * float(np.abs((high[name] - low[name]).coef[-2:]).sum()) for name in POWERS}
-        return {name: max(0.0, size - meshes[name]) for name, size in self.last_coefficients.items()}
+        left = np.abs(self.last_coefficients).sum(axis=1) - share * np.abs(high - low).sum(axis=1)
+        return np.asarray(np.maximum(left, 0.0) @ np.abs(counts))
+
+    def counts(self, radius: FloatArray, elongation: FloatArray) -> FloatArray:
+        """How often depth [m] and force / E* [m^2] at radii take each interpolant, to first order, shape (2, 4, n).
+
+        What errs in both parts of a force, ``k_N delta`` and F_2, cancels there.
+        """
+        stiffness, depth = self.evaluate("stiffness", radius), self.evaluate("smooth_depth", radius)
+        slope = self.evaluate("stiffness_slope", radius)
+        edge = self._known("smooth_depth", radius, slope)[0] * np.ones_like(radius)
+        half_profile = self._known("profile_force", radius, slope)[1] / 2 * np.ones_like(radius)
+        none, by_slope = np.zeros_like(radius), (elongation - self.is_rough * depth) / 2
+        of_force = stiffness * (depth - elongation), stiffness * by_slope + half_profile, stiffness / edge, none + 1.0
+        return np.array([[none, by_slope, 1 / edge, none], of_force])
 
     @property
     def is_rough(self) -> bool:
@@ -231,41 +247,47 @@ class InterpolatedBranch:
         """Of the depth between the solved radii, relative to its largest term in each piece."""
         found = []
         for piece in self.pieces:
-            radii = piece.radii
-            largest = np.max(np.abs(self._evaluate("smooth_depth", radii)) + self.elongation(radii))
-            errors = piece.last_coefficients
-            found.append(errors["stiffness_slope"] / 2 + errors["smooth_depth"] / largest)
+            error = self.errors_between(piece.radii, BranchPiece.last_terms)[0].max()
+            found.append(error / self.terms(piece.radii)[0].max())
         return float(max(found))
 
     @property
     def force_interpolation_error(self) -> float:
         """Of the force between the solved radii, relative to the terms whose difference it is there."""
         radius = np.geomspace(self.pieces[0].low, self.pieces[-1].high, 41)
-        terms = np.abs(self.force(radius)) + self.stiffness(radius) * self.elongation(radius)
-        return float(np.max(self.errors_between(radius, "last_coefficients")[1] / terms))
+        return float(np.max(self.errors_between(radius, BranchPiece.last_terms)[1] / self.terms(radius)[1]))
 
-    def _stated(self, kind: str, radius: FloatArray) -> list[FloatArray]:
-        """``far``, ``between`` or ``last_coefficients`` of the piece around each radius."""
-        ends = [piece.high for piece in self.pieces[:-1]]
-        found = np.searchsorted(ends, radius)
-        names = getattr(self.pieces[0], kind)
-        return [np.array([getattr(piece, kind)[name] for piece in self.pieces])[found] for name in names]
+    def terms(self, radius: FloatArray) -> FloatArray:
+        """Size of the terms whose difference depth [m] and force / E* [m^2] are, shape (2, radius)."""
+        depth, elongation = np.abs(self._evaluate("smooth_depth", radius)), self.elongation(radius)
+        return np.array([depth + elongation, np.abs(self.force(radius)) + self.stiffness(radius) * elongation])
+
+    def _by_piece(self, radius: FloatArray) -> list[tuple[BranchPiece, BoolArray]]:
+        """Each piece with the radii [m] that lie in it."""
+        found = np.searchsorted([piece.high for piece in self.pieces[:-1]], radius)
+        return [(piece, found == i) for i, piece in enumerate(self.pieces)]
 
     def errors_far(self, radius: FloatArray) -> FloatArray:
         """Of depth [m] and force / E* [m^2] by outer edge and half-space, shape (2, radius)."""
-        stiffness, slope, smooth_depth, smooth_force = self._stated("far", radius)
+        errors = np.empty((4, len(radius)))
+        for piece, inside in self._by_piece(radius):
+            errors[:, inside] = np.array(list(piece.far.values()))[:, None]
+        stiffness, slope, smooth_depth, smooth_force = errors
         elongation = self.elongation(radius)
         pulled = self.stiffness(radius) * elongation
         depth = np.abs(self._evaluate("smooth_depth", radius)) * smooth_depth + elongation * slope / 2
         force = np.abs(self.force(radius) + pulled) * smooth_force + pulled * (stiffness + slope / 2)
         return np.array([depth, force])
 
-    def errors_between(self, radius: FloatArray, kind: str = "between") -> FloatArray:
+    def errors_between(
+        self, radius: FloatArray, error: Callable[[BranchPiece, FloatArray], FloatArray] = BranchPiece.between
+    ) -> FloatArray:
         """Of depth [m] and force / E* [m^2] between the solved radii, shape (2, radius)."""
-        stiffness, slope, smooth_depth, profile_force = self._stated(kind, radius)
-        elongation, pressed = self.elongation(radius), self.stiffness(radius)
-        force = pressed * smooth_depth + profile_force + pressed * elongation * (stiffness + slope / 2)
-        return np.array([smooth_depth + elongation * slope / 2, force])
+        errors, elongation = np.empty((2, len(radius))), self.elongation(radius)
+        for piece, inside in self._by_piece(radius):
+            counts = piece.counts(np.clip(radius[inside], piece.low, piece.high), elongation[inside])
+            errors[:, inside] = [error(piece, of_load) for of_load in counts]
+        return errors
 
     def piece_around(self, radius: float) -> BranchPiece:
         """The piece that a radius [m] lies in."""

@@ -46,11 +46,13 @@ def errors_along(branch: InterpolatedBranch, radius: FloatArray) -> FloatArray:
     def loads(other: InterpolatedBranch) -> FloatArray:
         return np.array([other.depth(radius), other.force(radius)])
 
-    by_degree = ON_BRANCH.scatter * degree_error(branch, loads)
+    # Loads grow by orders of magnitude along a piece: what is typical is a share of their terms.
+    terms = branch.terms(radius)
+    by_degree = ON_BRANCH.scatter * degree_error(branch, loads) / terms
     for piece in branch.pieces:
         there = (radius >= piece.low) & (radius <= piece.high)
         if not np.any(there):
             continue
         typical = np.sqrt(np.mean(by_degree[:, there] ** 2, axis=1, keepdims=True))
         by_degree[:, there] = np.maximum(by_degree[:, there], ON_BRANCH.share_of_mean * typical)
-    return by_degree + edge_error(branch, loads) + branch.errors_far(radius) + branch.errors_between(radius)
+    return by_degree * terms + edge_error(branch, loads) + branch.errors_far(radius) + branch.errors_between(radius)

@@ -146,6 +146,15 @@ def _scattered(branch: InterpolatedBranch, lost: float, strongest: float) -> Flo
     return np.insert([value_scatter(branch, load, radius) for load, radius in loads], 2, 0.0)
 
 
+def _interpolated(extremum: Extremum, control: str, strongest: FloatArray, slopes: FloatArray) -> FloatArray:
+    """The same four between the solved radii, the extremum moved; ``slopes`` are theirs by ln a."""
+    branch = extremum.branch
+    depth, force = branch.errors_between(np.array([extremum.radius]))[:, 0]
+    load = {"displacement": depth, "force": force, "machine": depth + branch.machine * force}[control]
+    here = np.array([depth, branch.errors_between(strongest)[1, 0], ROOT, force])
+    return here + extremum.shift_between(float(load)) * slopes
+
+
 def pull_off_errors(
     branch: InterpolatedBranch, pull_off: CriticalPoint, strongest: CriticalPoint
 ) -> dict[str, FloatArray]:
@@ -164,20 +173,18 @@ def pull_off_errors(
         strongest, lost = other.force(there)[0] + shift * force_slope, other.force(here)[0] + shift * lost_slope
         return np.array([depth, strongest, shift, lost])
 
-    between = branch.errors_between(here)[:, 0]
-    of_load = {"displacement": between[0], "force": between[1], "machine": between[0] + branch.machine * between[1]}
-    shift = extremum.shift_between(of_load[pull_off.control])
-    moved = extremum.shift_by_scatter * np.array([abs(depth_slope), abs(force_slope), 1.0, abs(lost_slope)])
+    slopes = np.array([abs(depth_slope), abs(force_slope), 1.0, abs(lost_slope)])
     by_degree = degree_error(branch, numbers, "rate_of_several")
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
+    interpolated = _interpolated(extremum, pull_off.control, there, slopes)
     # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
-    scattered = _scattered(branch, here[0], there[0])
-    independent = np.sqrt(by_degree**2 + moved**2 + scattered**2)
-    depth, force, place, lost = independent + edge_error(branch, numbers)
-    depth += branch.errors_far(here)[0, 0] + between[0] + shift * abs(depth_slope)
-    force += branch.errors_far(there)[1, 0] + branch.errors_between(there)[1, 0] + shift * abs(force_slope)
-    lost += branch.errors_far(here)[1, 0] + between[1] + shift * abs(lost_slope)
+    independent = [by_degree, extremum.shift_by_scatter * slopes, _scattered(branch, here[0], there[0])]
+    # Between many breakpoints the last terms hold what the meshes scatter, too; elsewhere that has been taken off.
+    if branch.piece_around(here[0]).is_rough:
+        independent, interpolated = [*independent, interpolated], np.zeros(4)
+    far = np.array([branch.errors_far(here)[0, 0], branch.errors_far(there)[1, 0], 0.0, branch.errors_far(here)[1, 0]])
+    depth, force, place, lost = np.linalg.norm(independent, axis=0) + interpolated + edge_error(branch, numbers) + far
     depth, force, lost = (
         held_error(branch, radius, row) or error
         for radius, row, error in ((here[0], 0, depth), (there[0], 1, force), (here[0], 1, lost))
@@ -186,6 +193,6 @@ def pull_off_errors(
     return {
         "pull_off_depth": np.array([depth / abs(pull_off.indentation_depth)]),
         "pull_off_force": np.array([force / abs(strongest.normal_force)]),
-        "pull_off_contact_radius": np.array([0.0 if is_at_rim else place + shift + ROOT]),
+        "pull_off_contact_radius": np.array([0.0 if is_at_rim else place]),
         "force_at_loss": np.array([lost / abs(pull_off.normal_force)]),
     }

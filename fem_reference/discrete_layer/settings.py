@@ -20,6 +20,8 @@ NARROW_GROWTH = 0.7
 # No ring is meshed that is narrower than this times flat radius and thickness; the law of `narrowed` stands for it.
 # Smallest cells are 1e-13 radii: depths err by 2e-7 in a ring of 1e-7, by 2e-6 in one of 1e-8 (same contacts).
 NARROWEST = 1e-7
+# No cell is smaller than a thousand roundings of its radius: nodes nearer than these coincide.
+SMALLEST = 1e-13
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -113,12 +115,11 @@ def graded_points(
     logarithmic, like its square, but the L2 error of the pressure like its root.
     """
     last_kink = max(indenter.kinks, default=0.0)
-    # No cell is smaller than a thousand roundings of the radius.
-    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), 1e-13)
+    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), SMALLEST)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)
     cells |= {
-        r: 0.5 * settings.edge_cell * min(r - left, right - r, thickness)
+        r: max(0.5 * settings.edge_cell * min(r - left, right - r, thickness), SMALLEST * r)
         for left, r, right in zip(ends, ends[1:], ends[2:], strict=False)
     }
     if indenter.has_sharp_tip:

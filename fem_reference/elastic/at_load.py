@@ -18,13 +18,9 @@ from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 
-# Factor by which a full solution's own growth of the load may differ from that of coarse solutions.  Within 1e-5 of a
-# flat end its edge cells leave 0.2 to 5.1, where coarse solutions say 0.50 to 0.57 and the truth is 1/2 (default
-# settings, a/b - 1 = 7e-7 to 3e-5, random elastic scene 17 of seed 5, 2026-11-23).
-BELIEVED = 1.5
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
-# The same over the accuracy wanted.  Derived: a correction errs by `uncertain_slope`, a hundredth of it, and by its
+# The same over the accuracy wanted.  Derived: a correction errs by its slope, by about a hundredth of it, and by its
 # square, hence by a tenth of accuracies up to 1e-2.
 PER_ACCURACY = 3.0
 # From this accuracy on a full solution costs no more than a quick one and, without a flat end, the load of the searched
@@ -41,7 +37,6 @@ class Load:
         target: a depth [m] or a force / E* [m^2].
         by_depth: which of them.
         radius: contact radius [m] by coarse solutions.
-        growth: d ln(load) / d ln(a - flat) by the last of them; None where the contact search alone found the radius.
         accuracy: relative accuracy wanted, if any.
     """
 
@@ -49,7 +44,6 @@ class Load:
     target: float
     by_depth: bool
     radius: float
-    growth: float | None = None
     accuracy: float | None = None
 
     def equilibrium(self, solve: ContactSolver) -> FemEquilibrium:
@@ -69,9 +63,7 @@ class Load:
             if radius == narrowest and defect > 1:
                 contact = contact.narrowed(1 / defect)
                 defect = getattr(contact.answer, name) / scaled
-            own = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
-            near = own if self.growth is None else self.growth
-            exponent = float(np.clip(own, near / BELIEVED, near * BELIEVED))
+            exponent = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own, and misses the load by what its mesh misses it by.
             if abs(defect - 1) <= max(LEFT_OVER, PER_ACCURACY * (self.accuracy or 0.0), contact.error[name]):
@@ -107,8 +99,8 @@ def found_load(scene: Scene, target: float, start: float, accuracy: float | None
         load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
-    radius, growth = radius_of_load(load_at, start, flat, narrowest_radius(scene.layer, scene.indenter))
-    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, growth=growth, accuracy=accuracy)
+    radius = radius_of_load(load_at, start, flat, narrowest_radius(scene.layer, scene.indenter))
+    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, accuracy=accuracy)
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
@@ -124,8 +116,8 @@ def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> fl
 
 def radius_of_load(
     load_at: Callable[[float], tuple[float, float]], start: float, flat: float, narrowest: float = 0.0
-) -> tuple[float, float]:
-    """Radius a at which a load ratio is one, and d ln(ratio) / d ln(a - flat) there: Newton's method in logarithms.
+) -> float:
+    """Radius a at which a load ratio is one: Newton's method in logarithms.
 
     Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  The narrowest radius is
     returned where even that carries more.
@@ -145,9 +137,9 @@ def radius_of_load(
         ratio, growth = load_at(flat + float(np.exp(x)))
         y = float(np.log(ratio))
         if x == least and y > 0:
-            return narrowest, growth
+            return narrowest
         # A last step leaves about the square of this.
         if y**2 < LEFT_OVER:
-            return flat + float(np.exp(max(x - y / growth, least))), growth
+            return flat + float(np.exp(max(x - y / growth, least)))
         x = max(x - float(np.clip(y / growth, -1, 1)), least)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})

@@ -202,7 +202,9 @@ class ContactWithErrors:
     def edge_shift(self) -> float:
         """By how much, relative to its radius, the contact acts like a smaller one."""
         edge = dict(graded_points(self.layer_mesh.surface_thickness, self.indenter, self.settings))[1.0]
-        return FIXED_RADIUS.edge_shift[self.settings.order] * edge
+        # A ring narrower than the mesh's has an edge cell as much narrower.
+        narrower = 1.0 - (1.0 - self.answer.radius) / self.ring
+        return FIXED_RADIUS.edge_shift[self.settings.order] * edge * narrower
 
     @property
     def _edge_error(self) -> Mapping[str, float]:

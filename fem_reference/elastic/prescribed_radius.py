@@ -32,10 +32,10 @@ from fem_reference.elastic.shape_derivative import cut_off, energy_shape_derivat
 ENERGY_AGREEMENT = 1e-8
 # Largest residual of a constant strain over the size of its terms: a hundred thousand roundings.
 PATCH_AGREEMENT = 1e-11
-# Share of the smallest length at the edge at which the slope of the smooth depth is read.  Closer, the singular cells
-# err: three cells inside it was 5 to 8 per cent off in quick solutions, here 0.1 to 0.4 (paraboloid, cone and truncated
-# cone, 2026-11-23); farther, the next term does.
-SLOPE_DISTANCE = 1e-3
+# Distance from the contact's edge, over `_reach`, at which the slope of delta_0 is read.  Measured at the default
+# settings on eight profiles and rings of 1e-8 to 1 radii (nu = 0 to 1/2, 2026-11-23): there it errs by at most 1e-3,
+# by 5e-2 in rings of 1e-8; nearer by up to a factor of 100 beside a flat end, further away by the next order.
+READING = 3e-4
 # Settings of quick solutions, on which the radius of a load is searched.  Depth and force are within 4e-5 and 1.6e-4 of
 # fine ones (paraboloids at a/h = 0.2 to 20, nu = 0.3 to 1/2, 2026-11-22), so that one or two full solutions suffice.
 COARSE = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
@@ -49,6 +49,7 @@ class PrescribedContact:
         stiffness: k_N.
         stiffness_slope: k_N' = dk_N/da.
         smooth_depth: delta_0, zero for a flat punch.
+        smooth_depth_slope: delta_0' = d(delta_0)/da.
         profile_force: F_2, the force at depth zero (negative: the profile alone would have to be pulled in).
         tail_energies: twice the mutual energies stored beyond the mesh, estimated from its outermost strip, (2, 2).
         decay: rate at which these fall with the outer radius.
@@ -62,13 +63,13 @@ class PrescribedContact:
         pair: element pair.
         constants: moduli at the points of the mesh, at E* = 1.
         solutions: all unknowns of u_1 and u_2, shape (size, 2).
-        edge_scale: smallest length at the edge: the radius, the thickness or the distance to the last kink.
         radius: contact radius over that of the mesh: below one where the ring around a flat end is too narrow for it.
     """
 
     stiffness: float
     stiffness_slope: float
     smooth_depth: float
+    smooth_depth_slope: float
     profile_force: float
     tail_energies: FloatArray
     decay: float
@@ -82,7 +83,6 @@ class PrescribedContact:
     pair: ElementPair
     constants: ElasticConstants
     solutions: FloatArray
-    edge_scale: float
     radius: float = 1.0
 
     @property
@@ -98,18 +98,6 @@ class PrescribedContact:
     def smooth_force(self) -> float:
         """Normal force at the depth of smooth contact."""
         return self.force(self.smooth_depth)
-
-    @property
-    def smooth_depth_slope(self) -> float:
-        """d(delta_0)/da, from the pressures of smooth contact and flat punch: p / p_1 = 2 (a - r) delta_0' at the edge.
-
-        Both are superpositions of flat punches of radii up to a.  Read `SLOPE_DISTANCE` inside, three cells at least.
-        """
-        vertices = self.contact_trace.vertices
-        near = np.searchsorted(vertices, 1 - SLOPE_DISTANCE * self.edge_scale)
-        inside = vertices[: max(1, min(near, len(vertices) - 3))][-1:]
-        punch = self.contact_trace.evaluate(self.pressures[:, 0], inside)
-        return float((self.pressure(inside, self.smooth_depth) / punch / (2 * (1 - inside)))[0])
 
     def pressure(self, radius: FloatArray, depth: float) -> FloatArray:
         """p(r), zero outside the contact."""
@@ -135,6 +123,7 @@ class PrescribedContact:
             self,
             stiffness=self.stiffness - self.stiffness_slope * lost,
             smooth_depth=share * self.smooth_depth,
+            smooth_depth_slope=self.smooth_depth_slope / share,
             profile_force=share**3 * self.profile_force,
             tail_energies=self.tail_energies * np.outer(shares, shares),
             pressures=self.pressures * shares,
@@ -179,21 +168,22 @@ def _evaluate(
     patch = patch_defect(problem)
     if not patch < PATCH_AGREEMENT:
         raise NotConvergedError("a constant strain is not in equilibrium on this mesh", {"patch_defect": patch})
-    edge_scale = min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
-    moving = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact], 0.6 * edge_scale)
-    derivative, moving_slope = moving
+    derivative, moving_slope = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact])
     profile_force_slope = derivative[0, 1] - reactions[:, 0] @ moving_slope
     top, degree = problem.top_nodes(np.inf), problem.pair.degree
     contact_trace = TraceSpace(problem.positions[0, contact], degree)
+    pressures, smooth_depth = contact_trace.recover(reactions), float(-profile_force_slope / derivative[0, 0])
+    smooth_pressures = pressures @ [[1.0, smooth_depth], [0.0, 1.0]]
     return PrescribedContact(
         stiffness=float(stiffness),
         stiffness_slope=float(derivative[0, 0]),
-        smooth_depth=float(-profile_force_slope / derivative[0, 0]),
+        smooth_depth=smooth_depth,
+        smooth_depth_slope=_smooth_depth_slope(contact_trace, smooth_pressures, _reach(problem, indenter)),
         profile_force=float(profile_force),
         tail_energies=energies.beyond,
         decay=energies.decay,
         contact_trace=contact_trace,
-        pressures=contact_trace.recover(reactions),
+        pressures=pressures,
         top_trace=TraceSpace(problem.positions[0, top], degree),
         displacements=solutions[2 * top + 1],
         energy_defect=float(defect),
@@ -202,15 +192,32 @@ def _evaluate(
         pair=problem.pair,
         constants=problem.constants,
         solutions=solutions,
-        edge_scale=edge_scale,
     )
 
 
+def _smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, reach: float) -> float:
+    """d(delta_0)/da, from the pressures of flat punch and smooth contact: p / p_1 = 2 (a - r) delta_0' at the edge.
+
+    Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one, and so
+    far that what delta_0 errs by, which is a flat punch's pressure, does not count.
+    """
+    inner = trace.vertices[:-3]
+    inside = inner[inner <= 1.0 - READING * reach][-1:]
+    punch, smooth = (trace.evaluate(values, inside) for values in pressures.T)
+    return float((smooth / punch / (2 * (1 - inside)))[0])
+
+
+def _reach(problem: LayerProblem, indenter: ScaledIndenter) -> float:
+    """The smallest of contact radius, thickness and the distance from the edge to the last kink."""
+    return min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
+
+
 def _shape_derivative(
-    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray, reach: float
+    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """A'(u_i, u_j), and ``eta f'`` at the contact nodes: the change of the profile seen by nodes that move."""
     mesh = problem.layer_mesh.mesh
+    reach = 0.6 * _reach(problem, indenter)
     derivative = energy_shape_derivative(problem, solutions, cut_off(mesh.p, 1.0, reach))
     vertices = TraceSpace(radii, problem.pair.degree).vertices
     eta = np.interp(radii, vertices, cut_off(np.array([vertices, np.zeros_like(vertices)]), 1.0, reach))

@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
+from cases.measurements.campaigns.random_scenes import scene_of
 from contact import (
     Adhesion,
     Cone,
@@ -23,7 +24,7 @@ from contact import (
 )
 from contact.records.validation import FloatArray
 from fem_reference import Fem
-from fem_reference.adhesion.branch import BranchPiece, InterpolatedBranch, chebyshev_points
+from fem_reference.adhesion.branch import POWERS, BranchPiece, InterpolatedBranch, chebyshev_points
 from fem_reference.adhesion.half_space import half_space_parts
 from fem_reference.adhesion.pull_off_errors import pull_off_errors
 from fem_reference.discrete_layer.indenter import ScaledIndenter
@@ -124,6 +125,43 @@ def test_a_pull_off_states_the_scatter_of_meshes_where_the_degree_changes_nothin
     stated = pull_off_errors(branch, lost, lost)["pull_off_depth"][0]
     scatter = ON_BRANCH.slope_scatter * RATE * np.linalg.norm(uneven * exact.weights(place)) / abs(depth)
     assert stated == pytest.approx(scatter, rel=0.05, abs=0.0)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [Paraboloid(radius_of_curvature=1.0), Tabulated(radii=np.linspace(0.0, 1.0, 8), heights=np.linspace(0.0, 1.0, 8))],
+)
+@pytest.mark.parametrize("name", list(POWERS))
+def test_loads_take_errors_of_interpolation_to_first_order(profile: Profile, name: str) -> None:
+    """An error of one interpolant changes depth and force as `counts` says, with or without breakpoints between."""
+    piece, radius = made_up(profile, nodes(11)), np.linspace(0.11, 0.59, 7)
+    branch = InterpolatedBranch((piece,), WORK)
+    counts = piece.counts(radius, branch.elongation(radius))[:, list(POWERS).index(name)]
+    before = np.array([branch.depth(radius), branch.force(radius)])
+    error = 1e-7 * np.cos(20 * radius)
+    piece._interpolants[name] = SteppedBy(piece._interpolants[name], piece.parameter(radius), error)  # type: ignore[assignment]
+    changed = np.array([branch.depth(radius), branch.force(radius)]) - before
+    assert changed == pytest.approx(counts * error, rel=1e-5, abs=1e-14)
+
+
+class SteppedBy:
+    """An interpolant with an error at places."""
+
+    def __init__(self, fit: Any, places: FloatArray, error: FloatArray) -> None:
+        self.fit, self.places, self.error = fit, places, error
+
+    def __call__(self, s: FloatArray) -> FloatArray:
+        return np.asarray(self.fit(s) + np.interp(s, self.places, self.error))
+
+
+@pytest.mark.slow
+def test_a_measured_profile_states_what_its_force_misses_between_solved_radii() -> None:
+    """Errors of the depth, of the force at depth zero and of the slope of k_N were added: 333 times the true error."""
+    scene = scene_of(1401, 6, "adhering_table", (0.1, 5.0))
+    path, exact = Fem(accuracy=1e-2).solve(scene), Mdr().solve(scene)
+    for name in ("pull_off_force", "pull_off_depth", "pull_off_contact_radius", "force_at_loss"):
+        error = abs(getattr(path, name) / getattr(exact, name) - 1)
+        assert error < path.error_estimate[name][0] < 60 * error, name
 
 
 @pytest.mark.parametrize(

@@ -17,6 +17,7 @@ from contact import (
     TruncatedParaboloid,
 )
 from fem_reference import Fem
+from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.at_load import Load
 from mdr import Mdr
 
@@ -63,11 +64,28 @@ def test_a_radius_that_is_slightly_off_settles_at_once(indenter):
         return COARSE.solve_contact(scene, radius, StageLog())
 
     ring = 1.02 * (exact.contact_radius[0] - 1.0)
-    state = Load(scene=scene, target=2e-5, by_depth=True, radius=1.0 + ring, growth=0.5).equilibrium(solve)
+    state = Load(scene=scene, target=2e-5, by_depth=True, radius=1.0 + ring).equilibrium(solve)
     assert len(solved) == 2
     assert state.force * solved[-1] ** 2 * LAYER.contact_modulus == pytest.approx(
         exact.normal_force[0], rel=1e-3, abs=0.0
     )
+
+
+@pytest.mark.parametrize("gap", [2.9e-6, *(pytest.param(gap, marks=pytest.mark.slow) for gap in (1e-9, 3.1e-5))])
+def test_loads_grow_like_the_root_of_what_is_beyond_a_flat_end(gap):
+    """Read three cells from the edge, one mesh said -0.6 and 0.7 in the wider rings."""
+    scene = Scene(layer=LAYER, indenter=PROFILES[1], loading=ContactRadii(values=[1.0 + gap]))
+    contact = Fem(growth=0.7).solve_contact(scene, 1.0 + gap, StageLog()).answer
+    ring = contact.radius - 1.0 / max(1.0 + gap, narrowest_radius(LAYER, PROFILES[1]))
+    assert contact.smooth_depth_slope * ring / contact.smooth_depth == pytest.approx(0.5, rel=5e-2, abs=0.0)
+
+
+@pytest.mark.slow
+def test_cells_at_a_flat_end_are_wider_than_roundings():
+    """A ring of 1e-8 radii was refused, as two nodes coincided at its inner end."""
+    layer = Layer(thickness=0.1, youngs_modulus=1.0, poissons_ratio=0.5)
+    scene = Scene(layer=layer, indenter=PROFILES[1], loading=ContactRadii(values=[1.0 + 1e-8]))
+    assert_covered(Fem().solve(scene))
 
 
 @pytest.mark.parametrize("indenter", [PROFILES[0], pytest.param(PROFILES[1], marks=pytest.mark.slow)])

@@ -71,7 +71,7 @@ class CoveragePlan:
 
 # What suite nightly measures besides: bars that no other plan judges. At least 20 scenes, where there is time for them:
 # one in twenty may be exceeded. Pull-offs of measured profiles state what all that lies between solved radii may come
-# to, 6 to 27 times the true error in the median (seed 1401, accuracies 1e-2 and 1e-3, 2026-11-23).
+# to, 4 to 9 times the true error in the median at accuracy 1e-2, 5 to 20 at 1e-3 (seed 1401, 2026-11-23).
 NIGHTLY_PLANS: Final = (
     CoveragePlan(method="bem", settings={"points": 256}, family="elastic", count=40, largest=5.0),
     CoveragePlan(method="bem", settings={"points": 512}, family="elastic", count=24, largest=5.0),
