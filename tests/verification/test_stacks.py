@@ -206,6 +206,26 @@ def test_a_soft_layer_far_below_lifts_a_punch_slightly():
         solve(stack((0.9, 1.0, 0.5), (0.1, 0.01, 0.3)), FlatPunch(radius=1.0), NormalForces([1.0]))
 
 
+@pytest.mark.parametrize("method", [Mdr(), IntegralEquationMethod()], ids=lambda method: method.name)
+@pytest.mark.parametrize(
+    ("layer", "indenter", "loading"),
+    [
+        (film(0.1), FlatPunch(radius=2.0), IndentationDepths([0.3])),
+        (stack((0.9, 1.0, 0.5), (0.1, 0.01, 0.3)), FlatPunch(radius=1.0), NormalForces([1.0])),
+        (
+            stack((0.5, 50.0, 0.49), (0.5, 1.0, 0.0)),
+            TruncatedCone(flat_radius=3.0, slope=0.1),
+            ContactRadii([3.9]),
+        ),
+    ],
+    ids=["far", "slightly", "narrow dip"],
+)
+def test_every_boundary_method_refuses_what_pulls(method, layer, indenter, loading):
+    """The integral equation once asked no flat punch, and saw no dip that lay between its twelve places."""
+    with pytest.raises(UnsupportedSceneError, match=r"no single circle|would pull at r ="):
+        method.solve(Scene(layer=layer, indenter=indenter, loading=loading))
+
+
 def test_motions_of_pulling_punches_are_refused_too():
     punch, layer = FlatPunch(radius=2.0), film(0.01)
     for loading in (Impact(mass=1.0, velocity=0.1), DepthHistory(time=[0.0, 1.0], depth=[0.0, 0.1])):
