@@ -65,7 +65,7 @@ def test_the_radius_of_an_impact_is_never_negative(exponent):
 
 @pytest.mark.parametrize("viscosity", [10.0, 1e3, 1e5])
 def test_a_stopped_flat_punch_states_what_rounding_leaves_of_its_restitution(viscosity):
-    """It rebounds with 2e-4 to 2e-12 of its speed: a rounding of the mass moved the last by 2.4 times what was stated."""
+    """Rebounds of 2e-4 to 2e-12 of the speed: a rounding of the mass moved the last by 2.4 times what was stated."""
     layer, punch = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5), FlatPunch(radius=1.3)
     model = KelvinVoigt(shear_modulus=1.0 / 3.0, viscosity=viscosity)
     masses = 3.0 * (1.0 + EPS * np.arange(12))
