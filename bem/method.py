@@ -10,6 +10,7 @@ from typing import ClassVar, Final, Literal, Self, overload
 import numpy as np
 from pydantic import Field
 
+from bem.grid.calibrated_disc import TOLERANCE, PunchSolution
 from bem.grid.equilibrium import Boundary, CircularContact, GridContactSearch, Prescribed
 from bem.grid.error_model import DIRECT, TABLES
 from bem.grid.flat_punch import cell_pressure, grid_punch, punch_stiffness
@@ -35,7 +36,7 @@ from contact import (
 )
 from contact.answer.accuracy import FIELDS
 from contact.answer.no_contact import without_contact
-from contact.answer.one_circle import refuse_touching_path
+from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
@@ -245,6 +246,7 @@ class Bem(Record):
             grid=QuadrantGrid(2 * len(punch.pressure), cell_size),
             cell_pressure=cell_pressure(scene.layer, depth, cell_size, punch),
         )
+        _refuse_tension(scene, punch, fields)
         error = abs(coarse.stiffness / punch.stiffness - 1.0) + _punch_floor(scene)
         values = {"contact_radius": a, "indentation_depth": depth, "normal_force": stiffness * depth}
         errors = {"contact_radius": 0.0, "indentation_depth": 0.0 if kind == "depth" else error}
@@ -253,6 +255,16 @@ class Bem(Record):
         shorter[: len(coarse.shape)] = coarse.shape
         errors["pressure"] = float(np.sum(np.abs(punch.shape - shorter)) / np.max(np.abs(punch.shape)))
         return PathStep(values | {"contact_stiffness": stiffness}, errors, fields)
+
+
+def _refuse_tension(scene: Scene, punch: PunchSolution, fields: FlatPunchFields) -> None:
+    """Conjugate gradients of a known contact let cells pull; on one uniform layer none does.
+
+    An error of the displacement moves the pressure by k/2 of it, and cells resolve k up to the root of two times pi.
+    """
+    lowest = np.unravel_index(punch.pressure.argmin(), punch.pressure.shape)
+    if not scene.layer.is_uniform and punch.pressure[lowest] < -np.pi * TOLERANCE:
+        raise no_single_circle(fields.radius, f"would be pulled at r = {fields.grid.radius[lowest]:g} m")
 
 
 @dataclass(frozen=True)

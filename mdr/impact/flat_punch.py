@@ -22,6 +22,7 @@ from mdr.impact.motion import COARSER
 from mdr.impact.results import ImpactResults, fine_and_change, refuse_rest
 from mdr.impact.units import impact_of
 from mdr.springs.assembly import equivalent_system
+from mdr.springs.error_model import EPS
 
 # First step for a tolerance of one, in units of time; with the tolerance it goes as its tenth root. Chosen.
 _FIRST_STEP = 1.4
@@ -135,6 +136,8 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
     radius = np.tile(problem.radius, 2)
     both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
     values, change = fine_and_change(both, accuracy, motion.error)
+    # Force and speed carry a rounding of what they began with, eta and one; at no force v = -G_inf delta/eta is left.
+    change[0] += 2.0 * EPS / values[0]
     return ImpactResults(
         # Rounded as the quotient of two speeds [m/s], which it is in a history.
         coefficient_of_restitution=values[0] * problem.velocity / problem.velocity,

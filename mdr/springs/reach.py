@@ -130,6 +130,10 @@ def _first_radius(scene: Scene) -> float:
     # A little short of the end, where a sphere is upright.
     limit = min(end * (1 - 1e-6), max(FIRST_RATIO * scene.layer.surface.thickness, 1.5 * flat)) - flat
     excess = np.minimum(scale * TRIAL_RADII, limit)
+    if excess[-1] < limit < np.inf:
+        # A steep power law touches wide before it has sunk by much.
+        steps = int(np.ceil(np.log(limit / excess[-1]) / np.log(TRIAL_RADII[1] / TRIAL_RADII[0])))
+        excess = np.append(excess, np.geomspace(excess[-1], limit, steps + 1)[1:])
     depth, force = half_space_answer(scene.indenter, excess)
     answer = contact_modulus(scene.layer) * force if is_force else depth
     guess = np.interp(wanted, answer, excess)

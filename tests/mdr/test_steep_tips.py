@@ -7,8 +7,9 @@ import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from cases.measurements.campaigns.referee import second_opinion
-from contact import ContactPath, ContactRadii, Layer, PowerLaw, Scene
+from contact import ContactPath, ContactRadii, IndentationDepths, Layer, NormalForces, PowerLaw, Scene
 from mdr import Mdr
+from mdr.batches import equilibria
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
 
@@ -26,3 +27,16 @@ def test_errors_of_power_laws_hold_on_narrow_and_wide_contacts(nodes: int) -> No
             for name in ("indentation_depth", "normal_force"):
                 error = np.abs(getattr(path, name) / other.values[name] - 1.0)
                 assert np.all(error <= path.error_estimate[name] + other.uncertainty), (exponent, a, name)
+
+
+@pytest.mark.parametrize("kind", [IndentationDepths, NormalForces])
+def test_a_batch_answers_a_steep_tip_on_a_thick_layer_as_it_does_alone(
+    kind: type[IndentationDepths | NormalForces],
+) -> None:
+    """In units of the batch the depth is 1e-30 of the radius, which no trial radius reached: "does not rise"."""
+    law = PowerLaw(exponent=12.7, reference_radius=4.5e4, reference_height=260.0)
+    layer = Layer(thickness=2e7, youngs_modulus=8e-9, poissons_ratio=0.5, support="bonded")
+    scene = Scene(layer=layer, indenter=law, loading=kind([1190.0 if kind is IndentationDepths else 1e-9]))
+    together, alone = equilibria([scene] * 3, IntegralEquation()), Mdr().solve(scene)
+    for name in ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness"):
+        np.testing.assert_allclose(getattr(together, name), getattr(alone, name)[0], rtol=1e-12)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bem import Bem
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.method import IntegralEquationMethod
 from contact import (
@@ -204,6 +205,26 @@ def test_a_paraboloid_never_pulls(ratio, radius):
 def test_a_soft_layer_far_below_lifts_a_punch_slightly():
     with pytest.raises(PullingContact, match="Pa"):
         solve(stack((0.9, 1.0, 0.5), (0.1, 0.01, 0.3)), FlatPunch(radius=1.0), NormalForces([1.0]))
+
+
+@pytest.mark.parametrize("method", [Mdr(), IntegralEquationMethod(), Bem(points=96)], ids=lambda method: method.name)
+@pytest.mark.parametrize(
+    ("layer", "indenter", "loading"),
+    [
+        (film(0.1), FlatPunch(radius=2.0), IndentationDepths([0.3])),
+        (stack((0.9, 1.0, 0.5), (0.1, 0.01, 0.3)), FlatPunch(radius=1.0), NormalForces([1.0])),
+        (
+            stack((0.5, 50.0, 0.49), (0.5, 1.0, 0.0)),
+            TruncatedCone(flat_radius=3.0, slope=0.1),
+            ContactRadii([3.9]),
+        ),
+    ],
+    ids=["far", "slightly", "narrow dip"],
+)
+def test_every_boundary_method_refuses_what_pulls(method, layer, indenter, loading):
+    """Bem and the integral equation once asked no flat punch, the latter saw no dip between its twelve places."""
+    with pytest.raises(UnsupportedSceneError, match=r"no single circle|would pull at r ="):
+        method.solve(Scene(layer=layer, indenter=indenter, loading=loading))
 
 
 def test_motions_of_pulling_punches_are_refused_too():
