@@ -25,17 +25,18 @@ from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
 from fem_reference.elastic.patch_test import patch_defect
-from fem_reference.elastic.shape_derivative import cut_off, energy_shape_derivative, mutual_energies
+from fem_reference.elastic.shape_derivative import (
+    cut_off,
+    energy_shape_derivative,
+    mutual_energies,
+    smooth_depth_slope,
+)
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12 and a broken
 # down factorisation misses by 1e-2, so anything between tells the two apart.
 ENERGY_AGREEMENT = 1e-8
 # Largest residual of a constant strain over the size of its terms: a hundred thousand roundings.
 PATCH_AGREEMENT = 1e-11
-# Distance from the contact's edge, over `_reach`, at which the slope of delta_0 is read.  Measured at the default
-# settings on eight profiles and rings of 1e-8 to 1 radii (nu = 0 to 1/2, 2026-11-23): there it errs by at most 1e-3,
-# by 5e-2 in rings of 1e-8; nearer by up to a factor of 100 beside a flat end, further away by the next order.
-READING = 3e-4
 # Settings of quick solutions, on which the radius of a load is searched.  Depth and force are within 4e-5 and 1.6e-4 of
 # fine ones (paraboloids at a/h = 0.2 to 20, nu = 0.3 to 1/2, 2026-11-22), so that one or two full solutions suffice.
 COARSE = Discretisation(order=3, growth=0.7, edge_cell=1e-5, truncation=1e-5, half_space_thickness=1e6)
@@ -178,7 +179,7 @@ def _evaluate(
         stiffness=float(stiffness),
         stiffness_slope=float(derivative[0, 0]),
         smooth_depth=smooth_depth,
-        smooth_depth_slope=_smooth_depth_slope(contact_trace, smooth_pressures, _reach(problem, indenter)),
+        smooth_depth_slope=smooth_depth_slope(contact_trace, smooth_pressures, _reach(problem, indenter)),
         profile_force=float(profile_force),
         tail_energies=energies.beyond,
         decay=energies.decay,
@@ -193,18 +194,6 @@ def _evaluate(
         constants=problem.constants,
         solutions=solutions,
     )
-
-
-def _smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, reach: float) -> float:
-    """d(delta_0)/da, from the pressures of flat punch and smooth contact: p / p_1 = 2 (a - r) delta_0' at the edge.
-
-    Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one, and so
-    far that what delta_0 errs by, which is a flat punch's pressure, does not count.
-    """
-    inner = trace.vertices[:-3]
-    inside = inner[inner <= 1.0 - READING * reach][-1:]
-    punch, smooth = (trace.evaluate(values, inside) for values in pressures.T)
-    return float((smooth / punch / (2 * (1 - inside)))[0])
 
 
 def _reach(problem: LayerProblem, indenter: ScaledIndenter) -> float:
