@@ -25,12 +25,7 @@ from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
 from fem_reference.elastic.patch_test import patch_defect
-from fem_reference.elastic.shape_derivative import (
-    cut_off,
-    energy_shape_derivative,
-    mutual_energies,
-    smooth_depth_slope,
-)
+from fem_reference.elastic.shape_derivative import derivative_by_radius, edge_scale, mutual_energies, smooth_depth_slope
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12 and a broken
 # down factorisation misses by 1e-2, so anything between tells the two apart.
@@ -169,7 +164,7 @@ def _evaluate(
     patch = patch_defect(problem)
     if not patch < PATCH_AGREEMENT:
         raise NotConvergedError("a constant strain is not in equilibrium on this mesh", {"patch_defect": patch})
-    derivative, moving_slope = _shape_derivative(problem, solutions, indenter, problem.positions[0, contact])
+    derivative, moving_slope = derivative_by_radius(problem, solutions, indenter, problem.positions[0, contact])
     profile_force_slope = derivative[0, 1] - reactions[:, 0] @ moving_slope
     top, degree = problem.top_nodes(np.inf), problem.pair.degree
     contact_trace = TraceSpace(problem.positions[0, contact], degree)
@@ -179,7 +174,7 @@ def _evaluate(
         stiffness=float(stiffness),
         stiffness_slope=float(derivative[0, 0]),
         smooth_depth=smooth_depth,
-        smooth_depth_slope=smooth_depth_slope(contact_trace, smooth_pressures, _reach(problem, indenter)),
+        smooth_depth_slope=smooth_depth_slope(contact_trace, smooth_pressures, edge_scale(problem, indenter)),
         profile_force=float(profile_force),
         tail_energies=energies.beyond,
         decay=energies.decay,
@@ -194,23 +189,6 @@ def _evaluate(
         constants=problem.constants,
         solutions=solutions,
     )
-
-
-def _reach(problem: LayerProblem, indenter: ScaledIndenter) -> float:
-    """The smallest of contact radius, thickness and the distance from the edge to the last kink."""
-    return min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
-
-
-def _shape_derivative(
-    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """A'(u_i, u_j), and ``eta f'`` at the contact nodes: the change of the profile seen by nodes that move."""
-    mesh = problem.layer_mesh.mesh
-    reach = 0.6 * _reach(problem, indenter)
-    derivative = energy_shape_derivative(problem, solutions, cut_off(mesh.p, 1.0, reach))
-    vertices = TraceSpace(radii, problem.pair.degree).vertices
-    eta = np.interp(radii, vertices, cut_off(np.array([vertices, np.zeros_like(vertices)]), 1.0, reach))
-    return derivative, eta * indenter.slope(radii)
 
 
 def quick_solution(scene: Scene, radius: float, log: StageLog) -> PrescribedContact:

@@ -19,10 +19,11 @@ import numpy as np
 
 from contact.records.validation import FloatArray
 from fem_reference.discrete_layer.fields import PointFields, point_fields
+from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
 
-# Distance from the contact's edge, over ``reach``, at which the slope of delta_0 is read.  Measured at the default
+# Distance from the contact's edge, over `edge_scale`, at which the slope of delta_0 is read.  Measured at the default
 # settings on eight profiles and rings of 1e-8 to 1 radii (nu = 0 to 1/2, 2026-11-23): there it errs by at most 1e-3,
 # by 5e-2 in rings of 1e-8; nearer by up to a factor of 100 beside a flat end, further away by the next order.
 READING = 3e-4
@@ -103,7 +104,7 @@ def _traction(fields: PointFields, eta_gradient: FloatArray) -> FloatArray:
     return np.stack([rr * d_r + rz * d_z, rz * d_r + zz * d_z], axis=-1)
 
 
-def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, reach: float) -> float:
+def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -> float:
     """d(delta_0)/da, from the pressures of flat punch and smooth contact: p / p_1 = 2 (a - r) delta_0' at the edge.
 
     Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one, and so
@@ -112,9 +113,36 @@ def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, reach: float) -
     Args:
         trace: functions on the contact.
         pressures: of the flat punch and of smooth contact, in ``trace``, shape (n, 2).
-        reach: smallest of contact radius, thickness and the distance from the edge to the last kink.
+        scale: `edge_scale`.
     """
     inner = trace.vertices[:-3]
-    inside = inner[inner <= 1.0 - READING * reach][-1:]
+    inside = inner[inner <= 1.0 - READING * scale][-1:]
     punch, smooth = (trace.evaluate(values, inside) for values in pressures.T)
     return float((smooth / punch / (2 * (1 - inside)))[0])
+
+
+def edge_scale(problem: LayerProblem, indenter: ScaledIndenter) -> float:
+    """The smallest of contact radius, thickness and the distance from the edge to the last kink."""
+    return min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
+
+
+def derivative_by_radius(
+    problem: LayerProblem, solutions: FloatArray, indenter: ScaledIndenter, radii: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """The derivative by the contact radius of the energies of m solutions, and of the profile that nodes see.
+
+    Args:
+        problem: the discrete layer.
+        solutions: all unknowns, shape (size, m).
+        indenter: the profile.
+        radii: of the contact nodes, which move with the radius, shape (n,).
+
+    Returns:
+        A'(u_i, u_j), shape (m, m), and ``eta f'`` at these nodes, shape (n,).
+    """
+    mesh = problem.layer_mesh.mesh
+    reach = 0.6 * edge_scale(problem, indenter)
+    derivative = energy_shape_derivative(problem, solutions, cut_off(mesh.p, 1.0, reach))
+    vertices = TraceSpace(radii, problem.pair.degree).vertices
+    eta = np.interp(radii, vertices, cut_off(np.array([vertices, np.zeros_like(vertices)]), 1.0, reach))
+    return derivative, eta * indenter.slope(radii)
