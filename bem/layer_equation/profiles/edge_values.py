@@ -75,7 +75,8 @@ def contact_averages(factor: VolterraFactor, load: MappedFunction, flat_radius: 
     """Averages of a load on the panels that cover the contact [0, b + end of the grid], the last ending there."""
     grid = load.grid
     ratio = flat_radius + grid.end
-    panel = factor.panel_of(grid.nodes[:, 0] + flat_radius)
+    # A piece of one rounding, between the end of a panel and that of the contact, lies in that panel.
+    panel = np.minimum(factor.panel_of(grid.nodes[:, 0] + flat_radius), factor.panels_to(ratio) - 1)
     starts, widths = factor.starts(panel[-1] + 1), factor.widths(panel[-1] + 1).copy()
     widths[-1] = ratio - starts[-1]
     position = (grid.nodes + flat_radius - starts[panel][:, None]) / widths[panel][:, None]
