@@ -149,7 +149,11 @@ def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: flo
 def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
     """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves."""
     if law.viscosity == 0.0 or speed <= 0.0:
-        return released_front(bed, state.touching, forces), 0.0
+        # What was touched last has relaxed least, and may lie beyond the springs that forces are continued from. Yet
+        # nothing is in contact beyond where an undeformed surface would be.
+        w = state.depth - bed.profile
+        y, reached = released_front(bed, state.touching, forces), released_front(bed, w > 0.0, w)
+        return min(y, reached), 0.0
     y = touched_front(bed, state)
     return y, _continued(bed, state.touching, forces, y)
 
