@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.error_model import FACTOR, FactorCoefficients
 from bem.layer_equation.fredholm_kernel import FredholmKernel
-from bem.layer_equation.one_factorisation import STRIP, VolterraFactor
+from bem.layer_equation.one_factorisation import VolterraFactor
 from bem.layer_equation.profiles.at_radii import RadiusWeights
 from bem.layer_equation.profiles.edge_values import contact_averages, edge_values
 from bem.layer_equation.protocol import FlatPunchSolution
@@ -193,14 +193,14 @@ class IntegralEquationSolution(FlatPunchSolution):
         return IntegralEquationSolution(self.kernel, VolterraFactor.of_kernel(self.kernel, panels, width, self.nodes))
 
     def contact_pressure_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
-        """From the relative errors of the depth and of the density that is solved for.
+        """From the relative errors of the depth and of the density that is solved for, and from what is left of slopes.
 
         psi, the layer's share of the density, is even and varies over a thickness: for small ratios a/h its slope,
         which alone presses, is (a/h)^2 times psi itself, and psi is about k_bar - 1 of all. Polynomials through the
-        nodes are not even, so what they leave of the slope is not as small.
+        nodes are not even, so what they leave of the slope is not as small. Both oscillate along the radius with
+        different phases, so that they add up like independent errors.
         """
-        share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return _of_density(share, ratio, depth_error) + share * self._slope_truncation(ratio)
+        return np.hypot(self.contact_density_error(ratio, depth_error), self._slope_truncation(ratio))
 
     def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
         """The same without what polynomials lose of the slope."""
@@ -214,17 +214,14 @@ class IntegralEquationSolution(FlatPunchSolution):
         return self.contact_pressure_error(ratio, 2 * self.factor.truncation[panels] + EPS * rounded)
 
     def _slope_truncation(self, ratio: FloatArray) -> FloatArray:
-        """What m Gauss nodes on panels of H thicknesses leave of the slope of psi, which is analytic for |Im t| < 2.
+        """What the kernel's polynomials on the panel that the edge lies on leave of the pressure.
 
-        Interpolation leaves rho^-m on the ellipse of Bernstein through 2i, its derivative m times as much, and beside
-        the axis, where all of a narrow contact lies, 2 m^2 times (Markov). In a wide one psi varies as fast as that
-        only within a thickness of the edge. H is the width of the panel that the edge lies on.
+        An order A P_m that they leave out makes an error A H int P_m of edge values, which is known. Pressures are half
+        a derivative of the density in t^2, so that it becomes sqrt(pi m)/2 A there.
         """
         panels, _ = self._panels.locate(ratio)
-        width, m = self._panels.width[panels], self.factor.count
-        steepest = np.minimum(2.0 * m, width / np.maximum(ratio, np.finfo(float).tiny))
-        distance = 2 * STRIP / width
-        return np.asarray(self.shares.slope_safety * m * steepest * (distance + np.hypot(distance, 1.0)) ** -m)
+        beyond = self.factor.truncation[panels] / (2 * self._panels.width[panels] * integrated(self.nodes))
+        return np.asarray(self.shares.slope_share * np.sqrt(np.pi * self.nodes) / 2 * beyond)
 
     def panel_error(self, ratio: float) -> float:
         """The largest `spring_error` at ends and middles of all panels up to a ratio, and there."""
