@@ -93,7 +93,7 @@ class Trajectory:
 
     def of(self, lane: int) -> Trajectory:
         """One lane alone."""
-        own, count = np.array([lane]), int(self.counts[lane])
+        own, count = slice(lane, lane + 1), int(self.counts[lane])
         return Trajectory(
             final=self.final[:, own],
             ended_by=self.ended_by[own],

@@ -117,7 +117,7 @@ class Course:
         """Apart from the original."""
         return Course(self.slopes.copy(), self.size.copy(), self.origin.copy())
 
-    def take(self, lanes: IntArray) -> Course:
+    def take(self, lanes: IntArray | slice) -> Course:
         """Some of the lanes."""
         return Course(self.slopes[:, :, lanes], self.size[lanes], self.origin[lanes])
 

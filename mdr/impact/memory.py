@@ -47,6 +47,10 @@ class Memory:
         """Some of the lanes."""
         if lanes.size == self.low.shape[1] and np.array_equal(lanes, np.arange(lanes.size)):
             return self
+        return self.of(lanes)
+
+    def of(self, lanes: IntArray | slice) -> Memory:
+        """The same without a look at whether these are all."""
         low, way, rest, places = (values[..., lanes] for values in (self.low, self.way, self.rest, self.places))
         return Memory(low, way, rest, places, self.powers[..., lanes])
 

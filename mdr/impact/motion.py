@@ -45,8 +45,9 @@ class Leg:
         here = np.flatnonzero(self.lanes == lane)
         if not here.size:
             return None
-        memory = self.memory.take(here) if self.memory else None
-        return Leg(np.zeros(1, dtype=np.intp), self.section, self.trajectory.of(int(here[0])), memory, self.step)
+        at = int(here[0])
+        memory = self.memory.of(slice(at, at + 1)) if self.memory else None
+        return Leg(np.zeros(1, dtype=np.intp), self.section, self.trajectory.of(at), memory, self.step)
 
 
 @dataclass(frozen=True)

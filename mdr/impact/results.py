@@ -32,6 +32,7 @@ _REST = 1e-10
 _TIME = 1
 # Chebyshev nodes of the force on each step: more than the state's degree of ten, since the force is a function of it.
 _NODES = 14
+_POWERS_FROM_VALUES = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -161,9 +162,8 @@ def force_on_way_in(lanes: ImpactBatch, leg: Leg, z: FloatArray) -> FloatArray:
 def _peak_force(lanes: ImpactBatch, leg: Leg) -> FloatArray:
     """Largest force of each lane. A viscous layer relaxes at the turn, so it never comes after it."""
     values = force_on_way_in(lanes, leg, chebyshev.nodes(_NODES))
-    matrix = chebyshev.to_powers(_NODES) @ chebyshev.analysis(_NODES)
     present = np.arange(values.shape[1])[:, None] < leg.trajectory.counts
-    return chebyshev.largest(np.einsum("ij,jsl->isl", matrix, values), present)
+    return chebyshev.largest(np.einsum("ij,jsl->isl", _POWERS_FROM_VALUES, values), present)
 
 
 def joined(parts: list[ImpactResults], order: NDArray[np.intp]) -> ImpactResults:
