@@ -87,9 +87,8 @@ class FieldSequence:
         known = known._replace(density_error=self.shared[step])
         of_coarser = known._replace(radius=coarser.state.contact_radius)
         own, other = self._body(fields, depth, known), self._body(coarser, coarser.state.indentation_depth, of_coarser)
-        # Edges are resolved like kinks: 10 of 951 errors were larger, at points half of which lay beside edges, kinks
-        # and the surface (eleven contacts, 256 cells, seed 7, against MDR, 2026-11-23).
-        return HalvedInterior(own, other, DIRECT.kink_difference)
+        # Edges are resolved like kinks.
+        return HalvedInterior(own, other, DIRECT.kink_difference, DIRECT.inside_near)
 
     def _body(self, fields: AxisymmetricFields, depth: float, known: KnownContact) -> ContactInterior:
         from bem.layer_equation.inside.from_pressure import density_of_pressure  # noqa: PLC0415

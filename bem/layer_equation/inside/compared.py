@@ -45,26 +45,32 @@ class HalvedInterior:
     Attributes:
         own: What is returned, with the errors that both share.
         coarser: What tells the rest of its error.
-        left: Share of the change that is left as error.
+        left: Share of the change that is left as error beside the edge, kinks and a tip.
+        near: Length over which it falls to the change itself away from them, over the contact radius.
     """
 
     own: ContactInterior
     coarser: ContactInterior
     left: float
+    near: float
 
     def at(self, radius: FloatArray, depth: FloatArray) -> InsideFields:
         """At points [m] of shape (n,)."""
         found, coarser = self.own.at(radius, depth), self.coarser.at(radius, depth)
-        changed = _changes(self.own, found, coarser, of=found)
-        error = {kind: self.left * change + found.error_estimate[kind] for kind, change in changed.items()}
+        away = np.hypot(np.subtract.outer(self.own.rims, radius), depth).min(axis=0)
+        times = 1.0 + (self.left - 1.0) * np.exp(-away / (self.near * self.own.known.radius))
+        changed = _changes(self.own, found, coarser, of=found, times=times)
+        error = {kind: change + found.error_estimate[kind] for kind, change in changed.items()}
         return replace(found, error_estimate=error)
 
 
-def _changes(own: ContactInterior, found: InsideFields, other: InsideFields, of: InsideFields) -> dict[str, float]:
-    """Differences of each kind of field, over what errors are stated over."""
+def _changes(
+    own: ContactInterior, found: InsideFields, other: InsideFields, of: InsideFields, times: FloatArray | float = 1.0
+) -> dict[str, float]:
+    """Differences of each kind of field, each point's so many times, over what errors are stated over."""
     length = own.unit * min(own.density.radius, own.scene.layer.thickness / own.unit)
     scales = scales_of(of, length, own.unit * own.depth)
-    return {kind: change(found, other, names) / (scale or np.inf) for kind, (names, scale) in scales.items()}
+    return {kind: change(found, other, names, times) / (scale or np.inf) for kind, (names, scale) in scales.items()}
 
 
 def scales_of(found: InsideFields, length: float, depth: float) -> dict[str, tuple[tuple[str, ...], float]]:
@@ -89,6 +95,6 @@ def largest(found: InsideFields, names: tuple[str, ...]) -> float:
     return max(float(np.abs(getattr(found, name)).max(initial=0.0)) for name in names)
 
 
-def change(one: InsideFields, other: InsideFields, names: tuple[str, ...]) -> float:
-    """Largest difference of some fields."""
-    return max(float(np.abs(getattr(one, name) - getattr(other, name)).max(initial=0.0)) for name in names)
+def change(one: InsideFields, other: InsideFields, names: tuple[str, ...], times: FloatArray | float = 1.0) -> float:
+    """Largest difference of some fields, each point's so many times."""
+    return max(float((times * np.abs(getattr(one, name) - getattr(other, name))).max(initial=0.0)) for name in names)

@@ -116,6 +116,13 @@ class ContactInterior:
         return float(indenter.slope_at(np.nextafter(min(self.known.radius, indenter.max_radius), 0.0)))
 
     @property
+    def rims(self) -> FloatArray:
+        """Radii [m] of the edge, the kinks within it, and a tip that is no parabola."""
+        kinks = (kink for kink in self.scene.indenter.kinks if kink < self.known.radius)
+        tips = [] if self._tip_order == 2.0 else [0.0]
+        return np.array([self.known.radius, *kinks, *tips])
+
+    @property
     def _tip_order(self) -> float:
         indenter = self.scene.indenter
         if isinstance(indenter, PowerLaw):
