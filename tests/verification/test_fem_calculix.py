@@ -10,7 +10,7 @@ import pytest
 
 PROGRAM = """
 from benchmarks.calculix_flat_punch import compare
-for run in compare():
+for run in compare(1e-5):
     print(run.error, run.seconds, run.megabytes)
 """
 
