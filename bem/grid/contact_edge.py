@@ -17,6 +17,7 @@ to 3, nu = 0.12 and 1/2, 2026-11-23).
 
 from __future__ import annotations
 
+from itertools import pairwise
 from math import exp, log, pi, sqrt
 from typing import Final, NamedTuple
 
@@ -70,7 +71,10 @@ def told_excess(near: float, far: float) -> float:
 
 
 def excess_on_half_space(indenter: Profile, radius: float) -> StepExcess:
-    """Of the same indenter pressed into the half-space to the same radius [m]; none known where it ends too soon."""
+    """Of the same indenter pressed into the half-space to the same radius [m].
+
+    None is known where it ends too soon, or where the half-space would be touched in several circles.
+    """
     end = REACH * indenter.max_radius
     if not indenter.flat_radius < radius < end:
         return StepExcess()
@@ -88,5 +92,9 @@ def excess_on_half_space(indenter: Profile, radius: float) -> StepExcess:
             low, high = (low, middle) if half_space_depth(indenter, middle) >= other else (middle, high)
         return 2.0 * high * other - half_space_moment(indenter, high)
 
-    near, far = (slope(depth, load(0.0), load(-step), load(step), step) for step in (STEP, WIDER * STEP))
+    loads = [load(change) for change in (-WIDER * STEP, -STEP, 0.0, STEP, WIDER * STEP)]
+    if not all(0.0 < less < more for less, more in pairwise(loads)):
+        return StepExcess()
+    least, less, force, more, most = loads
+    near, far = slope(depth, force, less, more), slope(depth, force, least, most, WIDER * STEP)
     return StepExcess(near / (2.0 * radius) - 1.0, told_excess(near, far))

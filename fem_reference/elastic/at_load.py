@@ -23,6 +23,8 @@ LEFT_OVER = 1e-4
 # The same over the accuracy wanted.  Derived: a correction errs by its slope, by about a hundredth of it, and by its
 # square, hence by a tenth of accuracies up to 1e-2.
 PER_ACCURACY = 3.0
+# And for fine accuracies: a correction of the radius errs by `read_slope` of it, hence by a tenth of the accuracy.
+PER_FINE_ACCURACY = 100.0
 # From this accuracy on a full solution costs no more than a quick one and, without a flat end, the load of the searched
 # radius misses by 2e-4 to 2e-3 (paraboloid, cone and sphere, 2026-11-23), about its own error: no quick one is made.
 AS_SEARCHED = 1e-3
@@ -66,13 +68,20 @@ class Load:
             exponent = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own, and misses the load by what its mesh misses it by.
-            if abs(defect - 1) <= max(LEFT_OVER, PER_ACCURACY * (self.accuracy or 0.0), contact.error[name]):
+            if abs(defect - 1) <= max(self._left_over, contact.error[name]):
                 factor = corrected / radius
                 return LoadedContact(
                     contact=contact, load=scaled, by_depth=self.by_depth, radius_factor=factor
                 ).equilibrium
             radius = corrected
         raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
+
+    @property
+    def _left_over(self) -> float:
+        """Relative load that the first-order correction may take."""
+        if self.accuracy is None:
+            return LEFT_OVER
+        return max(min(LEFT_OVER, PER_FINE_ACCURACY * self.accuracy), PER_ACCURACY * self.accuracy)
 
 
 def found_load(scene: Scene, target: float, start: float, accuracy: float | None, log: StageLog) -> Load:

@@ -25,7 +25,8 @@ from fem_reference.discrete_layer.trace import TraceSpace
 
 # Distance from the contact's edge, over `edge_scale`, at which the slope of delta_0 is read.  Measured at the default
 # settings on eight profiles and rings of 1e-8 to 1 radii (nu = 0 to 1/2, 2026-11-23): there it errs by at most 1e-3,
-# by 5e-2 in rings of 1e-8; nearer by up to a factor of 100 beside a flat end, further away by the next order.
+# by 5e-2 in rings of 1e-8; nearer by up to a factor of 100 beside a flat end, further away by the next order.  That
+# order is not extrapolated: noise in narrow rings would grow.
 READING = 3e-4
 
 

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from bem.grid.contact_edge import excess_on_half_space, slope
+from bem.grid.contact_edge import StepExcess, excess_on_half_space, slope
 from bem.grid.transforms import QuarterTransform
 from bem.layer_equation.profiles.half_space_moment import half_space_depth
 from bem.method import Bem
@@ -416,3 +416,9 @@ def test_bars_at_given_radii_count_what_coarse_cells_make_of_a_slope_once():
     stated = path.error_estimate["indentation_depth"]
     assert np.all(error <= stated)
     assert np.median(stated / error) <= 15.0
+
+
+def test_of_a_table_that_falls_no_excess_is_known_where_the_half_space_has_several_circles():
+    """Its load as one circle falls with the depth; the logarithm of a negative ratio once ended the solution."""
+    falling = Tabulated(radii=[0.0, 1.54e-4, 3.03e-4, 4.43e-4, 6.47e-4], heights=[0.0, 6.6e-7, 4.1e-7, 9.2e-7, 4.8e-6])
+    assert excess_on_half_space(falling, 2.966e-4) == StepExcess()
