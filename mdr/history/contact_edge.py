@@ -151,9 +151,8 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     if law.viscosity == 0.0 or speed <= 0.0:
         # What was touched last has relaxed least, and may lie beyond the springs that forces are continued from. Yet
         # nothing is in contact beyond where an undeformed surface would be.
-        w = state.depth - bed.profile
-        y, reached = released_front(bed, state.touching, forces), released_front(bed, w > 0.0, w)
-        return min(y, reached), 0.0
+        w, y = state.depth - bed.profile, released_front(bed, state.touching, forces)
+        return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
     y = touched_front(bed, state)
     return y, _continued(bed, state.touching, forces, y)
 

@@ -220,8 +220,9 @@ def test_files_carry_all_fields_to_the_library_of_paraview(path, tmp_path, endin
     assert np.transpose(arrays["principal_stresses"][some]) == pytest.approx(
         found.principal_stresses, rel=0, abs=1e-9 * scale
     )
+    # 1.7e-7 radii from the edge a rounding of the place, 1e-16 radii, is 1e-9 of a gradient of 700 times the scale.
     assert arrays["pressure_gradient"][some, 0] == pytest.approx(
-        found.pressure_gradient_radial, rel=0, abs=1e-6 * scale / A
+        found.pressure_gradient_radial, rel=1e-8, abs=1e-6 * scale / A
     )
     assert arrays["displacement"][some, 1] == pytest.approx(found.axial_displacement, rel=0, abs=1e-15)
 
