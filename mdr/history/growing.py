@@ -78,9 +78,8 @@ def growing_history(
         # The contact passes through all radii, so that none of them may leave a gap.
         slope = _system(alike, flat_punch).mdr_profile_slope
         path = solve_elastic(alike, flat_punch, settings)
-        widest = float(path.contact_radius.max())
-        refuse_touching_at(scene, flat_punch, widest)
-        refuse_pulling_at(scene, flat_punch, widest)
+        for refuse in refuse_touching_at, refuse_pulling_at:
+            refuse(scene, flat_punch, float(path.contact_radius.max()))
     rounding = EPS * (loading.time.size + 4.0 * (law.times.size + 1))
 
     def at_all(values: FloatArray) -> FloatArray:
