@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bem.adhesion.branch import DiscBranch
-from bem.adhesion.broken_profile import BrokenProfile
+from bem.adhesion.broken_profile import BrokenProfile, PunchDensities
 from bem.adhesion.disc import AdheringDisc
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.one_radius import half_space_load
@@ -373,3 +373,14 @@ def test_edges_on_graded_layers_are_told_by_stiffness_and_moment(indenter):
     flat, risen, _, _ = branch.values(radii)
     assert flat == pytest.approx(edge, rel=2e-4, abs=0)
     assert risen == pytest.approx(edge * [system.mdr_profile(a) for a in radii.tolist()], rel=6e-4, abs=0)
+
+
+def test_a_broken_profile_grows_its_moment_by_its_edge_value():
+    """dM/da = 2 phi(a; a) phi_f(a), whatever densities the flat punches have."""
+    densities = PunchDensities(np.array([[1.4, 0.2], [0.3, 0.1], [0.05, 0.02]]), outer=1.0)
+    table = Tabulated(radii=[0.0, 0.3, 0.7, 1.2], heights=[0.0, 0.05, 0.3, 1.1])
+    known, a, h = BrokenProfile.pressed(table, 1.0, densities), np.array([0.2, 0.5, 0.9]), 1e-5
+    edge = densities(a[:, None], a[:, None])[0][:, 0]
+    risen, _, slope = known(a)
+    assert (known(a + h)[1] - known(a - h)[1]) / (2 * h) == pytest.approx(slope, rel=1e-7, abs=0.0)
+    assert slope == pytest.approx(2 * edge * risen, rel=1e-9, abs=0.0)
