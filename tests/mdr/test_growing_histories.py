@@ -80,6 +80,19 @@ def test_the_elastic_force_is_exact_for_any_spectrum(name, start):
     np.testing.assert_allclose(found, expected, rtol=EPS * (TIME.size + 4.0 * (len(rates) + 1)), atol=0.0)
 
 
+COMPARED = ("indentation_depth", "contact_radius")
+
+
+def answered_twice(scene, accuracy):
+    """In closed form and by springs stepped in time, which agree within what both state."""
+    source, law = Mdr().flat_punch, SpringLaw.of(relaxation_of(scene))
+    found, stepped = Mdr().solve(scene), followed_history(scene, scene.loading, law, source, {"accuracy": accuracy})
+    for name in COMPARED:
+        apart = np.abs(getattr(found, name) - getattr(stepped, name))
+        assert np.all(apart <= found.uncertainty(name) + stepped.uncertainty(name)), name
+    return found, stepped
+
+
 @pytest.mark.parametrize(
     ("layer", "indenter", "model"),
     [
@@ -91,11 +104,8 @@ def test_the_elastic_force_is_exact_for_any_spectrum(name, start):
 def test_springs_stepped_in_time_agree_within_what_they_state(layer, indenter, model):
     loading = ForceHistory(time=[0.0, 0.3, 3.0], force=[0.0, 0.02, 0.02])
     scene = Scene(layer=layer, indenter=indenter, loading=loading, effects=(model,))
-    source, law = Mdr().flat_punch, SpringLaw.of(relaxation_of(scene))
-    found, stepped = Mdr().solve(scene), followed_history(scene, loading, law, source, {"accuracy": 1e-6})
-    for name in ("indentation_depth", "contact_radius"):
-        apart = np.abs(getattr(found, name) - getattr(stepped, name))
-        assert np.all(apart <= found.uncertainty(name) + stepped.uncertainty(name)), name
+    found, _ = answered_twice(scene, accuracy=1e-6)
+    for name in COMPARED:
         assert np.all(found.error_estimate[name] < 1e-12), name
 
 
@@ -119,11 +129,8 @@ def test_an_edge_that_creeps_beyond_what_was_pressed_at_once():
         loading=loading,
         effects=(fast_and_slow,),
     )
-    source, law = Mdr().flat_punch, SpringLaw.of(relaxation_of(scene))
-    found, stepped = Mdr().solve(scene), followed_history(scene, loading, law, source, {"accuracy": 1e-2})
-    for name in ("indentation_depth", "contact_radius"):
-        apart = np.abs(getattr(found, name) - getattr(stepped, name))
-        assert np.all(apart <= found.uncertainty(name) + stepped.uncertainty(name)), name
+    _, stepped = answered_twice(scene, accuracy=1e-2)
+    for name in COMPARED:
         assert np.all(stepped.error_estimate[name] < 1e-5), name
 
 
