@@ -29,13 +29,6 @@ PRESSURE_ROUNDING: Final = 40 * EPS
 # `contact-verify campaign pressure --count 2000 --seed 15` (2026-11-22).
 SAMPLED_ROUNDING: Final = 256 * EPS
 
-# Flat-punch tables (`mdr.springs.table_errors`).
-
-# Share of the difference between tables that counts in k_N alone, which converges faster than the pressure, from which
-# the profile comes. Differences to half as many cells were 2 to 18 times its true error, those of the profile 0.7 to 6
-# times (70 scenes, a/h to 60, seed 1, 64 cells, 2026-11-22).
-STIFFNESS_SHARE: Final = 0.5
-
 # Impacts and histories.
 
 # Multiplies the relative error of the springs and gives that of a motion: the errors of g, c_N and k_N add up.

@@ -15,7 +15,7 @@ from bem.grid.error_model import TABLES
 from contact import ContactRadii, IndentationDepths, Loading
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
-from mdr.springs.error_model import SPRING_ROUNDING, STIFFNESS_SHARE
+from mdr.springs.error_model import SPRING_ROUNDING
 
 
 @dataclass(frozen=True, eq=False)
@@ -91,12 +91,11 @@ def elastic_changes(
     else:
         a, delta, force = -change.profile - at_depth / k, -at_depth / k, none
     if is_punch:
-        a, delta, force = none, STIFFNESS_SHARE * delta, STIFFNESS_SHARE * force
+        a = none
     elif not isinstance(loading, ContactRadii):
         a = a / np.abs(system.mdr_profile_slope(radius))
-    own = STIFFNESS_SHARE if is_punch or isinstance(loading, ContactRadii) else 1.0
     # d(k_N)/da is 2 c_N.
-    stiffness = own * change.stiffness + 2.0 * system.spring_stiffness(radius) * a
+    stiffness = change.stiffness + 2.0 * system.spring_stiffness(radius) * a
     names = ("contact_radius", "indentation_depth", "normal_force", "contact_stiffness")
     return dict(zip(names, (a, delta, force, stiffness), strict=True))
 

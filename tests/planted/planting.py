@@ -31,11 +31,11 @@ def set_to(place, value):
 
 
 def override(place, name, wrong):
-    """A fault that replaces a method or property of the class at `place` by `wrong(original)`."""
+    """A fault that replaces a method or property of the class at `place`, its own or inherited, by `wrong(original)`."""
 
     def plant(patch):
         cls = found(place)
-        original = cls.__dict__[name]
+        original = next(vars(one)[name] for one in cls.__mro__ if name in vars(one))
         patch.setattr(cls, name, wrong(getattr(original, "func", getattr(original, "fget", original))))
 
     return plant

@@ -59,6 +59,13 @@ def test_every_shared_thing_is_planted_and_every_place_exists():
         assert set(one.cases) <= set(load_cases())
 
 
+def test_every_fault_can_be_planted(monkeypatch):
+    """Those that take seconds to be noticed are planted here as well: one had lost the method that it replaces."""
+    for fault in (*FAULTS, OWN):
+        with monkeypatch.context() as patch:
+            fault.plant(patch)
+
+
 def test_finite_elements_and_mdr_share_code_in_few_quantities_only():
     code = [one for one in SHARED if one.kind is Sharing.CODE and {*BOTH} <= set(one.methods)]
     assert all(one.quantities or one.cases for one in code)
