@@ -36,6 +36,9 @@ _STEEPEST_MAPPED = 7.0
 # Distances from first touch, relative to the first piece, at which the exponent is looked for in turn: further out
 # only where the height is zero in double precision.
 _CLOSE = (1e-9, 1e-4, 1e-1)
+# How much closer it is looked for again, exponents that are told apart, and the least height [m] with all its digits.
+_CLOSER, _SAME_EXPONENT = 1e-9, 1e-6
+_LEAST_HEIGHT = np.finfo(float).tiny / EPS
 
 
 def equivalent_system(
@@ -307,18 +310,29 @@ def _leading_exponent(indenter: Profile, scale: float) -> float:
         UnsupportedSceneError: If it rises too flatly for the pieces to keep its digits.
     """
     for step in _CLOSE:
-        near, far = half_space_profile(indenter, scale * step * np.array([1.0, 2.0]))
-        if near > 0.0:
-            exponent = float(np.log2(far / near))
-            if exponent > _FLATTEST:
-                raise UnsupportedSceneError(
-                    f"indenter: rises like r^{exponent:.3g}; mdr takes r^{_FLATTEST:g} at most, ask fem"
-                )
+        exponent = _exponent_at_touch(indenter, scale * step)
+        if exponent > _FLATTEST:
+            message = f"indenter: rises like r^{exponent:.3g}; mdr takes r^{_FLATTEST:g} at most, ask fem"
+            raise UnsupportedSceneError(message)
+        if np.isfinite(exponent):
             halves = round(2 * exponent) / 2
-            return halves if abs(exponent - halves) < 1e-6 else exponent
+            return halves if abs(exponent - halves) < _SAME_EXPONENT else exponent
     raise InvalidInput(
         f"indenter: does not rise within {scale:g} m of first touch; a flat end needs a truncated profile or a punch"
     )
+
+
+def _exponent_at_touch(indenter: Profile, excess: float) -> float:
+    """The least n that d ln g_hs/d ln x tends to from an excess [m] inwards; NaN where g_hs vanishes there.
+
+    Of a sum of powers only the lowest one is left at the tip: a table's first slope may be a rounding.
+    """
+    near, far = half_space_profile(indenter, excess * np.array([1.0, 2.0]))
+    if near <= _LEAST_HEIGHT:
+        return np.nan
+    exponent = float(np.log2(far / near))
+    closer = _exponent_at_touch(indenter, excess * _CLOSER)
+    return closer if closer < exponent - _SAME_EXPONENT else exponent
 
 
 def _first_power(exponent: float) -> int:

@@ -6,11 +6,14 @@ import numpy as np
 import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.method import IntegralEquationMethod
 from cases.measurements.campaigns.referee import second_opinion
 from contact import (
     ContactPath,
     ContactRadii,
+    IndentationDepths,
     Layer,
+    NormalForces,
     Profile,
     Scene,
     Spheroconical,
@@ -53,3 +56,18 @@ def test_a_path_from_the_tip_to_the_thickness_keeps_its_bars(kind: str, body: st
             assert np.all(error <= path.error_estimate[name] + other.uncertainty), (b, name)
             # Bars of use: the flat-punch data allow 1e-7 on 12 nodes.
             assert path.error_estimate[name].max() < 1e-6, (b, name)
+
+
+@pytest.mark.parametrize("tip", [0.0, 1e-17, 1e-9, 1e-5])
+@pytest.mark.parametrize("thickness", [3e-3, 30e-3])
+def test_the_first_slope_of_a_table_may_be_a_rounding(tip, thickness):
+    """A sampled parabola was refused: it "stops rising at 8e-62 m", where its first slope of 1e-17 ends r^2."""
+    radii = np.array([0.0, 9.25443262, 10.0651448, 33.53235365])
+    indenter = Tabulated(radii=1e-3 * radii, heights=1e-3 * (0.00123456 * radii**2 + tip * radii))
+    layer = Layer(thickness=thickness, youngs_modulus=1e6, poissons_ratio=0.3)
+    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([5e-3, 9.6e-3, 30e-3]))
+    directly = IntegralEquationMethod().solve(scene)
+    for loading in (scene.loading, IndentationDepths(directly.indentation_depth), NormalForces(directly.normal_force)):
+        path = Mdr().solve(scene.replace(loading=loading))
+        for name in "contact_radius", "indentation_depth", "normal_force":
+            np.testing.assert_allclose(getattr(path, name), getattr(directly, name), rtol=1e-12, err_msg=name)

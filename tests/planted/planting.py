@@ -31,7 +31,7 @@ def set_to(place, value):
 
 
 def override(place, name, wrong):
-    """A fault that replaces a method or property of the class at `place`, its own or inherited, by `wrong(original)`."""
+    """A fault that replaces a method or property of the class at `place` (or inherited) by `wrong(original)`."""
 
     def plant(patch):
         cls = found(place)
