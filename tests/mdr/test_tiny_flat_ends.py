@@ -59,15 +59,15 @@ def test_a_path_from_the_tip_to_the_thickness_keeps_its_bars(kind: str, body: st
 
 
 @pytest.mark.parametrize("tip", [0.0, 1e-17, 1e-9, 1e-5])
-@pytest.mark.parametrize("thickness", [3e-3, 30e-3])
-def test_the_first_slope_of_a_table_may_be_a_rounding(tip, thickness):
-    """A sampled parabola was refused: it "stops rising at 8e-62 m", where its first slope of 1e-17 ends r^2."""
+@pytest.mark.parametrize("body", BODIES)
+def test_the_first_slope_of_a_table_may_be_a_rounding(tip: float, body: str) -> None:
+    """A sampled parabola was refused: it "stops rising at 8e-62 m", where its first slope of 4e-16 ends r^2."""
     radii = np.array([0.0, 9.25443262, 10.0651448, 33.53235365])
-    indenter = Tabulated(radii=1e-3 * radii, heights=1e-3 * (0.00123456 * radii**2 + tip * radii))
-    layer = Layer(thickness=thickness, youngs_modulus=1e6, poissons_ratio=0.3)
-    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([5e-3, 9.6e-3, 30e-3]))
+    indenter = Tabulated(radii=radii, heights=radii**2 / 10 + tip * radii)
+    layer = BODIES[body] if body == "half-space" else BODIES[body].replace(thickness=30.0)
+    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([5.0, 9.6, 10.1, 30.0]))
     directly = IntegralEquationMethod().solve(scene)
     for loading in (scene.loading, IndentationDepths(directly.indentation_depth), NormalForces(directly.normal_force)):
         path = Mdr().solve(scene.replace(loading=loading))
         for name in "contact_radius", "indentation_depth", "normal_force":
-            np.testing.assert_allclose(getattr(path, name), getattr(directly, name), rtol=1e-12, err_msg=name)
+            np.testing.assert_allclose(getattr(path, name), getattr(directly, name), rtol=1e-11, err_msg=name)
