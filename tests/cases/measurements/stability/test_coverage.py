@@ -157,16 +157,19 @@ def planted(solve, **changes):
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("number", "kind", "changes", "quantity"),
+    ("kind", "family", "points", "changes"),
     [
-        (0, Bem, {"normal_force": 1.01}, "normal force"),
-        (1, Bem, {"contact_radius": 1.001}, "contact radius"),
-        (2, Fem, {"pull_off_force": 1.1}, "pull off force"),
-        (3, Fem, {"contact_stiffness": 1.01}, "contact stiffness"),
+        (Bem, "elastic", 256, {"normal_force": 1.01}),
+        (Bem, "elastic", 512, {"contact_radius": 1.001}),
+        (Bem, "adhering_table", 128, {"pull_off_force": 1.1}),
+        (Fem, "adhering_table", None, {"pull_off_force": 1.1}),
+        (Fem, "many_loads", None, {"contact_stiffness": 1.01}),
     ],
 )
-def test_nightly_plans_see_planted_errors(monkeypatch, number, kind, changes, quantity):
-    plan = dataclasses.replace(coverage.NIGHTLY_PLANS[number], count=2)
+def test_nightly_plans_see_planted_errors(monkeypatch, kind, family, points, changes):
+    wanted = (kind.name, family, points)
+    (plan,) = (p for p in coverage.NIGHTLY_PLANS if (p.method, p.family, p.settings.get("points")) == wanted)
+    plan, (quantity,) = dataclasses.replace(plan, count=2), changes
     monkeypatch.setattr(kind, "solve", planted(kind.solve, **changes))
     by_name = {claim.name: claim.status for claim in coverage_case([plan]).claims}
-    assert by_name[f"stated errors hold, {quantity}"] is Status.FAIL
+    assert by_name[f"stated errors hold, {quantity.replace('_', ' ')}"] is Status.FAIL
