@@ -8,6 +8,7 @@ from functools import partial
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
+from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource, LayerShare
@@ -182,6 +183,19 @@ class SeveralContacts(UnsupportedSceneError):
         super().__init__(f"{message} beyond; keep radii, depths or forces below")
 
 
+class EndsTooSoon(InvalidInput):
+    """The indenter is too short for flat-punch data that are known at few ratios.
+
+    Args:
+        message: With both lengths.
+        radius: Largest contact radius [m] for which its own length is enough.
+    """
+
+    def __init__(self, message: str, radius: float) -> None:
+        self.radius = radius
+        super().__init__(f"{message}; keep contact radii below {radius:g} m or describe it further out")
+
+
 def _profile(
     solution: FlatPunchSolution, indenter: Profile, unit: float, g_hs: MappedFunction, springs: FloatArray
 ) -> tuple[MappedFunction, float]:
@@ -240,8 +254,9 @@ def _for_profile(
     if ratio == max_radius / unit:
         return solution, max_radius
     if unit * ratio > indenter.max_radius:
-        message = f"the indenter ends at {indenter.max_radius:g} m, but its answer at {max_radius:g} m takes it"
-        raise InvalidInput(f"{message} out to {unit * ratio:g} m; describe it that far")
+        message = f"a/h = {max_radius / unit:g}: mdr takes the indenter out to {unit * ratio:g} m for its answer there"
+        raise EndsTooSoon(f"{message}, but it ends at {indenter.max_radius:g} m", unit * LARGEST_FACTORISED_RATIO)
+    _refuse_endless_depth(indenter, unit * ratio)
     return solution, unit * ratio
 
 
@@ -355,7 +370,8 @@ def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float, noise
     """One circle of contact needs g to increase; where it does not, the indenter touches somewhere else first."""
     if isinstance(indenter, FlatPunch):
         return
+    unsure = noise + _rounding_near_equator(indenter, indenter.flat_radius + unit * profile.grid.nodes)
     highest = np.maximum.accumulate(profile.node_values.ravel()).reshape(profile.node_values.shape)
-    falling = (profile.node_slopes <= 0) & (profile.node_values <= (1 - noise) * highest)
+    falling = (profile.node_slopes <= 0) & (profile.node_values <= (1 - unsure) * highest)
     if np.any(falling):
         raise SeveralContacts(indenter.flat_radius + unit * float(profile.grid.nodes[falling].min()))

@@ -27,7 +27,7 @@ from contact import (
 )
 from contact.answer.one_circle import refuse_touching
 from contact.records.validation import FloatArray
-from mdr.springs.assembly import SeveralContacts, contact_fields, equivalent_system
+from mdr.springs.assembly import EndsTooSoon, SeveralContacts, contact_fields, equivalent_system
 from mdr.springs.beside_contact import circle_of
 from mdr.springs.equivalent_system import LEAST_EXCESS, EquivalentSystem
 from mdr.springs.half_space_profile import half_space_profile
@@ -53,6 +53,7 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
 
     Raises:
         InvalidInput: If the indenter or the flat-punch data end before the loading is reached.
+        EndsTooSoon: If the flat-punch data ask for more of the indenter than there is.
         SeveralContacts: If the contact would not be one circle.
     """
     layer, indenter, loading = scene.layer, scene.indenter, scene.loading
@@ -62,12 +63,12 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
         return equivalent_system(layer, indenter, float(loading.values.max()), flat_punch)
     radius = _first_radius(scene) if layer.is_uniform else _sketched_radius(scene, flat_punch, _first_radius(scene))
     while True:
-        system, ring = _up_to(scene, radius, flat_punch)
+        system, objection = _up_to(scene, radius, flat_punch)
         reached, wanted = _reached(system, loading)
         if reached >= wanted:
             return system
-        if ring is not None:
-            raise ring
+        if objection is not None:
+            raise objection
         if radius >= indenter.max_radius:
             if isinstance(indenter, Sphere):
                 raise InvalidInput(f"loading.values = {wanted:g}: the sphere has sunk to its equator; press less")
@@ -79,14 +80,16 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
         radius = min(further, _furthest(indenter, radius))
 
 
-def _up_to(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, SeveralContacts | None]:
-    """The system up to this radius, or up to where the contact stops being one circle, and that objection."""
+def _up_to(
+    scene: Scene, radius: float, flat_punch: FlatPunchSource
+) -> tuple[EquivalentSystem, SeveralContacts | EndsTooSoon | None]:
+    """The system up to this radius, or up to where there is no answer beyond, and that objection."""
     try:
         return equivalent_system(scene.layer, scene.indenter, radius, flat_punch), None
-    except SeveralContacts as ring:
-        if ring.radius <= scene.indenter.flat_radius:
+    except (SeveralContacts, EndsTooSoon) as objection:
+        if objection.radius <= scene.indenter.flat_radius:
             raise
-        return equivalent_system(scene.layer, scene.indenter, ring.radius, flat_punch), ring
+        return equivalent_system(scene.layer, scene.indenter, objection.radius, flat_punch), objection
 
 
 def _reached(system: EquivalentSystem, loading: Loading) -> tuple[float, float]:
