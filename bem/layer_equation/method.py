@@ -52,7 +52,7 @@ LARGEST_GRADED_RATIO = 16.0
 # Relative tolerance of the search for the radius of a prescribed depth or force.
 RADIUS_TOLERANCE = 1e-13
 # Of the search for a bracket: least slope that two contacts may tell, longest step down and shortest step in ln(a - b),
-# and over the secant's step the one taken, so that the next sign differs. All chosen: only the count of solutions moves.
+# and over the secant's step the one taken, so that the next sign differs. Chosen: only the count of solutions moves.
 LEAST_SLOPE, LONGEST_DOWN, SHORTEST, LONGER = 0.1, 8.0, 1e-8, 1.1
 # Radii on each smooth stretch of the profile at which the pressure is compared and must not pull.
 PRESSURES = 12
