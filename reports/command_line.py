@@ -4,8 +4,11 @@ Only declarations stand here and in `commands.studies`; what a command needs is 
 and errors come at once.
 """
 
+import gc
 import sys
 import traceback
+from collections.abc import Iterator
+from contextlib import contextmanager
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -21,6 +24,17 @@ EPILOG = (
 INTERRUPTED, INTERNAL_ERROR, USAGE = 2, 3, 4
 # Every complaint of the option parser derives from this class.
 USAGE_ERROR: Any = typer.BadParameter.__base__
+
+
+@contextmanager
+def _loading() -> Iterator[None]:
+    """Import without collections of garbage, which walk all that is loaded so far again and again."""
+    gc.disable()
+    try:
+        yield
+    finally:
+        gc.enable()
+
 
 app = typer.Typer(
     name="contact-verify",
@@ -318,7 +332,8 @@ def solve(
 
     An example to start from: contact-verify solve --example > scene.toml
     """
-    from reports.commands.solve import solve as run_command  # noqa: PLC0415
+    with _loading():
+        from reports.commands.solve import solve as run_command  # noqa: PLC0415
 
     run_command(
         scene,
@@ -406,7 +421,10 @@ def main() -> None:
     from reports.terminal.encoding import show_in_any_encoding  # noqa: PLC0415
 
     show_in_any_encoding()
-    sys.exit(run(sys.argv[1:]))
+    code = run(sys.argv[1:])
+    # The process ends: nothing is gained by looking for garbage once more.
+    gc.freeze()
+    sys.exit(code)
 
 
 def run(arguments: list[str]) -> int:

@@ -7,9 +7,9 @@ wavenumber. So the two check each other.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from itertools import pairwise
 from typing import Annotated, ClassVar, Self
 
@@ -42,6 +42,7 @@ from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
+from contact.scene.extent import radius_of_depth, radius_of_load
 
 ARRAYS = ContactPath.ARRAYS
 # Largest a/h: its dense system has two thousand unknowns there and takes two seconds.
@@ -50,6 +51,9 @@ LARGEST_RATIO = 100.0
 LARGEST_GRADED_RATIO = 16.0
 # Relative tolerance of the search for the radius of a prescribed depth or force.
 RADIUS_TOLERANCE = 1e-13
+# Of the search for a bracket: least slope that two contacts may tell, longest step down and shortest step in ln(a - b),
+# and over the secant's step the one taken, so that the next sign differs. Chosen: only the count of solutions moves.
+LEAST_SLOPE, LONGEST_DOWN, SHORTEST, LONGER = 0.1, 8.0, 1e-8, 1.1
 # Radii on each smooth stretch of the profile at which the pressure is compared and must not pull.
 PRESSURES = 12
 # Radii over the contact's at which displacements on two sets of panels are compared.
@@ -276,30 +280,51 @@ class _Solver:
         return kind.solve(self.scene.layer, self.scene.indenter, excess, self.panel_width, self.nodes)
 
     def _excess(self, value: float) -> float:
-        """a - b [m] with this depth or force: bracketed by doubling, then found by TOMS 748."""
+        """a - b [m] with this depth or force, both nearly powers of it: TOMS 748 in logarithms."""
         flat, end = self.scene.indenter.flat_radius, self.scene.indenter.max_radius
         item = 2 if isinstance(self.scene.loading, NormalForces) else 1
 
-        def residual(log_excess: float) -> float:
+        @cache
+        def missed(log_excess: float) -> float:
+            """ln of what is reached over what is asked for."""
             excess = min(float(np.exp(log_excess)), end * (1 - 1e-9) - flat)
-            return self._loose(self._density(excess)).answer[item] / value - 1
-
-        low = high = np.log(self._first_excess(value))
-        while residual(high) < 0:
-            if flat + np.exp(high) >= end:
+            reached = self._loose(self._density(excess)).answer[item] / value
+            if reached < 1 and flat + np.exp(log_excess) >= end:
                 raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
-            low, high = high, high + np.log(2)
-        while residual(low) > 0:
-            if np.exp(low) < np.finfo(float).eps * flat:
+            if reached > 1 and np.exp(log_excess) < np.finfo(float).eps * flat:
                 message = f"loading.values = {value:g}: the contact is as wide as the flat end to the last digit"
                 raise InvalidInput(f"{message}; press more, or take a flat punch")
-            low, high = low - np.log(2), low
-        return float(np.exp(toms748(residual, low, high, xtol=RADIUS_TOLERANCE)))
+            return float(np.log(max(reached, np.finfo(float).tiny)))
+
+        low, high = _bracket(missed, float(np.log(self._first_excess(value))))
+        return float(np.exp(toms748(missed, low, high, xtol=RADIUS_TOLERANCE)))
 
     def _first_excess(self, value: float) -> float:
-        layer, indenter = self.scene.layer, self.scene.indenter
-        length = np.sqrt(value / contact_modulus(layer)) if isinstance(self.scene.loading, NormalForces) else value
-        return float(min(layer.surface.thickness, 10 * length, indenter.max_radius / 2))
+        """Where the profile is as high as the depth or force asks for; well within its end and what is resolved."""
+        indenter, thickness = self.scene.indenter, self.scene.layer.surface.thickness
+        flat = indenter.flat_radius
+        if isinstance(self.scene.loading, NormalForces):
+            radius = radius_of_load(indenter, value / (2 * contact_modulus(self.scene.layer)))
+        else:
+            radius = radius_of_depth(indenter, value)
+        resolved = max(_largest(self.scene) * thickness / 2 - flat, thickness)
+        return float(min(radius - flat, resolved, (indenter.max_radius - flat) / 2))
+
+
+def _bracket(missed: Callable[[float], float], place: float) -> tuple[float, float]:
+    """Two places between which a rising function changes its sign, by secant steps that are a little too long.
+
+    Steps upwards are at most ln(2): beyond lie contacts that the equation does not resolve.
+    """
+    # Depths and forces of few contacts grow faster; first steps are rather too short.
+    slope = 4.0
+    while True:
+        step = float(np.clip(-LONGER * missed(place) / slope, -LONGEST_DOWN, np.log(2)))
+        step = float(np.copysign(max(abs(step), SHORTEST), step))
+        if missed(place) * missed(place + step) <= 0:
+            return min(place, place + step), max(place, place + step)
+        slope = max((missed(place + step) - missed(place)) / step, LEAST_SLOPE)
+        place += step
 
 
 def _refuse_tension(contact: DirectContact) -> None:

@@ -96,6 +96,17 @@ def test_a_contact_no_wider_than_its_flat_end_is_refused():
         IntegralEquationMethod().solve(scene)
 
 
+@pytest.mark.parametrize("indenter", INDENTERS[:-1], ids=lambda i: type(i).__name__)
+def test_a_prescribed_depth_or_force_takes_few_equations(indenter):
+    """At most 12 for the search and the answer, and two of its error; a bracket by doubling took 15 to 27."""
+    scene = Scene(layer=LAYERS["bonded"], indenter=indenter, loading=ContactRadii([0.51e-3]))
+    known = IntegralEquationMethod().solve(scene)
+    for loading in (IndentationDepths(known.indentation_depth), NormalForces(known.normal_force)):
+        found = IntegralEquationMethod().solve(scene.replace(loading=loading))
+        assert found.cost.counters["factorisations"] <= 14
+        np.testing.assert_allclose(found.contact_radius, known.contact_radius, rtol=1e-12, atol=0.0)
+
+
 def test_unbonded_flat_punch_at_unit_ratio():
     """k_bar = 2.198621365666: settles the tenth digit of a value that is printed elsewhere as 2.19862136617."""
     layer = Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3, support="unbonded")

@@ -338,6 +338,15 @@ def test_the_example_scene_is_a_scene(tmp_path, capsys):
     assert load_scene(path).indenter.flat_radius == 0.5e-3
 
 
+def test_solve_loads_with_few_collections_of_garbage(hertz):
+    """They walk what was just loaded: 124 of the youngest objects once, 85 now, and go on afterwards."""
+    code = (
+        "import gc, sys; from reports.command_line import run; run(sys.argv[1:]); "
+        "young = gc.get_stats()[0]['collections']; sys.exit(0 if young < 105 and gc.isenabled() else f'{young}')"
+    )
+    subprocess.run([sys.executable, "-c", code, "solve", hertz], check=True, stdout=subprocess.DEVNULL)
+
+
 def test_help_loads_no_solver_and_comes_in_half_a_second():
     code = (
         "import sys; from reports.command_line import run; run(['--help']); "
