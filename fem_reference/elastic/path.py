@@ -27,6 +27,7 @@ class SurfaceState:
         contact_modulus: E* [Pa].
         other: that of the neighbouring degree on the same mesh.
         error: relative error of depth, force, radius and stiffness, the largest of them.
+        of_depth: relative error of the depth.
         unshown: the part of the depth's relative error that a higher degree does not show.
         missed: share of the radius by which the solved contact misses that of the state, edge cell included.
     """
@@ -37,6 +38,7 @@ class SurfaceState:
     contact_modulus: float
     other: PrescribedContact
     error: float
+    of_depth: float
     unshown: float
     missed: float
 
@@ -76,6 +78,7 @@ class FemEquilibrium:
             contact_modulus=modulus,
             other=contact.levels[order - 1 if order - 1 in contact.levels else order + 1],
             error=max(self.error[name] for name in ContactPath.ARRAYS),
+            of_depth=self.error["indentation_depth"],
             unshown=_unshown_error(self),
             missed=missed_radius(self),
         )

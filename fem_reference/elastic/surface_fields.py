@@ -32,6 +32,7 @@ class FemFields:
             contact_radius=state.contact_radius,
             contact_modulus=state.contact_modulus,
             own_error=state.error,
+            depth_error=state.of_depth,
             unshown_error=state.unshown,
             missed=state.missed,
         )

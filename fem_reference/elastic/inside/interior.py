@@ -35,6 +35,7 @@ class FemInterior:
         contact_radius: a [m].
         contact_modulus: E* [Pa].
         own_error: relative error of the state's depth, force, radius and stiffness, the largest of them.
+        depth_error: relative error of the depth, with which all that the indenter touches moves.
         unshown_error: the part of the depth's relative error that a higher degree does not show.
         missed: share of the radius by which the mesh's contact misses that of the state.
     """
@@ -44,6 +45,7 @@ class FemInterior:
     contact_radius: float
     contact_modulus: float
     own_error: float
+    depth_error: float
     unshown_error: float
     missed: float
 
@@ -132,7 +134,7 @@ class FemInterior:
             name: float(error[:, group].max(initial=0.0)) / scale
             for (name, group), scale in zip(_GROUPS.items(), scales, strict=True)
         }
-        moved = shares.pop("displacement") + self.unshown_error
+        moved = max(shares.pop("displacement") + self.unshown_error, self.depth_error)
         return {"displacement": moved} | {
             name: share / (1.0 - min(share, 0.5)) + self.own_error for name, share in shares.items()
         }
