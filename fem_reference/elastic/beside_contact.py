@@ -60,13 +60,19 @@ def pulled_radius(contact: ContactWithErrors) -> float | None:
     """Centre / a of the first cell that is pulled in smooth contact, by more than the finest degree errs there.
 
     Where a slope falls suddenly the pressure is minus infinity, like a logarithm; only cells that are pulled count.
+    A flat punch has no such place: there a point counts that is pulled by more than the whole last difference, since a
+    dip may be narrower than a cell.  Half of it would refuse contacts that press, by waves beside the edge.
     """
     low, high = (contact.levels[degree] for degree in sorted(contact.levels)[-2:])
     radius, weight = high.contact_trace.gauss(high.pair.degree + 1)
     fine, coarse = (
         level.pressure(radius.ravel(), level.smooth_depth or 1.0).reshape(radius.shape) for level in (high, low)
     )
-    pulled = np.flatnonzero(np.sum((fine + FINE_SHARE * np.abs(fine - coarse)) * weight, axis=1) < 0)
+    change = np.abs(fine - coarse)
+    is_pulled = np.sum((fine + FINE_SHARE * change) * weight, axis=1) < 0
+    if high.smooth_depth == 0:
+        is_pulled |= np.any(fine + change < 0, axis=1)
+    pulled = np.flatnonzero(is_pulled)
     return float(radius[pulled[0]].mean()) if pulled.size else None
 
 

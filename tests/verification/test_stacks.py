@@ -31,6 +31,7 @@ from contact import (
     TruncatedCone,
     UnsupportedSceneError,
 )
+from fem_reference import Fem
 from mdr import Mdr
 from mdr.batches import equilibria
 from mdr.springs.assembly import SeveralContacts, equivalent_system
@@ -225,6 +226,13 @@ def test_every_boundary_method_refuses_what_pulls(method, layer, indenter, loadi
     """Bem and the integral equation once asked no flat punch, the latter saw no dip between its twelve places."""
     with pytest.raises(UnsupportedSceneError, match=r"no single circle|would pull at r ="):
         method.solve(Scene(layer=layer, indenter=indenter, loading=loading))
+
+
+def test_finite_elements_refuse_a_dip_narrower_than_a_cell():
+    """Seen to fail: answered, since 0.8 % of tension beside the axis was averaged over a cell that presses."""
+    punch, layer = FlatPunch(radius=1.0), stack((0.9, 1.0, 0.5), (0.1, 0.01, 0.3))
+    with pytest.raises(UnsupportedSceneError, match="would be pulled at r ="):
+        Fem().solve(Scene(layer=layer, indenter=punch, loading=IndentationDepths([0.01])))
 
 
 def test_motions_of_pulling_punches_are_refused_too():
