@@ -147,14 +147,19 @@ def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: flo
 
 
 def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
-    """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves."""
-    if law.viscosity == 0.0 or speed <= 0.0:
-        # What was touched last has relaxed least, and may lie beyond the springs that forces are continued from. Yet
-        # nothing is in contact beyond where an undeformed surface would be.
-        w, y = state.depth - bed.profile, released_front(bed, state.touching, forces)
-        return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
-    y = touched_front(bed, state)
-    return y, _continued(bed, state.touching, forces, y)
+    """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves.
+
+    A front that advances lies where the gap outside closes: nothing has happened there of late, while the forces just
+    inside, of springs touched one after the other, bend within the way that it goes in a relaxation time. A front that
+    recedes lies where the forces inside vanish, for the same reason turned around.
+    """
+    outside = int(np.flatnonzero(state.touching)[-1]) + 1
+    if outside == bed.y.size or speed >= law.creep_speed(state.surface[outside], state.strains[:, outside]):
+        y = touched_front(bed, state)
+        return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
+    # Nothing is in contact beyond where an undeformed surface would be.
+    w, y = state.depth - bed.profile, released_front(bed, state.touching, forces)
+    return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
 
 
 def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tuple[float, float]:

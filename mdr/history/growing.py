@@ -1,21 +1,24 @@
-"""A force that never falls: the contact only grows, and its depth is that of an elastic layer under another force.
+"""Prescribed forces without steps in time, at every instant at which the contact has never been larger.
 
-Each spring is touched once and stays in contact, so the law of one spring is that of their sum, F = G * dF_e with the
-elastic force F_e of the depth (Lee and Radok 1960, J. Appl. Mech. 27, 438). Turned around, F_e = J * dF with the
-compliance J: while the force moves linearly a sum of exponentials, and no step in time is needed.
+Forces f of a spring and displacements u of its end obey u = J * df with the compliance J, in contact or free, so their
+sums do: the springs' displacements, each times its stiffness, add up to F_e = J * dF, a sum of exponentials while F
+moves linearly. No end of a spring stands above the indenter, and a free one only creeps back. So where F_e has never
+been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960, J. Appl.
+Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845); before that the depth is less than F_e would make it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import ForceHistory, HistoryPath, InvalidInput, NormalForces, Scene, StageLog
+from contact import FlatPunch, ForceHistory, HistoryPath, InvalidInput, NormalForces, Scene, StageLog
 from contact.answer.solution import InstantFields, InstantInterior, Setting
 from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
@@ -26,13 +29,47 @@ from mdr.springs.error_model import EPS
 from mdr.springs.pulling import refuse_pulling_at
 from mdr.springs.reach import covering_system
 
+# Shares of an interval at which the largest F_e is looked for, closest to its ends: after a change of rate a layer creeps
+# fastest. Chosen; a peak between two of them is missed by the square of their distance.
+_NEAR = np.geomspace(1e-9, 0.5, 60)
+_SEARCHED = np.concatenate([_NEAR, 1.0 - _NEAR])
+# Roundings of a sum of exponentials by which a steady F_e may seem to fall; chosen.
+_ROUNDINGS = 32
 # Coefficients of (z - 1 + exp(-z))/z^2 = 1/2! - z/3! + ..., used up to z = 1, where the first one left out is 4e-19.
 _SERIES = np.array([(-1.0) ** n / math.factorial(n + 2) for n in range(18)])
 
 
-def only_grows(law: SpringLaw, loading: ForceHistory) -> bool:
-    """Whether the contact does, or knows the present only: J never falls, so F_e rises with the force."""
-    return bool(law.is_elastic or np.all(np.diff(loading.force) >= 0.0))
+def without_steps(law: SpringLaw, scene: Scene) -> NDArray[np.bool_]:
+    """At which instants of a force history the depth is known in closed form, shape (n,).
+
+    Where F_e has never been larger; always under a flat punch, which holds all springs alike, and on elastic layers.
+    """
+    loading = scene.loading
+    assert isinstance(loading, ForceHistory)
+    if law.is_elastic or isinstance(scene.indenter, FlatPunch):
+        return np.full(loading.time.size, True)
+    time, load = searched(law, loading)
+    highest = np.maximum.accumulate(load) * (1.0 - _ROUNDINGS * EPS)
+    return np.asarray((load >= highest)[np.searchsorted(time, loading.time)])
+
+
+def searched(law: SpringLaw, loading: ForceHistory) -> tuple[FloatArray, FloatArray]:
+    """Times [s] so close to each other, and closer to the instants, that no peak of F_e is missed; F_e [N] there."""
+    start, duration = loading.time[:-1, None], np.diff(loading.time)[:, None]
+    time = np.unique(np.concatenate([loading.time, (start + duration * _SEARCHED).ravel()]))
+    between = loading.replace(time=time, force=np.interp(time, loading.time, loading.force))
+    return time, elastic_force(law, between)
+
+
+def with_closed_form(followed: HistoryPath, exact: HistoryPath, known: NDArray[np.bool_]) -> HistoryPath:
+    """A history followed in steps, with values and errors of the closed form where that holds."""
+    values, errors = {}, {"normal_force": followed.error_estimate["normal_force"]}
+    for name in ("indentation_depth", "contact_radius"):
+        stepped, found = getattr(followed, name), getattr(exact, name)
+        values[name] = np.where(known, found, stepped)
+        absolute = [path.error_estimate[name] * own.max() for path, own in ((exact, found), (followed, stepped))]
+        errors[name] = np.where(known, *absolute) / values[name].max()
+    return replace(followed, error_estimate=errors, **values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +100,7 @@ class FollowedLater:
 def growing_history(
     scene: Scene, law: SpringLaw, flat_punch: FlatPunchSource, settings: Mapping[str, Setting], fields: InstantFields
 ) -> HistoryPath:
-    """Depth under a force that never falls.
+    """Depth under a force, as if the contact had never been larger at any instant.
 
     Raises:
         InvalidInput: If the force is out of reach of the indenter or the flat-punch data.
@@ -106,7 +143,7 @@ def growing_history(
         time=loading.time,
         indentation_depth=at_all(depth),
         normal_force=loading.force,
-        contact_radius=at_all(radius),
+        contact_radius=np.where(loading.force > 0.0, at_all(radius), 0.0),
         fields=fields,
     )
 

@@ -31,7 +31,7 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.followed import FollowedHistory, states_at
-from mdr.history.growing import FollowedLater, growing_history, only_grows
+from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
@@ -65,8 +65,9 @@ _FEWEST, _MOST = -2, 2
 _FEWEST_GAPS = 16
 # Points of each section among which the largest front is looked for; chosen.
 _SEARCHED = 64
-# Multiplies the way to the largest front, so that a few springs stay outside the contact; chosen.
-_MARGIN = 1.01
+# Multiplies the way to the largest front, so that three springs stay outside the contact, whose gaps tell where it ends;
+# chosen for the fewest springs, half of 160.
+_MARGIN = 1.05
 # Relative rounding of a sum over as many springs.
 _ROUNDING = _GAPS * float(np.finfo(float).eps)
 # Share of the largest force below which what is held is no contact; chosen, far above the rounding of the sum.
@@ -105,9 +106,13 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
     _refuse_idle(loading)
     follow = partial(followed_history, scene, loading, law, flat_punch, settings)
-    if isinstance(loading, ForceHistory) and only_grows(law, loading):
-        return growing_history(scene, law, flat_punch, settings, FollowedLater(follow))
-    return follow()
+    if isinstance(loading, DepthHistory):
+        return follow()
+    known = without_steps(law, scene)
+    if not known.any():
+        return follow()
+    exact = growing_history(scene, law, flat_punch, settings, FollowedLater(follow))
+    return exact if known.all() else with_closed_form(follow(), exact, known)
 
 
 def followed_history(
@@ -272,18 +277,19 @@ def _beds(
     scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
 ) -> tuple[SpringTable | None, list[SpringBed], float]:
     """Springs out to the largest radius that the history can reach, by `SPRING_SHARES`, and their own error."""
-    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     if isinstance(scene.indenter, FlatPunch):
         end = scene.indenter.max_radius
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
         bed = SpringBed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
         return None, [bed, bed], system.relative_error["contact_stiffness"]
-    largest = float(prescribed.max())
-    for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
+    largest = _largest(loading, law)
+    for radius in growing_radii(scene.indenter, _first_radius(scene, loading, largest)):
         table = own_table(scene.layer, scene.indenter, radius, flat_punch)
         y = np.concatenate([np.linspace(*ends, _SEARCHED) for ends in pairwise(table.section_ends)])
-        reached = _reached(table, y, loading, law)
+        rows = table.evaluate(y)
+        by_depth = isinstance(loading, DepthHistory)
+        reached = rows[PROFILE] if by_depth else rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]
         if np.interp(_farther(table, float(y[-1]), 1.0 / _MARGIN), y, reached) >= largest:
             break
     if reached[-1] < largest:
@@ -331,21 +337,22 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
         raise InvalidInput(f"loading: its largest value is {prescribed.max():g}; the indenter never presses")
 
 
-def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
+def _largest(loading: DepthHistory | ForceHistory, law: SpringLaw) -> float:
+    """The largest depth [m], or force [N], that an elastic layer has to bear to be in contact as far.
+
+    At any time the forces of all springs, each convolved with the creep compliance, add up to that of the whole, J * dF.
+    No spring stands above the indenter, so those that touch alone would not carry more on an elastic layer.
+    """
+    if isinstance(loading, DepthHistory):
+        return float(loading.depth.max())
+    return float(searched(law, loading)[1].max())
+
+
+def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: float) -> float:
     """A radius [m] to start from: where the half-space, roughly, has the largest depth or force."""
     if isinstance(loading, DepthHistory):
-        return radius_of_depth(scene.indenter, float(loading.depth.max()))
-    return radius_of_load(scene.indenter, float(loading.force.max()) / contact_modulus(scene.layer))
-
-
-def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHistory, law: SpringLaw) -> FloatArray:
-    """The largest depth, or force, that keeps the front within y: the force of a layer relaxed for the whole time."""
-    rows = table.evaluate(y)
-    if isinstance(loading, DepthHistory):
-        return np.asarray(rows[PROFILE])
-    decay = np.exp(-(loading.time[-1] - loading.time[0]) / law.times)
-    softest = law.long_term + float((law.weights * decay).sum())
-    return np.asarray(softest * (rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]))
+        return radius_of_depth(scene.indenter, largest)
+    return radius_of_load(scene.indenter, largest / contact_modulus(scene.layer))
 
 
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
