@@ -9,10 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
 
@@ -20,6 +22,12 @@ from mdr.history.springs_in_time import BedState, SpringLaw
 _FEW = 5
 # Number of springs of one section from which the place of the front is extrapolated, by a parabola.
 _NEEDED = 3
+# Springs on both sides among which the front on an undeformed surface is interpolated; chosen, each section has more.
+_AROUND = 6
+# Forward differences of all orders at the first of so many values, by the values.
+_DIFFERENCES = np.array([[(-1) ** (n - k) * comb(n, k) for k in range(_AROUND)] for n in range(_AROUND)], dtype=np.float64)
+# Of springs' distances, at which secants end; chosen.
+_ROUNDING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -73,21 +81,40 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
     first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
         return float(bed.y[-1])
-    gaps, stop = state.surface + bed.profile - state.depth, bed.section(first).stop
-    if stop - first >= _NEEDED or stop == bed.y.size:
-        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+    own = bed.section(first)
+    gaps, begin = state.surface + bed.profile - state.depth, min(max(first - _AROUND // 2, own.start), own.stop - _AROUND)
     # Where nothing has been pressed, the gap goes on inside the contact.
-    if not state.surface[first:stop].any():
-        last = slice(stop - _NEEDED, stop)
-        zero = _zero(bed.y[last], bed.profile[last] - state.depth)
-        return float(min(max(zero, bed.y[first - 1]), bed.y[first]))
-    return _by_radius(bed, first - 1, (first, stop + 1), gaps)
+    if begin >= own.start and first > own.start and not state.surface[first : begin + _AROUND].any():
+        window = slice(begin, begin + _AROUND)
+        share = _zero(bed.profile[window] - state.depth, float(first - 1 - begin))
+        return float(bed.y[begin] + share * bed.step(first))
+    if own.stop - first >= _NEEDED or own.stop == bed.y.size:
+        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, own.stop)], bed.step(first)))
+    return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
 
 
-def _zero(y: FloatArray, values: FloatArray) -> float:
-    """Where a function that increases through three points vanishes: inverse quadratic interpolation."""
-    (a, b, c), (p, q, r) = y, values
-    return float(a * q * r / ((p - q) * (p - r)) + b * p * r / ((q - p) * (q - r)) + c * p * q / ((r - p) * (r - q)))
+def _zero(values: FloatArray, low: float) -> float:
+    """Where the polynomial through values at 0, 1, 2 .. vanishes between low and the next of them, by secants."""
+    differences = _DIFFERENCES @ values
+
+    def polynomial(t: float) -> float:
+        found = 0.0
+        for order in range(_AROUND - 1, -1, -1):
+            found = differences[order] + found * (t - order) / (order + 1)
+        return float(found)
+
+    ends = [low, low + 1.0]
+    found = [float(values[int(t)]) for t in ends]
+    at = ends[1]
+    for _ in range(MOST_STEPS):
+        if found[1] == found[0]:
+            break
+        way = found[1] * (ends[1] - ends[0]) / (found[1] - found[0])
+        at = min(max(ends[1] - way, low), low + 1.0)
+        if abs(at - ends[1]) <= _ROUNDING:
+            break
+        ends, found = [ends[1], at], [found[1], polynomial(at)]
+    return at
 
 
 def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
