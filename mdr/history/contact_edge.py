@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
-from math import comb
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +21,6 @@ from mdr.history.springs_in_time import BedState, SpringLaw
 _FEW = 5
 # Number of springs of one section from which the place of the front is extrapolated, by a parabola.
 _NEEDED = 3
-# Springs on both sides among which the front on an undeformed surface is interpolated; chosen, each section has more.
-_AROUND = 6
-# Forward differences of all orders at the first of so many values, by the values.
-_DIFFERENCES = np.array([[(-1) ** (n - k) * comb(n, k) for k in range(_AROUND)] for n in range(_AROUND)], dtype=np.float64)
-# Of springs' distances, at which secants end; chosen.
-_ROUNDING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -81,40 +74,38 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
     first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
         return float(bed.y[-1])
-    own = bed.section(first)
-    gaps, begin = state.surface + bed.profile - state.depth, min(max(first - _AROUND // 2, own.start), own.stop - _AROUND)
+    own, gaps = bed.section(first), state.surface + bed.profile - state.depth
+    around = slice(max(min(first, own.stop - _NEEDED) - _NEEDED, own.start), own.stop)
+    around = slice(around.start, around.start + 2 * _NEEDED)
     # Where nothing has been pressed, the gap goes on inside the contact.
-    if begin >= own.start and first > own.start and not state.surface[first : begin + _AROUND].any():
-        window = slice(begin, begin + _AROUND)
-        share = _zero(bed.profile[window] - state.depth, float(first - 1 - begin))
-        return float(bed.y[begin] + share * bed.step(first))
+    if around.stop <= own.stop and first > own.start and not state.surface[first : around.stop].any():
+        share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
+        return float(bed.y[around.start] + share * bed.step(first))
     if own.stop - first >= _NEEDED or own.stop == bed.y.size:
         return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, own.stop)], bed.step(first)))
     return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
 
 
-def _zero(values: FloatArray, low: float) -> float:
+def _zero(values: FloatArray, low: int) -> float:
     """Where the polynomial through values at 0, 1, 2 .. vanishes between low and the next of them, by secants."""
-    differences = _DIFFERENCES @ values
-
-    def polynomial(t: float) -> float:
-        found = 0.0
-        for order in range(_AROUND - 1, -1, -1):
-            found = differences[order] + found * (t - order) / (order + 1)
-        return float(found)
-
-    ends = [low, low + 1.0]
-    found = [float(values[int(t)]) for t in ends]
-    at = ends[1]
+    differences = [float(np.diff(values, order)[0]) for order in range(values.size)]
+    older, newer, before, now = float(low), low + 1.0, float(values[low]), float(values[low + 1])
     for _ in range(MOST_STEPS):
-        if found[1] == found[0]:
+        if now in (0.0, before):
             break
-        way = found[1] * (ends[1] - ends[0]) / (found[1] - found[0])
-        at = min(max(ends[1] - way, low), low + 1.0)
-        if abs(at - ends[1]) <= _ROUNDING:
+        at = min(max(newer - now * (newer - older) / (now - before), low), low + 1.0)
+        older, newer, before, now = newer, at, now, _polynomial(differences, at)
+        if newer == older:
             break
-        ends, found = [ends[1], at], [found[1], polynomial(at)]
-    return at
+    return newer
+
+
+def _polynomial(differences: list[float], at: float) -> float:
+    """By Newton's forward differences of all orders."""
+    found = 0.0
+    for order in reversed(range(len(differences))):
+        found = differences[order] + found * (at - order) / (order + 1)
+    return found
 
 
 def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatArray) -> float:

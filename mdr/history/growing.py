@@ -3,8 +3,8 @@
 Forces f of a spring and displacements u of its end obey u = J * df with the compliance J, in contact or free, so their
 sums do: the springs' displacements, each times its stiffness, add up to F_e = J * dF, a sum of exponentials while F
 moves linearly. No end of a spring stands above the indenter, and a free one only creeps back. So where F_e has never
-been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960, J. Appl.
-Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845); before that the depth is less than F_e would make it.
+been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960,
+J. Appl. Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845); elsewhere the depth is less than F_e would make it.
 """
 
 from __future__ import annotations
@@ -29,12 +29,6 @@ from mdr.springs.error_model import EPS
 from mdr.springs.pulling import refuse_pulling_at
 from mdr.springs.reach import covering_system
 
-# Shares of an interval at which the largest F_e is looked for, closest to its ends: after a change of rate a layer creeps
-# fastest. Chosen; a peak between two of them is missed by the square of their distance.
-_NEAR = np.geomspace(1e-9, 0.5, 60)
-_SEARCHED = np.concatenate([_NEAR, 1.0 - _NEAR])
-# Roundings of a sum of exponentials by which a steady F_e may seem to fall; chosen.
-_ROUNDINGS = 32
 # Coefficients of (z - 1 + exp(-z))/z^2 = 1/2! - z/3! + ..., used up to z = 1, where the first one left out is 4e-19.
 _SERIES = np.array([(-1.0) ** n / math.factorial(n + 2) for n in range(18)])
 
@@ -49,16 +43,22 @@ def without_steps(law: SpringLaw, scene: Scene) -> NDArray[np.bool_]:
     if law.is_elastic or isinstance(scene.indenter, FlatPunch):
         return np.full(loading.time.size, True)
     time, load = searched(law, loading)
-    highest = np.maximum.accumulate(load) * (1.0 - _ROUNDINGS * EPS)
+    highest = np.maximum.accumulate(load) * (1.0 - _rounding(law, loading))
     return np.asarray((load >= highest)[np.searchsorted(time, loading.time)])
 
 
 def searched(law: SpringLaw, loading: ForceHistory) -> tuple[FloatArray, FloatArray]:
     """Times [s] so close to each other, and closer to the instants, that no peak of F_e is missed; F_e [N] there."""
-    start, duration = loading.time[:-1, None], np.diff(loading.time)[:, None]
-    time = np.unique(np.concatenate([loading.time, (start + duration * _SEARCHED).ravel()]))
-    between = loading.replace(time=time, force=np.interp(time, loading.time, loading.force))
-    return time, elastic_force(law, between)
+    # After a change of rate a layer creeps fastest; what lies between two of so many points is off by their distance^2.
+    near = np.geomspace(1e-9, 0.5, 60)
+    between = loading.time[:-1, None] + np.diff(loading.time)[:, None] * np.concatenate([near, 1.0 - near])
+    time = np.unique(np.concatenate([loading.time, between.ravel()]))
+    return time, elastic_force(law, loading.replace(time=time, force=np.interp(time, loading.time, loading.force)))
+
+
+def _rounding(law: SpringLaw, loading: ForceHistory) -> float:
+    """Relative, of the sums of exponentials."""
+    return EPS * (loading.time.size + 4.0 * (law.times.size + 1))
 
 
 def with_closed_form(followed: HistoryPath, exact: HistoryPath, known: NDArray[np.bool_]) -> HistoryPath:
@@ -117,7 +117,6 @@ def growing_history(
         path = solve_elastic(alike, flat_punch, settings)
         for refuse in refuse_touching_at, refuse_pulling_at:
             refuse(scene, flat_punch, float(path.contact_radius.max()))
-    rounding = EPS * (loading.time.size + 4.0 * (law.times.size + 1))
 
     def at_all(values: FloatArray) -> FloatArray:
         """With zeros where nothing presses yet."""
@@ -126,7 +125,7 @@ def growing_history(
         return found
 
     depth, radius, error = path.indentation_depth, path.contact_radius, path.error_estimate
-    moved = rounding * path.normal_force / path.contact_stiffness
+    moved = _rounding(law, loading) * path.normal_force / path.contact_stiffness
     with np.errstate(divide="ignore", invalid="ignore"):
         widened = np.where(radius > scene.indenter.flat_radius, moved / slope(radius), 0.0)
     return HistoryPath(

@@ -29,9 +29,6 @@ from mdr.springs.pulling import refuse_pulling_at
 
 # Accuracies that may be asked for: a coarser one is no impact any more, a finer one is below rounding; chosen.
 _LEAST_ACCURACY, _BEST_ACCURACY = 1e-4, 1e-13
-# Accuracy at which flat punches are integrated at least: the force of one that viscosity stops leaves at a flat angle, so
-# that its contact time lost up to four of the digits asked for, and linear equations need few steps. Chosen.
-_FLAT_ACCURACY = 1e-9
 # Impacts integrated together: enough to hide the interpreter, few enough to stay in the cache; chosen.
 _CHUNK = 256
 
@@ -71,7 +68,8 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     tolerance, integrate = step_tolerance(accuracy), integrator(compiled=bool(known.get("compiled")))
     if is_flat(scene):
         refuse_pulling_at(scene, flat_punch, scene.indenter.max_radius)
-        finer = min(accuracy, _FLAT_ACCURACY)
+        # The force of a punch that viscosity stops ends at a flat angle: its contact time would lose four digits.
+        finer = min(accuracy, DEFAULT_ACCURACY)
         return flat_punch_history(
             scene, flat_punch, log, finer, integrate=integrate, tolerance=step_tolerance(finer), settings=known
         )
@@ -163,7 +161,7 @@ def _groups(
             return joined([results(*found, accuracy) for found in alone], np.arange(len(chunk)))
 
     def flat_results(chunk: list[int]) -> ImpactResults:
-        finer = min(accuracy, _FLAT_ACCURACY)
+        finer = min(accuracy, DEFAULT_ACCURACY)
         own = [scenes[i] for i in chunk]
         return flat_punch_results(own, flat_punch, integrate, finer, tolerance=step_tolerance(finer))
 

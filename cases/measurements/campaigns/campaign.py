@@ -2,8 +2,9 @@
 
 The referee of elastic scenes is `referee` as far as it reaches; beyond a/h = 100, where it is costly, the method
 with half the discretisation length checks every eighth scene. Depth histories of viscoelastic layers are followed
-spring by spring; what the fast method says of force histories in closed form, it has to find in steps of time too. For other loadings the refined method checks every scene, or another method does. Every solved scene
-is also solved in other units, where it must give the same answer, and with its relaxation written down in other ways.
+spring by spring; what the fast method says of forces in time, in closed form where it can, is stepped in time. For
+other loadings the refined method checks every scene, or another method does. Every solved scene is also solved in other
+units, where it must give the same answer, and with its relaxation written down in other ways.
 """
 
 from collections.abc import Callable, Iterable, Iterator
