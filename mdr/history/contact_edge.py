@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
 
@@ -73,21 +74,38 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
     first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
         return float(bed.y[-1])
-    gaps, stop = state.surface + bed.profile - state.depth, bed.section(first).stop
-    if stop - first >= _NEEDED or stop == bed.y.size:
-        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, stop)], bed.step(first)))
+    own, gaps = bed.section(first), state.surface + bed.profile - state.depth
+    around = slice(max(min(first, own.stop - _NEEDED) - _NEEDED, own.start), own.stop)
+    around = slice(around.start, around.start + 2 * _NEEDED)
     # Where nothing has been pressed, the gap goes on inside the contact.
-    if not state.surface[first:stop].any():
-        last = slice(stop - _NEEDED, stop)
-        zero = _zero(bed.y[last], bed.profile[last] - state.depth)
-        return float(min(max(zero, bed.y[first - 1]), bed.y[first]))
-    return _by_radius(bed, first - 1, (first, stop + 1), gaps)
+    if around.stop <= own.stop and first > own.start and not state.surface[first : around.stop].any():
+        share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
+        return float(bed.y[around.start] + share * bed.step(first))
+    if own.stop - first >= _NEEDED or own.stop == bed.y.size:
+        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, own.stop)], bed.step(first)))
+    return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
 
 
-def _zero(y: FloatArray, values: FloatArray) -> float:
-    """Where a function that increases through three points vanishes: inverse quadratic interpolation."""
-    (a, b, c), (p, q, r) = y, values
-    return float(a * q * r / ((p - q) * (p - r)) + b * p * r / ((q - p) * (q - r)) + c * p * q / ((r - p) * (r - q)))
+def _zero(values: FloatArray, low: int) -> float:
+    """Where the polynomial through values at 0, 1, 2 .. vanishes between low and the next of them, by secants."""
+    differences = [float(np.diff(values, order)[0]) for order in range(values.size)]
+    older, newer, before, now = float(low), low + 1.0, float(values[low]), float(values[low + 1])
+    for _ in range(MOST_STEPS):
+        if now in (0.0, before):
+            break
+        at = min(max(newer - now * (newer - older) / (now - before), low), low + 1.0)
+        older, newer, before, now = newer, at, now, _polynomial(differences, at)
+        if newer == older:
+            break
+    return newer
+
+
+def _polynomial(differences: list[float], at: float) -> float:
+    """By Newton's forward differences of all orders."""
+    found = 0.0
+    for order in reversed(range(len(differences))):
+        found = differences[order] + found * (at - order) / (order + 1)
+    return found
 
 
 def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatArray) -> float:
@@ -147,14 +165,19 @@ def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: flo
 
 
 def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
-    """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves."""
-    if law.viscosity == 0.0 or speed <= 0.0:
-        # What was touched last has relaxed least, and may lie beyond the springs that forces are continued from. Yet
-        # nothing is in contact beyond where an undeformed surface would be.
-        w, y = state.depth - bed.profile, released_front(bed, state.touching, forces)
-        return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
-    y = touched_front(bed, state)
-    return y, _continued(bed, state.touching, forces, y)
+    """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves.
+
+    A front that advances lies where the gap outside closes: nothing has happened there of late, while the forces just
+    inside, of springs touched one after the other, bend within the way that it goes in a relaxation time. A front that
+    recedes lies where the forces inside vanish, for the same reason turned around.
+    """
+    outside = int(np.flatnonzero(state.touching)[-1]) + 1
+    if outside == bed.y.size or speed >= law.creep_speed(state.surface[outside], state.strains[:, outside]):
+        y = touched_front(bed, state)
+        return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
+    # Nothing is in contact beyond where an undeformed surface would be.
+    w, y = state.depth - bed.profile, released_front(bed, state.touching, forces)
+    return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
 
 
 def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tuple[float, float]:

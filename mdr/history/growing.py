@@ -1,21 +1,24 @@
-"""A force that never falls: the contact only grows, and its depth is that of an elastic layer under another force.
+"""Prescribed forces without steps in time, at every instant at which the contact has never been larger.
 
-Each spring is touched once and stays in contact, so the law of one spring is that of their sum, F = G * dF_e with the
-elastic force F_e of the depth (Lee and Radok 1960, J. Appl. Mech. 27, 438). Turned around, F_e = J * dF with the
-compliance J: while the force moves linearly a sum of exponentials, and no step in time is needed.
+Forces f of a spring and displacements u of its end obey u = J * df with the compliance J, in contact or free, so their
+sums do: the springs' displacements, each times its stiffness, add up to F_e = J * dF, a sum of exponentials while F
+moves linearly. No end of a spring stands above the indenter, and a free one only creeps back. So where F_e has never
+been larger all springs ever touched are touched, and F_e is the elastic force of the depth (Lee and Radok 1960,
+J. Appl. Mech. 27, 438; Ting 1966, J. Appl. Mech. 33, 845); elsewhere the depth is less than F_e would make it.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import ForceHistory, HistoryPath, InvalidInput, NormalForces, Scene, StageLog
+from contact import FlatPunch, ForceHistory, HistoryPath, InvalidInput, NormalForces, Scene, StageLog
 from contact.answer.solution import InstantFields, InstantInterior, Setting
 from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
@@ -30,9 +33,43 @@ from mdr.springs.reach import covering_system
 _SERIES = np.array([(-1.0) ** n / math.factorial(n + 2) for n in range(18)])
 
 
-def only_grows(law: SpringLaw, loading: ForceHistory) -> bool:
-    """Whether the contact does, or knows the present only: J never falls, so F_e rises with the force."""
-    return bool(law.is_elastic or np.all(np.diff(loading.force) >= 0.0))
+def without_steps(law: SpringLaw, scene: Scene) -> NDArray[np.bool_]:
+    """At which instants of a force history the depth is known in closed form, shape (n,).
+
+    Where F_e has never been larger; always under a flat punch, which holds all springs alike, and on elastic layers.
+    """
+    loading = scene.loading
+    assert isinstance(loading, ForceHistory)
+    if law.is_elastic or isinstance(scene.indenter, FlatPunch):
+        return np.full(loading.time.size, True)
+    time, load = searched(law, loading)
+    highest = np.maximum.accumulate(load) * (1.0 - _rounding(law, loading))
+    return np.asarray((load >= highest)[np.searchsorted(time, loading.time)])
+
+
+def searched(law: SpringLaw, loading: ForceHistory) -> tuple[FloatArray, FloatArray]:
+    """Times [s] so close to each other, and closer to the instants, that no peak of F_e is missed; F_e [N] there."""
+    # After a change of rate a layer creeps fastest; what lies between two of so many points is off by their distance^2.
+    near = np.geomspace(1e-9, 0.5, 60)
+    between = loading.time[:-1, None] + np.diff(loading.time)[:, None] * np.concatenate([near, 1.0 - near])
+    time = np.unique(np.concatenate([loading.time, between.ravel()]))
+    return time, elastic_force(law, loading.replace(time=time, force=np.interp(time, loading.time, loading.force)))
+
+
+def _rounding(law: SpringLaw, loading: ForceHistory) -> float:
+    """Relative, of the sums of exponentials."""
+    return EPS * (loading.time.size + 4.0 * (law.times.size + 1))
+
+
+def with_closed_form(followed: HistoryPath, exact: HistoryPath, known: NDArray[np.bool_]) -> HistoryPath:
+    """A history followed in steps, with values and errors of the closed form where that holds."""
+    values, errors = {}, {"normal_force": followed.error_estimate["normal_force"]}
+    for name in ("indentation_depth", "contact_radius"):
+        stepped, found = getattr(followed, name), getattr(exact, name)
+        values[name] = np.where(known, found, stepped)
+        absolute = [path.error_estimate[name] * own.max() for path, own in ((exact, found), (followed, stepped))]
+        errors[name] = np.where(known, *absolute) / values[name].max()
+    return replace(followed, error_estimate=errors, **values)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +100,7 @@ class FollowedLater:
 def growing_history(
     scene: Scene, law: SpringLaw, flat_punch: FlatPunchSource, settings: Mapping[str, Setting], fields: InstantFields
 ) -> HistoryPath:
-    """Depth under a force that never falls.
+    """Depth under a force, as if the contact had never been larger at any instant.
 
     Raises:
         InvalidInput: If the force is out of reach of the indenter or the flat-punch data.
@@ -80,7 +117,6 @@ def growing_history(
         path = solve_elastic(alike, flat_punch, settings)
         for refuse in refuse_touching_at, refuse_pulling_at:
             refuse(scene, flat_punch, float(path.contact_radius.max()))
-    rounding = EPS * (loading.time.size + 4.0 * (law.times.size + 1))
 
     def at_all(values: FloatArray) -> FloatArray:
         """With zeros where nothing presses yet."""
@@ -89,7 +125,7 @@ def growing_history(
         return found
 
     depth, radius, error = path.indentation_depth, path.contact_radius, path.error_estimate
-    moved = rounding * path.normal_force / path.contact_stiffness
+    moved = _rounding(law, loading) * path.normal_force / path.contact_stiffness
     with np.errstate(divide="ignore", invalid="ignore"):
         widened = np.where(radius > scene.indenter.flat_radius, moved / slope(radius), 0.0)
     return HistoryPath(
@@ -106,7 +142,7 @@ def growing_history(
         time=loading.time,
         indentation_depth=at_all(depth),
         normal_force=loading.force,
-        contact_radius=at_all(radius),
+        contact_radius=np.where(loading.force > 0.0, at_all(radius), 0.0),
         fields=fields,
     )
 

@@ -6,7 +6,7 @@ Loading, unloading with a receding front, and reloading over a surface that has 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
@@ -31,7 +31,7 @@ from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.followed import FollowedHistory, states_at
-from mdr.history.growing import FollowedLater, growing_history, only_grows
+from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
@@ -53,7 +53,7 @@ _GAPS = 640
 # Substeps of a whole force history, at least four in each interval.
 _FINENESS = 400
 # The same history with these multiples of the fewest substeps, whose differences tell the error of time integration.
-_LEVELS = (4, 2, 1)
+_LEVELS = (8, 4, 2, 1)
 # A history that its springs do not resolve is followed again on so many times as many before it is refused: a layer
 # that flows carries its force near the front only, whose place they know to first order. All six histories that 641
 # springs had to refuse are then answered, with errors of 1e-4 to 1e-3 stated (`contact-verify campaign reloading
@@ -105,9 +105,13 @@ def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[s
         raise UnsupportedSceneError(f"loading = {type(loading).__name__}: a history needs DepthHistory or ForceHistory")
     _refuse_idle(loading)
     follow = partial(followed_history, scene, loading, law, flat_punch, settings)
-    if isinstance(loading, ForceHistory) and only_grows(law, loading):
-        return growing_history(scene, law, flat_punch, settings, FollowedLater(follow))
-    return follow()
+    if isinstance(loading, DepthHistory):
+        return follow()
+    known = without_steps(law, scene)
+    if not known.any():
+        return follow()
+    exact = growing_history(scene, law, flat_punch, settings, FollowedLater(follow))
+    return exact if known.all() else with_closed_form(follow(), exact, known)
 
 
 def followed_history(
@@ -223,17 +227,19 @@ def _followed(
     """The history on the first bed, and how much it changes on the others and with fewer substeps.
 
     Between two instants a prescribed depth needs no substeps, nor does an elastic layer. Under a force their errors
-    go with the second and fourth powers of their number, so three numbers of them have a limit (Romberg).
+    go with the second and fourth powers of their number, so three numbers of them have a limit (Romberg). Releases
+    leave other powers, so the limit of another three tells the error: of one c h^p with p >= 1 no more than the change
+    is left. A quarter of it lied where a layer relaxes within a step.
     """
     if isinstance(loading, DepthHistory) or law.is_elastic:
         fine, *others = (_follow(law, bed, loading, _finest(loading, law, substeps)) for bed in beds)
         pairs = [(fine, other) for other in others]
         return _FoundHistory(fine, pairs, [], _error_of_springs(pairs))
-    fine, middle, coarse = (_follow(law, beds[0], loading, level * substeps) for level in _LEVELS)
-    pairs = [(coarse, _follow(law, bed, loading, substeps)) for bed in beds[1:]]
-    depth, error = _limit(fine.depth, middle.depth, coarse.depth)
-    change = float(error.max() / np.abs(depth).max()) + _error_of_springs(pairs)
-    return _FoundHistory(_Track(depth, fine.force, fine.y, fine.bent), pairs, [(fine, middle)], change)
+    tracks = [_follow(law, beds[0], loading, level * substeps) for level in _LEVELS]
+    pairs = [(tracks[-1], _follow(law, bed, loading, substeps)) for bed in beds[1:]]
+    depth, before = (_limit(*(track.depth for track in three)) for three in (tracks[:3], tracks[1:]))
+    change = _change(depth, before) + _error_of_springs(pairs)
+    return _FoundHistory(replace(tracks[0], depth=depth), pairs, [(tracks[0], tracks[1])], change)
 
 
 def _error_of_springs(pairs: list[tuple[_Track, _Track]]) -> float:
@@ -248,13 +254,10 @@ def _on_all_springs(changes: list[float]) -> float:
     return HISTORY_SAFETY * max(change / more for change, more in zip(changes, EXCESS_ERRORS, strict=False))
 
 
-def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Without the errors of second and fourth order, and twice what the last extrapolation has changed.
-
-    Of one c h^p with p >= 1 what is left is no more than that change; releases leave several powers, which may cancel.
-    """
+def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> FloatArray:
+    """Without the errors of second and fourth order."""
     first, second = fine + (fine - middle) / 3.0, middle + (middle - coarse) / 3.0
-    return first + (first - second) / 15.0, 2.0 * np.abs(first - second)
+    return first + (first - second) / 15.0
 
 
 def _change(fine: FloatArray, coarse: FloatArray) -> float:
@@ -272,18 +275,19 @@ def _beds(
     scene: Scene, loading: DepthHistory | ForceHistory, law: SpringLaw, flat_punch: FlatPunchSource, gaps: int
 ) -> tuple[SpringTable | None, list[SpringBed], float]:
     """Springs out to the largest radius that the history can reach, by `SPRING_SHARES`, and their own error."""
-    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
     if isinstance(scene.indenter, FlatPunch):
         end = scene.indenter.max_radius
         system = equivalent_system(scene.layer, scene.indenter, end, flat_punch)
         core = float(system.contact_stiffness(end))
         bed = SpringBed(np.array([0.0, 1.0]), np.full(2, end), np.array([0.0, np.inf]), np.zeros(2), core)
         return None, [bed, bed], system.relative_error["contact_stiffness"]
-    largest = float(prescribed.max())
-    for radius in growing_radii(scene.indenter, _first_radius(scene, loading)):
+    largest = _largest(loading, law)
+    for radius in growing_radii(scene.indenter, _first_radius(scene, loading, largest)):
         table = own_table(scene.layer, scene.indenter, radius, flat_punch)
         y = np.concatenate([np.linspace(*ends, _SEARCHED) for ends in pairwise(table.section_ends)])
-        reached = _reached(table, y, loading, law)
+        rows = table.evaluate(y)
+        by_depth = isinstance(loading, DepthHistory)
+        reached = rows[PROFILE] if by_depth else rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]
         if np.interp(_farther(table, float(y[-1]), 1.0 / _MARGIN), y, reached) >= largest:
             break
     if reached[-1] < largest:
@@ -331,21 +335,22 @@ def _refuse_idle(loading: DepthHistory | ForceHistory) -> None:
         raise InvalidInput(f"loading: its largest value is {prescribed.max():g}; the indenter never presses")
 
 
-def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float:
+def _largest(loading: DepthHistory | ForceHistory, law: SpringLaw) -> float:
+    """The largest depth [m], or force [N], that an elastic layer has to bear to be in contact as far.
+
+    Displacements of all springs, each times its stiffness, add up to F_e = J * dF (`growing`), and none stands above
+    the indenter.
+    """
+    if isinstance(loading, DepthHistory):
+        return float(loading.depth.max())
+    return float(searched(law, loading)[1].max())
+
+
+def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: float) -> float:
     """A radius [m] to start from: where the half-space, roughly, has the largest depth or force."""
     if isinstance(loading, DepthHistory):
-        return radius_of_depth(scene.indenter, float(loading.depth.max()))
-    return radius_of_load(scene.indenter, float(loading.force.max()) / contact_modulus(scene.layer))
-
-
-def _reached(table: SpringTable, y: FloatArray, loading: DepthHistory | ForceHistory, law: SpringLaw) -> FloatArray:
-    """The largest depth, or force, that keeps the front within y: the force of a layer relaxed for the whole time."""
-    rows = table.evaluate(y)
-    if isinstance(loading, DepthHistory):
-        return np.asarray(rows[PROFILE])
-    decay = np.exp(-(loading.time[-1] - loading.time[0]) / law.times)
-    softest = law.long_term + float((law.weights * decay).sum())
-    return np.asarray(softest * (rows[STIFFNESS] * rows[PROFILE] - rows[MOMENT]))
+        return radius_of_depth(scene.indenter, largest)
+    return radius_of_load(scene.indenter, largest / contact_modulus(scene.layer))
 
 
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:

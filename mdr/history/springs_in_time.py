@@ -90,6 +90,12 @@ class SpringLaw:
         """Force of springs in contact; the first axis of the strains is that of the branches."""
         return np.asarray(self.long_term * w + self.viscosity * speed + np.tensordot(self.weights, strains, 1))
 
+    def creep_speed(self, surface: FloatArray, strains: FloatArray) -> FloatArray:
+        """u' of free springs [m/s]: their force is zero and stays so."""
+        if self.viscosity > 0.0:
+            return np.asarray(-(self.long_term * surface + np.tensordot(self.weights, strains, 1)) / self.viscosity)
+        return np.asarray(np.tensordot(self.weights / self.times, strains, 1))
+
     def faded(self, amplitudes: FloatArray, time: FloatArray) -> FloatArray:
         """Amplitudes of a free spring's modes after times as in `pressed`, shape (modes, instants, springs)."""
         return np.asarray(np.exp(-self.modes.rates[:, None, None] * (time / self.clock)) * amplitudes[:, None])

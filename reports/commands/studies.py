@@ -140,7 +140,7 @@ def campaign(
         str,
         typer.Argument(
             help="elastic, many_loads, pressure, displacement, inside, adhesive, adhering_table, impact, history (of "
-            "depth) or creep (force)."
+            "depth), creep (force), growing (force in closed form, against steps) or reloading."
         ),
     ] = "elastic",
     method: Annotated[str, typer.Option(help="Method that answers.")] = "mdr",

@@ -293,7 +293,7 @@ def test_a_front_just_inside_a_breakpoint():
     answer = solve(DepthHistory(time=1e-3 * depths, depth=depths), model=KELVIN_VOIGT, indenter=indenter)
     expected = met.normal_force + RELAXATION_TIME * 1e3 * met.contact_stiffness
     stated = float(answer.error_estimate["normal_force"][0])
-    assert stated < 1e-4
+    assert stated < 1e-8
     assert np.max(np.abs(answer.normal_force[1:] - expected)) <= stated * expected[-1]
 
 

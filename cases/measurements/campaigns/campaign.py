@@ -2,8 +2,9 @@
 
 The referee of elastic scenes is `referee` as far as it reaches; beyond a/h = 100, where it is costly, the method
 with half the discretisation length checks every eighth scene. Depth histories of viscoelastic layers are followed
-spring by spring. For other loadings the refined method checks every scene, or another method does. Every solved scene
-is also solved in other units, where it must give the same answer, and with its relaxation written down in other ways.
+spring by spring; what the fast method says of forces in time, in closed form where it can, is stepped in time. For
+other loadings the refined method checks every scene, or another method does. Every solved scene is also solved in other
+units, where it must give the same answer, and with its relaxation written down in other ways.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -17,7 +18,7 @@ from cases.declare.quantities import IMPACT_NUMBERS, single_numbers, values_of
 from cases.measurements.campaigns.random_scenes import RATIO, Family, scene_of
 from cases.measurements.campaigns.referee import LARGEST_RATIO, adhesive_states, second_opinion
 from cases.measurements.campaigns.restated import changes_when_restated
-from cases.measurements.campaigns.spring_by_spring import spring_by_spring
+from cases.measurements.campaigns.spring_by_spring import spring_by_spring, stepped_in_time
 from cases.measurements.campaigns.units import Units, in_units
 from cases.measurements.driver import measured
 from cases.measurements.measurement import RESTATED, Measurement
@@ -25,6 +26,7 @@ from contact import (
     ContactPath,
     DepthHistory,
     DetachmentPath,
+    ForceHistory,
     HistoryPath,
     ImpactHistory,
     Method,
@@ -132,11 +134,13 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
         return
     if isinstance(answer, DetachmentPath):
         yield from _branch_checks(answer)
+    in_steps = _is_stepped_by_springs(answer)
     try:
-        finer = (other or method.refined()).solve(scene)
+        finer = stepped_in_time(scene) if in_steps else (other or method.refined()).solve(scene)
     except NotConvergedError:
         return
-    reference = "another method" if other is not None and other.name != method.name else "refinement"
+    alike = "steps in time" if in_steps else "refinement"
+    reference = "another method" if not in_steps and other is not None and other.name != method.name else alike
     for q in _comparable(answer, finer):
         if q in answer.error_estimate:
             allowance = np.atleast_1d(finer.error_estimate.get(q, 0.0))
@@ -145,6 +149,10 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
 
 def _is_followed_by_springs(scene: Scene) -> bool:
     return isinstance(scene.loading, DepthHistory) and scene.effect(Viscoelasticity) is not None
+
+
+def _is_stepped_by_springs(answer: Solution) -> bool:
+    return answer.method == "mdr" and isinstance(answer.scene.loading, ForceHistory)
 
 
 def _against_springs(answer: HistoryPath) -> Measurement:

@@ -38,7 +38,7 @@ from contact import (
 )
 
 Family: TypeAlias = Literal[
-    "elastic", "many_loads", "adhesive", "adhering_table", "impact", "history", "creep", "reloading"
+    "elastic", "many_loads", "adhesive", "adhering_table", "impact", "history", "creep", "growing", "reloading"
 ]
 FAMILIES: tuple[Family, ...] = get_args(Family)
 
@@ -62,7 +62,8 @@ def random_scenes(seed: int, count: int, family: Family = "elastic", ratio: tupl
         count: How many.
         family: "elastic", "many_loads" (so many that a method may interpolate between them), "adhesive" (detachment),
             "adhering_table" (the same of measured profiles), "impact", "history" or "creep" (prescribed depth or force
-            in time), or "reloading" (depth histories of several strokes on layers with extreme relaxation spectra).
+            in time), "growing" (forces that mostly rise) or "reloading" (depths of several strokes), both on layers
+            with extreme relaxation spectra.
         ratio: Range of contact radius over thickness.
     """
     return [scene_of(seed, n, family, ratio) for n in range(count)]
@@ -301,6 +302,20 @@ def _spectrum(draw: Draw, shear_modulus: float) -> Effect:
     return PronySeries(long_term_shear_modulus=long_term, shear_moduli=moduli, relaxation_times=times)
 
 
+def _growing(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """The force rises or rests, in every second scene falls once as well, so that the contact mostly grows."""
+    a = _contact_ratio(draw, *ratio)
+    layer, indenter = _layer(draw, 0.5), _indenter(draw, a)
+    rises = np.append(draw.choice([0.0, 1.0]), draw.uniform(-0.5, 1.0, draw.integers(2, 6)).clip(0.0))
+    force = np.cumsum(rises) + float(rises.sum() == 0.0)
+    if draw.random() < 0.5:
+        force[draw.integers(1, force.size)] *= draw.uniform(0.2, 1.0)
+    top = layer.contact_modulus * min(a, 1e3) * _typical_depth(indenter, a) * log_uniform(draw, 1e-2, 0.3)
+    time = np.concatenate([[0.0], np.cumsum(np.exp(draw.uniform(np.log(1e-2), np.log(10.0), force.size - 1)))])
+    loading = ForceHistory(time=time, force=top * force / force.max())
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=(_spectrum(draw, layer.shear_modulus),))
+
+
 def _reloading(draw: Draw, ratio: tuple[float, float]) -> Scene:
     """Pressed, let go, pressed again, some rests between; depths are often met a second time to the last digit."""
     a = _contact_ratio(draw, *ratio)
@@ -324,5 +339,6 @@ _MAKERS: dict[Family, Callable[[Draw, tuple[float, float]], Scene]] = {
     "impact": _impact,
     "history": _history,
     "creep": _creep,
+    "growing": _growing,
     "reloading": _reloading,
 }

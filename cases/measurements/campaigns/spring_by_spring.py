@@ -1,8 +1,9 @@
-"""Force under a depth history, spring by spring in many short steps: a referee that shares no code with any history.
+"""Histories in many short steps: force under a depth, spring by spring, and depth under a force.
 
-The springs of a layer are those of the elastic contact, which has a referee of its own; on a half-space they are the
-closed forms of the handbook. Each step is implicit: a spring end moves to the indenter, or to where its force is zero
-if that is deeper. No spectrum of the layer and no instant of touch or release is ever computed.
+The second shares all with its method but the closed form. The first shares no code with any history: the springs of a
+layer are those of the elastic contact, which has a referee of its own; on a half-space they are the closed forms of the
+handbook. Each step is implicit: a spring end moves to the indenter, or to where its force is zero if that is deeper. No
+spectrum of the layer and no instant of touch or release is ever computed.
 """
 
 from dataclasses import dataclass
@@ -10,12 +11,14 @@ from typing import Final
 
 import numpy as np
 
+from bem.kernels.moduli import relaxation_of
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.one_radius import half_space_load
-from contact import DepthHistory, FlatPunch, InvalidInput, Profile, Scene
+from contact import DepthHistory, FlatPunch, HistoryPath, InvalidInput, Profile, Scene
 from contact.records.validation import FloatArray
 from contact.scene.effects import Relaxation, Viscoelasticity
 from mdr.springs.assembly import equivalent_system
+from mdr.springs.error_model import DEFAULT_ACCURACY
 
 # Springs and steps per interval of two runs, whose difference tells the error. The numbers of springs are prime, so
 # that the contact edge lies elsewhere between them.
@@ -77,6 +80,15 @@ def spring_by_spring(scene: Scene, radius: float) -> ForceOpinion:
     rounding = _ROUNDING * radius / (radius - flat) if radius > flat else _ROUNDING
     change, peak = float(np.abs(fine - coarse).max()), float(np.abs(fine).max())
     return ForceOpinion(fine, _CAUTION * change + _of_the_edge(beds[0], relaxation, loading) + rounding * peak)
+
+
+def stepped_in_time(scene: Scene) -> HistoryPath:
+    """The fast method's answer to a force history, every interval in steps, one digit finer than usual."""
+    from mdr.history.solver import followed_history  # noqa: PLC0415 - the method's solver, loaded where it is asked for
+    from mdr.history.springs_in_time import SpringLaw  # noqa: PLC0415
+
+    law, settings = SpringLaw.of(relaxation_of(scene)), {"accuracy": 0.1 * DEFAULT_ACCURACY}
+    return followed_history(scene, scene.loading, law, IntegralEquation(), settings)  # type: ignore[arg-type]
 
 
 def _of_the_edge(springs: SpringRow, relaxation: Relaxation, loading: DepthHistory) -> float:

@@ -1,0 +1,158 @@
+"""Where the front of a contact stands in time: on surfaces that recover, at breakpoints, and without any step."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bem.kernels.moduli import relaxation_of
+from cases.measurements.campaigns.campaign import campaign
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    Impact,
+    KelvinVoigt,
+    Layer,
+    Paraboloid,
+    PronySeries,
+    Scene,
+    TruncatedCone,
+)
+from mdr import Mdr
+from mdr.history import growing
+from mdr.history.solver import followed_history
+from mdr.history.springs_in_time import SpringLaw
+
+LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
+HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
+SOLID = PronySeries(long_term_shear_modulus=0.3, shear_moduli=[0.2, 0.5], relaxation_times=[2.0, 0.05])
+COARSE = {"accuracy": 1e-7}
+TIMES = [0.0, 0.6, 1.0, 1.4]
+
+
+def test_a_surface_that_recovers_up_to_a_resting_indenter():
+    """The front comes back while the depth rests: 2e-4 off and 1.3e-5 stated, 5e-9 now.
+
+    Springs just touched carry forces that bend within a hair's breadth, the gap outside closes smoothly.
+    """
+    scene = Scene(
+        layer=Layer.incompressible(thickness=1.0, shear_modulus=1.0 / 3.0),
+        indenter=TruncatedCone(flat_radius=0.9122946867543653, slope=0.1),
+        loading=DepthHistory(
+            time=[0.0, 0.3095, 1.1925, 2.1344, 2.8070, 3.2381],
+            depth=[0.06155, 0.06943, 0.02429, 0.0469, 0.02244, 0.02244],
+        ),
+        effects=(
+            PronySeries(
+                long_term_shear_modulus=0.045353926,
+                shear_moduli=[0.036737171, 0.2512422361],
+                relaxation_times=[19.61279732, 0.02793820],
+            ),
+        ),
+    )
+    found, finer = Mdr().solve(scene), Mdr(accuracy=1e-11).solve(scene)
+    apart = np.abs(found.contact_radius - finer.contact_radius)
+    assert np.all(apart <= found.uncertainty("contact_radius") + finer.uncertainty("contact_radius"))
+    assert np.all(found.error_estimate["contact_radius"] < 1e-7)
+
+
+def test_a_liquid_under_a_falling_force_creeps_on_in_closed_form():
+    """Springs reached out to 24 million times the depth, and the history was refused."""
+    force, tau = np.array([0.03, 0.03, 0.009, 0.012]), 0.05
+    liquid = PronySeries(long_term_shear_modulus=0.0, shear_moduli=[1.0], relaxation_times=[tau])
+    scene = Scene(
+        layer=HALF_SPACE,
+        indenter=Paraboloid(radius_of_curvature=10.0),
+        loading=ForceHistory(time=TIMES, force=force),
+        effects=(liquid,),
+    )
+    answer = Mdr().solve(scene)
+    crept = np.concatenate([[0.0], np.cumsum(0.5 * (force[1:] + force[:-1]) * np.diff(TIMES))]) / tau
+    # F = 4/3 E* sqrt(R) delta^(3/2) of a half-space, E* = 4.
+    expected = ((force + crept) * 0.75 / (4.0 * math.sqrt(10.0))) ** (2.0 / 3.0)
+    np.testing.assert_allclose(answer.indentation_depth, expected, rtol=1e-12)
+    np.testing.assert_allclose(answer.contact_radius, np.sqrt(10.0 * expected), rtol=1e-12)
+    assert np.all(answer.error_estimate["indentation_depth"] < 1e-12)
+
+
+@pytest.mark.slow
+def test_after_a_fall_steps_only_where_the_contact_has_been_larger():
+    """The depth is exact again once the contact is larger than ever; before, it is less than F_e would make it."""
+    scene = Scene(
+        layer=HALF_SPACE,
+        indenter=Paraboloid(radius_of_curvature=10.0),
+        loading=ForceHistory(time=[0.0, 0.5, 1.0, 1.5, 2.0], force=[0.0, 0.02, 0.005, 0.03, 0.01]),
+        effects=(SOLID,),
+    )
+    answer, law = Mdr(accuracy=1e-7).solve(scene), SpringLaw.of(relaxation_of(scene))
+    stepped = followed_history(scene, scene.loading, law, Mdr().flat_punch, COARSE)
+    load = growing.elastic_force(law, scene.loading)
+    expected = (load * 0.75 / (4.0 * math.sqrt(10.0))) ** (2.0 / 3.0)
+    known = np.array([True, True, False, True, False])
+    np.testing.assert_allclose(answer.indentation_depth[known], expected[known], rtol=1e-12)
+    assert np.all(answer.indentation_depth[~known] < 0.999 * expected[~known])
+    for name in ("indentation_depth", "contact_radius"):
+        error = answer.error_estimate[name]
+        assert np.all(error[known] < 1e-12)
+        assert np.all(error[~known] > 1e-12)
+        apart = np.abs(getattr(answer, name) - getattr(stepped, name))
+        assert np.all(apart <= answer.uncertainty(name) + stepped.uncertainty(name)), name
+
+
+def test_at_which_instants_no_step_is_needed():
+    """Where F_e has never been larger, though it passed a peak between two instants."""
+    law = SpringLaw.of(SOLID.relaxation)
+    scene = Scene(
+        layer=HALF_SPACE,
+        indenter=Paraboloid(radius_of_curvature=10.0),
+        loading=ForceHistory(time=[0.0, 0.5, 1.0, 1.1, 1.5, 2.0], force=[0.0, 0.02, 0.005, 0.0199, 0.03, 0.03]),
+        effects=(SOLID,),
+    )
+    assert growing.without_steps(law, scene).tolist() == [True, True, False, False, True, True]
+
+
+def test_a_flat_punch_needs_no_steps_whatever_the_force_does():
+    scene = Scene(
+        layer=HALF_SPACE,
+        indenter=FlatPunch(radius=0.5),
+        loading=ForceHistory(time=TIMES, force=[0.0, 0.02, 0.005, 0.0]),
+        effects=(SOLID,),
+    )
+    answer, law = Mdr().solve(scene), SpringLaw.of(relaxation_of(scene))
+    # k = 2 E* a.
+    np.testing.assert_allclose(answer.indentation_depth, growing.elastic_force(law, scene.loading) / 4.0, rtol=1e-12)
+    assert answer.contact_radius.tolist() == [0.0, 0.5, 0.5, 0.0]
+
+
+@pytest.mark.parametrize("viscosity", [3.0, 30.0, 100.0])
+def test_a_punch_that_a_dashpot_stops_leaves_when_two_exponentials_say(viscosity):
+    """The contact time was 2e-2 off at accuracy 1e-4, and at 1e-6 8e-6 with 5e-6 stated."""
+    scene = Scene(
+        layer=HALF_SPACE,
+        indenter=FlatPunch(radius=0.5),
+        loading=Impact(mass=1.0, velocity=0.1),
+        effects=(KelvinVoigt(shear_modulus=1.0, viscosity=viscosity),),
+    )
+    stiffness = 4.0  # 2 E* a
+    root = math.sqrt((0.5 * viscosity * stiffness) ** 2 - stiffness)
+    fast = -0.5 * viscosity * stiffness - root
+    slow = stiffness / fast
+    # delta = (exp(slow t) - exp(fast t)) v0/(slow - fast), at the end without acceleration.
+    expected = 2.0 * math.log(fast / slow) / (slow - fast)
+    for accuracy in (1e-4, 1e-6):
+        answer = Mdr(accuracy=accuracy).solve(scene)
+        stated = answer.error_estimate["contact_time"].item()
+        assert abs(answer.contact_time / expected - 1.0) <= stated < 1e-7
+
+
+@pytest.mark.slow
+def test_a_closed_form_that_is_wrong_is_found_by_steps(monkeypatch):
+    def beyond():
+        rows = campaign(Mdr(), seed=3, count=4, family="growing", ratio=(0.1, 5.0), other_units=False)
+        return sum(not row.holds for row in rows)
+
+    assert beyond() == 0
+    exact = growing.elastic_force
+    monkeypatch.setattr(growing, "elastic_force", lambda law, loading: exact(law, loading) * (1.0 + 1e-4))
+    assert beyond() > 0
