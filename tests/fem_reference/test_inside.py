@@ -274,3 +274,28 @@ def test_hydrostatic_pressure_is_as_accurate_at_nu_of_one_half(ratio):
         meshes.add(path.settings["mesh"])
     assert len(meshes) == 1
     assert errors[1] < 3.0 * errors[0] < 1e-4
+
+
+@pytest.mark.parametrize("distance", [1e-7, 1e-5])
+def test_close_to_the_edge_of_a_punch_the_singular_stress_is_unknown(distance):
+    """Below a cell from the edge: 3.6 of the stress off, 0.055 stated; the displacement 5.3 times beyond."""
+    layer = LAYER.replace(poissons_ratio=0.5, support="bonded")
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=2.5 * A), loading=IndentationDepths([0.01 * A]))
+    radius, depth = 2.5 * A * (1.0 - distance), 2.5 * A * distance
+    found, exact = (method.solve(scene).inside().at(radius, depth) for method in (Fem(accuracy=1e-2), Mdr()))
+    off = max(abs(float(getattr(found, name) - getattr(exact, name))) for name in STRESSES)
+    scale = max(abs(float(getattr(exact, name))) for name in STRESSES)
+    assert off <= float(found.error_estimate["stress"]) * scale
+    moved = abs(float(found.axial_displacement - exact.axial_displacement)) / (0.01 * A)
+    assert moved <= float(found.error_estimate["displacement"])
+
+
+@pytest.mark.parametrize("thickness", [4e-3, 2.5e-2])
+def test_all_that_the_indenter_touches_moves_with_its_depth(thickness):
+    """Displacements err at least as the depth does: up to 2.7 times what was stated at accuracy 1e-2."""
+    scene = Scene(
+        layer=LAYER.replace(thickness=thickness), indenter=Paraboloid(radius_of_curvature=R), loading=ContactRadii([A])
+    )
+    path = Fem(accuracy=1e-2).solve(scene)
+    stated = float(path.inside().at(0.5 * A, 1e-6 * A).error_estimate["displacement"])
+    assert stated >= path.error_estimate["indentation_depth"][0]

@@ -7,6 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from contact import InvalidInput
 from contact.answer.inside import InsideFields
@@ -63,6 +64,7 @@ class FemInterior:
         error[:, 2:7] += np.sqrt(2.0) * self._edge_pressure * self._share_at_edge(points)[:, None]
         error[:, _GROUPS["pressure_gradient"]] += self._gradient_at_edge(points)[:, None]
         error += self._from_the_end(points[0])
+        error[self._ends_at_edge[places.triangles]] += self._singular(points)[self._ends_at_edge[places.triangles]]
         return InsideFields(
             **dict(zip(NAMES, (values * self._units).T, strict=True)), error_estimate=self._stated(values, error)
         )
@@ -97,6 +99,25 @@ class FemInterior:
         away = np.maximum(np.hypot(points[0] - 1.0, points[1]), np.finfo(float).tiny)
         change = np.minimum(np.sqrt(2.0) * self._share_at_edge(points) / away, 1.0 / np.sqrt(2.0 * away))
         return np.asarray(self._edge_pressure * (change if self.missed else np.zeros_like(away)))
+
+    def _singular(self, points: FloatArray) -> FloatArray:
+        """Fields that no polynomial follows up to the edge, shape (n, 9): of a pressure A/sqrt(2 rho), or zero.
+
+        A = phi (delta - delta_0) / pi, of which a radius that is missed explains a part that is stated elsewhere.
+        Stresses are as large as that pressure, and the surface moves by 2 A sqrt(2 rho) over 1 - nu.
+        """
+        contact = self.section.contact
+        explained = self.missed * abs(contact.smooth_depth_slope)
+        pulled = max(abs(self.section.depth - contact.smooth_depth) - explained, 0.0)
+        amplitude = np.sqrt(contact.stiffness_slope / 2.0) * pulled / np.pi
+        root = np.sqrt(2.0 * np.maximum(np.hypot(points[0] - 1.0, points[1]), np.finfo(float).eps))[:, None]
+        return np.asarray(amplitude * np.hstack([*[4.0 * root] * 2, *[1.0 / root] * 5, *[root**-3.0] * 2]))
+
+    @cached_property
+    def _ends_at_edge(self) -> NDArray[np.bool_]:
+        """Whether a triangle has the contact's edge as a corner."""
+        mesh = self.section.contact.layer_mesh.mesh
+        return np.asarray((np.hypot(mesh.p[0] - 1.0, mesh.p[1])[mesh.t] < 1e-12).any(axis=0))
 
     @property
     def _edge_pressure(self) -> float:
