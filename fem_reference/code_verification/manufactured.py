@@ -99,7 +99,7 @@ class ManufacturedProblem:
     def _loads(self) -> FloatArray:
         """The body force on every unknown."""
         space = self._problem.space
-        local = np.einsum("tqi,bq,tq->tbi", self._force(), space.displacement_values, space.measure)
+        local = np.einsum("tqi,bq,tq->tbi", self._force(), space.terms[2], space.measure)
         loads = np.zeros((space.size, 1))
         np.add.at(loads[:, 0], space.element_displacements, local.reshape(len(local), -1))
         return loads

@@ -24,6 +24,8 @@ from fem_reference.discrete_layer.material import Moduli
 # Takes the mean of the normal strains (rr, zz, hoop) off a strain (rr, zz, hoop, sqrt(2) rz).
 DEVIATOR = np.eye(4)
 DEVIATOR[:3, :3] -= 1 / 3
+# Sums the normal strains.
+TRACE = np.array([1.0, 1.0, 1.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -62,6 +64,27 @@ def _quadrature(degree: int) -> tuple[FloatArray, FloatArray]:
 def _tabulated(element: Element, degree: int) -> Tabulation:
     """`tabulate` at the points of the rule for ``degree``: the same on every mesh."""
     return tabulate(element, _quadrature(degree)[0])
+
+
+@cache
+def _terms(element: Element, degree: int) -> FloatArray:
+    """Reference derivatives and value of every basis function at the points of a rule, shape (3, basis, point)."""
+    tabulated = _tabulated(element, degree)
+    return np.concatenate([tabulated.gradient, tabulated.value[None]])
+
+
+@cache
+def _term_products(element: Element, degree: int) -> FloatArray:
+    """Products of two terms of two basis functions, shape (3, 3, point, basis, basis)."""
+    terms = _terms(element, degree)
+    return np.asarray(np.einsum("aip,bjp->abpij", terms, terms))
+
+
+@cache
+def _pressure_products(pair: ElementPair, degree: int) -> FloatArray:
+    """Those of a displacement's terms and a pressure, shape (3, point, pressure, basis)."""
+    pressures = _tabulated(pair.pressure, degree).value
+    return np.asarray(np.einsum("aip,kp->apki", _terms(pair.displacement, degree), pressures))
 
 
 @dataclass(frozen=True)
@@ -117,21 +140,14 @@ class Space:
         return np.asarray(2 * np.pi * self.radius * area)
 
     @property
-    def _tabulated_displacement(self) -> Tabulation:
-        return _tabulated(self.pair.displacement, 2 * self.pair.degree)
+    def terms(self) -> FloatArray:
+        """Reference derivatives and value of every scalar basis function, shape (3, basis, point)."""
+        return _terms(self.pair.displacement, 2 * self.pair.degree)
 
     @cached_property
-    def gradients(self) -> FloatArray:
-        """Gradients of the scalar basis, shape (triangle, 2, basis, point)."""
-        reference = self._tabulated_displacement.gradient
-        inverse = np.linalg.inv(self.jacobians)
-        flat = inverse.transpose(0, 2, 1) @ reference.reshape(2, -1)
-        return flat.reshape(len(flat), 2, *reference.shape[1:])
-
-    @cached_property
-    def displacement_values(self) -> FloatArray:
-        """Scalar basis values, shape (basis, point)."""
-        return self._tabulated_displacement.value
+    def inverse_jacobians(self) -> FloatArray:
+        """``dX/dx`` of each triangle, shape (triangle, 2, 2)."""
+        return np.asarray(np.linalg.inv(self.jacobians))
 
     @cached_property
     def pressure_values(self) -> FloatArray:
@@ -140,16 +156,16 @@ class Space:
 
     @cached_property
     def strains(self) -> FloatArray:
-        """Strain of every basis function, shape (triangle, point, 4, 2 x basis)."""
-        gradient = self.gradients.transpose(0, 3, 1, 2)
-        triangles, points, _, basis = gradient.shape
-        strain = np.zeros((triangles, points, 4, basis, 2))
-        strain[:, :, 0, :, 0] = gradient[:, :, 0]
-        strain[:, :, 1, :, 1] = gradient[:, :, 1]
-        strain[:, :, 2, :, 0] = self.displacement_values.T / self.radius[:, :, None]
-        strain[:, :, 3, :, 0] = gradient[:, :, 1] * np.sqrt(0.5)
-        strain[:, :, 3, :, 1] = gradient[:, :, 0] * np.sqrt(0.5)
-        return strain.reshape(triangles, points, 4, 2 * basis)
+        """Strain by (component, term) of a displacement's basis function, shape (triangle, 4, 6).
+
+        The terms are its two reference derivatives and its value over r.
+        """
+        inverse = self.inverse_jacobians
+        strain = np.zeros((len(inverse), 4, 2, 3))
+        strain[:, 0, 0, :2], strain[:, 1, 1, :2] = inverse[:, :, 0], inverse[:, :, 1]
+        strain[:, 3, 0, :2], strain[:, 3, 1, :2] = np.sqrt(0.5) * inverse[:, :, 1], np.sqrt(0.5) * inverse[:, :, 0]
+        strain[:, 2, 0, 2] = 1.0
+        return strain.reshape(-1, 4, 6)
 
     @cached_property
     def element_displacements(self) -> IntArray:
@@ -197,26 +213,51 @@ class Space:
 
 def shear_elements(space: Space, shear_modulus: float | FloatArray) -> FloatArray:
     """``2 mu int dev(u) : dev(v)`` of each triangle."""
-    # The root of the weight is multiplied into the small matrix: half the passes over the strains.
-    deviator = (DEVIATOR * np.sqrt(2 * shear_modulus * space.measure)[:, :, None, None]) @ space.strains
-    flat = deviator.reshape(len(deviator), -1, deviator.shape[-1])
-    return flat.transpose(0, 2, 1) @ flat
-
-
-def _divergences(space: Space) -> FloatArray:
-    """``div u`` of every basis function, shape (triangle, point, 2 x basis)."""
-    return np.asarray(space.strains[:, :, :3].sum(axis=2))
+    return _strain_elements(space, 2 * shear_modulus * space.measure, DEVIATOR)
 
 
 def volume_elements(space: Space, bulk_modulus: float) -> FloatArray:
     """``K int div u div v`` of each triangle."""
-    weighted = _divergences(space) * np.sqrt(bulk_modulus * space.measure)[:, :, None]
-    return weighted.transpose(0, 2, 1) @ weighted
+    return _strain_elements(space, bulk_modulus * space.measure, np.outer(TRACE, TRACE))
+
+
+def _strain_elements(space: Space, weight: FloatArray, form: FloatArray) -> FloatArray:
+    """``int eps(u) : form : eps(v) weight`` of each triangle.
+
+    A sum over pairs of terms and points: what a triangle is multiplies what the element is, in few large products.
+    """
+    strains, products = space.strains, _term_products(space.pair.displacement, 2 * space.pair.degree)
+    mutual = (strains.transpose(0, 2, 1) @ form @ strains).reshape(-1, 2, 3, 2, 3, 1)
+    weights, basis = _over_radius(space, weight), space.terms.shape[1]
+    elements = np.empty((len(weight), basis, 2, basis, 2))
+    for one, other in ((0, 0), (0, 1), (1, 1)):
+        # Axial displacements have no part over r.
+        i, j = slice(3 - one), slice(3 - other)
+        share = mutual[:, one, i, other, j] * weights[:, i, j]
+        block = share.reshape(len(share), -1) @ products[i, j].reshape(-1, basis**2)
+        elements[:, :, one, :, other] = block.reshape(-1, basis, basis)
+    elements[:, :, 1, :, 0] = elements[:, :, 0, :, 1].transpose(0, 2, 1)
+    return elements.reshape(-1, 2 * basis, 2 * basis)
+
+
+def _over_radius(space: Space, weight: FloatArray) -> FloatArray:
+    """``weight`` over r once for each of two terms that is a value over r, shape (triangle, 3, 3, point)."""
+    over = np.ones((len(weight), 3, weight.shape[1]))
+    over[:, 2] = 1 / space.radius
+    return (weight[:, None] * over)[:, :, None] * over[:, None]
 
 
 def constraint_elements(space: Space) -> FloatArray:
     """``- int q div u`` of each triangle, shape (triangle, pressure, displacement)."""
-    return -space.pressure_values @ (space.measure[:, :, None] * _divergences(space))
+    divergence = (TRACE @ space.strains).reshape(-1, 2, 3, 1)
+    weights, basis = _over_radius(space, space.measure)[:, 0], space.terms.shape[1]
+    products = _pressure_products(space.pair, 2 * space.pair.degree)
+    elements = np.empty((len(weights), len(space.pressure_values), basis, 2))
+    for component in range(2):
+        share = -divergence[:, component, : 3 - component] * weights[:, : 3 - component]
+        block = share.reshape(len(share), -1) @ products[: 3 - component].reshape(-1, elements[0, ..., 0].size)
+        elements[..., component] = block.reshape(elements.shape[:-1])
+    return elements.reshape(*elements.shape[:2], -1)
 
 
 def pressure_mass_elements(space: Space) -> FloatArray:
@@ -240,13 +281,19 @@ def saddle_elements(space: Space, shear: FloatArray, constraint: FloatArray, com
 
 
 def scatter(elements: FloatArray, unknowns: IntArray, size: int) -> sparse.csc_array:
-    """Sum element matrices (triangle, n, n) into a sparse matrix."""
+    """Sum element matrices (triangle, n, n) into a sparse matrix.
+
+    A product of sparse matrices adds the rows that belong to one unknown: its duplicates need no sorting.
+    """
     count = unknowns.shape[1]
     # Half as many bytes to move: no mesh has 2^31 unknowns.
     short = unknowns.astype(np.int32)
-    rows = np.repeat(short, count, axis=1).ravel()
-    columns = np.tile(short, (1, count)).ravel()
-    return sparse.coo_array((elements.ravel(), (rows, columns)), shape=(size, size)).tocsc()
+    ends = np.arange(short.size + 1, dtype=np.int32)
+    rows = sparse.csr_array(
+        (elements.ravel(), np.repeat(short, count, axis=0).ravel(), count * ends), (short.size, size)
+    )
+    belongs = sparse.csc_array((np.ones(short.size), short.ravel(), ends), shape=(size, short.size))
+    return (belongs.tocsr() @ rows).tocsc()
 
 
 def node_positions(space: Space) -> FloatArray:

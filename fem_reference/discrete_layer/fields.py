@@ -68,9 +68,14 @@ def point_fields(space: Space, constants: ElasticConstants, solutions: FloatArra
     """Fields of solutions (size, m) on the given triangles."""
     moduli = constants.on(triangles)
     local = solutions.T[:, space.element_displacements[triangles]]
-    nodal = local.reshape(*local.shape[:2], -1, 2)
-    gradient = np.einsum("mtbi,tjbq->mtqij", nodal, space.gradients[triangles], optimize=True)
-    displacement = np.einsum("mtbi,bq->mtqi", nodal, space.displacement_values, optimize=True)
+    terms = space.terms
+    nodal = np.swapaxes(local.reshape(*local.shape[:2], -1, 2), 2, 3)
+    # Two reference derivatives and the value at points, shape (m, triangle, component, 3, point).
+    values = (nodal.reshape(-1, terms.shape[1]) @ terms.swapaxes(0, 1).reshape(terms.shape[1], -1)).reshape(
+        *nodal.shape[:3], 3, -1
+    )
+    across = space.inverse_jacobians[triangles].transpose(0, 2, 1)[:, None] @ values[:, :, :, :2]
+    gradient, displacement = np.moveaxis(across, -1, 2), np.moveaxis(values[:, :, :, 2], -1, 2)
     radius = space.radius[triangles]
     hoop = displacement[..., 0] / radius
     if space.pair.is_mixed:

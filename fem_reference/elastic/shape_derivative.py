@@ -70,7 +70,7 @@ def energy_shape_derivative(problem: LayerProblem, solutions: FloatArray, eta: F
     mesh = problem.layer_mesh.mesh
     moving = np.flatnonzero((eta[mesh.t] != 0).any(axis=0))
     fields = point_fields(problem.space, problem.constants, solutions, moving)
-    inverse = np.linalg.inv(problem.space.jacobians[moving])
+    inverse = problem.space.inverse_jacobians[moving]
     corner = eta[mesh.t[:, moving]]
     eta_gradient = np.einsum("td,tdj->tj", np.array([corner[1] - corner[0], corner[2] - corner[0]]).T, inverse)
     points, _ = problem.space.quadrature

@@ -54,9 +54,12 @@ def condensed(elements: FloatArray, space: Space) -> CondensedElements:
     outer = elements.shape[1] - space.inner_count
     inverse = np.asarray(np.linalg.inv(elements[:, outer:, outer:]), dtype=np.float64)
     coupling = elements[:, outer:, :outer]
-    matrices = elements[:, :outer, :outer].copy()
+    shared = elements[:, :outer, :outer]
     if space.inner_count:
-        matrices -= coupling.transpose(0, 2, 1) @ (inverse @ coupling)
+        matrices = coupling.transpose(0, 2, 1) @ (inverse @ coupling)
+        np.subtract(shared, matrices, out=matrices)
+    else:
+        matrices = shared.copy()
     unknowns = space.element_unknowns
     return CondensedElements(matrices, unknowns[:, :outer], unknowns[:, outer:], inverse, coupling)
 
