@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
-from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO, RUNGS, IntegralEquation
+from bem.layer_equation.flat_punch_source import RUNGS, IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSource
 from contact import CoatedPair, ElasticLayer, InvalidInput, refuse_other_layers
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, in_range

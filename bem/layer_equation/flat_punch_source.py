@@ -13,7 +13,7 @@ from bem.kernels.protocol import SurfaceKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
-from bem.layer_equation.protocol import FlatPunchSolution
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
 from contact import ElasticLayer, InvalidInput, Layer
 from contact.answer.one_thread import one_thread
@@ -25,8 +25,6 @@ if TYPE_CHECKING:
     from bem.layer_equation.any_layer.graded_panels_factor import AnyLayerSolution
     from bem.layer_equation.any_layer.graded_solution import GradedSolution
 
-# Largest a/h on narrow panels; beyond, roundings are more than what wide panels and energies leave.
-LARGEST_FACTORISED_RATIO: Final = 160.0
 # Ratios are rounded up to these, so that a larger cached factor never changes an answer's last digits.
 RUNGS: Final = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 80.0, LARGEST_FACTORISED_RATIO)
 

@@ -25,6 +25,8 @@ from contact.scene.profiles import Profile
 if TYPE_CHECKING:
     from bem.layer_equation.profiles.at_radii import RadiusWeights
 
+# Largest a/h on narrow panels; beyond, roundings are more than what wide panels and energies leave.
+LARGEST_FACTORISED_RATIO = 160.0
 # Multiplies the relative error of the depth, and gives that of the pressure, where the profile is fitted. Against
 # refined data the pressure's error was at most 0.5 of the depth's beyond a/h = 160 and 1.6 with tables; the rest is a
 # margin.

@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from bem.adhesion.equilibrium_branch import DEPTH, FORCE, EquilibriumBranch
 from bem.adhesion.withdrawal import CONTROLS, MACHINE, Route
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSource
 from contact import (
     Adhesion,
     ContactPath,

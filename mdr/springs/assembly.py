@@ -8,10 +8,9 @@ from functools import partial
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.profiles.half_space_slope import profile_slope
-from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource, LayerShare
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
 from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray

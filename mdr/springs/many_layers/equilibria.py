@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.flat_punch_source import LARGEST_FACTORISED_RATIO
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSource
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.root_steps import MOST_STEPS
 from contact import ContactRadii, FlatPunch, InvalidInput, Layer, NormalForces, Profile, Scene
