@@ -23,11 +23,11 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
 
-# Distance from the contact's edge, over `edge_scale`, at which the slope of delta_0 is read.  Measured at the default
-# settings on eight profiles and rings of 1e-8 to 1 radii (nu = 0 to 1/2, 2026-11-23): there it errs by at most 1e-3,
-# by 5e-2 in rings of 1e-8; nearer by up to a factor of 100 beside a flat end, further away by the next order.  That
-# order is not extrapolated: noise in narrow rings would grow.
-READING = 3e-4
+# Width of the widest ring beside the contact's edge in which the slope of delta_0 is read, over `edge_scale`.  Measured
+# with MDR (paraboloid, cones, r^5, nu = 0 and 1/2, h/a = 0.3 and 3, 2026-11-23): the slope errs by at most 6e-4 at the
+# default settings, 2e-2 at a growth of 1 and 4e-2 at 1.4; one cell 3e-4 beside the edge told it 770 times off there.
+# Wider rings err more on fine meshes, narrower ones on coarse.
+WIDEST = 0.2
 
 
 @dataclass(frozen=True)
@@ -108,18 +108,21 @@ def _traction(fields: PointFields, eta_gradient: FloatArray) -> FloatArray:
 def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -> float:
     """d(delta_0)/da, from the pressures of flat punch and smooth contact: p / p_1 = 2 (a - r) delta_0' at the edge.
 
-    Both are superpositions of flat punches of radii up to a.  Read three cells inside, beyond the singular one, and so
-    far that what delta_0 errs by, which is a flat punch's pressure, does not count.
+    Both are superpositions of flat punches of radii up to a.  Means over three rings, each half as wide as the last,
+    are extrapolated to none: a mean hardly feels the waves of single cells, and wide rings hardly what delta_0 errs by,
+    which is a flat punch's pressure.
 
     Args:
         trace: functions on the contact.
         pressures: of the flat punch and of smooth contact, in ``trace``, shape (n, 2).
         scale: `edge_scale`.
     """
-    inner = trace.vertices[:-3]
-    inside = inner[inner <= 1.0 - READING * scale][-1:]
-    punch, smooth = (trace.evaluate(values, inside) for values in pressures.T)
-    return float((smooth / punch / (2 * (1 - inside)))[0])
+    radius, weight = (values.ravel() for values in trace.gauss(trace.degree + 2))
+    punch, smooth = (trace.evaluate(values, radius) for values in pressures.T)
+    share = (1.0 - radius) / (WIDEST * scale * 2.0 ** -np.arange(3.0)[:, None])
+    weight = weight * share * np.maximum(1.0 - share, 0.0) ** 2
+    means = (weight @ smooth) / (weight @ (2.0 * (1.0 - radius) * punch))
+    return float(means @ [1.0, -6.0, 8.0] / 3.0)
 
 
 def edge_scale(problem: LayerProblem, indenter: ScaledIndenter) -> float:

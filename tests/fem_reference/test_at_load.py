@@ -5,7 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contact import Cone, ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, StageLog, TruncatedCone
+from contact import (
+    Cone,
+    ContactRadii,
+    IndentationDepths,
+    Layer,
+    Paraboloid,
+    Scene,
+    StageLog,
+    TruncatedCone,
+)
 from fem_reference import Fem
 from fem_reference.elastic.at_load import Load
 from fem_reference.elastic.prescribed_radius import quick_solution
@@ -26,6 +35,20 @@ def test_a_quick_solution_knows_how_its_depth_grows(indenter, radius):
     depth = Mdr().solve(scene).indentation_depth
     found = quick_solution(scene, radius, StageLog()).smooth_depth_slope
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=1e-2, abs=0)
+
+
+@pytest.mark.parametrize("indenter", [Paraboloid(radius_of_curvature=30.0), Cone(slope=0.05)])
+def test_a_coarse_mesh_knows_how_its_depth_grows(indenter):
+    """Read in one cell the slope was -770 and -920 times what it is."""
+    near = 1 + 1e-4 * np.array([-1.0, 0.0, 1.0])
+    scene = Scene(
+        layer=Layer(thickness=0.3, youngs_modulus=1.0, poissons_ratio=0.5),
+        indenter=indenter,
+        loading=ContactRadii(near),
+    )
+    depth = Mdr().solve(scene).indentation_depth
+    found = Fem(growth=1.4, truncation=1e-5).solve_contact(scene, 1.0, StageLog()).answer.smooth_depth_slope
+    assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=0.1, abs=0)
 
 
 def test_the_radius_at_a_depth_is_covered():

@@ -86,6 +86,7 @@ NIGHTLY_PLANS: Final = (
         claims_sharpness=False,
     ),
     CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=24, smallest=0.1, largest=5.0),
+    CoveragePlan(method="fem", settings={"growth": 1.4}, family="elastic", count=40, smallest=0.1, largest=5.0),
     CoveragePlan(method="mdr", settings={}, family="growing", count=24, smallest=0.1, largest=5.0),
 )
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}

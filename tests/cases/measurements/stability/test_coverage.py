@@ -141,7 +141,8 @@ def test_sharpness_is_claimed_where_the_plan_says_so(record, claims_sharpness):
 def test_suite_nightly_judges_what_no_other_plan_does():
     kinds = {(plan.method, plan.family, plan.settings.get("points")) for plan in coverage.NIGHTLY_PLANS}
     wanted = {("bem", "elastic", 256), ("bem", "elastic", 512), ("bem", "adhering_table", 128)}
-    assert kinds == wanted | {("fem", "adhering_table", None), ("fem", "many_loads", None)}
+    by_elements = {("fem", family, None) for family in ("adhering_table", "many_loads", "elastic")}
+    assert kinds == wanted | by_elements | {("mdr", "growing", None)}
     assert all(plan in coverage.PLANS for plan in coverage.NIGHTLY_PLANS)
 
 
