@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,7 +22,7 @@ from mdr.impact.motion import COARSER
 from mdr.impact.results import ImpactResults, fine_and_change, refuse_rest
 from mdr.impact.units import impact_of
 from mdr.springs.assembly import equivalent_system
-from mdr.springs.error_model import EPS
+from mdr.springs.error_model import DEFAULT_ACCURACY, EPS
 
 # First step for a tolerance of one, in units of time; with the tolerance it goes as its tenth root. Chosen.
 _FIRST_STEP = 1.4
@@ -42,11 +42,16 @@ class _Problem:
 
 
 def flat_punch_results(
-    scenes: Sequence[Scene], flat_punch: FlatPunchSource, integrate: Integrate, accuracy: float, *, tolerance: float
+    scenes: Sequence[Scene],
+    flat_punch: FlatPunchSource,
+    integrate: Integrate,
+    accuracy: float,
+    *,
+    tolerance: Callable[[float], float],
 ) -> ImpactResults:
-    """Many flat punches with the same number of relaxation times."""
+    """Many flat punches with the same number of relaxation times; ``tolerance`` is that of steps for an accuracy."""
     problem = _problem(scenes, flat_punch)
-    return _results(problem, _motion(problem, integrate, tolerance), accuracy)
+    return _results(problem, _motion(problem, integrate, accuracy, tolerance), accuracy)
 
 
 def flat_punch_history(
@@ -56,14 +61,14 @@ def flat_punch_history(
     accuracy: float,
     *,
     integrate: Integrate,
-    tolerance: float,
+    tolerance: Callable[[float], float],
     settings: Mapping[str, Setting],
 ) -> ImpactHistory:
     """One flat punch with its whole history."""
     with log.stage("equivalent_system"):
         problem = _problem([scene], flat_punch)
     with log.stage("impact"):
-        motion = _motion(problem, integrate, tolerance)
+        motion = _motion(problem, integrate, accuracy, tolerance)
     log.count("steps", int(motion.counts.sum()))
     log.count("sweeps", motion.sweeps)
     outcome = _results(problem, motion, accuracy)
@@ -116,11 +121,23 @@ def _problem(scenes: Sequence[Scene], flat_punch: FlatPunchSource) -> _Problem:
     return _Problem(lanes, time, stiffness, velocity, mass, radius, error)
 
 
-def _motion(problem: _Problem, integrate: Integrate, tolerance: float) -> Trajectory:
+def _accuracy(problem: _Problem, accuracy: float) -> FloatArray:
+    """Of each impact, shape (n,): beyond critical damping at least the default one.
+
+    A dashpot then lets the force end at so flat an angle that the contact time loses four digits.
+    """
+    damping = 0.5 * problem.lanes.viscosity * np.sqrt(problem.lanes.inertia)
+    return np.asarray(np.where(damping >= 1.0, min(accuracy, DEFAULT_ACCURACY), accuracy))
+
+
+def _motion(
+    problem: _Problem, integrate: Integrate, accuracy: float, tolerance: Callable[[float], float]
+) -> Trajectory:
     """From first touch to the return of the force to zero, each impact once as asked and once more coarsely."""
     count = problem.mass.size
     lanes = problem.lanes.take(np.tile(np.arange(count), 2))
-    tolerances = np.repeat([tolerance, COARSER * tolerance], count)
+    fine = np.array([tolerance(float(own)) for own in _accuracy(problem, accuracy)])
+    tolerances = np.append(fine, COARSER * fine)
     released = EndCondition(0, np.zeros(2 * count), -1)
     return integrate(
         lanes, lanes.start(), (released,), tolerance=tolerances, first_step=_FIRST_STEP * tolerances ** (1.0 / STAGES)
@@ -135,7 +152,7 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
     refuse_rest(motion.final[3, : problem.mass.size], problem.lanes.long_term)
     radius = np.tile(problem.radius, 2)
     both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
-    values, change = fine_and_change(both, accuracy, motion.error)
+    values, change = fine_and_change(both, _accuracy(problem, accuracy), motion.error)
     # Force and speed carry a rounding of what they began with, eta and one; at no force v = -G_inf delta/eta is left.
     change[0] += 2.0 * EPS / values[0]
     return ImpactResults(

@@ -62,7 +62,7 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
     Args:
         scaled: The impacts and their units.
         impacts: Their motions.
-        accuracy: That was asked for.
+        accuracy: That was asked for, shape (n,) or one.
 
     Raises:
         NotConvergedError: If an indenter comes to rest in the layer.
@@ -100,7 +100,7 @@ def _depth_rounding(lanes: ImpactBatch, depth: FloatArray) -> FloatArray:
 
 
 def fine_and_change(
-    both: FloatArray, accuracy: float, within: FloatArray, rounding: FloatArray | float = IMPACT_ROUNDING
+    both: FloatArray, accuracy: FloatArray | float, within: FloatArray, rounding: FloatArray | float = IMPACT_ROUNDING
 ) -> tuple[FloatArray, FloatArray]:
     """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
 
@@ -110,12 +110,12 @@ def fine_and_change(
 
     Args:
         both: Restitution, contact time, peaks of force, depth and radius, shape (5, 2 n).
-        accuracy: That was asked for.
+        accuracy: That was asked for, shape (n,) or one.
         within: Sum of the local errors within steps, shape (2 n,).
         rounding: Relative, shape (n,).
     """
     fine, coarse = np.split(both, 2, axis=1)
-    chance = AGREEMENT_SHARES * accuracy * max(accuracy / DEFAULT_ACCURACY, 1.0) ** COARSER_POWER
+    chance = AGREEMENT_SHARES * accuracy * np.maximum(accuracy / DEFAULT_ACCURACY, 1.0) ** COARSER_POWER
     change = np.abs(fine - coarse) / np.abs(fine) + chance
     of_peaks = change[_TIME + 1 :].max(axis=0)
     change[_TIME] += (

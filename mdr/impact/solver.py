@@ -68,10 +68,8 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
     tolerance, integrate = step_tolerance(accuracy), integrator(compiled=bool(known.get("compiled")))
     if is_flat(scene):
         refuse_pulling_at(scene, flat_punch, scene.indenter.max_radius)
-        # The force of a punch that viscosity stops ends at a flat angle: its contact time would lose four digits.
-        finer = min(accuracy, DEFAULT_ACCURACY)
         return flat_punch_history(
-            scene, flat_punch, log, finer, integrate=integrate, tolerance=step_tolerance(finer), settings=known
+            scene, flat_punch, log, accuracy, integrate=integrate, tolerance=step_tolerance, settings=known
         )
     problem, motion = _pressed(scene, flat_punch, log, integrate, tolerance)
     legs = motion.way_in + motion.way_out
@@ -161,9 +159,7 @@ def _groups(
             return joined([results(*found, accuracy) for found in alone], np.arange(len(chunk)))
 
     def flat_results(chunk: list[int]) -> ImpactResults:
-        finer = min(accuracy, DEFAULT_ACCURACY)
-        own = [scenes[i] for i in chunk]
-        return flat_punch_results(own, flat_punch, integrate, finer, tolerance=step_tolerance(finer))
+        return flat_punch_results([scenes[i] for i in chunk], flat_punch, integrate, accuracy, tolerance=step_tolerance)
 
     found: list[tuple[list[int], _Solver]] = []
     for members, solve in ((list(shaped), shaped_results), (flat, flat_results)):
