@@ -36,9 +36,9 @@ _STEEPEST_MAPPED = 7.0
 # Distances from first touch, relative to the first piece, at which the exponent is looked for in turn: further out
 # only where the height is zero in double precision.
 _CLOSE = (1e-9, 1e-4, 1e-1)
-# How much closer it is looked for again, exponents that are told apart, and the least height [m] with all its digits.
+# How much closer it is looked for again, exponents that are told apart, and the least length [m] with all its digits.
 _CLOSER, _SAME_EXPONENT = 1e-9, 1e-6
-_LEAST_HEIGHT = np.finfo(float).tiny / EPS
+_LEAST_LENGTH = np.finfo(float).tiny / EPS
 
 
 def equivalent_system(
@@ -337,12 +337,12 @@ def _leading_exponent(indenter: Profile, scale: float) -> float:
 
 
 def _exponent_at_touch(indenter: Profile, excess: float) -> float:
-    """The least n that d ln g_hs/d ln x tends to from an excess [m] inwards; NaN where g_hs vanishes there.
+    """The least n that d ln g_hs/d ln x tends to from an excess [m] inwards; NaN where digits are lost.
 
     Of a sum of powers only the lowest one is left at the tip: a table's first slope may be a rounding.
     """
     near, far = half_space_profile(indenter, excess * np.array([1.0, 2.0]))
-    if near <= _LEAST_HEIGHT:
+    if min(near, excess) <= _LEAST_LENGTH:
         return np.nan
     exponent = float(np.log2(far / near))
     closer = _exponent_at_touch(indenter, excess * _CLOSER)
