@@ -51,13 +51,6 @@ GROUPS: Final = (
         families=("elastic",),
         quantities={"PRESSURE_ROUNDING": _PRESSURE, "SAMPLED_ROUNDING": _PRESSURE},
     ),
-    Group(
-        place=_SPRINGS,
-        names=("STIFFNESS_SHARE",),
-        methods=("mdr_table",),
-        families=("elastic",),
-        quantities={"STIFFNESS_SHARE": _STIFFNESS},
-    ),
     Group(place=_SPRINGS, names=("SPRINGS_TO_MOTION",), methods=_MDR, families=("impact", *_IN_TIME)),
     Group(
         place=_SPRINGS,
