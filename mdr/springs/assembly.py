@@ -16,7 +16,7 @@ from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedS
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
-from mdr.springs.half_space_profile import half_space_profile
+from mdr.springs.half_space_profile import half_space_profile, is_endless
 from mdr.springs.surface_fields import ContactFields
 
 # On coarse panels the last coefficients of a profile's pieces may be a tenth of the flat punch's own error: what is
@@ -260,11 +260,8 @@ def _for_profile(
 
 
 def _refuse_endless_depth(indenter: Profile, max_radius: float) -> None:
-    """A contact up to a sphere's equator would need an infinite depth."""
-    # That infinity is what is looked for.
-    with np.errstate(divide="ignore"):
-        depth = half_space_profile(indenter, np.asarray(max_radius - indenter.flat_radius))
-    if not np.isfinite(depth):
+    """A contact up to a sphere's equator, which positions within it may be rounded to, would need an infinite depth."""
+    if is_endless(indenter, max_radius * (1 + POSITION_ROUNDINGS * EPS)):
         raise InvalidInput(f"contact radius = {max_radius:g} m: {indenter.upright_end}; stay a little below")
 
 

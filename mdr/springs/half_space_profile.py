@@ -63,6 +63,16 @@ def _stretch(indenter: Profile, x: FloatArray, beyond: FloatArray, stop: FloatAr
     return values
 
 
+def is_endless(indenter: Profile, radius: float) -> bool:
+    """Whether a contact of this radius [m] reaches the indenter's end and that stands upright, as a sphere's does."""
+    if radius < indenter.max_radius or math.isinf(indenter.max_radius):
+        return False
+    # An infinite depth is what is looked for.
+    with np.errstate(divide="ignore"):
+        depth = half_space_profile(indenter, np.asarray(indenter.max_radius - indenter.flat_radius))
+    return not np.isfinite(depth)
+
+
 @half_space_profile.register
 def _(indenter: FlatPunch, excess: FloatArray) -> FloatArray:
     return np.zeros_like(excess)

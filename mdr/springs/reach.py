@@ -7,6 +7,7 @@ everywhere inside, and is not touched beside, is the answer (`beyond_falls`); wh
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -22,7 +23,6 @@ from contact import (
     NormalForces,
     Profile,
     Scene,
-    Sphere,
     UnsupportedSceneError,
 )
 from contact.answer.one_circle import refuse_touching
@@ -30,7 +30,7 @@ from contact.records.validation import FloatArray
 from mdr.springs.assembly import EndsTooSoon, SeveralContacts, contact_fields, equivalent_system
 from mdr.springs.beside_contact import circle_of
 from mdr.springs.equivalent_system import LEAST_EXCESS, EquivalentSystem
-from mdr.springs.half_space_profile import half_space_profile
+from mdr.springs.half_space_profile import half_space_profile, is_endless
 from mdr.springs.pulling import LEAST_TENSION, OneStep, refuse_pulling
 
 # First trial radius: the half-space's, capped at this a/h, beyond which that is no guide any more; chosen.
@@ -43,6 +43,8 @@ TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)
 BEYOND = 1.05
 # Growth of the radius up to which depth or force are sketched; chosen.
 SKETCHED = 1.5
+# What a trial radius leaves to an upright end at least, relative: closer by, positions have no digits left; chosen.
+LEAST_GAP = 16 * np.finfo(float).eps
 
 # Growth of the trial radius beyond a falling stretch; chosen.
 GROWTH = 1.5
@@ -70,14 +72,13 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
         if objection is not None:
             raise objection
         if radius >= indenter.max_radius:
-            if isinstance(indenter, Sphere):
-                raise InvalidInput(f"loading.values = {wanted:g}: the sphere has sunk to its equator; press less")
             raise InvalidInput(
                 f"loading.values = {wanted:g}: the indenter ends at a radius of {radius:g} m, where {reached:g} is "
                 "reached; ask for less or describe the indenter further out"
             )
-        further = _extrapolated(system, wanted / reached, isinstance(loading, NormalForces))
-        radius = min(further, _furthest(indenter, radius))
+        radius = _next_radius(system, indenter, wanted, reached, isinstance(loading, NormalForces))
+        if is_endless(indenter, radius * (1 + LEAST_GAP)):
+            raise InvalidInput(f"loading.values = {wanted:g}: {indenter.upright_end}; press less")
 
 
 def _up_to(
@@ -101,26 +102,18 @@ def _reached(system: EquivalentSystem, loading: Loading) -> tuple[float, float]:
     raise UnsupportedSceneError(f"loading {type(loading).__name__} has no largest contact radius of its own")
 
 
-def _furthest(indenter: Profile, radius: float) -> float:
-    """Largest next radius: the indenter's end, or half way to an end where it stands upright, as a sphere does."""
-    end = indenter.max_radius
-    # An infinite depth is what is looked for.
-    with np.errstate(divide="ignore"):
-        upright = np.isfinite(end) and not np.isfinite(
-            half_space_profile(indenter, np.array(end - indenter.flat_radius))
-        )
-    return (radius + end) / 2 if upright else end
+def _next_radius(system: EquivalentSystem, indenter: Profile, wanted: float, reached: float, is_force: bool) -> float:
+    """Where depth or force are reached if they go on as they do, and a little [m].
 
-
-def _extrapolated(system: EquivalentSystem, factor: float, is_force: bool) -> float:
-    """Where depth or force has grown by the factor if it goes on with its present power of the radius, and a little."""
-    a = system.max_radius
-    rise = float(system.mdr_profile_slope(a))
-    if is_force:  # dF = k_N dg, Eq. (5)
-        exponent = a * float(system.contact_stiffness(a)) * rise / float(system.elastic_force(a))
-    else:
-        exponent = a * rise / float(system.mdr_profile(a))
-    return a * float(np.clip(1.05 * factor ** (1 / exponent), 1.05, 2.0))
+    They grow with a power of the radius, and towards an end that stands upright with the logarithm of what is left.
+    """
+    a, end = system.max_radius, indenter.max_radius
+    rise = float(system.mdr_profile_slope(a)) * (float(system.contact_stiffness(a)) if is_force else 1.0)  # Eq. (5)
+    further = a * float(np.clip(1.05 * (wanted / reached) ** (reached / (a * rise)), 1.05, 2.0))
+    if not is_endless(indenter, end):
+        return min(further, end)
+    gap = end - a
+    return min(further, end - gap * min(0.5, math.exp(-1.05 * (wanted - reached) / (rise * gap))))
 
 
 def _first_radius(scene: Scene) -> float:

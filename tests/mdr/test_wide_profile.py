@@ -26,11 +26,13 @@ from contact import (
 )
 from mdr import Mdr, equivalent_system
 from mdr.closed_forms.asymptotic import thin_profile
+from mdr.springs import reach
 
 LAYERS = {
     "bonded 0.5": Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5),
     "bonded 0.3": Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3),
     "unbonded": Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3, support="unbonded"),
+    "half-space": Layer.half_space(youngs_modulus=0.91, poissons_ratio=0.3),
 }
 INDENTERS = [Paraboloid(radius_of_curvature=1.0), Cone(slope=1.0), TruncatedCone(flat_radius=30.0, slope=1.0)]
 SOURCE = IntegralEquation(nodes=20)
@@ -205,6 +207,27 @@ def test_beyond_it_the_refusal_names_both_lengths_and_what_is_answered():
         )
         with pytest.raises(InvalidInput, match=r"mdr takes the indenter out to|sunk to its equator"):
             Mdr().solve(scene)
+
+
+@pytest.mark.parametrize("name", ["half-space", "bonded 0.5"])
+def test_a_depth_that_asks_for_the_equator_is_refused_at_once(name, monkeypatch):
+    """Half of what was left was tried each time, 50 systems; the last ones took the logarithm of zero."""
+    made = []
+    monkeypatch.setattr(reach, "equivalent_system", lambda *all_, **more: made.append(1) or equivalent_system(*all_))
+    for radius in 26.562805794370153, 0.9, 4e-3:
+        for loading in IndentationDepths([40 * radius]), NormalForces([1e16]):
+            scene = Scene(layer=LAYERS[name], indenter=Sphere(radius=radius), loading=loading)
+            with pytest.raises(InvalidInput, match="the sphere has sunk to its equator; press less"):
+                Mdr().solve(scene)
+    assert len(made) < 6 * 8
+
+
+def test_the_last_number_before_an_equator_is_refused_in_words():
+    """Nodes were rounded onto the equator, and the logarithm of zero was taken."""
+    layer, radius = Layer(thickness=1.1097018302282244, youngs_modulus=1e6, poissons_ratio=0.5), 26.562805794370153
+    scene = Scene(layer=layer, indenter=Sphere(radius=radius), loading=ContactRadii([np.nextafter(radius, 0.0)]))
+    with pytest.raises(InvalidInput, match="the sphere has sunk to its equator; stay a little below"):
+        Mdr().solve(scene)
 
 
 @pytest.mark.slow
