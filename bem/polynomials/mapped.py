@@ -69,6 +69,14 @@ class MappedGrid:
         return self.left[:, None] + self.width[:, None] * gauss_nodes(self.count)[0] ** self.power[:, None]
 
     @property
+    def to_end(self) -> FloatArray:
+        """What is left from the nodes to the end, with all its digits, shape (q, m)."""
+        right = self.left + self.width
+        return (self.end - right)[:, None] + self.width[:, None] * (
+            1 - gauss_nodes(self.count)[0] ** self.power[:, None]
+        )
+
+    @property
     def weights(self) -> FloatArray:
         """Weights of integrals over d, shape (q, m)."""
         u, omega = gauss_nodes(self.count)
@@ -98,9 +106,8 @@ class MappedGrid:
         shares = [share if cut else share[[0, -1]] for share, cut in zip(shares, pieces, strict=True)]
         of_pieces = list(zip(shares, self.left, self.width, self.power, strict=True))
         left = np.concatenate([start + width * share[:-1] for share, start, width, _ in of_pieces])
-        widths = np.concatenate([width * np.diff(share) for share, _, width, _ in of_pieces])
         power = np.concatenate([np.append(own, np.ones(share.size - 2)) for share, *_, own in of_pieces])
-        return MappedGrid(left, widths, power, self.count)
+        return MappedGrid(left, np.diff(left, append=self.end), power, self.count)
 
 
 @dataclass(frozen=True)
@@ -143,15 +150,18 @@ class MappedFunction:
         """Values at mapped positions."""
         return piecewise_sum(self.coefficients, piece, 2 * u - 1) * self._factor(piece, u)
 
-    def up_to(self, end: float, function: Callable[[FloatArray], FloatArray]) -> MappedFunction:
-        """The same function on [0, end], end > 0: whole pieces as they are, and the last one anew where it is cut."""
+    def up_to(self, end: float, function: Callable[[FloatArray, FloatArray], FloatArray]) -> MappedFunction:
+        """The same function on [0, end], end > 0: whole pieces as they are, and the last one anew where it is cut.
+
+        Its function tells values at positions, which are also given as what is left from them to the end.
+        """
         grid = self.grid
         pieces = max(int(grid.left.searchsorted(end * (1 - GAP))), 1)
         if pieces == grid.left.size and end == grid.end:
             return self
         width = np.append(grid.width[: pieces - 1], end - grid.left[pieces - 1])
         kept = MappedGrid(grid.left[:pieces], width, grid.power[:pieces], grid.count)
-        last = function(kept.nodes[-1])
+        last = function(kept.nodes[-1], kept.to_end[-1])
         return MappedFunction(kept, np.vstack([self.node_values[: pieces - 1], last]), self.lead)
 
     def slope_at(self, piece: NDArray[np.intp], u: FloatArray) -> FloatArray:
@@ -302,7 +312,7 @@ def apart(points: FloatArray, others: FloatArray) -> FloatArray:
 
 
 def resolve(
-    function: Callable[[FloatArray], FloatArray],
+    function: Callable[[FloatArray, FloatArray], FloatArray],
     grid: MappedGrid,
     lead: float,
     *,
@@ -314,12 +324,13 @@ def resolve(
 
     Towards a mapped singularity pieces may become as small as they need; elsewhere a piece below a thousandth of its
     distance from the start shows noise, not structure, and the tail that is left goes into the error estimate.
-    Towards a pole at `far` (a sphere's equator) pieces shrink with the distance to it.
+    Towards a pole at `far` (a sphere's equator) pieces shrink with the distance to it. The function is asked at nodes,
+    and told what is left from them to the grid's end too: beside a pole positions have fewer digits.
     A mapped piece spends its polynomial degree in steps of its power: it is kept short against the given length scale,
     on which other functions of the same grid vary.
     """
     for _ in range(MAX_SPLITS):
-        resolved = MappedFunction(grid, function(grid.nodes), lead)
+        resolved = MappedFunction(grid, function(grid.nodes, grid.to_end), lead)
         right = grid.left + grid.width
         smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, 0.1 * (far - right))
         coarse = (resolved.truncation() > RESOLVED) & (grid.width > smallest)

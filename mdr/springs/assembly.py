@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from functools import partial
 
@@ -16,7 +17,7 @@ from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedS
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
-from mdr.springs.half_space_profile import half_space_profile, is_endless
+from mdr.springs.half_space_profile import half_space_profile, is_endless, profile_beside_end
 from mdr.springs.surface_fields import ContactFields
 
 # On coarse panels the last coefficients of a profile's pieces may be a tenth of the flat punch's own error: what is
@@ -81,7 +82,7 @@ def equivalent_system(
         profile=profile,
         moment=moment,
         profile_error=own_error,
-        position_rounding=partial(_rounding_near_equator, indenter),
+        position_rounding=partial(_rounding_near_equator, indenter, max_radius),
         load=g_hs if _shares_pieces(layer, indenter) else None,
     )
     return _with_variants(system, indenter, g_hs)
@@ -139,7 +140,7 @@ def contact_fields(
     if load is None or load.grid.count != flat_punch.nodes or excess <= 0.0:
         profile = half_space_function(flat_punch, indenter, unit, excess)
     else:
-        profile = load.up_to(excess / unit, lambda d: half_space_profile(indenter, unit * d) / unit)
+        profile = load.up_to(excess / unit, _in_units(indenter, unit, excess))
     if flat_punch.superposed:
         profile, _ = _profile(flat_punch, indenter, unit, profile, _springs_at_nodes(flat_punch, profile, flat))
     density = flat_punch.contact_density(None if isinstance(indenter, FlatPunch) else profile, flat, ratio, delta)
@@ -210,12 +211,15 @@ def _profile(
     return (g_hs, 0.0) if isinstance(indenter, FlatPunch) else solution.profile_of(indenter, unit, g_hs, springs)
 
 
-def _rounding_near_equator(indenter: Profile, radius: FloatArray) -> FloatArray:
-    """What rounded positions do to a profile that is upright at its end: eps d(ln g_hs)/d(ln x), and a margin."""
+def _rounding_near_equator(indenter: Profile, largest: float, radius: FloatArray) -> FloatArray:
+    """What rounded positions do to a profile that is upright at its end: eps d(ln g_hs)/d(ln x), and a margin.
+
+    The largest radius is where the grid ends, with all its digits.
+    """
     none = np.zeros_like(radius)
     if indenter.max_radius in indenter.breakpoints or not np.isfinite(indenter.max_radius):
         return none
-    near = np.ravel(radius) > indenter.flat_radius
+    near = (np.ravel(radius) > indenter.flat_radius) & (np.ravel(radius) != largest)
     edge = np.ravel(radius)[near]
     slope = profile_slope(indenter, edge, indenter.max_radius - edge)
     if slope is None:
@@ -235,13 +239,19 @@ def half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: fl
     grid, lead = _initial_grid(solution, indenter, unit, excess, count)
     far = (indenter.max_radius - indenter.flat_radius) / unit
     return resolve(
-        lambda d: half_space_profile(indenter, unit * d) / unit,
+        _in_units(indenter, unit, excess),
         grid,
         lead,
         tolerance=lambda: SHARE * solution.panel_error((indenter.flat_radius + excess) / unit),
         scale=solution.variation_length,
         far=far,
     )
+
+
+def _in_units(indenter: Profile, unit: float, excess: float) -> Callable[[FloatArray, FloatArray], FloatArray]:
+    """g_hs in units of `unit` at positions d up to an excess [m], of which what is left to it is known better."""
+    room = indenter.max_radius - indenter.flat_radius - excess
+    return lambda d, to_end: profile_beside_end(indenter, unit * d, room + unit * to_end) / unit
 
 
 def _for_profile(
@@ -371,7 +381,7 @@ def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float, noise
     if np.any(falling):
         # Roundings of positions beside an equator may let g fall; at the equator to the digit they are all of it.
         with np.errstate(all="ignore"):
-            unsure = noise + _rounding_near_equator(indenter, indenter.flat_radius + unit * profile.grid.nodes)
+            unsure = noise + _rounding_near_equator(indenter, np.inf, indenter.flat_radius + unit * profile.grid.nodes)
             falling &= profile.node_values <= (1 - unsure) * highest
     if np.any(falling):
         raise SeveralContacts(indenter.flat_radius + unit * float(profile.grid.nodes[falling].min()))

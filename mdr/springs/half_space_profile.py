@@ -63,6 +63,16 @@ def _stretch(indenter: Profile, x: FloatArray, beyond: FloatArray, stop: FloatAr
     return values
 
 
+def profile_beside_end(indenter: Profile, excess: FloatArray, room: FloatArray) -> FloatArray:
+    """g_hs [m] where the room [m] that is left to the indenter's end has more digits than the excess [m].
+
+    Only an end that stands upright asks for them.
+    """
+    if not isinstance(indenter, Sphere):
+        return half_space_profile(indenter, excess)
+    return np.asarray(excess * np.log1p(2 * excess / room) / 2)  # x artanh(x/R)
+
+
 def is_endless(indenter: Profile, radius: float) -> bool:
     """Whether a contact of this radius [m] reaches the indenter's end and that stands upright, as a sphere's does."""
     if radius < indenter.max_radius or math.isinf(indenter.max_radius):
@@ -90,7 +100,7 @@ def _(indenter: Paraboloid, excess: FloatArray) -> FloatArray:
 
 @half_space_profile.register
 def _(indenter: Sphere, excess: FloatArray) -> FloatArray:
-    return excess * np.arctanh(excess / indenter.radius)
+    return profile_beside_end(indenter, excess, indenter.radius - excess)
 
 
 @half_space_profile.register

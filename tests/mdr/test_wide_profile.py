@@ -222,6 +222,19 @@ def test_a_depth_that_asks_for_the_equator_is_refused_at_once(name, monkeypatch)
     assert len(made) < 6 * 8
 
 
+@pytest.mark.parametrize("left", [1e-9, 1.1952075995580458e-09, 3.7e-7, 4.6e-5])
+def test_depth_and_force_keep_their_digits_beside_an_equator(left):
+    """At 1.2e-9 before it both were 1.1e-8 off: nodes were rounded, and polynomials magnify that beyond the last."""
+    radius = 0.06309257125121798
+    a = radius * (1 - left)
+    scene = Scene(layer=LAYERS["half-space"], indenter=Sphere(radius=radius), loading=ContactRadii([a]))
+    path = Mdr().solve(scene)
+    logarithm = np.log1p(2 * a / (radius - a))
+    np.testing.assert_allclose(path.indentation_depth, a * logarithm / 2, rtol=1e-13)
+    force = (a**2 + radius**2) / 2 * logarithm - a * radius  # F/E*, Hertz-type integral of x artanh(x/R)
+    np.testing.assert_allclose(path.normal_force, scene.layer.contact_modulus * force, rtol=1e-13)
+
+
 def test_the_last_number_before_an_equator_is_refused_in_words():
     """Nodes were rounded onto the equator, and the logarithm of zero was taken."""
     layer, radius = Layer(thickness=1.1097018302282244, youngs_modulus=1e6, poissons_ratio=0.5), 26.562805794370153
