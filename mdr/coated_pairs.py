@@ -19,8 +19,8 @@ from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.flat_punch_source import RUNGS, IntegralEquation
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
-from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSource
-from contact import CoatedPair, ElasticLayer, InvalidInput, refuse_other_layers
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSource, RatioNotCovered
+from contact import CoatedPair, ElasticLayer, refuse_other_layers
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, in_range
 from mdr.springs.assembly import equivalent_system
@@ -47,12 +47,13 @@ class PairedCoatings(Record):
         """The pair's flat punch up to at least a/h* = max_ratio; `layer` is the equivalent one, of the mean thickness.
 
         Raises:
-            InvalidInput: If the ratio is beyond what the integral equation covers.
+            RatioNotCovered: If the ratio is beyond what the integral equation covers.
         """
         plain = refuse_other_layers("the pair of coatings", layer)
         if not 0.0 < max_ratio <= LARGEST_FACTORISED_RATIO:
-            raise InvalidInput(
-                f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_FACTORISED_RATIO:g}"
+            raise RatioNotCovered(
+                f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_FACTORISED_RATIO:g}",
+                LARGEST_FACTORISED_RATIO,
             )
         rung = next(rung for rung in RUNGS if rung >= max_ratio)
         # Poisson's ratio has no influence on an unbonded coating.

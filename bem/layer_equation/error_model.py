@@ -50,10 +50,6 @@ class OneRadiusCoefficients:
     # with 8 to 16 nodes against 48, the 19 numbers off by more than 1e-12, seed 1, 2026-11-22); the margin is for
     # answers on fewer nodes that are close by accident.
     safety: float = 4.0
-    # What one rounding of all positions would do to the depth is multiplied by this share, because they are rounded
-    # independently of each other. Measured against 40-digit arithmetic over 6 000 spheres on the half-space, 1 - a/R
-    # from 1e-9 to 0.05: at most 0.262 of it, 0.029 in the median (seed 5, 2026-11-23).
-    positions: float = 0.28
     # Roundings of the kernel, times k_bar, that every discretisation suffers alike. On four layers at a/h from 5 to 100
     # five discretisations were off by -0.1 to 1.8 of them (k_bar from 8 to 1.6e5, against MDR, which states about 0.8
     # of them itself, 2026-11-22).

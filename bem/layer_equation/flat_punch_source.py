@@ -13,9 +13,9 @@ from bem.kernels.protocol import SurfaceKernel
 from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import VolterraFactor
-from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution
+from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution, RatioNotCovered
 from bem.layer_equation.thin_layers import LARGEST_RATIO, ROUNDING, LargeRatioSolution
-from contact import ElasticLayer, InvalidInput, Layer
+from contact import ElasticLayer, Layer
 from contact.answer.one_thread import one_thread
 from contact.records.record import Record, record
 from contact.records.validation import positive
@@ -58,11 +58,12 @@ class IntegralEquation(Record):
         thickness, which sets how smooth its kernel is.
 
         Raises:
-            InvalidInput: If the ratio is beyond `LARGEST_RATIO`, or `ANY_RUNGS` on a stack.
+            RatioNotCovered: If the ratio is beyond `LARGEST_RATIO`, or `ANY_RUNGS` on a stack.
             NotConvergedError: If the equation is singular to double precision.
         """
         if not 0 < max_ratio <= LARGEST_RATIO * (1 + ROUNDING):
-            raise InvalidInput(f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}")
+            message = f"a/h = {max_ratio:g}: the integral equation covers ratios up to {LARGEST_RATIO:g}"
+            raise RatioNotCovered(message, LARGEST_RATIO)
         if not isinstance(layer, Layer):
             surface = surface_kernel(layer)
             if not surface.is_smooth:
@@ -85,9 +86,10 @@ def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> fl
         if rung >= ratio:
             return rung
     h = layer.surface.thickness
-    raise InvalidInput(
+    raise RatioNotCovered(
         f"radius = {ratio * h:g} m: more than {rungs[-1]:g} times the thickness {h:g} m of the material at the "
-        "surface; ask for smaller contacts"
+        "surface; ask for smaller contacts",
+        rungs[-1],
     )
 
 

@@ -164,7 +164,7 @@ class DirectContact:
         """a [m], delta [m], F_N [N], k_N [N/m]."""
         unit, density = self.density.unit, self.density
         force, stiffness = density.force(self.depth) * unit**2, density.stiffness * unit
-        radius = density.indenter.flat_radius + density.excess * unit
+        radius = density.indenter.flat_radius + density.reach
         return radius, self.depth * unit, self.modulus * force, self.modulus * stiffness
 
     def pressure(self, offset: FloatArray) -> FloatArray:
@@ -256,7 +256,7 @@ class _Solver:
 
     def at_radius(self, contact: DirectContact) -> DirectContact:
         """The same contact on these panels; a flat punch keeps its depth too."""
-        density = self._density(contact.density.excess * contact.density.unit)
+        density = self._density(contact.density.reach)
         if contact.singular_edge:
             return DirectContact(density, contact.depth, True, contact.modulus)
         return self._loose(density)
@@ -398,28 +398,17 @@ def _beside(contact: DirectContact, fine: DirectContact) -> FloatArray:
 
 
 def _rounding(density: DirectDensity) -> float:
-    """Of positions, and of the kernel times the condition of the equation, which is about k_bar."""
+    """Of the kernel, times the condition of the equation, which is about k_bar."""
     kernel = ONE_RADIUS.growth * float(np.finfo(float).eps) + density.kernel_error
-    return _position_rounding(density) + kernel * density.stiffness / (2 * density.contact_radius)
-
-
-def _position_rounding(density: DirectDensity) -> float:
-    """What rounded positions do to the depth, relative."""
-    return ONE_RADIUS.positions * float(np.finfo(float).eps) * density.condition
+    return kernel * density.stiffness / (2 * density.contact_radius)
 
 
 def _pressure_error(fine: DirectContact, coarse: DirectContact) -> float:
-    """Twice the difference of two pressures in the norm weighted with r, at a punch's edge with 1 - (r/a)^2 as well.
-
-    What rounded positions do to the depth reaches the pressure through the layer's share of the density only, whose
-    slope is (a/h)^2 of it for small a/h.
-    """
+    """Twice the difference of two pressures in the norm weighted with r, at a punch's edge with 1 - (r/a)^2 as well."""
     offset, pressure = fine.sampled
     density, a = fine.density, fine.density.contact_radius
     weight = (density.flat + offset) * (np.diff(density.stretch_ends)[:, None] * gauss_nodes(PRESSURES)[1]).ravel()
     if fine.singular_edge:
         weight = weight * (density.excess - offset) * (a + density.flat + offset)
     change = coarse.pressure(offset) - pressure
-    share = 0.0 if density.layer.is_half_space else (1 - 2 * a / density.stiffness) * a**2 / (1 + a**2)
-    rounding = share * _position_rounding(density)
-    return float(2 * np.sqrt((weight @ change**2) / (weight @ pressure**2)) + rounding)
+    return float(2 * np.sqrt((weight @ change**2) / (weight @ pressure**2)))

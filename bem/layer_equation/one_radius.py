@@ -27,7 +27,7 @@ from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
-from contact import ElasticLayer, NotConvergedError, Profile
+from contact import ElasticLayer, NotConvergedError, Profile, Sphere
 from contact.records.validation import FloatArray
 
 # Wavenumber times thickness beyond which 1 - chi is below 1e-17 and left out.
@@ -68,7 +68,7 @@ class DirectDensity:
         layer: The layer.
         indenter: The profile.
         unit: Length unit [m] of all that follows: the thickness, or the contact radius on the half-space.
-        excess: a - b over the radius b of the flat end, with all its digits.
+        reach: a - b [m] over the radius b of the flat end, with all its digits.
         load: g_hs over offsets from b, up to the excess.
         load_at_edge: g_hs(a).
         grid: Pieces of [0, a] where psi is known.
@@ -80,7 +80,7 @@ class DirectDensity:
     layer: ElasticLayer
     indenter: Profile
     unit: float
-    excess: float
+    reach: float
     load: MappedFunction
     load_at_edge: float
     grid: MappedGrid
@@ -99,14 +99,14 @@ class DirectDensity:
         a = flat + excess
         unit = a if layer.is_half_space else layer.surface.thickness
         pieces = graded_pieces(indenter, excess, unit, width, nodes)
-        load = MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes) / unit, 0.0)
+        load = load_on(indenter, excess, pieces, unit)
         grid = MappedGrid.equal(a / unit, int(np.ceil(a / unit / width)), nodes)
         k, weight = layer_waves(layer, 2 * a / unit)
         moments = _moments(load, flat / unit, a / unit, k)
         psi = _solve(grid, k, weight, moments)
         amplitudes = 2 / np.pi * weight[:, None] * (moments + _transform(grid, psi, k))
         at_edge = float(half_space_load(indenter, np.full(1, excess))[0]) / unit
-        return cls(layer, indenter, unit, excess / unit, load, at_edge, grid, psi, k, amplitudes)
+        return cls(layer, indenter, unit, excess, load, at_edge, grid, psi, k, amplitudes)
 
     @property
     def kernel_error(self) -> float:
@@ -117,6 +117,11 @@ class DirectDensity:
     def flat(self) -> float:
         """b, in length units."""
         return self.indenter.flat_radius / self.unit
+
+    @property
+    def excess(self) -> float:
+        """a - b, in length units."""
+        return self.reach / self.unit
 
     @property
     def contact_radius(self) -> float:
@@ -142,16 +147,6 @@ class DirectDensity:
     def depth(self) -> float:
         """delta, in length units, that makes phi(a) = 0: no singular pressure at the edge."""
         return float(self.edge_values[1] / self.edge_values[0])
-
-    @property
-    def condition(self) -> float:
-        """d(ln g_hs)/d(ln(a - b)), by which rounded positions move the depth: unbounded at a sphere's equator."""
-        if not self._stretches:
-            return 0.0
-        edge, room = np.full(1, self.unit * self.excess), np.full(1, _room(self.indenter, self.unit * self.excess))
-        closed = profile_slope(self.indenter, edge, room)
-        slope = self._sampled_slope(edge / self.unit) if closed is None else closed
-        return float(self.excess * slope[0] / self.load_at_edge)
 
     def force(self, depth: float) -> float:
         """F_N/(E* unit^2) = 2 int phi dt under a depth in length units."""
@@ -184,7 +179,7 @@ class DirectDensity:
         """Where the profile has risen; it has its pole, if any, where it ends."""
         ends = self.stretch_ends[self.stretch_ends >= 0]
         rooms = np.full(len(ends) - 1, np.inf)
-        rooms[-1:] = _room(self.indenter, self.unit * self.excess) / self.unit
+        rooms[-1:] = _room(self.indenter, self.reach) / self.unit
         starts = zip(ends[:-1], ends[1:], rooms, strict=True)
         return [Stretch(self.flat, float(start), float(stop), float(room)) for start, stop, room in starts]
 
@@ -256,8 +251,7 @@ class DirectDensity:
     @cached_property
     def _finer_load(self) -> MappedFunction:
         """g_hs on twice as many nodes."""
-        grid = _doubled(self.load.grid)
-        return MappedFunction(grid, half_space_load(self.indenter, self.unit * grid.nodes) / self.unit, 0.0)
+        return load_on(self.indenter, self.reach, _doubled(self.load.grid), self.unit)
 
 
 def _doubled(grid: MappedGrid) -> MappedGrid:
@@ -306,30 +300,43 @@ def _towards_pole(end: float, room: float) -> FloatArray:
     return np.asarray(end - room * (2.0 ** np.arange(1.0, doublings) - 1))
 
 
-def half_space_load(indenter: Profile, excess: FloatArray) -> FloatArray:
+def load_on(indenter: Profile, excess: float, pieces: MappedGrid, unit: float) -> MappedFunction:
+    """g_hs in units of `unit` on pieces up to the excess a - b [m]."""
+    rooms = _room(indenter, excess) + unit * pieces.to_end
+    return MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes, rooms) / unit, 0.0)
+
+
+def half_space_load(indenter: Profile, excess: FloatArray, room: FloatArray | None = None) -> FloatArray:
     """g_hs = x int_0^(pi/2) f'(x sin(theta)) dtheta [m] at x = b + excess, between the profile's breakpoints.
 
     The nodes crowd towards both ends of a stretch that starts at the tip or a kink, or is the last: f' may begin there
     with any power of r, or grow steep towards x. On the others it is analytic from end to end.
+
+    Args:
+        indenter: Profile of revolution.
+        excess: x - b [m].
+        room: What is left [m] from x to the end of a profile that is upright there, if it is known with more digits.
     """
     flat = indenter.flat_radius
+    room = indenter.max_radius - flat - excess if room is None else room
     starts = [0.0, *(k - flat for k in indenter.breakpoints if 0 < k - flat < np.max(excess)), np.inf]
     total = np.zeros_like(excess)
     for start, stop in pairwise(starts):
         is_smooth = start != 0.0 and start + flat not in indenter.kinks and stop < np.inf
         beyond = excess > start
-        total[beyond] += _over_stretch(indenter, excess[beyond], (start, stop), is_smooth=is_smooth)
+        total[beyond] += _over_stretch(indenter, excess[beyond], room[beyond], (start, stop), is_smooth=is_smooth)
     return (flat + excess) * total
 
 
 def _over_stretch(
-    indenter: Profile, excess: FloatArray, stretch: tuple[float, float], *, is_smooth: bool
+    indenter: Profile, excess: FloatArray, room: FloatArray, stretch: tuple[float, float], *, is_smooth: bool
 ) -> FloatArray:
     """The part of the integral of f' over theta where r = x sin(theta) lies on a stretch that starts before x.
 
     Args:
         indenter: Profile of revolution.
         excess: x - b [m].
+        room: From x to the profile's end [m].
         stretch: Its ends as offsets from b [m].
         is_smooth: Whether f' is analytic from end to end.
     """
@@ -337,11 +344,20 @@ def _over_stretch(
     x = flat + excess
     s, weights = gauss_nodes(SMOOTH_NODES) if is_smooth else _crowded_rule()
     widest, narrowest = _angle(x, excess - start), _angle(x, np.maximum(excess - stop, 0.0))
-    theta = np.pi / 2 - widest[:, None] + (widest - narrowest)[:, None] * s
+    # This is pi/2 - theta; both rules are symmetric, and 1 - s has its digits at the other end.
+    angle = np.multiply.outer(widest, s[::-1]) + np.multiply.outer(narrowest, s)
     last = np.minimum(x, flat + stop)[:, None]
-    inside = indenter.slope_at(np.clip(x[:, None] * np.sin(theta), np.minimum(flat + start, last), last))
+    radius = np.clip(x[:, None] * np.cos(angle), np.minimum(flat + start, last), last)
+    inside = _slope(indenter, radius, room[:, None] + x[:, None] * (2 * np.sin(angle / 2) ** 2))
     part: FloatArray = (widest - narrowest) * (inside @ weights)
     return part
+
+
+def _slope(indenter: Profile, radius: FloatArray, room: FloatArray) -> FloatArray:
+    """f'(r) at r [m], which a sphere tells by what is left [m] to its equator."""
+    if isinstance(indenter, Sphere):
+        return np.asarray(radius / np.sqrt(room * (indenter.radius + radius)))
+    return indenter.slope_at(radius)
 
 
 def _angle(x: FloatArray, short: FloatArray) -> FloatArray:

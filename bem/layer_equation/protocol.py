@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.polynomials.mapped import MappedFunction
+from contact.records.errors import InvalidInput
 from contact.records.validation import FloatArray
 from contact.scene.elastic_layer import ElasticLayer
 from contact.scene.profiles import Profile
@@ -31,6 +32,19 @@ LARGEST_FACTORISED_RATIO = 160.0
 # refined data the pressure's error was at most 0.5 of the depth's beyond a/h = 160 and 1.6 with tables; the rest is a
 # margin.
 FITTED_SHARE = 4.0
+
+
+class RatioNotCovered(InvalidInput):
+    """Flat-punch data end before the radius that is asked for.
+
+    Args:
+        message: With both numbers and the remedy.
+        largest: Largest a/h that is covered.
+    """
+
+    def __init__(self, message: str, largest: float) -> None:
+        self.largest = largest
+        super().__init__(message)
 
 
 class LayerShare(Protocol):

@@ -84,8 +84,8 @@ class MappedGrid:
 
     @property
     def end(self) -> float:
-        """Right end of the last piece."""
-        return float(self.left[-1] + self.width[-1])
+        """Right end of the last piece; zero without pieces."""
+        return float(self.left[-1] + self.width[-1]) if self.left.size else 0.0
 
     def locate(self, d: FloatArray) -> tuple[NDArray[np.intp], FloatArray]:
         """Number of the piece of each point, and u in it; a point between two pieces belongs to the left one."""

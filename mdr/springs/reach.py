@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import TypeAlias
 
 import numpy as np
 
 from bem.kernels.moduli import contact_modulus
-from bem.layer_equation.protocol import FlatPunchSource
+from bem.layer_equation.protocol import FlatPunchSource, RatioNotCovered
 from contact import (
     ContactRadii,
     FlatPunch,
@@ -48,6 +49,7 @@ LEAST_GAP = 16 * np.finfo(float).eps
 
 # Growth of the trial radius beyond a falling stretch; chosen.
 GROWTH = 1.5
+_Objection: TypeAlias = SeveralContacts | EndsTooSoon | RatioNotCovered
 
 
 def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSystem:
@@ -81,16 +83,19 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
             raise InvalidInput(f"loading.values = {wanted:g}: {indenter.upright_end}; press less")
 
 
-def _up_to(
-    scene: Scene, radius: float, flat_punch: FlatPunchSource
-) -> tuple[EquivalentSystem, SeveralContacts | EndsTooSoon | None]:
+def _up_to(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[EquivalentSystem, _Objection | None]:
     """The system up to this radius, or up to where there is no answer beyond, and that objection."""
-    try:
-        return equivalent_system(scene.layer, scene.indenter, radius, flat_punch), None
-    except (SeveralContacts, EndsTooSoon) as objection:
-        if objection.radius <= scene.indenter.flat_radius:
-            raise
-        return equivalent_system(scene.layer, scene.indenter, objection.radius, flat_punch), objection
+    objection: _Objection | None = None
+    while True:
+        try:
+            return equivalent_system(scene.layer, scene.indenter, radius, flat_punch), objection
+        except (SeveralContacts, EndsTooSoon, RatioNotCovered) as own:
+            covered = scene.layer.surface.thickness * (1 - LEAST_GAP)
+            answered = covered * own.largest if isinstance(own, RatioNotCovered) else own.radius
+            # Up to a node at which g falls it may fall at another one, which lies elsewhere with the grid.
+            if not scene.indenter.flat_radius < answered < radius:
+                raise
+            objection, radius = objection or own, answered
 
 
 def _reached(system: EquivalentSystem, loading: Loading) -> tuple[float, float]:
@@ -145,9 +150,11 @@ def _sketched_radius(scene: Scene, flat_punch: FlatPunchSource, guess: float) ->
     flat, end = indenter.flat_radius, indenter.max_radius * (1 - 1e-6)
     wanted, ratio = float(getattr(scene.loading, "values", np.ones(1)).max()), guess / unit
     while True:
-        drawn = flat_punch.solution(scene.layer, ratio).sketch(
-            lambda x: half_space_profile(indenter, np.clip(unit * x - flat, 0.0, end - flat)), ratio
-        )
+        try:
+            punch = flat_punch.solution(scene.layer, ratio)
+        except RatioNotCovered:
+            return unit * ratio
+        drawn = punch.sketch(lambda x: half_space_profile(indenter, np.clip(unit * x - flat, 0.0, end - flat)), ratio)
         if drawn is None:
             return guess
         radius, profile, stiffness = (values[unit * drawn[0] > flat] for values in drawn)

@@ -18,10 +18,13 @@ from contact import (
     IndentationDepths,
     InvalidInput,
     Layer,
+    LayerStack,
     NormalForces,
     Paraboloid,
     Scene,
     Sphere,
+    Sublayer,
+    Tabulated,
     TruncatedCone,
 )
 from mdr import Mdr, equivalent_system
@@ -34,6 +37,10 @@ LAYERS = {
     "unbonded": Layer(thickness=1.0, youngs_modulus=0.91, poissons_ratio=0.3, support="unbonded"),
     "half-space": Layer.half_space(youngs_modulus=0.91, poissons_ratio=0.3),
 }
+TWO_LAYERS = LayerStack(
+    sublayers=tuple(Sublayer(thickness=h, youngs_modulus=0.91, poissons_ratio=0.3) for h in (1.0, 20.0)),
+    interfaces=("bonded",),
+)
 INDENTERS = [Paraboloid(radius_of_curvature=1.0), Cone(slope=1.0), TruncatedCone(flat_radius=30.0, slope=1.0)]
 SOURCE = IntegralEquation(nodes=20)
 
@@ -241,6 +248,28 @@ def test_the_last_number_before_an_equator_is_refused_in_words():
     scene = Scene(layer=layer, indenter=Sphere(radius=radius), loading=ContactRadii([np.nextafter(radius, 0.0)]))
     with pytest.raises(InvalidInput, match="the sphere has sunk to its equator; stay a little below"):
         Mdr().solve(scene)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("layer", [LAYERS["unbonded"], TWO_LAYERS], ids=["layer", "stack"])
+def test_what_is_answered_at_the_last_radii_that_data_cover_is_answered_by_depth_and_force(layer):
+    """The search went five percent beyond the radius and was refused, at a/h = 1020."""
+    indenter, last = Paraboloid(radius_of_curvature=1e6), 980.0 if isinstance(layer, Layer) else 314.0
+    path = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii([last])))
+    for loading in IndentationDepths(path.indentation_depth), NormalForces(path.normal_force):
+        again = Mdr().solve(path.scene.replace(loading=loading))
+        np.testing.assert_allclose(again.contact_radius, last, rtol=1e-9)
+
+
+def test_a_table_that_falls_at_two_places_is_answered_before_the_first():
+    """Up to the first node at which it falls it fell at another one of a finer grid, and the force was refused."""
+    radii = [0.0, 49.5, 92.9, 136.5, 163.9, 177.4, 201.3, 215.3, 240.1, 279.4]
+    heights = [0.0, 0.0194, 0.1393, 0.3065, 0.5609, 0.4620, 0.7690, 0.8595, 1.0394, 1.9706]
+    layer = Layer(thickness=21.132, youngs_modulus=252708.0, poissons_ratio=0.5, support="unbonded")
+    scene = Scene(layer=layer, indenter=Tabulated(radii=radii, heights=heights), loading=IndentationDepths([0.10738]))
+    path = Mdr().solve(scene)
+    again = Mdr().solve(scene.replace(loading=NormalForces(path.normal_force)))
+    np.testing.assert_allclose(again.indentation_depth, path.indentation_depth, rtol=1e-13)
 
 
 @pytest.mark.slow

@@ -18,8 +18,8 @@ from bem.layer_equation.any_layer.logarithmic_rule import logarithmic_weights
 from bem.layer_equation.any_layer.relative_panels import EDGE_LEVELS, RATIO, RelativePanels, panels_with_bends
 from bem.layer_equation.any_layer.split_kernel import SplitKernel, split_kernel
 from bem.layer_equation.inside.density import Density, Piece, cut_at, pieces_of
-from bem.layer_equation.one_radius import DirectDensity, graded_pieces, half_space_load, under
-from bem.polynomials.mapped import MappedFunction, MappedGrid
+from bem.layer_equation.one_radius import DirectDensity, graded_pieces, half_space_load, load_on, under
+from bem.polynomials.mapped import MappedGrid
 from contact import ElasticLayer, NotConvergedError, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
@@ -54,7 +54,7 @@ class GradedDirectDensity(DirectDensity):
         unit, flat = layer.surface.thickness, indenter.flat_radius
         a = (flat + excess) / unit
         pieces = graded_pieces(indenter, excess, unit, width, nodes)
-        load = MappedFunction(pieces, half_space_load(indenter, unit * pieces.nodes) / unit, 0.0)
+        load = load_on(indenter, excess, pieces, unit)
         marks = tuple(mark / (a * unit) for mark in (flat, *indenter.breakpoints))
         panels = panels_with_bends(marks, width / a, nodes)
         kernel = split_kernel(surface, SPLIT_LENGTH)
@@ -69,7 +69,7 @@ class GradedDirectDensity(DirectDensity):
         edge = float(half_space_load(indenter, np.full(1, excess))[0]) / unit
         grid, none = MappedGrid.between(a * panels.ends, nodes), np.zeros(0)
         return cls(
-            layer, indenter, unit, excess / unit, load, edge, grid, psi[:-1], none, np.zeros((0, 2)), kernel, panels,
+            layer, indenter, unit, excess, load, edge, grid, psi[:-1], none, np.zeros((0, 2)), kernel, panels,
             psi[-1],
         )  # fmt: skip
 

@@ -4,7 +4,8 @@ The referee of elastic scenes is `referee` as far as it reaches; beyond a/h = 10
 with half the discretisation length checks every eighth scene. Depth histories of viscoelastic layers are followed
 spring by spring; what the fast method says of forces in time, in closed form where it can, is stepped in time. For
 other loadings the refined method checks every scene, or another method does. Every solved scene is also solved in other
-units, where it must give the same answer, and with its relaxation written down in other ways.
+units, where it must give the same answer, contacts by another of radius, depth and force, and relaxation written down
+in other ways.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -23,13 +24,19 @@ from cases.measurements.campaigns.units import Units, in_units
 from cases.measurements.driver import measured
 from cases.measurements.measurement import RESTATED, Measurement
 from contact import (
+    ContactError,
     ContactPath,
+    ContactRadii,
     DepthHistory,
     DetachmentPath,
+    FlatPunch,
     ForceHistory,
     HistoryPath,
     ImpactHistory,
+    IndentationDepths,
+    Loading,
     Method,
+    NormalForces,
     NotConvergedError,
     Scene,
     Solution,
@@ -232,7 +239,7 @@ def _fitted(values: FloatArray, shape: tuple[int, ...]) -> FloatArray:
 
 def _restated(method: Method, answer: Solution) -> tuple[Measurement, ...]:
     """The same scene in other units and, where there is relaxation, with that written down in other ways."""
-    elsewhere = _in_other_units(method, answer)
+    elsewhere = _in_other_units(method, answer) + _asked_otherwise(method, answer)
     if not isinstance(answer, HistoryPath | ImpactHistory) or answer.scene.effect(Viscoelasticity) is None:
         return elsewhere
     quantities = IMPACT_NUMBERS if isinstance(answer, ImpactHistory) else _MOTION
@@ -264,6 +271,50 @@ def _in_other_units(method: Method, answer: Solution) -> tuple[Measurement, ...]
         )
         for q in _comparable(answer, other)
     )
+
+
+def _asked_otherwise(method: Method, answer: Solution) -> tuple[Measurement, ...]:
+    """The same contacts prescribed by what was answered: depths for radii, forces for depths, radii for forces.
+
+    What is prescribed then errs as the answer states, and depth, force and radius follow each other with powers up to
+    two. A rounded radius tells little where the contact has hardly left a flat end or has a sphere's equator close by.
+
+    Raises:
+        RuntimeError: If the method refuses what it has answered.
+    """
+    if not isinstance(answer, ContactPath) or answer.scene.effects:
+        return ()
+    try:
+        loading, order = _other_loading(answer)
+        other = method.solve(answer.scene.replace(loading=loading))
+    except ContactError as refusal:
+        raise RuntimeError(f"answered, but refused if asked for otherwise: {refusal}") from refusal
+    assert isinstance(other, ContactPath)
+    indenter, a = answer.scene.indenter, other.contact_radius
+    is_upright = np.isfinite(indenter.max_radius) and indenter.max_radius not in indenter.breakpoints
+    told = np.minimum(a - indenter.flat_radius, indenter.max_radius - a if is_upright else np.inf)
+    rounding = float(np.max(_ROUNDING * np.divide(a, told, out=np.ones_like(a), where=told > 0.0)))
+    return tuple(
+        Measurement(
+            method=answer.method,
+            quantity=f"{q} asked for otherwise",
+            error=float(np.max(np.abs(values_of(answer, q) - values_of(other, q)[order]) / _scale(answer, q))),
+            stated=UNITS_AGREEMENT,
+            uncertainty=rounding
+            + 2.0 * max(_largest_stated(one, name) for one in (answer, other) for name in answer.ARRAYS),
+        )
+        for q in answer.ARRAYS
+    )
+
+
+def _other_loading(answer: ContactPath) -> tuple[Loading, NDArray[np.intp] | slice]:
+    """Another way to prescribe the same contacts, and where they stand then; a flat punch has no other radius."""
+    if isinstance(answer.scene.loading, IndentationDepths):
+        return NormalForces(answer.normal_force), _ALL
+    if isinstance(answer.scene.loading, ContactRadii) or isinstance(answer.scene.indenter, FlatPunch):
+        return IndentationDepths(answer.indentation_depth), _ALL
+    radii, order = np.unique(answer.contact_radius, return_inverse=True)
+    return ContactRadii(radii), order
 
 
 def _largest_stated(answer: Solution, quantity: str) -> float:

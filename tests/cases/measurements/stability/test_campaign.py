@@ -10,7 +10,7 @@ import pytest
 from cases.measurements.campaigns import campaign as campaign_module
 from cases.measurements.campaigns.campaign import campaign
 from cases.measurements.measurement import Measurement, by_quantity, covered, defects, ends, median, sharpness
-from contact import NotConvergedError
+from contact import IndentationDepths, NormalForces, NotConvergedError
 from mdr import Mdr
 
 
@@ -69,6 +69,22 @@ def test_a_millionth_too_much_is_seen():
 
 def test_an_answer_that_depends_on_units_is_seen():
     assert any("in other units" in why for _, _, why in defects(slice_of(unit_of_length)))
+
+
+def test_an_answer_that_depends_on_what_is_prescribed_is_seen():
+    """Spheres near their equator and tables that fall were answered by one of depth and force, refused by another."""
+
+    def by_force(path):
+        if isinstance(path.scene.loading, NormalForces):
+            raise NotConvergedError("planted")
+        return path
+
+    def by_depth(path):
+        more = 1e-9 if isinstance(path.scene.loading, IndentationDepths) else 0.0
+        return dataclasses.replace(path, normal_force=path.normal_force * (1 + more))
+
+    assert any("answered, but refused if asked for otherwise" in why for _, _, why in defects(slice_of(by_force)))
+    assert any("asked for otherwise is off" in why for _, _, why in defects(slice_of(by_depth)))
 
 
 def test_a_warning_is_a_crash():
