@@ -116,12 +116,12 @@ def fine_and_change(
     """
     fine, coarse = np.split(both, 2, axis=1)
     chance = AGREEMENT_SHARES * accuracy * np.maximum(accuracy / DEFAULT_ACCURACY, 1.0) ** COARSER_POWER
-    change = np.abs(fine - coarse) / np.abs(fine) + chance
+    change = np.abs(fine - coarse) / np.abs(fine) + chance + rounding
     of_peaks = change[_TIME + 1 :].max(axis=0)
     change[_TIME] += (
         LEAVING_SHARE * of_peaks * leaving(fine) + WITHIN_STEPS_SHARE * within[: fine.shape[1]] / fine[_TIME]
     )
-    return fine, change + rounding
+    return fine, change
 
 
 def leaving(outcomes: FloatArray) -> FloatArray:

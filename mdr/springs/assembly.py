@@ -216,17 +216,13 @@ def _rounding_near_equator(indenter: Profile, largest: float, radius: FloatArray
 
     The largest radius is where the grid ends, with all its digits.
     """
-    none = np.zeros_like(radius)
-    if indenter.max_radius in indenter.breakpoints or not np.isfinite(indenter.max_radius):
-        return none
-    near = (np.ravel(radius) > indenter.flat_radius) & (np.ravel(radius) != largest)
-    edge = np.ravel(radius)[near]
+    inside = (radius > indenter.flat_radius) & (radius != largest)
+    if not (np.any(inside) and is_endless(indenter, indenter.max_radius)):
+        return np.zeros_like(radius)
+    edge = np.where(inside, radius, indenter.max_radius / 2)
     slope = profile_slope(indenter, edge, indenter.max_radius - edge)
-    if slope is None:
-        return none
-    flat = none.ravel()
-    flat[near] = POSITION_ROUNDINGS * EPS * edge * slope / half_space_profile(indenter, edge)
-    return flat.reshape(none.shape)
+    share = 0.0 if slope is None else POSITION_ROUNDINGS * EPS * edge * slope / half_space_profile(indenter, edge)
+    return np.where(inside, share, 0.0)
 
 
 def half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float) -> MappedFunction:
