@@ -172,7 +172,7 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     recedes lies where the forces inside vanish, for the same reason turned around.
     """
     outside = int(np.flatnonzero(state.touching)[-1]) + 1
-    if outside == bed.y.size or speed >= law.creep_speed(state.surface[outside], state.strains[:, outside]):
+    if outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside]):
         y = touched_front(bed, state)
         return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
     # Nothing is in contact beyond where an undeformed surface would be.

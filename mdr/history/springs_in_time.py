@@ -96,6 +96,11 @@ class SpringLaw:
             return np.asarray(-(self.long_term * surface + np.tensordot(self.weights, strains, 1)) / self.viscosity)
         return np.asarray(np.tensordot(self.weights / self.times, strains, 1))
 
+    def outruns(self, speed: float, surface: float, strains: FloatArray) -> bool:
+        """Whether a body at this speed [m/s] is no slower than a free spring; a surface at rest moves by roundings."""
+        at_rest = _ROUNDING * abs(surface) / self.clock
+        return bool(speed >= self.creep_speed(np.asarray(surface), strains) - at_rest)
+
     def faded(self, amplitudes: FloatArray, time: FloatArray) -> FloatArray:
         """Amplitudes of a free spring's modes after times as in `pressed`, shape (modes, instants, springs)."""
         return np.asarray(np.exp(-self.modes.rates[:, None, None] * (time / self.clock)) * amplitudes[:, None])
