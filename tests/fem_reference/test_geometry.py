@@ -67,8 +67,8 @@ def test_cells_far_below_1e_8_of_the_radius_are_as_round_as_others(gap, cell):
     area = np.abs(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]) / 2
     roundness = 4 * np.sqrt(3) * area / np.sum(sides**2, axis=(0, 1))
     near = np.hypot(*corners.mean(axis=1)) < 1e-7
-    assert near.sum() > 200
-    assert roundness[near].min() > 0.3  # below 0.01 where gmsh's origin is the axis
+    assert near.sum() > 100
+    assert roundness[near].min() > 0.25  # below 0.01 where gmsh's origin is the axis
 
 
 def test_lines_of_1e14_cells_take_no_minutes():
