@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh, named_layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import layer_mesh, named_layer_mesh
 
 GRADING = Grading(points=((0.5, 1e-3), (1.0, 1e-5)), growth=0.5, max_cell=0.5)
 
