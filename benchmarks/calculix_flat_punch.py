@@ -23,7 +23,8 @@ import numpy as np
 from contact import FlatPunch, IndentationDepths, Layer, Scene
 from fem_reference import Fem
 from fem_reference.discrete_layer.elements import PAIRS
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 
 POISSONS_RATIO = 0.3

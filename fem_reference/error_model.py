@@ -81,9 +81,12 @@ class LoadCoefficients:
     # 0.07 and 0.14; all are covered, and stated errors grow by a tenth in the median.
     share_by_radius: float = 0.2
     # Relative error of the depth's slope, by which the last correction of the radius is made, due to the place where it
-    # is read; no degree changes it.  Measured: at most 1e-3 under eight profiles on uniform layers, 1.3e-3 under a
-    # paraboloid on a graded one, whose radius was 3.5e-8 off where 9.5e-9 was stated (2026-11-23).
-    read_slope: float = 2e-3
+    # is read; no degree changes it.  Measured with MDR at growths of 0.35 and 1/2: at most 3e-4 on twelve contacts of
+    # uniform layers, 4e-5 on eight of stacks (2026-11-23).
+    read_slope: float = 4e-4
+    # The same on graded layers, whose pressures have logarithms that rings of several widths do not tell: 4e-3 to 2e-2
+    # (exponential and linear, paraboloid and truncated cone, 2026-11-23).
+    read_slope_graded: float = 3e-2
 
 
 @dataclass(frozen=True)

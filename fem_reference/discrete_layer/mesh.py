@@ -23,6 +23,7 @@ from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.assembly import Space
 from fem_reference.discrete_layer.elements import ElementPair, element_pair
+from fem_reference.discrete_layer.grading import Grading
 from fem_reference.discrete_layer.solving.ordering import Elimination, elimination
 
 MISSING_LIBRARIES = (
@@ -33,58 +34,10 @@ MISSING_LIBRARIES = (
 
 # Longest line over its smallest cell; gmsh takes minutes for longer ones.
 LONGEST_LINE = 1e10
-# Smallest cell over its distance from gmsh's origin: gmsh squares coordinates, so cells below the root of a rounding,
-# 1.5e-8, degenerate; this is twice that.
-RESOLVED = 3e-8
 # Share of a cell to which gmsh integrates cell sizes along lines.  At its own 1e-9 a mesh takes 24, 19 and 26 ms
 # at growths 2, 0.7 and 0.4, at this 7, 12 and 17.  At 1e-7 and 1e-6 the slope of the load in rings of 1e-9 radii beside
 # a flat end errs by 6 to 7 per cent, where its test allows 5 (2026-11-23).
 LINE_PRECISION = 1e-8
-
-
-@dataclass(frozen=True, kw_only=True)
-class Grading:
-    """Cell sizes: ``min(max_cell, cell_i + growth * distance_i)`` over the graded points (or the graded strip) i.
-
-    Attributes:
-        points: radii on the top that become mesh vertices, with the cell size wished there.
-        strip: (radius, cell): the top from the axis to ``radius`` is meshed with cells of that one size.
-        growth: increase of the cell size per distance.
-        max_cell: largest cell size.
-    """
-
-    points: tuple[tuple[float, float], ...] = ()
-    strip: tuple[float, float] | None = None
-    growth: float = 0.25
-    max_cell: float = np.inf
-
-    @property
-    def origin(self) -> float:
-        """Radius that becomes gmsh's x = 0: the last graded point where its cells are fine, else the axis.
-
-        gmsh squares coordinates: cells below 1e-8 of their distance from its origin degenerate.
-        """
-        r, cell = self.points[-1] if self.points else (0.0, 0.0)
-        return r if cell < RESOLVED * r else 0.0
-
-    @property
-    def shifted(self) -> tuple[tuple[float, float], ...]:
-        """(x, cell) of the graded points, with the cells that gmsh resolves so far from its origin."""
-        places = [(r - self.origin, cell) for r, cell in self.points]
-        return tuple((x, max(cell, RESOLVED * abs(x)) if self.origin else cell) for x, cell in places)
-
-    def size_expression(self) -> str:
-        """Cell size as a function of gmsh's x = r - origin, y = z."""
-        sizes = [f"{cell:.17g}+{self.growth:.17g}*Sqrt((x{-start:+.17g})^2+y^2)" for start, cell in self.shifted]
-        if self.strip is not None:
-            radius, cell = self.strip[0] - self.origin, self.strip[1]
-            beyond = f"(0.5*(x{-radius:+.17g}+Abs(x{-radius:+.17g})))"
-            sizes.append(f"{cell:.17g}+{self.growth:.17g}*Sqrt({beyond}^2+y^2)")
-        bounds = sizes if np.isinf(self.max_cell) else [f"{self.max_cell:.17g}", *sizes]
-        expression = bounds[-1]
-        for bound in reversed(bounds[:-1]):
-            expression = f"Min({bound},{expression})"
-        return expression
 
 
 @dataclass(frozen=True)

@@ -7,8 +7,9 @@ from typing import Self
 
 from contact import ElasticLayer, InvalidInput, Layer, Profile
 from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
+from fem_reference.discrete_layer.grading import Grading
 from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
+from fem_reference.discrete_layer.mesh import LayerMesh, layer_mesh
 from fem_reference.discrete_layer.outer_edge import outer_distance
 
 # The ring between a flat end and the contact's edge that is narrower than this times contact radius and thickness

@@ -50,7 +50,8 @@ class LoadedContact:
         depth_error, force_error, radius_error, stiffness_error = absolute / values + common
         by_edge_pressure = float(self._numbers(answer)[2])
         # The last correction of the radius errs like the slope that it is made with.
-        uncertain = (self._slope_change + AT_LOAD.read_slope) * abs(self.radius_factor - answer.radius)
+        read = AT_LOAD.read_slope if contact.layer.is_piecewise_uniform else AT_LOAD.read_slope_graded
+        uncertain = (self._slope_change + read) * abs(self.radius_factor - answer.radius)
         correction = max(uncertain, abs(self.radius_factor - by_edge_pressure))
         # The last term is the rounding of the radius, whatever its slope.
         radius_error += contact.edge_shift + correction + 1e-15

@@ -23,11 +23,11 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
 
-# Width of the widest ring beside the contact's edge in which the slope of delta_0 is read, over `edge_scale`.  Measured
-# with MDR (paraboloid, cones, r^5, nu = 0 and 1/2, h/a = 0.3 and 3, 2026-11-23): the slope errs by at most 6e-4 at the
-# default settings, 2e-2 at a growth of 1 and 4e-2 at 1.4; one cell 3e-4 beside the edge told it 770 times off there.
-# Wider rings err more on fine meshes, narrower ones on coarse.
-WIDEST = 0.2
+# Width of the widest ring beside the contact's edge in which the slope of delta_0 is read, over `edge_scale`, and how
+# many rings there are.  Measured with MDR (paraboloid, sphere, cones, nu = 0 to 1/2, h/a = 0.2 to 5, 2026-11-23): the
+# slope errs by at most 3e-4, 3e-4, 8e-4 and 3e-2 at growths of 0.35, 1/2, 0.7 and 1, by three rings from a width of 0.2
+# by 1e-3, 1e-3, 8e-4 and 3e-2.  One cell 3e-4 beside the edge told it 770 times off at a growth of 1.4.
+WIDEST, RINGS = 0.8, 5
 
 
 @dataclass(frozen=True)
@@ -108,8 +108,8 @@ def _traction(fields: PointFields, eta_gradient: FloatArray) -> FloatArray:
 def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -> float:
     """d(delta_0)/da, from the pressures of flat punch and smooth contact: p / p_1 = 2 (a - r) delta_0' at the edge.
 
-    Both are superpositions of flat punches of radii up to a.  Means over three rings, each half as wide as the last,
-    are extrapolated to none: a mean hardly feels the waves of single cells, and wide rings hardly what delta_0 errs by,
+    Both are superpositions of flat punches of radii up to a.  Means over rings, each half as wide as the last, are
+    extrapolated to none: a mean hardly feels the waves of single cells, and wide rings hardly what delta_0 errs by,
     which is a flat punch's pressure.
 
     Args:
@@ -119,10 +119,11 @@ def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -
     """
     radius, weight = (values.ravel() for values in trace.gauss(trace.degree + 2))
     punch, smooth = (trace.evaluate(values, radius) for values in pressures.T)
-    share = (1.0 - radius) / (WIDEST * scale * 2.0 ** -np.arange(3.0)[:, None])
+    widths = 2.0 ** -np.arange(float(RINGS))
+    share = (1.0 - radius) / (WIDEST * scale * widths[:, None])
     weight = weight * share * np.maximum(1.0 - share, 0.0) ** 2
     means = (weight @ smooth) / (weight @ (2.0 * (1.0 - radius) * punch))
-    return float(means @ [1.0, -6.0, 8.0] / 3.0)
+    return float(np.polyfit(widths, means, RINGS - 1)[-1])
 
 
 def edge_scale(problem: LayerProblem, indenter: ScaledIndenter) -> float:

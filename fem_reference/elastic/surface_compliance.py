@@ -15,7 +15,8 @@ import numpy as np
 from contact import ElasticLayer, Layer, StageLog
 from contact.records.validation import FloatArray, IntArray
 from fem_reference.discrete_layer.elements import taylor_hood
-from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import LayerMesh, layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import Discretisation
 from fem_reference.discrete_layer.trace import TraceSpace

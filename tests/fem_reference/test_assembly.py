@@ -9,7 +9,8 @@ from skfem import Basis, ElementVector, FacetBasis
 from fem_reference.discrete_layer import assembly, weak_forms
 from fem_reference.discrete_layer.assembly import Space, node_positions, scatter
 from fem_reference.discrete_layer.elements import PAIRS
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import layer_mesh
 from fem_reference.discrete_layer.problem import outer_edge_matrix
 
 MESH = layer_mesh(1.0, 3.0, Grading(points=((1.0, 0.05),), growth=0.5, max_cell=0.5)).mesh

@@ -16,8 +16,9 @@ from contact import (
 from fem_reference import Fem
 from fem_reference.discrete_layer.assembly import Space, stiffness_elements
 from fem_reference.discrete_layer.elements import PAIRS, taylor_hood
+from fem_reference.discrete_layer.grading import Grading
 from fem_reference.discrete_layer.material import moduli
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.mesh import layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.solving import linear_solver
 from fem_reference.discrete_layer.solving.linear_solver import CheckedSolver

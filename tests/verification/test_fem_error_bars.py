@@ -234,7 +234,8 @@ def assert_sharp(ratios):
 
 def test_radius_at_a_load_errs_like_the_load_at_the_radius():
     """Also force and depth: their errors at a fixed radius cancel where the radius follows the load."""
-    layer = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
+    # At a thickness of 0.5 the error of the stiffness passes zero.
+    layer = Layer(thickness=0.55, youngs_modulus=1.0, poissons_ratio=0.3)
     loads = IndentationDepths(values=[0.05]), NormalForces(values=[0.1])
     for loading in loads:
         scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=loading)

@@ -10,8 +10,9 @@ from contact import FlatPunch, IndentationDepths, Layer, NotConvergedError, Para
 from fem_reference import Fem
 from fem_reference.code_verification.inf_sup import inf_sup_constant, uniform_mesh
 from fem_reference.discrete_layer.elements import PAIRS
+from fem_reference.discrete_layer.grading import Grading
 from fem_reference.discrete_layer.indenter import ScaledIndenter
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh, named_layer_mesh
+from fem_reference.discrete_layer.mesh import layer_mesh, named_layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
 from tests.fem_reference.integral_equation import solve_contact

@@ -7,7 +7,8 @@ import pytest
 
 from fem_reference.discrete_layer.elements import PAIRS
 from fem_reference.discrete_layer.fields import point_fields
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem, facet_nodes
 from fem_reference.discrete_layer.trace import TraceSpace
 from fem_reference.elastic.patch_test import patch_defect

@@ -19,7 +19,8 @@ from cases.results.records.scene_run import Quantity
 from fem_reference.code_verification.inf_sup import inf_sup_constant, uniform_mesh, with_compressibility
 from fem_reference.code_verification.manufactured import ManufacturedProblem
 from fem_reference.discrete_layer.elements import PAIRS, ElementPair
-from fem_reference.discrete_layer.mesh import Grading, layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.elastic.patch_test import patch_defect
 

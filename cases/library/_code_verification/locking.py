@@ -7,7 +7,8 @@ import numpy as np
 from bem.layer_equation.method import IntegralEquationMethod
 from contact import FlatPunch, IndentationDepths, Layer, Scene
 from fem_reference.discrete_layer.elements import PAIRS
-from fem_reference.discrete_layer.mesh import Grading, LayerMesh, layer_mesh
+from fem_reference.discrete_layer.grading import Grading
+from fem_reference.discrete_layer.mesh import LayerMesh, layer_mesh
 from fem_reference.discrete_layer.problem import LayerProblem
 
 # Cells grow from the edge of the contact by a half, and the outer edge lies ten thicknesses beyond it.
