@@ -122,7 +122,7 @@ def test_errors_behind_a_rim_are_stated_by_what_the_resolvent_leaves_out():
 
 @pytest.mark.slow
 def test_what_the_resolvent_leaves_out_counts_where_its_first_order_has_a_node_at_the_rim():
-    """Seen to fail on 16 nodes: a depth was 4.1e-12 off where 3.4e-12 was stated without what ends of pieces magnify."""
+    """On 16 nodes, seen to fail: a depth 4.1e-12 off where 3.4e-12 was stated, without what ends of pieces magnify."""
     softer, base = LinearDepth(surface=2.0, base=1.0), ElasticBase(youngs_modulus=1.0, poissons_ratio=0.3)
     layer = EXPONENTIAL.replace(youngs_modulus=softer, support=base)
     scene = Scene(layer=layer, indenter=CONE, loading=ContactRadii([1.4307503132360648]))
