@@ -119,7 +119,8 @@ class ResolvedProfile(MappedFunction):
     def resolvent_error(self, d: FloatArray) -> FloatArray:
         """The same at points d: errors at nodes differ in sign, and at the end of a piece polynomials magnify them."""
         piece, u = self.grid.locate(d)
-        return np.linalg.norm(lagrange_matrix(self.grid.count, u) * self.unresolved[piece], axis=-1)
+        terms = lagrange_matrix(self.grid.count, u) * self.unresolved[piece]
+        return np.asarray(np.sqrt(np.sum(terms**2, axis=-1)))
 
 
 @dataclass(frozen=True, eq=False)
