@@ -300,14 +300,15 @@ def _errors(
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = contact_stiffness * depth / force
     of_depth, of_moment = errors["indentation_depth"], system.moment_truncation(radius) * np.abs(spread - 1)
-    of_force = stiffness + of_depth * spread + of_moment
+    at_depth = system.error_at_depth(radius, stiffness=stiffness, depth=of_depth, spread=spread) + of_moment
+    # Under a given radius F errs as under the given depth, and by k_N times the error of g, which is no part of that.
+    of_force = np.minimum(stiffness + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
+    searched = of_force / spread if given == "NormalForces" else of_depth
     if given != "ContactRadii":
-        at_depth = system.flat_punch.error_at_depth(stiffness, of_depth, spread) + of_moment
         of_force, of_depth = np.minimum(of_force, at_depth), at_depth / spread
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
-        searched = errors["normal_force" if given == "NormalForces" else "contact_radius"]
         # The noise of a table may let its slope fall.
         moved = searched * depth / (radius * np.abs(system.mdr_profile_slope(radius)))
         growth = 2.0 * system.spring_stiffness(radius) * radius / contact_stiffness

@@ -107,7 +107,12 @@ class IntegralEquationSolution(FlatPunchSolution):
         springs = np.minimum(0.5, integrated(self.nodes) * share) * own
         springs += np.minimum(0.5, self.shares.own_panel * share) * of_kernel
         truncated = self._left_out(self._stiffness_share, ratio) / k + springs
-        return self.shares.stiffness_safety * truncated + EPS * (self.shares.rounded + self.shares.stiffness_growth * k)
+        return self.shares.stiffness_safety * truncated + self.stiffness_rounding(ratio)
+
+    def stiffness_rounding(self, ratio: FloatArray) -> FloatArray:
+        """What of the relative error of k_bar is rounding times condition."""
+        k = self.normalized_contact_stiffness(ratio)
+        return np.asarray(EPS * (self.shares.rounded + self.shares.stiffness_growth * k))
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Error of c_bar, relative, made likewise."""

@@ -119,15 +119,27 @@ class FlatPunchSolution(Protocol):
         start = np.divide(flat_radius, ratio, out=np.zeros_like(ratio), where=ratio > flat_radius)
         return self.profile_error(ratio, start)
 
-    def error_at_depth(self, stiffness: FloatArray, profile: FloatArray, spread: FloatArray) -> FloatArray:
+    def error_at_depth(
+        self,
+        ratio: FloatArray,
+        profile: MappedFunction,
+        flat_radius: float,
+        *,
+        stiffness: FloatArray,
+        depth: FloatArray,
+        spread: FloatArray,
+    ) -> FloatArray:
         """Relative error of the force under a given depth, F = k_N g - int g dk_N.
 
         Args:
+            ratio: a/h.
+            profile: g over the excess x - b, in thicknesses.
+            flat_radius: b, in thicknesses.
             stiffness: relative error of k_N.
-            profile: relative error of g.
+            depth: relative error of g.
             spread: k_N g/F.
         """
-        return stiffness + profile * spread
+        return stiffness + depth * spread
 
     def kernel_errors(self, ratio: FloatArray) -> FloatArray:
         """The parts of `spring_error` and `profile_error` that one wrong kernel makes, shape (2, n); 0 if not known."""

@@ -86,7 +86,7 @@ def test_tables_are_integrated_between_their_points():
     k = np.array([1e-3, 1.3e-3, 0.5, 30.0])
     found = surface_kernel(layer).chi(k)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("bem.kernels.graded.TOLERANCE", 1e-13)
+        patch.setattr("bem.kernels.graded.TOLERANCE", 3e-14)
         patch.setattr("bem.kernels.graded.ABSOLUTE", 1e-15)
         np.testing.assert_allclose(found, surface_kernel(layer).chi(k), rtol=2e-11, atol=0)
 

@@ -63,7 +63,8 @@ class ResolventTable:
         """yg - W at one edge, and what the polynomials of rho leave out of it.
 
         The integral of rho is summed order by order in ln x, so that their decay tells what those beyond amount to. In
-        t/x a panel leaves out a multiple of P_m, which is orthogonal to smooth loads: rims and bends alone count.
+        t/x a panel leaves out P_m times what is nearly a line, which is orthogonal to smooth loads: rims and bends
+        alone count.
 
         Args:
             load: W over the excess t - b, zero within the flat radius.
@@ -84,7 +85,7 @@ class ResolventTable:
         table = self.coefficients[piece][:, : len(moments)]
         by_order = np.einsum("mpc,pc->m", table, moments)
         in_logarithm = orders_beyond(by_order) * between_nodes(by_order.size, np.array(s))
-        in_share = orders_beyond(np.einsum("m,mpc->pc", orders, table)) @ np.abs(beyond)
+        in_share = orders_beyond(np.einsum("m,mpc->pc", orders, table)) @ beyond
         return float(near + orders @ by_order), float(in_logarithm + in_share)
 
     def _locate(self, x: float) -> tuple[int, float]:
@@ -97,12 +98,15 @@ class ResolventTable:
 def _moments(count: int, panel: NDArray[np.intp], s: FloatArray, weighted: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Weighted sums over points s on panels of each order up to `count`, (panels, count), and of what is beyond.
 
-    The first order left out errs by sqrt(pi m)/2 P_m between m Gauss nodes.
+    The first order left out errs by sqrt(pi m)/2 P_m between m Gauss nodes, the next one by s times that, for which
+    P_(m+1) stands: where one of them has a node at a rim the other has none. With both 99 % of 625 errors behind rims
+    are covered, 2.2 times in the median; with P_m alone 63 % (16 nodes against 26, five layers, seed 5, 2026-11-23).
     """
     terms = np.polynomial.chebyshev.chebvander(s, count - 1).T * weighted
     moments = np.array([np.bincount(panel, weights=term) for term in terms]).T
-    last = np.polynomial.legendre.legval(s, np.append(np.zeros(count), 1.0))
-    return moments, np.asarray(at_end(count) * np.bincount(panel, weights=last * weighted))
+    next_two = np.polynomial.legendre.legvander(s, count + 1)[:, count:].T * weighted
+    beyond = sum(np.abs(np.bincount(panel, weights=term)) for term in next_two)
+    return moments, np.asarray(at_end(count) * beyond)
 
 
 def _rule(load: MappedFunction, excess: float) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -192,15 +192,24 @@ class AnyLayerSolution(IntegralEquationSolution):
         depth g: what it does to yg and y1 in proportion cancels. phi vanishes at the edge with the slope -g' y1 and
         K' goes with P_m(s), so that of the error of y1 there is left what phi, over g y1, gains in half a wave of P_m.
         Where a piece of the profile fills no panel, polynomials take yg and y1 between nodes in two ways, and half is
-        left, or all where the resolvent of the panel is large; there y1 is interpolated, too.
+        left, or all where the resolvent of the panel is large; there y1 is interpolated, too, and so is what yg
+        inherits, all of it at the panel's start, with the opposite sign.
         """
+        panel, whole, gain = self._gained(ratio, profile, flat_radius, 1.0 / (2 * self.nodes))
+        start = np.where(panel > 0, 1.0 - self._panels.locate(ratio)[1], 0.0)
+        own = np.where(whole, FILLED_OWN, 0.5 * (1.0 + start))
+        left = np.clip(CUT_KERNEL * self._resolvent[panel], 0.5, 1.0)
+        return self._edge_error(self._covered(ratio), own, np.where(whole, gain, left))
+
+    def _gained(
+        self, ratio: FloatArray, profile: MappedFunction, flat_radius: float, share: float
+    ) -> tuple[NDArray[np.intp], NDArray[np.bool_], FloatArray]:
+        """The panel of each edge, whether its piece fills it, and what g gains on the last share of its width."""
         panel, filled = filled_panels(self.factor, profile.grid, flat_radius)
         excess = np.maximum(ratio - flat_radius, 0.0)
         piece, _ = profile.grid.locate(excess)
-        gain = gain_within(profile, excess, self.factor.widths(panel[-1] + 1)[panel[piece]] / (2 * self.nodes))
-        whole, left = filled[piece], np.clip(CUT_KERNEL * self._resolvent[panel[piece]], 0.5, 1.0)
-        own = np.where(whole, FILLED_OWN, 0.5)
-        return self._edge_error(self._covered(ratio), own, np.where(whole, gain, left))
+        own = panel[piece]
+        return own, filled[piece], gain_within(profile, excess, share * self.factor.widths(panel[-1] + 1)[own])
 
     @cached_property
     def _resolvent(self) -> FloatArray:
@@ -211,6 +220,22 @@ class AnyLayerSolution(IntegralEquationSolution):
         """None: `error_of_profile` tells already that most of it cancels in g, and an edge that hangs has all of it."""
         return np.zeros((2, *np.shape(ratio)))
 
-    def error_at_depth(self, stiffness: FloatArray, profile: FloatArray, spread: FloatArray) -> FloatArray:
-        """A wrong kernel K' moves F by <phi_1, K' phi> and k_N by <phi_1, K' phi_1>, where phi <= g phi_1."""
-        return stiffness * spread
+    def error_at_depth(
+        self,
+        ratio: FloatArray,
+        profile: MappedFunction,
+        flat_radius: float,
+        *,
+        stiffness: FloatArray,
+        depth: FloatArray,
+        spread: FloatArray,
+    ) -> FloatArray:
+        """A wrong kernel K' moves F by <phi_1, K' phi> and k_N by <phi_1, K' phi_1>, where phi <= g phi_1.
+
+        What interpolation leaves of it goes with P_m on the edge's panel, against which full panels are orthogonal, and
+        falls away from that panel: of phi/(g phi_1) counts what g gains on the last panel's width. Roundings count
+        everywhere.
+        """
+        gain = self._gained(ratio, profile, flat_radius, 1.0)[-1]
+        rounded = np.minimum(self.stiffness_rounding(ratio), stiffness)
+        return np.asarray(spread * (rounded + gain * (stiffness - rounded)))

@@ -20,7 +20,7 @@ from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels, panels_with_bends
 from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.chebyshev import piecewise_sum
-from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes
+from bem.polynomials.gauss_panels import chebyshev_from_nodes, gauss_nodes, lagrange_matrix
 from bem.polynomials.mapped import MappedFunction
 from bem.polynomials.truncation import between_nodes, orders_beyond
 from contact import InvalidInput, Profile
@@ -34,8 +34,9 @@ FINEST_PIECE: Final = -12
 # thickness on, which leaves itself times 1e-5 of a depth.
 GROWTH: Final = 1.5
 FIRST_STEP: Final = 6e-8
-# Edges on each piece.
-PIECE_NODES: Final = 12
+# Edges on each piece, and nodes on each of a profile's: 12 left 5e-12 of k_bar at the end of an octave, and 2e-9 of a
+# depth was stated (constant moduli, a/h = 1, 2026-11-23).
+PIECE_NODES: Final = 16
 # Nodes of a panel, and those of the coarser panels with which the edges of `CHECKED` are compared.
 COUNT: Final = 12
 COARSER: Final = 9
@@ -49,13 +50,14 @@ SHARES_OF_SPLIT: Final = (0.1, 0.25, 0.5, 1.0, 1.0 + 1e-9)
 # Shares of the largest edge that are compared.
 CHECKED: Final = (0.02, 0.2, 0.6, 1.0)
 # Times the difference from more nodes: an error between the edges where both are solved. With it and what the resolvent
-# leaves out, stated errors of depth and force covered 99 % and 100 % and were 7 and 9 times the true in the median
-# (six layers, two flat ends, a table of points and a paraboloid, 192 radii, a/h = 0.05 to 3.7, seed 1414, against one
-# dense solution on other panels, 2026-11-23).
+# leaves out, stated errors of depth and force covered 100 % each and were 6 and 7.5 times the true in the median (six
+# layers, three flat ends, a table of points, a cone and a paraboloid, 216 radii, a/h = 0.05 to 3.7, seed 11, against
+# the direct equation on 18 nodes, 2026-11-23).
 MARGIN: Final = 2.0
-# Added to it: what a kernel that is right to 2e-13 at most, and to 2e-14 on most layers, leaves where differences are
-# roundings (against `split_kernel`, 2026-11-23).
-KERNEL_ERROR: Final = 1e-13
+# Added to it, of 1 + k_bar: all nodes share one kernel. Wrong by dK it moves k_bar by <phi, dK phi>/<1, phi> of itself,
+# and |phi|^2/<1, phi> grows like k_bar. By what `graded.TOLERANCE` leaves, k_bar and y1 move by 6.5e-15 k_bar at most
+# (21 layers, a/h = 0.5 to 16, k_bar = 0.3 to 26 000, against a tolerance of 3e-14, 2026-11-23).
+KERNEL_ERROR: Final = 1e-14
 # Share of that difference that is stated. Three nodes fewer on panels graded by a quarter err at least 27 times as much
 # where a density is interpolated.
 # Against another grading with 14 nodes, k_bar, depth and force erred by up to 0.15 of it (three layers, a/h = 0.05 to
@@ -109,14 +111,16 @@ class ResolvedProfile(MappedFunction):
     """A profile whose edge values come from the tabulated resolvent.
 
     Attributes:
-        unresolved: What that leaves out of them at the grid's nodes, relative to them, shape (q m,).
+        unresolved: What that leaves out of them at the grid's nodes, relative to them, shape (q, m).
     """
 
     unresolved: FloatArray
 
     def resolvent_error(self, d: FloatArray) -> FloatArray:
-        """The same at points d."""
-        return np.interp(d, self.grid.nodes.ravel(), self.unresolved)
+        """The same at points d: errors at nodes differ in sign, and at the end of a piece polynomials magnify them."""
+        piece, u = self.grid.locate(d)
+        terms = lagrange_matrix(self.grid.count, u) * self.unresolved[piece]
+        return np.asarray(np.sqrt(np.sum(terms**2, axis=-1)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,9 +214,9 @@ class GradedSolution(FlatPunchSolution):
         if indenter.flat_radius or bends:
             flat = indenter.flat_radius / unit
             found = np.array([self._resolvent.layer_share(load, flat, float(d)) for d in load.grid.nodes.ravel()])
-            edge, left_out = load.node_values.ravel() + found[:, 0], found[:, 1]
-            values = edge.reshape(load.node_values.shape) / np.sqrt(springs)
-            return ResolvedProfile(load.grid, values, load.lead, left_out / edge), 0.0
+            share, left_out = (column.reshape(load.node_values.shape) for column in found.T)
+            edge = load.node_values + share
+            return ResolvedProfile(load.grid, edge / np.sqrt(springs), load.lead, left_out / edge), 0.0
         share = self._smooth_share(load)(load.grid.nodes)
         values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)
         return MappedFunction(load.grid, values, load.lead), 0.0
@@ -269,7 +273,7 @@ class GradedSolution(FlatPunchSolution):
         for x in edges.tolist():
             ours, other = self._edges.at(x), finer.at(x)
             changes = ours.edge_density / other.edge_density - 1, ours.stiffness / other.stiffness - 1
-            errors.append(MARGIN * max(np.abs(changes)) + KERNEL_ERROR)
+            errors.append(MARGIN * max(np.abs(changes)) + KERNEL_ERROR * (1 + ours.stiffness))
         return edges, np.array(errors)
 
     def _density(self, ratio: float, panels: RelativePanels, load: FloatArray) -> GradedDensity:
