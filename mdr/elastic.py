@@ -289,13 +289,12 @@ def _errors(
     exact = np.zeros_like(radius)
     if isinstance(scene.indenter, FlatPunch):
         linear = {"contact_radius": exact, "contact_stiffness": stiffness}
-        depth_given = given == "IndentationDepths"
-        of_depth = exact if depth_given else stiffness
+        of_depth = exact if given == "IndentationDepths" else stiffness
         return linear | {
             "pressure": system.flat_punch.punch_pressure_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "surface_displacement": system.flat_punch.spring_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "indentation_depth": of_depth,
-            "normal_force": stiffness if depth_given else exact,
+            "normal_force": stiffness - of_depth,
         }
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = contact_stiffness * depth / force

@@ -31,6 +31,7 @@ from contact.records.validation import FloatArray
 from mdr.springs.assembly import EndsTooSoon, SeveralContacts, contact_fields, equivalent_system
 from mdr.springs.beside_contact import circle_of
 from mdr.springs.equivalent_system import LEAST_EXCESS, EquivalentSystem
+from mdr.springs.error_model import SPRING_ROUNDING
 from mdr.springs.half_space_profile import half_space_profile, is_endless
 from mdr.springs.pulling import LEAST_TENSION, OneStep, refuse_pulling
 
@@ -44,9 +45,6 @@ TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)
 BEYOND = 1.05
 # Growth of the radius up to which depth or force are sketched; chosen.
 SKETCHED = 1.5
-# What a trial radius leaves to an upright end at least, relative: closer by, positions have no digits left; chosen.
-LEAST_GAP = 16 * np.finfo(float).eps
-
 # Growth of the trial radius beyond a falling stretch; chosen.
 GROWTH = 1.5
 _Objection: TypeAlias = SeveralContacts | EndsTooSoon | RatioNotCovered
@@ -79,7 +77,7 @@ def covering_system(scene: Scene, flat_punch: FlatPunchSource) -> EquivalentSyst
                 "reached; ask for less or describe the indenter further out"
             )
         radius = _next_radius(system, indenter, wanted, reached, isinstance(loading, NormalForces))
-        if is_endless(indenter, radius * (1 + LEAST_GAP)):
+        if is_endless(indenter, radius * (1 + SPRING_ROUNDING)):
             raise InvalidInput(f"loading.values = {wanted:g}: {indenter.upright_end}; press less")
 
 
@@ -90,7 +88,7 @@ def _up_to(scene: Scene, radius: float, flat_punch: FlatPunchSource) -> tuple[Eq
         try:
             return equivalent_system(scene.layer, scene.indenter, radius, flat_punch), objection
         except (SeveralContacts, EndsTooSoon, RatioNotCovered) as own:
-            covered = scene.layer.surface.thickness * (1 - LEAST_GAP)
+            covered = scene.layer.surface.thickness * (1 - SPRING_ROUNDING)
             answered = covered * own.largest if isinstance(own, RatioNotCovered) else own.radius
             # Up to a node at which g falls it may fall at another one, which lies elsewhere with the grid.
             if not scene.indenter.flat_radius < answered < radius:
