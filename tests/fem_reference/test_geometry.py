@@ -48,7 +48,7 @@ def test_fingerprint_is_reproduced_and_tells_meshes_apart(mesh):
 
 
 def test_cells_grow_faster_near_graded_points():
-    """Two thirds of the triangles that cells of one growth make (1,138), none larger than that growth makes it far away."""
+    """Two thirds of the triangles that cells of one growth make (1,138); far away they are no larger."""
     fine = layer_mesh(1.0, 4.0, Grading(points=((0.0, 1e-7), (1.0, 1e-8)), growth=0.5, max_cell=0.5)).mesh
     assert fine.t.shape[1] < 800
     far = fine.p[:, fine.t][:, :, np.hypot(fine.p[0, fine.t] - 1, fine.p[1, fine.t]).min(axis=0) > 1]
