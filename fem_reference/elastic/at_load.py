@@ -7,6 +7,7 @@ load misses by little, else repeated.  At smooth contact dF/da = 0 at given dept
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -21,7 +22,7 @@ from fem_reference.elastic.prescribed_radius import COARSE, PrescribedContact, q
 # Relative load that is left to the first-order correction, over the root of the accuracy wanted.  Derived: about half
 # of it is left of the radius, and its square, which a correction errs by, is a thirty-sixth of the accuracy.
 PER_ROOT = 1 / 3
-# It is at most this times the accuracy: the correction of the radius errs by `read_slope` of it, hence by a tenth.
+# It is at most this times the accuracy: the correction of the radius errs by `read_slope` of it, hence by a fifth.
 PER_ACCURACY = 1000.0
 # Accuracy that counts where none is asked; chosen, about what the default settings reach.  For finer ones coarse quick
 # solutions, whose forces are off by up to 4e-4, leave too much.
@@ -81,7 +82,7 @@ class Load:
 def left_over(accuracy: float | None) -> float:
     """Relative load that the first-order correction may take."""
     wanted = accuracy or UNASKED
-    return min(PER_ROOT * wanted**0.5, PER_ACCURACY * wanted)
+    return min(PER_ROOT * math.sqrt(wanted), PER_ACCURACY * wanted)
 
 
 def found_load(scene: Scene, target: float, start: float, accuracy: float | None, log: StageLog) -> Load:

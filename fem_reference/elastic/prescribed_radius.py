@@ -25,7 +25,12 @@ from fem_reference.discrete_layer.problem import LayerProblem, problem_of
 from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.trace import TraceSpace
 from fem_reference.elastic.patch_test import patch_defect
-from fem_reference.elastic.shape_derivative import derivative_by_radius, edge_scale, mutual_energies, smooth_depth_slope
+from fem_reference.elastic.shape_derivative import (
+    derivative_by_radius,
+    mutual_energies,
+    smooth_depth_slope,
+    smooth_scale,
+)
 
 # Largest relative difference of the stiffness by energy and by reactions: sound solutions agree to 1e-12 and a broken
 # down factorisation misses by 1e-2, so anything between tells the two apart.
@@ -175,7 +180,7 @@ def _evaluate(
         stiffness=float(stiffness),
         stiffness_slope=float(derivative[0, 0]),
         smooth_depth=smooth_depth,
-        smooth_depth_slope=smooth_depth_slope(contact_trace, smooth_pressures, edge_scale(problem, indenter)),
+        smooth_depth_slope=smooth_depth_slope(contact_trace, smooth_pressures, smooth_scale(problem, indenter)),
         profile_force=float(profile_force),
         tail_energies=energies.beyond,
         decay=energies.decay,

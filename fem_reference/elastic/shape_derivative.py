@@ -23,7 +23,7 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.problem import LayerProblem
 from fem_reference.discrete_layer.trace import TraceSpace
 
-# Width of the widest ring beside the contact's edge in which the slope of delta_0 is read, over `edge_scale`, and how
+# Width of the widest ring beside the contact's edge in which the slope of delta_0 is read, over `smooth_scale`, and how
 # many rings there are.  Measured with MDR (paraboloid, sphere, cones, nu = 0 to 1/2, h/a = 0.2 to 5, 2026-11-23): the
 # slope errs by at most 3e-4, 3e-4, 8e-4 and 3e-2 at growths of 0.35, 1/2, 0.7 and 1, by three rings from a width of 0.2
 # by 1e-3, 1e-3, 8e-4 and 3e-2.  One cell 3e-4 beside the edge told it 770 times off at a growth of 1.4.
@@ -115,7 +115,7 @@ def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -
     Args:
         trace: functions on the contact.
         pressures: of the flat punch and of smooth contact, in ``trace``, shape (n, 2).
-        scale: `edge_scale`.
+        scale: `smooth_scale`.
     """
     radius, weight = (values.ravel() for values in trace.gauss(trace.degree + 2))
     punch, smooth = (trace.evaluate(values, radius) for values in pressures.T)
@@ -129,6 +129,11 @@ def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -
 def edge_scale(problem: LayerProblem, indenter: ScaledIndenter) -> float:
     """The smallest of contact radius, thickness and the distance from the edge to the last kink."""
     return min(1.0, problem.layer_mesh.surface_thickness, 1.0 - max(indenter.kinks, default=0.0))
+
+
+def smooth_scale(problem: LayerProblem, indenter: ScaledIndenter) -> float:
+    """`edge_scale`, or the distance from the edge to the last breakpoint of the profile: up to there it is smooth."""
+    return min(edge_scale(problem, indenter), 1.0 - max(indenter.breakpoints, default=0.0))
 
 
 def derivative_by_radius(
