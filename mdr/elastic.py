@@ -303,14 +303,13 @@ def _errors(
     # Under a given radius F errs as under the given depth, and by k_N times the error of g, which is no part of that.
     of_force = np.minimum(stiffness + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
     searched = of_force / spread if given == "NormalForces" else of_depth
-    if given != "ContactRadii":
-        of_force, of_depth = np.minimum(of_force, at_depth), at_depth / spread
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
         # The noise of a table may let its slope fall.
         moved = searched * depth / (radius * np.abs(system.mdr_profile_slope(radius)))
         growth = 2.0 * system.spring_stiffness(radius) * radius / contact_stiffness
+        of_force, of_depth = np.minimum(of_force, at_depth), at_depth / spread
     return {
         "contact_radius": moved,
         "indentation_depth": exact if given == "IndentationDepths" else of_depth,

@@ -210,7 +210,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
         """The same without what polynomials lose of the slope."""
         share = np.abs(1 - 1 / self.normalized_contact_stiffness(ratio))
-        return _of_density(share, ratio, depth_error)
+        return of_density(share, ratio, depth_error)
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
@@ -289,6 +289,6 @@ class IntegralEquationSolution(FlatPunchSolution):
         return MappedFunction(grid, (full[:, None] + partial) / grid.nodes - 1, 1.0)  # Eqs. (6), (10)
 
 
-def _of_density(share: FloatArray, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+def of_density(share: FloatArray, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
     """Error of the pressure from that of the density, of which psi is this share."""
     return np.asarray(share * ratio**2 / (1 + ratio**2) * depth_error)

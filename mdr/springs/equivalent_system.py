@@ -180,14 +180,10 @@ class EquivalentSystem:
             found | {"spring_stiffness": self.flat_punch.spring_error(ratio) + SPRING_ROUNDING} if of_springs else found
         )
 
-    def error_at_depth(
-        self, contact_radius: FloatArray, *, stiffness: FloatArray, depth: FloatArray, spread: FloatArray
-    ) -> FloatArray:
-        """Relative error of F under a given depth, from those of k_N and g; `spread` is k_N g/F, shape (n,) each."""
-        ratio, flat = self._ratio(contact_radius), self.flat_radius / self.length_unit
-        return self.flat_punch.error_at_depth(
-            ratio, self.profile, flat, stiffness=stiffness, depth=depth, spread=spread
-        )
+    def error_at_depth(self, contact_radius: FloatArray, **errors: FloatArray) -> FloatArray:
+        """Relative error of F under a given depth, from those of k_N and g as the flat-punch data take them."""
+        flat = self.flat_radius / self.length_unit
+        return self.flat_punch.error_at_depth(self._ratio(contact_radius), self.profile, flat, **errors)
 
     def kernel_errors(self, contact_radius: FloatArray) -> FloatArray:
         """What of the relative errors of c_N and g comes from one wrong kernel, shape (2, n)."""

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from bem.layer_equation.error_model import STACK_FACTOR, FactorCoefficients
 from bem.layer_equation.factors.dense import factor_of_matrix
-from bem.layer_equation.flat_punch_solution import IntegralEquationSolution
+from bem.layer_equation.flat_punch_solution import IntegralEquationSolution, of_density
 from bem.layer_equation.fredholm_kernel import FredholmKernel
 from bem.layer_equation.one_factorisation import (
     STRIP,
@@ -215,6 +215,29 @@ class AnyLayerSolution(IntegralEquationSolution):
     def _resolvent(self) -> FloatArray:
         """The largest G of each panel times its width."""
         return np.asarray(np.abs(self.factor.resolvent).max(axis=(1, 2)) * self.factor.widths(self.factor.panels))
+
+    def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
+        """The edge value errs however small a punch is, and of its pressure, k_bar in all, a stiff film leaves little.
+
+        The density does not fall towards the edge, so that all that is left of slopes counts; where little is left of a
+        density of one, roundings have grown by as much already.
+        """
+        panels, _ = self._panels.locate(ratio)
+        least = np.minimum(self.normalized_contact_stiffness(ratio), 1.0)
+        edge = 2 * self.factor.truncation[panels] + self.stiffness_rounding(ratio) / least
+        return np.asarray(np.hypot(edge, super()._slope_truncation(ratio)) / least)
+
+    def contact_density_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
+        """Of a unit punch's density psi is k_bar - 1 in the mean, which may vanish, and y1 - 1 at the edge."""
+        k = self.normalized_contact_stiffness(ratio)
+        psi = np.maximum(np.abs(k - 1.0), np.abs(self.edge_density(ratio) - 1.0))
+        return of_density(psi / k, ratio, depth_error)
+
+    def _slope_truncation(self, ratio: FloatArray) -> FloatArray:
+        """Only on the edge's panel kernels are interpolated beside it: counts its share of the contact's area."""
+        panels, _ = self._panels.locate(ratio)
+        start = np.divide(self._panels.left[panels], ratio, out=np.zeros_like(ratio), where=ratio > 0.0)
+        return np.asarray(super()._slope_truncation(ratio) * (1.0 - start**2))
 
     def kernel_errors(self, ratio: FloatArray) -> FloatArray:
         """None: `error_of_profile` tells already that most of it cancels in g, and an edge that hangs has all of it."""
