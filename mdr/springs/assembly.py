@@ -10,14 +10,18 @@ import numpy as np
 
 from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
-from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
 from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
-from mdr.springs.half_space_profile import half_space_profile, is_endless, profile_beside_end
+from mdr.springs.half_space_profile import (
+    half_space_profile,
+    is_endless,
+    profile_beside_end,
+    rounding_beside_end,
+)
 from mdr.springs.surface_fields import ContactFields
 
 # On coarse panels the last coefficients of a profile's pieces may be a tenth of the flat punch's own error: what is
@@ -82,7 +86,7 @@ def equivalent_system(
         profile=profile,
         moment=moment,
         profile_error=own_error,
-        position_rounding=partial(_rounding_near_equator, indenter, max_radius),
+        position_rounding=partial(rounding_beside_end, indenter, max_radius),
         load=g_hs if _shares_pieces(layer, indenter) else None,
     )
     return _with_variants(system, indenter, g_hs)
@@ -209,20 +213,6 @@ def _profile(
         springs: c_bar at the grid's nodes.
     """
     return (g_hs, 0.0) if isinstance(indenter, FlatPunch) else solution.profile_of(indenter, unit, g_hs, springs)
-
-
-def _rounding_near_equator(indenter: Profile, largest: float, radius: FloatArray) -> FloatArray:
-    """What rounded positions do to a profile that is upright at its end: eps d(ln g_hs)/d(ln x), and a margin.
-
-    The largest radius is where the grid ends, with all its digits.
-    """
-    inside = (radius > indenter.flat_radius) & (radius != largest)
-    if not (np.any(inside) and is_endless(indenter, indenter.max_radius)):
-        return np.zeros_like(radius)
-    edge = np.where(inside, radius, indenter.max_radius / 2)
-    slope = profile_slope(indenter, edge, indenter.max_radius - edge)
-    share = 0.0 if slope is None else POSITION_ROUNDINGS * EPS * edge * slope / half_space_profile(indenter, edge)
-    return np.where(inside, share, 0.0)
 
 
 def half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: float, excess: float) -> MappedFunction:
@@ -377,7 +367,7 @@ def _refuse_rings(profile: MappedFunction, indenter: Profile, unit: float, noise
     if np.any(falling):
         # Roundings of positions beside an equator may let g fall; at the equator to the digit they are all of it.
         with np.errstate(all="ignore"):
-            unsure = noise + _rounding_near_equator(indenter, np.inf, indenter.flat_radius + unit * profile.grid.nodes)
+            unsure = noise + rounding_beside_end(indenter, np.inf, indenter.flat_radius + unit * profile.grid.nodes)
             falling &= profile.node_values <= (1 - unsure) * highest
     if np.any(falling):
         raise SeveralContacts(indenter.flat_radius + unit * float(profile.grid.nodes[falling].min()))

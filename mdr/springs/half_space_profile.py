@@ -14,6 +14,7 @@ from functools import singledispatch
 
 import numpy as np
 
+from bem.layer_equation.profiles.half_space_slope import profile_slope
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
 from contact.scene.profiles import (
@@ -26,6 +27,7 @@ from contact.scene.profiles import (
     TruncatedCone,
     TruncatedParaboloid,
 )
+from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
 
 # Gauss nodes on each stretch of the profile between breakpoints; chosen.
 NODES = 48
@@ -81,6 +83,20 @@ def is_endless(indenter: Profile, radius: float) -> bool:
     with np.errstate(divide="ignore"):
         depth = half_space_profile(indenter, np.asarray(indenter.max_radius - indenter.flat_radius))
     return not np.isfinite(depth)
+
+
+def rounding_beside_end(indenter: Profile, largest: float, radius: FloatArray) -> FloatArray:
+    """What rounded positions do to a profile that is upright at its end: eps d(ln g_hs)/d(ln x), and a margin.
+
+    The largest radius is where the grid ends, with all its digits.
+    """
+    inside = (radius > indenter.flat_radius) & (radius != largest)
+    if not (np.any(inside) and is_endless(indenter, indenter.max_radius)):
+        return np.zeros_like(radius)
+    edge = np.where(inside, radius, indenter.max_radius / 2)
+    slope = profile_slope(indenter, edge, indenter.max_radius - edge)
+    share = 0.0 if slope is None else POSITION_ROUNDINGS * EPS * edge * slope / half_space_profile(indenter, edge)
+    return np.where(inside, share, 0.0)
 
 
 @half_space_profile.register
