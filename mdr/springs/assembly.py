@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from functools import partial
 
@@ -342,7 +341,7 @@ def _exponent_at_touch(indenter: Profile, excess: float) -> float:
 
     Of a sum of powers only the lowest one is left at the tip: a table's first slope may be a rounding.
     """
-    steps = math.ceil(math.log(max(excess / _LEAST_LENGTH, 1.0)) / -math.log(_CLOSER)) + 1
+    steps = 2 - int(np.log(max(excess / _LEAST_LENGTH, 1.0)) / np.log(_CLOSER))
     excesses = np.multiply.accumulate(np.append(excess, np.full(steps, _CLOSER)))
     near, far = half_space_profile(indenter, np.multiply.outer([1.0, 2.0], excesses))
     # The last excess is always one of those that lost their digits.
