@@ -334,12 +334,15 @@ def _exponent_at_touch(indenter: Profile, excess: float) -> float:
 
     Of a sum of powers only the lowest one is left at the tip: a table's first slope may be a rounding.
     """
-    near, far = half_space_profile(indenter, excess * np.array([1.0, 2.0]))
-    if min(near, excess) <= _LEAST_LENGTH:
-        return np.nan
-    exponent = float(np.log2(far / near))
-    closer = _exponent_at_touch(indenter, excess * _CLOSER)
-    return closer if closer < exponent - _SAME_EXPONENT else exponent
+    steps = 2 - int(np.log(max(excess / _LEAST_LENGTH, 1.0)) / np.log(_CLOSER))
+    excesses = np.multiply.accumulate(np.append(excess, np.full(steps, _CLOSER)))
+    near, far = half_space_profile(indenter, np.multiply.outer([1.0, 2.0], excesses))
+    # The last excess is always one of those that lost their digits.
+    kept = int(np.argmax(np.minimum(near, excesses) <= _LEAST_LENGTH))
+    least = np.nan
+    for exponent in np.log2(far[:kept] / near[:kept])[::-1].tolist():
+        least = least if least < exponent - _SAME_EXPONENT else exponent
+    return least
 
 
 def _first_power(exponent: float) -> int:
