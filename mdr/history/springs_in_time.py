@@ -97,9 +97,13 @@ class SpringLaw:
         return np.asarray(np.tensordot(self.weights / self.times, strains, 1))
 
     def outruns(self, speed: float, surface: float, strains: FloatArray) -> bool:
-        """Whether a body at this speed [m/s] is no slower than a free spring; a surface at rest moves by roundings."""
-        at_rest = _ROUNDING * abs(surface) / self.clock
-        return bool(speed >= self.creep_speed(np.asarray(surface), strains) - at_rest)
+        """Whether a body at this speed [m/s] is no slower than a free spring.
+
+        A surface at rest creeps by roundings of its strains, which are as large as itself at most.
+        """
+        u = np.asarray(surface)
+        at_rest = _ROUNDING * np.abs(self.creep_speed(u, np.full(strains.shape, surface)))
+        return bool(speed >= self.creep_speed(u, strains) - at_rest)
 
     def faded(self, amplitudes: FloatArray, time: FloatArray) -> FloatArray:
         """Amplitudes of a free spring's modes after times as in `pressed`, shape (modes, instants, springs)."""
