@@ -7,29 +7,27 @@ load misses by little, else repeated.  At smooth contact dF/da = 0 at given dept
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from contact import IndentationDepths, NotConvergedError, Scene, StageLog
-from fem_reference.discrete_layer.settings import Discretisation, narrowest_radius
+from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
-from fem_reference.elastic.prescribed_radius import COARSE, PrescribedContact, quick_solution
+from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 
-# Relative load that is left to the first-order correction, over the root of the accuracy wanted.  Derived: about half
-# of it is left of the radius, and its square, which a correction errs by, is a thirty-sixth of the accuracy.
-PER_ROOT = 1 / 3
-# It is at most this times the accuracy: the correction of the radius errs by `read_slope` of it, hence by a fifth.
-PER_ACCURACY = 1000.0
-# Accuracy that counts where none is asked; chosen, about what the default settings reach.  For finer ones coarse quick
-# solutions, whose forces are off by up to 4e-4, leave too much.
-UNASKED = 1e-6
-# From this accuracy on, and without a flat end, no quick solution is made: the searched radius is off by 3e-4 in the
-# median and 1.2e-3 in nine of ten (30 paraboloids, cones and spheres, 2026-11-23), which the correction takes.
-AS_SEARCHED = 1e-4
+# Relative load that is left to the first-order correction, whose own error is its square.
+LEFT_OVER = 1e-4
+# The same over the accuracy wanted.  Derived: a correction errs by its slope, by about a hundredth of it, and by its
+# square, hence by a tenth of accuracies up to 1e-2.
+PER_ACCURACY = 3.0
+# And for fine accuracies: a correction of the radius errs by `read_slope` of it, hence by a tenth of the accuracy.
+PER_FINE_ACCURACY = 100.0
+# From this accuracy on a full solution costs no more than a quick one and, without a flat end, the load of the searched
+# radius misses by 2e-4 to 2e-3 (paraboloid, cone and sphere, 2026-11-23), about its own error: no quick one is made.
+AS_SEARCHED = 1e-3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -70,7 +68,7 @@ class Load:
             exponent = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own, and misses the load by what its mesh misses it by.
-            if abs(defect - 1) <= max(left_over(self.accuracy), contact.error[name]):
+            if abs(defect - 1) <= max(self._left_over, contact.error[name]):
                 factor = corrected / radius
                 return LoadedContact(
                     contact=contact, load=scaled, by_depth=self.by_depth, radius_factor=factor
@@ -78,11 +76,12 @@ class Load:
             radius = corrected
         raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
-
-def left_over(accuracy: float | None) -> float:
-    """Relative load that the first-order correction may take."""
-    wanted = accuracy or UNASKED
-    return min(PER_ROOT * math.sqrt(wanted), PER_ACCURACY * wanted)
+    @property
+    def _left_over(self) -> float:
+        """Relative load that the first-order correction may take."""
+        if self.accuracy is None:
+            return LEFT_OVER
+        return max(min(LEFT_OVER, PER_FINE_ACCURACY * self.accuracy), PER_ACCURACY * self.accuracy)
 
 
 def found_load(scene: Scene, target: float, start: float, accuracy: float | None, log: StageLog) -> Load:
@@ -100,18 +99,16 @@ def found_load(scene: Scene, target: float, start: float, accuracy: float | None
     """
     by_depth = isinstance(scene.loading, IndentationDepths)
 
-    flat, left = scene.indenter.flat_radius, left_over(accuracy)
-    settings = COARSE if (accuracy or UNASKED) >= UNASKED else Discretisation()
+    flat = scene.indenter.flat_radius
     if accuracy is not None and accuracy >= AS_SEARCHED and not flat:
         return Load(scene=scene, target=target, by_depth=by_depth, radius=start, accuracy=accuracy)
 
     def load_at(radius: float) -> tuple[float, float]:
-        contact = quick_solution(scene, radius, settings, log)
+        contact = quick_solution(scene, radius, log)
         load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
-    least = narrowest_radius(scene.layer, scene.indenter)
-    radius = radius_of_load(load_at, start, flat, least, left=left)
+    radius = radius_of_load(load_at, start, flat, narrowest_radius(scene.layer, scene.indenter))
     return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, accuracy=accuracy)
 
 
@@ -127,12 +124,7 @@ def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> fl
 
 
 def radius_of_load(
-    load_at: Callable[[float], tuple[float, float]],
-    start: float,
-    flat: float,
-    narrowest: float = 0.0,
-    *,
-    left: float = left_over(None),
+    load_at: Callable[[float], tuple[float, float]], start: float, flat: float, narrowest: float = 0.0
 ) -> float:
     """Radius a at which a load ratio is one: Newton's method in logarithms.
 
@@ -144,7 +136,6 @@ def radius_of_load(
         start: first radius.
         flat: radius of the flat end.
         narrowest: smallest radius.
-        left: relative load that may be missed.
 
     Raises:
         NotConvergedError: the radius does not settle.
@@ -157,7 +148,7 @@ def radius_of_load(
         if x == least and y > 0:
             return narrowest
         # A last step leaves about the square of this.
-        if y**2 < left:
+        if y**2 < LEFT_OVER:
             return flat + float(np.exp(max(x - y / growth, least)))
         x = max(x - float(np.clip(y / growth, -1, 1)), least)
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})

@@ -13,7 +13,7 @@ from contact import FlatPunch, InvalidInput, Scene, StageLog
 from contact.answer.one_circle import Circle, no_single_circle, refuse_touching
 from contact.records.validation import FloatArray
 from fem_reference.elastic.error_estimate import ContactWithErrors
-from fem_reference.elastic.prescribed_radius import COARSE, PrescribedContact, quick_solution
+from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
 from fem_reference.error_model import INSIDE
 
 # Relative error of the depth in a quick solution: three times the largest difference to MDR, 6e-5, on 16 random tables
@@ -99,7 +99,7 @@ def refuse_touching_at(scene: Scene, radius: float, log: StageLog) -> None:
     """
     if scene.indenter.is_convex or radius <= scene.indenter.flat_radius:
         return
-    contact = quick_solution(scene, radius, COARSE, log)
+    contact = quick_solution(scene, radius, log)
     refuse_touching(scene, [_circle(contact, radius, contact.smooth_depth, QUICK_ERROR)])
 
 

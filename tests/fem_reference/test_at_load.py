@@ -18,7 +18,7 @@ from contact import (
 )
 from fem_reference import Fem
 from fem_reference.elastic.at_load import Load
-from fem_reference.elastic.prescribed_radius import COARSE, quick_solution
+from fem_reference.elastic.prescribed_radius import quick_solution
 from mdr import Mdr
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=0.8e6, poissons_ratio=0.49)
@@ -34,7 +34,7 @@ def test_a_quick_solution_knows_how_its_depth_grows(indenter, radius):
     near = radius * (1 + 1e-3 * np.array([-1.0, 0.0, 1.0]))
     scene = Scene(layer=LAYER, indenter=indenter, loading=ContactRadii(near))
     depth = Mdr().solve(scene).indentation_depth
-    found = quick_solution(scene, radius, COARSE, StageLog()).smooth_depth_slope
+    found = quick_solution(scene, radius, StageLog()).smooth_depth_slope
     assert found == pytest.approx((depth[2] - depth[0]) / (near[2] - near[0]), rel=1e-2, abs=0)
 
 
