@@ -14,7 +14,7 @@ from bem.grid.calibrated_disc import TOLERANCE, PunchSolution
 from bem.grid.equilibrium import Boundary, CircularContact, GridContactSearch, Prescribed
 from bem.grid.error_model import DIRECT, TABLES
 from bem.grid.flat_punch import cell_pressure, grid_punch, punch_stiffness
-from bem.grid.quadrant import LEAST_CELLS, QuadrantGrid, UnresolvedLayer
+from bem.grid.quadrant import LEAST_CELLS, QuadrantGrid, Unresolved, refuse_upright_end
 from bem.grid.surface_fields import AxisymmetricFields, FieldSequence, FlatPunchFields, SmoothIndenterFields
 from contact import (
     Adhesion,
@@ -156,7 +156,7 @@ class Bem(Record):
         for points in ACCURACY_POINTS:
             try:
                 path = dataclasses.replace(self, points=points, accuracy=None).solve(scene)
-            except UnresolvedLayer:
+            except Unresolved:
                 if points == ACCURACY_POINTS[-1]:
                     raise
                 continue
@@ -215,6 +215,7 @@ class Bem(Record):
     def _smooth_step(self, scene: Scene, kind: Prescribed, value: float, log: StageLog) -> PathStep:
         press = GridContactSearch(scene.layer, scene.indenter, self.boundary, self.tolerance, self.threads, log)
         fine, coarse = press.reach(kind, value, self.points)
+        refuse_upright_end(scene.indenter, fine.contact_radius, fine.grid.cell_size)
         fields = SmoothIndenterFields(scene.layer, scene.indenter, fine)
         other = SmoothIndenterFields(scene.layer, scene.indenter, coarse)
         errors = _errors(kind, fine, coarse, _unresolved(scene, fine), _punch_floor(scene))

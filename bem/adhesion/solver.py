@@ -70,7 +70,7 @@ class AdheringDiscs:
         Raises:
             InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
             UnsupportedSceneError: If the indenter would touch beside its circle of contact.
-            UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
+            Unresolved: If the layer is thinner than `LEAST_LAYER` cells.
         """
         fine, coarse = self._branches()
         states, others = self._states(fine), self._states(coarse)
@@ -108,7 +108,7 @@ class AdheringDiscs:
         """The whole equilibrium branch of a withdrawal, in order of decreasing radius.
 
         Raises:
-            UnresolvedLayer: If the layer is thinner than `LEAST_LAYER` cells.
+            Unresolved: If the layer is thinner than `LEAST_LAYER` cells.
         """
         fine, coarse = self._branches()
         start = self._start(fine)
@@ -283,7 +283,7 @@ class AdheringDiscs:
         """Whether the branch holds all prescribed values, or all of a withdrawal.
 
         Raises:
-            UnresolvedLayer: If the branch is rough because the layer is thinner than `LEAST_LAYER` cells.
+            Unresolved: If the branch is rough because the layer is thinner than `LEAST_LAYER` cells.
             NotConvergedError: If it is rough for another reason.
         """
         loading, end = self.scene.loading, np.array([branch.largest_radius])

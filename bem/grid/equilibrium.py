@@ -227,7 +227,7 @@ class GridContactSearch:
         """The equilibria with the prescribed depth, force or radius on `points` cells and on half as many.
 
         Raises:
-            UnresolvedLayer: If the layer is thinner than a cell.
+            Unresolved: If the layer is thinner than a cell.
         """
         reach = self._reach_radius if prescribed == "radius" else self._reach_depth_or_force
         fine, coarse = reach(prescribed, value, points)

@@ -8,7 +8,8 @@ from typing import Final
 
 import numpy as np
 
-from contact import ElasticLayer, UnsupportedSceneError
+from bem.grid.error_model import DIRECT
+from contact import ElasticLayer, Profile, UnsupportedSceneError
 from contact.records.validation import FloatArray
 
 # Cells across the coarse grids on which first guesses and largest radii are looked for.
@@ -39,22 +40,36 @@ class QuadrantGrid:
         return np.asarray(np.hypot(centre[:, None], centre))
 
 
-class UnresolvedLayer(UnsupportedSceneError):
-    """The layer is too thin for the cells: two such grids may agree on what neither of them resolves."""
+class Unresolved(UnsupportedSceneError):
+    """Cells are too large for the layer or for what is left to an upright end, and two grids may agree all the same."""
 
 
 def refuse_thin_layer(layer: ElasticLayer, cell_size: float, least: float) -> None:
     """Ask for a layer that is so many cells thick.
 
     Raises:
-        UnresolvedLayer: If it is thinner.
+        Unresolved: If it is thinner.
     """
     thickness = layer.surface.thickness
     spanned = thickness / cell_size
     if spanned < least:
-        raise UnresolvedLayer(
+        raise Unresolved(
             f"the layer of thickness {thickness:g} m is {spanned:.2g} cells thick and needs {least:g}; "
             f"take {least / spanned:.1f} times as many points, or ask mdr or fem"
+        )
+
+
+def refuse_upright_end(indenter: Profile, radius: float, cell_size: float) -> None:
+    """Ask for some cells between a contact's edge and an upright end, towards which the depth grows without bound.
+
+    Raises:
+        Unresolved: If there are fewer.
+    """
+    spanned = (indenter.max_radius - radius) / cell_size
+    if indenter.ends_upright and spanned < DIRECT.end_cells:
+        raise Unresolved(
+            f"between the contact radius {radius:g} m and the upright end of the indenter at {indenter.max_radius:g} m "
+            f"lie {spanned:.2g} cells of {DIRECT.end_cells:g} that are needed; take more points, or ask mdr"
         )
 
 

@@ -56,9 +56,6 @@ class OneRadiusCoefficients:
     growth: float = 2.0
     # What cancellation in graded panels leaves of every number, relative, besides the difference of discretisations.
     rounding: float = 1e-13
-    # By this much a prescribed depth or force may be missed: the radius is found within 1e-13, and they grow with its
-    # powers up to six.
-    searched: float = 1e-12
 
 
 FACTOR = FactorCoefficients()

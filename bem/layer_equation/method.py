@@ -8,7 +8,7 @@ wavenumber. So the two check each other.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cache, cached_property
 from itertools import pairwise
 from typing import Annotated, ClassVar, Self
@@ -23,6 +23,7 @@ from bem.layer_equation.error_model import ONE_RADIUS
 from bem.layer_equation.inside.interior import ContactInterior
 from bem.layer_equation.one_radius import DirectDensity
 from bem.polynomials.gauss_panels import gauss_nodes
+from bem.polynomials.mapped import EPS
 from contact import (
     ContactPath,
     ContactRadii,
@@ -171,6 +172,12 @@ class DirectContact:
         """p/E* at offsets r - b from the rim of the flat end, in length units."""
         return self.density.pressure(offset, self.depth, singular_edge=self.singular_edge)
 
+    @property
+    def settled(self) -> DirectContact:
+        """The same contact at the depth that its radius tells; under a flat punch that is any."""
+        is_settled = self.singular_edge or self.depth == self.density.depth
+        return self if is_settled else replace(self, depth=self.density.depth)
+
     @cached_property
     def sampled(self) -> tuple[FloatArray, FloatArray]:
         """Offsets of Gauss nodes on each smooth stretch of the contact, and p/E* there."""
@@ -252,7 +259,12 @@ class _Solver:
             return self._punch(value)
         if isinstance(self.scene.loading, ContactRadii):
             return self._loose(self._density(value - self.scene.indenter.flat_radius))
-        return self._loose(self._density(self._excess(value)))
+        density, modulus = self._density(self._excess(value)), contact_modulus(self.scene.layer)
+        depth = value / density.unit
+        if isinstance(self.scene.loading, NormalForces):
+            missed = value / (modulus * density.unit**2) - density.force(density.depth)
+            depth = density.depth + missed / density.stiffness
+        return DirectContact(density, depth, False, modulus)
 
     def at_radius(self, contact: DirectContact) -> DirectContact:
         """The same contact on these panels; a flat punch keeps its depth too."""
@@ -280,24 +292,33 @@ class _Solver:
         return kind.solve(self.scene.layer, self.scene.indenter, excess, self.panel_width, self.nodes)
 
     def _excess(self, value: float) -> float:
-        """a - b [m] with this depth or force, both nearly powers of it: TOMS 748 in logarithms."""
+        """a - b [m] with this depth or force, both nearly powers of it and of what is left to an end: TOMS 748.
+
+        It looks for ln((a - b)/(1 - (a - b)/(end - b))), which tells both.
+        """
         flat, end = self.scene.indenter.flat_radius, self.scene.indenter.max_radius
         item = 2 if isinstance(self.scene.loading, NormalForces) else 1
 
+        def excess_at(place: float) -> float:
+            """At the last place nothing is left to the end but the next number before it."""
+            longest = end - flat
+            return min(float(np.exp(place) / (1 + np.exp(place) / longest)), float(np.nextafter(end, 0.0)) - flat)
+
         @cache
-        def missed(log_excess: float) -> float:
+        def missed(place: float) -> float:
             """ln of what is reached over what is asked for."""
-            excess = min(float(np.exp(log_excess)), end * (1 - 1e-9) - flat)
+            excess = excess_at(place)
             reached = self._loose(self._density(excess)).answer[item] / value
-            if reached < 1 and flat + np.exp(log_excess) >= end:
+            if reached < 1 and flat + excess >= np.nextafter(end, 0.0):
                 raise InvalidInput(f"loading.values = {value:g}: the indenter ends at {end:g} m before it is reached")
-            if reached > 1 and np.exp(log_excess) < np.finfo(float).eps * flat:
+            if reached > 1 and excess < EPS * flat:
                 message = f"loading.values = {value:g}: the contact is as wide as the flat end to the last digit"
                 raise InvalidInput(f"{message}; press more, or take a flat punch")
             return float(np.log(max(reached, np.finfo(float).tiny)))
 
-        low, high = _bracket(missed, float(np.log(self._first_excess(value))))
-        return float(np.exp(toms748(missed, low, high, xtol=RADIUS_TOLERANCE)))
+        first = self._first_excess(value)
+        low, high = _bracket(missed, float(np.log(first / (1 - first / (end - flat)))))
+        return excess_at(toms748(missed, low, high, xtol=RADIUS_TOLERANCE))
 
     def _first_excess(self, value: float) -> float:
         """Where the profile is as high as the depth or force asks for; well within its end and what is resolved."""
@@ -349,27 +370,30 @@ def _errors(fine: list[DirectContact], fewer: list[list[DirectContact]], scene: 
         fewer: The same with three quarters and with half of the nodes.
         scene: The scene.
     """
-    exact = np.array([contact.answer for contact in fine])
+    exact = np.array([contact.settled.answer for contact in fine])
     rounding = ONE_RADIUS.rounding + np.array([[_rounding(contact.density)] for contact in fine])
     e, f = (np.abs(np.array([contact.answer for contact in coarse]) / exact - 1) for coarse in fewer)
     left = e * np.minimum(1.0, np.divide(e, f, out=np.ones_like(e), where=f > 0.0))
     difference = ONE_RADIUS.safety * left + rounding
     depth, force, stiffness = difference[:, 1:].T
-    pressure = ONE_RADIUS.rounding + np.array([_pressure_error(*pair) for pair in zip(fine, fewer[0], strict=True)])
+    pairs = [(contact.settled, coarse) for contact, coarse in zip(fine, fewer[0], strict=True)]
+    pressure = ONE_RADIUS.rounding + np.array([_pressure_error(*pair) for pair in pairs])
     nothing = np.zeros_like(depth)
     if isinstance(scene.indenter, FlatPunch):
         by_depth = isinstance(scene.loading, IndentationDepths)
         given = (nothing, nothing, stiffness, stiffness) if by_depth else (nothing, stiffness, nothing, stiffness)
         return dict(zip((*ARRAYS, "pressure"), (*given, pressure + given[1]), strict=True))
-    missed = nothing + ONE_RADIUS.searched
     match scene.loading:
         case ContactRadii():
             radius = nothing
         case IndentationDepths():
-            radius, depth, force = depth + RADIUS_TOLERANCE, missed, force + 2 * depth + missed
+            radius, depth, force = depth + RADIUS_TOLERANCE, nothing, force + 2 * depth
         case _:
-            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force + missed, missed
-    return dict(zip((*ARRAYS, "pressure"), (radius, depth, force, stiffness, pressure + radius), strict=True))
+            radius, depth, force = force + RADIUS_TOLERANCE, depth + 2 * force, nothing
+    # The pressure tells how far an upright end is, of which a rounded radius knows less.
+    known = EPS * exact[:, 0] / (scene.indenter.max_radius - exact[:, 0]) if scene.indenter.ends_upright else nothing
+    moved = radius + (nothing if isinstance(scene.loading, ContactRadii) else known)
+    return dict(zip((*ARRAYS, "pressure"), (radius, depth, force, stiffness, pressure + moved), strict=True))
 
 
 def _displacement_errors(
@@ -399,7 +423,7 @@ def _beside(contact: DirectContact, fine: DirectContact) -> FloatArray:
 
 def _rounding(density: DirectDensity) -> float:
     """Of the kernel, times the condition of the equation, which is about k_bar."""
-    kernel = ONE_RADIUS.growth * float(np.finfo(float).eps) + density.kernel_error
+    kernel = ONE_RADIUS.growth * EPS + density.kernel_error
     return kernel * density.stiffness / (2 * density.contact_radius)
 
 

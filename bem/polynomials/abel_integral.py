@@ -241,7 +241,8 @@ def even_abel_integral(
     nodes, weights = gauss_nodes(grid.count)
     a, pieces = grid.end, len(grid.left) + 1
     s = ((np.arange(pieces)[:, None] + nodes) / pieces).ravel()
-    reach = np.sqrt((a - radius) * (a + radius))[:, None]
+    # The last piece may end a rounding before the radius asked for.
+    reach = np.sqrt(np.maximum(a - radius, 0.0) * (a + radius))[:, None]
     t = np.minimum(np.hypot(radius[:, None], reach * s), a)
     integral: FloatArray = reach[:, 0] / pieces * (slope_over_t(t) @ np.tile(weights, pieces))
     return integral

@@ -5,28 +5,31 @@ With r = x cos(psi) and q = p_bar sqrt(1 - rho^2), Eq. (11) reads ``g = (1/c_bar
 
     rho(x) = k_bar(x/h) int 2 q(cos psi; x/h) f(x cos psi) cos psi dpsi / int f(x cos psi) cos psi dpsi
 
-the layer's, relative to it. rho varies slowly and is 1 for thick layers. Only rho is differentiated, as a fitted
-polynomial; what is steep in the profile is differentiated exactly: ``dM/dx = rho g_hs + rho' M_hs``.
+the layer's, relative to it. rho varies slowly and is 1 for thick layers; what is steep in the profile is known exactly:
+``dM/dx = rho g_hs + rho' M_hs``. rho' is an integral over dq/dx and f', by the same nodes as rho.
 """
 
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
-from bem.polynomials.mapped import MappedFunction
+from bem.polynomials.mapped import TINY, MappedFunction
 from contact import Profile
 from contact.records.validation import FloatArray
+
+if TYPE_CHECKING:
+    from bem.tables.table import FlatPunchTable
 
 # Gauss nodes between two breakpoints of the profile; chosen.
 NODES = 32
 
 
 def published_profile(
-    solution: FlatPunchSolution, indenter: Profile, unit: float, half_space: MappedFunction
+    solution: FlatPunchTable, indenter: Profile, unit: float, half_space: MappedFunction
 ) -> MappedFunction:
     """g in units of `unit` by Eq. (11).
 
@@ -38,30 +41,44 @@ def published_profile(
     """
     grid, flat = half_space.grid, indenter.flat_radius / unit
     x = flat + grid.nodes
-    layer, plain = _weighted_heights(solution, indenter, unit, x)
+    (layer, plain), (layer_slope, plain_slope) = _weighted_heights(solution, indenter, unit, x)
     # As the risen part vanishes the quotient becomes its value at the edge; it is 0/0 where x is rounded to b.
-    at_edge = 2 * np.asarray(solution.smooth_pressure(np.ones_like(x), x))
-    risen = np.divide(layer, plain, out=at_edge, where=plain > 0)
-    share = MappedFunction(grid, solution.normalized_contact_stiffness(x) * risen, 0.0)
-    moment = half_space.integral()
-    slope = share.derivative(grid.nodes)
-    g = share.node_values * half_space.node_values + slope * moment.node_values  # d(rho M_hs)/dx
-    return MappedFunction(grid, g / solution.normalized_spring_stiffness(x), half_space.lead)  # Eq. (11)
+    risen, there = 2 * np.asarray(solution.smooth_pressure(np.ones_like(x), x)), plain > 0
+    np.divide(layer, plain, out=risen, where=there)
+    risen_slope = np.divide(layer_slope - risen * plain_slope, plain, out=np.zeros_like(x), where=there)
+    stiffness, springs = solution.normalized_contact_stiffness(x), solution.normalized_spring_stiffness(x)
+    # rho' = k_bar' risen + k_bar risen', where c_bar = k_bar + x k_bar'.
+    slope = (springs - stiffness) / x * risen + stiffness * risen_slope
+    g = stiffness * risen * half_space.node_values + slope * half_space.integral().node_values  # d(rho M_hs)/dx
+    return MappedFunction(grid, g / springs, half_space.lead)  # Eq. (11)
 
 
 def _weighted_heights(
-    solution: FlatPunchSolution, indenter: Profile, unit: float, x: FloatArray
+    solution: FlatPunchTable, indenter: Profile, unit: float, x: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
-    """int 2 q f cos(psi) dpsi and int f cos(psi) dpsi over the risen part of the profile, lengths in thicknesses."""
-    nodes, weights = gauss_nodes(NODES)
+    """int 2 q f cos(psi) dpsi and int f cos(psi) dpsi over the risen part, lengths in thicknesses, and slopes by x."""
     flat = indenter.flat_radius / unit
     ends = [flat, *(k / unit for k in indenter.breakpoints if flat < k / unit < np.max(x)), np.inf]
-    layer, plain = np.zeros_like(x), np.zeros_like(x)
+    found = np.zeros((2, 2, *x.shape))
     for start, stop in pairwise(ends):
-        widest, narrowest = (np.arccos(np.clip(np.minimum(r, x) / x, 0.0, 1.0)) for r in (start, stop))
-        psi = narrowest[..., None] + (widest - narrowest)[..., None] * nodes
-        height = indenter.height(unit * x[..., None] * np.cos(psi)) * np.cos(psi)
-        q = solution.smooth_pressure(np.cos(psi), np.broadcast_to(x[..., None], psi.shape))
-        layer += (widest - narrowest) * ((2 * q * height) @ weights)
-        plain += (widest - narrowest) * (height @ weights)
-    return layer, plain
+        psi, weights = _angles(x, start, stop, indenter.max_radius / unit)
+        cosine = np.cos(psi)
+        radius = unit * x[..., None] * cosine
+        height, steepness = indenter.height(radius) / unit * cosine, indenter.slope_at(radius) * cosine**2
+        q, change = (read(cosine, x[..., None]) for read in (solution.smooth_pressure, solution.pressure_change))
+        integrands = [[2 * q * height, height], [2 * (q * steepness + change * height), steepness]]
+        found += np.sum(np.array(integrands) * weights, axis=-1)
+    return found[0], found[1]
+
+
+def _angles(x: FloatArray, start: float, stop: float, end: float) -> tuple[FloatArray, FloatArray]:
+    """Nodes psi and weights between r = x cos(psi) = `start` and `stop`, crowded at r = x as a profile's end asks.
+
+    Beside an upright end profiles rise like the root of psi^2 + (end/x)^2 - 1, which is smooth in asinh of psi over it.
+    """
+    nodes, weights = gauss_nodes(NODES)
+    widest, narrowest = (np.arccos(np.clip(np.minimum(r, x) / x, 0.0, 1.0))[..., None] for r in (start, stop))
+    near = np.clip(np.sqrt((end - x) * (end + x)) / x, TINY, 1.0)[..., None]
+    low, high = np.arcsinh(narrowest / near), np.arcsinh(widest / near)
+    stretched = low + (high - low) * nodes
+    return near * np.sinh(stretched), (high - low) * near * np.cosh(stretched) * weights

@@ -116,12 +116,27 @@ class FlatPunchTable(FlatPunchSolution):
 
     def smooth_pressure(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
         """q(rho; a/h) = p_bar sqrt(1 - rho^2), `rho` and `ratio` broadcast."""
+        first, xi, theta = self.ratios[0], *self._on_table(rho, ratio)
+        read = self._smooth_pressure.ev(np.log(np.maximum(xi, first)), theta)
+        return np.asarray(0.5 + np.minimum(xi / first, 1.0) * (read - 0.5))
+
+    def pressure_change(self, rho: ArrayLike, ratio: ArrayLike) -> FloatArray:
+        """dq/d(a/h) at one r/a, `rho` and `ratio` broadcast."""
+        first, xi, theta = self.ratios[0], *self._on_table(rho, ratio)
+        place = np.log(np.maximum(xi, first))
+        if np.all(xi < first):
+            return np.asarray((self._smooth_pressure.ev(place, theta) - 0.5) / first)
+        above = self._smooth_pressure.ev(place, theta, dx=1) / np.maximum(xi, first)
+        if np.all(xi >= first):
+            return np.asarray(above)
+        return np.where(xi < first, (self._smooth_pressure.ev(place, theta) - 0.5) / first, above)
+
+    def _on_table(self, rho: ArrayLike, ratio: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """a/h and arcsin(rho), broadcast and within the table."""
         xi, r = np.broadcast_arrays(self._checked(ratio), np.asarray(rho, dtype=np.float64))
         if np.any((r < 0.0) | (r > 1.0)):
             raise InvalidInput(f"rho = r/a must lie in [0, 1], got {r.min():g} .. {r.max():g}")
-        first = self.ratios[0]
-        read = self._smooth_pressure.ev(np.log(np.maximum(xi, first)), np.arcsin(r))
-        return np.asarray(0.5 + np.minimum(xi / first, 1.0) * (read - 0.5))
+        return xi, np.arcsin(r)
 
     def relative_error(self, ratio: ArrayLike) -> FloatArray:
         """Bound of the relative error of k_bar and c_bar."""

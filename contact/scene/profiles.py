@@ -62,6 +62,11 @@ class Profile(Record, ABC):
         return math.inf
 
     @property
+    def ends_upright(self) -> bool:
+        """Whether the slope is infinite where the profile ends: a contact up to there would be infinitely deep."""
+        return math.isfinite(self.max_radius) and not np.isfinite(self.slope_at(self.max_radius))
+
+    @property
     def upright_end(self) -> str:
         """What has happened where the profile is upright, in the words of a user."""
         return "the indenter is upright there"

@@ -130,9 +130,7 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
     scene = answer.scene
     if isinstance(answer, ContactPath) and not scene.effects:
         if answer.contact_radius.max() <= LARGEST_RATIO * scene.layer.thickness:
-            opinion = second_opinion(answer)
-            for quantity, value in opinion.values.items():
-                yield _check(answer, quantity, value, opinion.uncertainty, reference="second opinion")
+            yield from against_second_opinion(answer)
             return
         if number % _THIN_LAYERS_REFINED:
             return
@@ -152,6 +150,13 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
         if q in answer.error_estimate:
             allowance = np.atleast_1d(finer.error_estimate.get(q, 0.0))
             yield _check(answer, q, values_of(finer, q), allowance, reference=reference)
+
+
+def against_second_opinion(answer: ContactPath) -> Iterator[Measurement]:
+    """Radius, depth, force and stiffness of elastic contacts against the integral equation of their own."""
+    opinion = second_opinion(answer)
+    for quantity, value in opinion.values.items():
+        yield _check(answer, quantity, value, opinion.uncertainty, reference="second opinion")
 
 
 def _is_followed_by_springs(scene: Scene) -> bool:
@@ -291,8 +296,7 @@ def _asked_otherwise(method: Method, answer: Solution) -> tuple[Measurement, ...
         raise RuntimeError(f"answered, but refused if asked for otherwise: {refusal}") from refusal
     assert isinstance(other, ContactPath)
     indenter, a = answer.scene.indenter, other.contact_radius
-    is_upright = np.isfinite(indenter.max_radius) and indenter.max_radius not in indenter.breakpoints
-    told = np.minimum(a - indenter.flat_radius, indenter.max_radius - a if is_upright else np.inf)
+    told = np.minimum(a - indenter.flat_radius, indenter.max_radius - a if indenter.ends_upright else np.inf)
     rounding = float(np.max(_ROUNDING * np.divide(a, told, out=np.ones_like(a), where=told > 0.0)))
     return tuple(
         Measurement(

@@ -6,6 +6,8 @@ Each field is one contact in random units. Four checks need no other method's co
 - **pressure at a radius**: the largest distance at any of these radii;
 - **pressure alone**: each radius asked for by itself against the same radius in the list;
 - **force of the pressure**: its integral over the contact against the normal force.
+
+Depth, force and stiffness are compared with the referee of elastic scenes, whose own profiles end further out.
 """
 
 from collections.abc import Callable, Mapping
@@ -15,6 +17,7 @@ from typing import Final, Literal
 
 import numpy as np
 
+from cases.measurements.campaigns.campaign import against_second_opinion
 from cases.measurements.campaigns.pressure_referee import reference_pressure
 from cases.measurements.campaigns.random_scenes import UNITS, log_uniform, poissons_ratio, tabulated
 from cases.measurements.campaigns.referee import CHEAP_RATIO, smallest_eigenvalue
@@ -75,7 +78,7 @@ def pressure_checks(path: Solution, step: int = 0) -> tuple[Measurement, ...]:
     loading, indenter = path.scene.loading, path.scene.indenter
     if not isinstance(loading, ContactRadii) and not isinstance(indenter, FlatPunch):
         return properties
-    return (*referee_checks(path, step), *properties)
+    return (*referee_checks(path, step), *properties, *against_second_opinion(path))
 
 
 def referee_checks(path: ContactPath, step: int) -> tuple[Measurement, Measurement]:
