@@ -27,9 +27,9 @@ class DirectContactCoefficients:
     # prescribed depth force, radius and stiffness of a truncated cone were off by 0.07 s/a at most with the rim within
     # six cells, 0.023 s/a beyond (nu = 0.45, h/b = 0.6 and 4, 128 cells, rim 3 to 10 cells inside, 2026-11-22).
     kink_error: float = 0.1
-    # Cells that must lie between the contact's edge and an upright end, a sphere's equator. At a given radius the depth was
-    # off by 1.8 times the stated error at 0.8 cells, at a given depth the force by 5 times at 1.1 cells on 256 points and
-    # by 4 times at 2.3; at 4.7 all errors held (three layers, 128 and 256 points, against MDR, 2026-11-23).
+    # Cells that must lie between the contact's edge and an upright end, a sphere's equator. At a given radius the depth
+    # was off by 1.8 times the stated error at 0.8 cells, at a given depth the force by 5 times at 1.1 cells on 256
+    # points and by 4 times at 2.3; at 4.7 all errors held (three layers, 128 and 256 points, against MDR, 2026-11-23).
     end_cells: float = 4.0
     # Times (s/a)^2 with the cell size s, because the difference may be small by accident: 0.01 was needed at most (200
     # steps of smooth profiles on 128 cells, seeds 1 and 5, 2026-11-22).

@@ -124,12 +124,9 @@ class FlatPunchTable(FlatPunchSolution):
         """dq/d(a/h) at one r/a, `rho` and `ratio` broadcast."""
         first, xi, theta = self.ratios[0], *self._on_table(rho, ratio)
         place = np.log(np.maximum(xi, first))
-        if np.all(xi < first):
-            return np.asarray((self._smooth_pressure.ev(place, theta) - 0.5) / first)
+        below = (self._smooth_pressure.ev(place, theta) - 0.5) / first
         above = self._smooth_pressure.ev(place, theta, dx=1) / np.maximum(xi, first)
-        if np.all(xi >= first):
-            return np.asarray(above)
-        return np.where(xi < first, (self._smooth_pressure.ev(place, theta) - 0.5) / first, above)
+        return np.asarray(np.where(xi < first, below, above))
 
     def _on_table(self, rho: ArrayLike, ratio: ArrayLike) -> tuple[FloatArray, FloatArray]:
         """a/h and arcsin(rho), broadcast and within the table."""

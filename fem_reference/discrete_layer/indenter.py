@@ -183,6 +183,13 @@ class ScaledIndenter:
         """Radii / a inside the contact where the profile is not analytic."""
         return self._within(self.profile.breakpoints)
 
+    @property
+    def left_to_upright_end(self) -> float:
+        """(end - a) / a where the profile ends upright, like a sphere at its equator; else infinite."""
+        end = self.profile.max_radius
+        is_upright = np.isfinite(end) and np.isinf(shape(self.profile, np.asarray(end)).slope)
+        return end / self.contact_radius - 1.0 if is_upright else np.inf
+
     def _within(self, radii: tuple[float, ...]) -> tuple[float, ...]:
         return tuple(r / self.contact_radius for r in radii if r < self.contact_radius * (1 - 1e-12))
 

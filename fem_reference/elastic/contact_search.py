@@ -23,6 +23,8 @@ EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 # are then within 1e-3 of those of fine meshes, where one step of Newton's method ends.
 DISC_CELLS = 60
 DISC_TRUNCATION = 1e-3
+# Cells that a strip up to the end of a profile must hold beyond the contact, whose edge the last two tell; chosen.
+CELLS_BEFORE_END = 2
 
 
 @dataclass(frozen=True)
@@ -61,10 +63,9 @@ class FoundContact:
         """Whether the contact is one circle around the axis."""
         return bool(self.state.active[: self.active_vertices].all())
 
-    @property
-    def reaches_end(self) -> bool:
-        """Whether the contact comes within a tenth of the strip's end."""
-        return bool(self.state.active[self.strip.radii > 0.9].any())
+    def reaches(self, share: float) -> bool:
+        """Whether the contact comes farther than this share of the strip."""
+        return bool(self.state.active[self.strip.radii > share].any())
 
     def refuse_ring(self) -> None:
         """Refuse a contact that is not one circle around the axis.
@@ -172,10 +173,12 @@ def find_contact(
     for _ in range(12):
         search = ContactSearch(scene, radius, settings, backend, log, cells=cells)
         found = search.at_depth(target) if by_depth else search.at_force(target)
-        if found.reaches_end:
-            if radius >= end:
-                found.refuse_ring()
-                raise InvalidInput(f"contact reaches the end of the profile at {radius:g} m; press less")
+        if radius >= end and found.reaches(1.0 - CELLS_BEFORE_END / cells):
+            found.refuse_ring()
+            message = f"contact comes within {CELLS_BEFORE_END / cells * radius:.2g} m of the end of the profile at "
+            message += f"{radius:g} m, closer than the search resolves; press less, or prescribe the contact radius"
+            raise InvalidInput(message)
+        if radius < end and found.reaches(0.9):
             radius = min(1.8 * radius, end)
         elif found.reached_vertices < cells // 4:
             radius *= max(1.6 * found.contact_radius, 0.05)
