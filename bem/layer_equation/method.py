@@ -30,6 +30,7 @@ from contact import (
     FlatPunch,
     IndentationDepths,
     InvalidInput,
+    Loading,
     NormalForces,
     Scene,
     StageLog,
@@ -46,6 +47,8 @@ from contact.records.validation import FloatArray, positive
 from contact.scene.extent import radius_of_depth, radius_of_load
 
 ARRAYS = ContactPath.ARRAYS
+# The column of an answer that is prescribed.
+PRESCRIBED: Mapping[type[Loading], int] = {ContactRadii: 0, IndentationDepths: 1, NormalForces: 2}
 # Largest a/h: its dense system has two thousand unknowns there and takes two seconds.
 LARGEST_RATIO = 100.0
 # The same on a graded layer, as far as MDR goes.
@@ -120,6 +123,7 @@ class IntegralEquationMethod(Record):
             errors = _errors(contacts, others, scene)
             errors["surface_displacement"] = _displacement_errors(errors, contacts, others)
         answers = np.array([contact.answer for contact in contacts])
+        answers[:, PRESCRIBED[type(scene.loading)]] = scene.loading.values  # type: ignore[attr-defined]
         path = ContactPath(
             scene=scene,
             method=self.name,
@@ -297,7 +301,7 @@ class _Solver:
         It looks for ln((a - b)/(1 - (a - b)/(end - b))), which tells both.
         """
         flat, end = self.scene.indenter.flat_radius, self.scene.indenter.max_radius
-        item = 2 if isinstance(self.scene.loading, NormalForces) else 1
+        item = PRESCRIBED[type(self.scene.loading)]
 
         def excess_at(place: float) -> float:
             """At the last place nothing is left to the end but the next number before it."""

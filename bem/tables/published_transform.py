@@ -11,37 +11,41 @@ the layer's, relative to it. rho varies slowly and is 1 for thick layers; what i
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 
+from bem.layer_equation.protocol import FlatPunchSolution
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import TINY, MappedFunction
 from contact import Profile
 from contact.records.validation import FloatArray
 
-if TYPE_CHECKING:
-    from bem.tables.table import FlatPunchTable
-
+# A function of r/a and a/h.
+OfPunches: TypeAlias = Callable[[FloatArray, FloatArray], FloatArray]
 # Gauss nodes between two breakpoints of the profile; chosen.
 NODES = 32
 
 
 def published_profile(
-    solution: FlatPunchTable, indenter: Profile, unit: float, half_space: MappedFunction
+    solution: FlatPunchSolution, pressure_change: OfPunches, indenter: Profile, unit: float, half_space: MappedFunction
 ) -> MappedFunction:
     """g in units of `unit` by Eq. (11).
 
     Args:
         solution: Tabulated flat punches.
+        pressure_change: dq/d(a/h) of their pressures at r/a and a/h.
         indenter: The profile.
         unit: Layer thickness [m].
         half_space: g_hs in units of the thickness.
     """
     grid, flat = half_space.grid, indenter.flat_radius / unit
     x = flat + grid.nodes
-    (layer, plain), (layer_slope, plain_slope) = _weighted_heights(solution, indenter, unit, x)
+    (layer, plain), (layer_slope, plain_slope) = _weighted_heights(
+        solution.smooth_pressure, pressure_change, indenter, unit, x
+    )
     # As the risen part vanishes the quotient becomes its value at the edge; it is 0/0 where x is rounded to b.
     risen, there = 2 * np.asarray(solution.smooth_pressure(np.ones_like(x), x)), plain > 0
     np.divide(layer, plain, out=risen, where=there)
@@ -54,7 +58,7 @@ def published_profile(
 
 
 def _weighted_heights(
-    solution: FlatPunchTable, indenter: Profile, unit: float, x: FloatArray
+    smooth_pressure: OfPunches, pressure_change: OfPunches, indenter: Profile, unit: float, x: FloatArray
 ) -> tuple[FloatArray, FloatArray]:
     """int 2 q f cos(psi) dpsi and int f cos(psi) dpsi over the risen part, lengths in thicknesses, and slopes by x."""
     flat = indenter.flat_radius / unit
@@ -65,7 +69,7 @@ def _weighted_heights(
         cosine = np.cos(psi)
         radius = unit * x[..., None] * cosine
         height, steepness = indenter.height(radius) / unit * cosine, indenter.slope_at(radius) * cosine**2
-        q, change = (read(cosine, x[..., None]) for read in (solution.smooth_pressure, solution.pressure_change))
+        q, change = (read(cosine, x[..., None]) for read in (smooth_pressure, pressure_change))
         integrands = [[2 * q * height, height], [2 * (q * steepness + change * height), steepness]]
         found += np.sum(np.array(integrands) * weights, axis=-1)
     return found[0], found[1]

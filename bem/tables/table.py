@@ -167,7 +167,7 @@ class FlatPunchTable(FlatPunchSolution):
         self, indenter: Profile, unit: float, load: MappedFunction, springs: FloatArray
     ) -> tuple[MappedFunction, float]:
         """g by Eq. (11)."""
-        return published_profile(self, indenter, unit, load), 0.0
+        return published_profile(self, self.pressure_change, indenter, unit, load), 0.0
 
     def noise(self, ratio: float) -> float:
         """As much as profiles may err."""

@@ -85,8 +85,8 @@ def fem_cells(degree: int, *, thin: bool = False) -> Refinement:
     """Cells at every distance from the graded points, or the largest cells where a thin layer consists of these.
 
     Sizes grow by a factor 1 + growth from cell to cell, so the length that errors follow is ln(1 + growth); the largest
-    cell is growth times the thickness. Degrees above two are told from the second length on: on the first, errors fall by
-    orders of 7 to 10.
+    cell is growth times the thickness. Degrees above two are told from the second length on: from the first to it,
+    errors fall by orders of 7 to 10.
     """
     lengths = (
         [0.3, 0.3 / ROOT_TWO, 0.15]
