@@ -47,8 +47,11 @@ from contact.records.validation import FloatArray, positive
 from contact.scene.extent import radius_of_depth, radius_of_load
 
 ARRAYS = ContactPath.ARRAYS
-# The column of an answer that is prescribed.
-PRESCRIBED: Mapping[type[Loading], int] = {ContactRadii: 0, IndentationDepths: 1, NormalForces: 2}
+PRESCRIBED: Mapping[type[Loading], str] = {
+    ContactRadii: "contact_radius",
+    IndentationDepths: "indentation_depth",
+    NormalForces: "normal_force",
+}
 # Largest a/h: its dense system has two thousand unknowns there and takes two seconds.
 LARGEST_RATIO = 100.0
 # The same on a graded layer, as far as MDR goes.
@@ -123,7 +126,7 @@ class IntegralEquationMethod(Record):
             errors = _errors(contacts, others, scene)
             errors["surface_displacement"] = _displacement_errors(errors, contacts, others)
         answers = np.array([contact.answer for contact in contacts])
-        answers[:, PRESCRIBED[type(scene.loading)]] = scene.loading.values  # type: ignore[attr-defined]
+        answers[:, ARRAYS.index(PRESCRIBED[type(scene.loading)])] = scene.loading.values  # type: ignore[attr-defined]
         path = ContactPath(
             scene=scene,
             method=self.name,
@@ -301,7 +304,7 @@ class _Solver:
         It looks for ln((a - b)/(1 - (a - b)/(end - b))), which tells both.
         """
         flat, end = self.scene.indenter.flat_radius, self.scene.indenter.max_radius
-        item = PRESCRIBED[type(self.scene.loading)]
+        item = ARRAYS.index(PRESCRIBED[type(self.scene.loading)])
 
         def excess_at(place: float) -> float:
             """At the last place nothing is left to the end but the next number before it."""

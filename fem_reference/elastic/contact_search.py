@@ -23,8 +23,6 @@ EDGE_POLYNOMIAL = (0.11, 1.0, 0.04)
 # are then within 1e-3 of those of fine meshes, where one step of Newton's method ends.
 DISC_CELLS = 60
 DISC_TRUNCATION = 1e-3
-# Cells that a strip up to the end of a profile must hold beyond the contact, whose edge the last two tell; chosen.
-CELLS_BEFORE_END = 2
 
 
 @dataclass(frozen=True)
@@ -173,11 +171,11 @@ def find_contact(
     for _ in range(12):
         search = ContactSearch(scene, radius, settings, backend, log, cells=cells)
         found = search.at_depth(target) if by_depth else search.at_force(target)
-        if radius >= end and found.reaches(1.0 - CELLS_BEFORE_END / cells):
+        # The contact's edge is told from its last two cells.
+        if radius >= end and found.reaches(last := float(search.strip.radii[-3])):
             found.refuse_ring()
-            message = f"contact comes within {CELLS_BEFORE_END / cells * radius:.2g} m of the end of the profile at "
-            message += f"{radius:g} m, closer than the search resolves; press less, or prescribe the contact radius"
-            raise InvalidInput(message)
+            message = f"contact comes within {(1.0 - last) * radius:.2g} m of the end of the profile at {radius:g} m, "
+            raise InvalidInput(f"{message}closer than the search resolves; press less, or prescribe the contact radius")
         if radius < end and found.reaches(0.9):
             radius = min(1.8 * radius, end)
         elif found.reached_vertices < cells // 4:

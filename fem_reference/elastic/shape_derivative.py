@@ -28,8 +28,6 @@ from fem_reference.discrete_layer.trace import TraceSpace
 # slope errs by at most 3e-4, 3e-4, 8e-4 and 3e-2 at growths of 0.35, 1/2, 0.7 and 1, by three rings from a width of 0.2
 # by 1e-3, 1e-3, 8e-4 and 3e-2.  One cell 3e-4 beside the edge told it 770 times off at a growth of 1.4.
 WIDEST, RINGS = 0.8, 5
-# Cells that the narrowest ring holds at least; chosen, as many as are the first on which a singularity acts.
-FEWEST_CELLS = 6
 
 
 @dataclass(frozen=True)
@@ -122,8 +120,8 @@ def smooth_depth_slope(trace: TraceSpace, pressures: FloatArray, scale: float) -
     radius, weight = (values.ravel() for values in trace.gauss(trace.degree + 2))
     punch, smooth = (trace.evaluate(values, radius) for values in pressures.T)
     widths = 2.0 ** -np.arange(float(RINGS))
-    # An upright end may be nearer than the last cells.
-    widest = max(WIDEST * scale, (1.0 - trace.vertices[-FEWEST_CELLS]) / widths[-1])
+    # An upright end may be nearer than the last cells, of which the narrowest ring holds as many as there are rings.
+    widest = max(WIDEST * scale, (1.0 - trace.vertices[-1 - RINGS]) / widths[-1])
     share = (1.0 - radius) / (widest * widths[:, None])
     weight = weight * share * np.maximum(1.0 - share, 0.0) ** 2
     means = (weight @ smooth) / (weight @ (2.0 * (1.0 - radius) * punch))
