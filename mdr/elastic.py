@@ -299,9 +299,10 @@ def _errors(
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = contact_stiffness * depth / force
     of_depth, of_moment = errors["indentation_depth"], system.moment_truncation(radius) * np.abs(spread - 1)
-    at_depth = system.error_at_depth(radius, stiffness=stiffness, depth=of_depth, spread=spread) + of_moment
+    passed = system.error_in_force(radius, stiffness=stiffness, spread=spread)
+    at_depth = system.error_at_depth(radius, stiffness=passed, depth=of_depth, spread=spread) + of_moment
     # Under a given radius F errs as under the given depth, and by k_N times the error of g, which is no part of that.
-    of_force = np.minimum(stiffness + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
+    of_force = np.minimum(passed + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
     searched = of_force / spread if given == "NormalForces" else of_depth
     moved, growth = exact, exact
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
@@ -315,7 +316,10 @@ def _errors(
         "indentation_depth": exact if given == "IndentationDepths" else of_depth,
         "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
-        "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"]) + moved + rounding,
+        # Between the rim of a flat end and the edge pressures go with the excess.
+        "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"])
+        + moved * np.divide(radius, radius - system.flat_radius, out=np.ones_like(radius), where=moved > 0.0)
+        + rounding,
         # An error of g moves the surface like a flat punch, by no more than itself; without an edge density that of a
         # does nothing.
         "surface_displacement": errors["indentation_depth"] + rounding,

@@ -4,12 +4,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import count as counting
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 import numpy as np
 
 from cases.declare.methods import build
 from cases.measurements.campaigns.campaign import answered, refereed
+from cases.measurements.campaigns.pressures import stack_checks, stack_contact
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
 from cases.measurements.measurement import Measurement, answers, by_quantity, covered, median, sharpness
@@ -30,6 +31,8 @@ LARGEST_AT_90: Final = 100.0
 FEWEST_RATIOS: Final = 10
 # Seed of the scenes on which bars are judged. Error terms are chosen on other seeds, never on this one.
 SEED: Final = 1401
+# The family of pressures on stacks, judged by `stack_checks`.
+ON_STACKS: Final = "pressure on stacks"
 # Smallest contact radius over thickness.
 _SMALLEST_RATIO: Final = 1e-2
 _LARGEST_SHOWN: Final = 1e9
@@ -61,7 +64,7 @@ class CoveragePlan:
 
     method: str
     settings: Mapping[str, Any]
-    family: Family
+    family: Family | Literal["pressure on stacks"]
     count: int
     only_radii: bool = False
     smallest: float = _SMALLEST_RATIO
@@ -88,6 +91,8 @@ NIGHTLY_PLANS: Final = (
     CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=24, smallest=0.1, largest=5.0),
     CoveragePlan(method="fem", settings={"growth": 1.4}, family="elastic", count=40, smallest=0.1, largest=5.0),
     CoveragePlan(method="mdr", settings={}, family="growing", count=24, smallest=0.1, largest=5.0),
+    CoveragePlan(method="mdr", settings={"nodes": 12}, family=ON_STACKS, count=120, smallest=0.1, largest=3.0),
+    CoveragePlan(method="mdr", settings={"nodes": 16}, family=ON_STACKS, count=160, smallest=0.1, largest=3.0),
 )
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}
 PLANS: Final = (
@@ -155,13 +160,18 @@ def rows_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[Me
     of = Measurement(method=plan.method, settings=plan.settings, parameters={"family": plan.family}, seed=seed)
     numbers = announced(range(plan.count), lambda _: f"scenes of {plan.method}, {plan.family}", at_work)
     scenes = zip(numbers, _scenes(plan, seed, method), strict=True)
-    yield from answered(method, scenes, partial(refereed, method, other=finest), of)
+    judge = partial(stack_checks if plan.family == ON_STACKS else partial(refereed, method), other=finest)
+    yield from answered(method, scenes, judge, of)
 
 
 def _scenes(plan: CoveragePlan, seed: int, method: Method) -> Iterator[Scene]:
     """The first so many scenes of the seed that the plan asks for and the method supports."""
     limits = plan.smallest, plan.largest
-    drawn = (random_scene(np.random.default_rng([seed, n]), plan.family, limits) for n in counting())
+    draws = (np.random.default_rng([seed, n]) for n in counting())
+    drawn = (
+        stack_contact(draw, limits) if plan.family == ON_STACKS else random_scene(draw, plan.family, limits)
+        for draw in draws
+    )
     left = plan.count
     while left:
         scene = next(drawn)
