@@ -283,14 +283,13 @@ def _errors(
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
     if system.variants:
         return _table_errors(system, scene, radius, depth, force)
-    errors = system.relative_errors(radius, of_springs=False)
-    stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
-    ratio = radius / system.length_unit
-    exact = np.zeros_like(radius)
+    errors, given = system.relative_errors(radius, of_springs=False), type(scene.loading).__name__
+    stiffness, ratio, exact = errors["contact_stiffness"], radius / system.length_unit, np.zeros_like(radius)
     if isinstance(scene.indenter, FlatPunch):
-        linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         of_depth = exact if given == "IndentationDepths" else stiffness
-        return linear | {
+        return {
+            "contact_radius": exact,
+            "contact_stiffness": stiffness,
             "pressure": system.flat_punch.punch_pressure_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "surface_displacement": system.flat_punch.spring_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "indentation_depth": of_depth,
@@ -304,7 +303,7 @@ def _errors(
     # Under a given radius F errs as under the given depth, and by k_N times the error of g, which is no part of that.
     of_force = np.minimum(passed + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
     searched = of_force / spread if given == "NormalForces" else of_depth
-    moved, growth = exact, exact
+    moved, growth, of_density = exact, exact, system.flat_punch.contact_pressure_error(ratio, of_depth)
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
         # The noise of a table may let its slope fall.
@@ -317,9 +316,7 @@ def _errors(
         "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
         # Between the rim of a flat end and the edge pressures go with the excess.
-        "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"])
-        + moved * np.divide(radius, radius - system.flat_radius, out=np.ones_like(radius), where=moved > 0.0)
-        + rounding,
+        "pressure": of_density + moved / np.maximum(1.0 - system.flat_radius / radius, PRESSURE_ROUNDING) + rounding,
         # An error of g moves the surface like a flat punch, by no more than itself; without an edge density that of a
         # does nothing.
         "surface_displacement": errors["indentation_depth"] + rounding,

@@ -43,12 +43,9 @@ COARSER: Final = 9
 # Nodes of a panel where a density's slope is asked for, as pressures do. From 0.005 a to 0.999 a pressures are up to
 # 3e-10 off with 16, and 1.5e-8 with 12 (E = 100^z, a paraboloid at a = H against the direct equation, 2026-11-22).
 DENSITY_COUNT: Final = 16
-# Beyond this edge panels in the middle are split, and the shares of it at which edges are solved with more nodes:
-# errors grow towards it by powers, fall behind it, and grow again.
-SPLIT: Final = 2.0
-SHARES_OF_SPLIT: Final = (0.1, 0.25, 0.5, 1.0, 1.0 + 1e-9)
-# Shares of an edge at which the errors of k_N that its contact's force has passed are added up; chosen.
-PASSED: Final = np.linspace(0.0, 1.0, 17)
+# Edges that are solved with more nodes besides the last: errors grow by powers up to a/h = 2, beyond which panels in
+# the middle are split, fall there, and grow again.
+COMPARED: Final = (0.2, 0.5, 1.0, 2.0, 2.0 + 2e-9)
 # Shares of the largest edge that are compared.
 CHECKED: Final = (0.02, 0.2, 0.6, 1.0)
 # Times the difference from more nodes: an error between the edges where both are solved. With it and what the resolvent
@@ -231,7 +228,7 @@ class GradedSolution(FlatPunchSolution):
 
         Behind a split panel the errors that c_N has before it are the larger ones.
         """
-        x = np.maximum(ratio[..., None] * PASSED, flat_radius)
+        x = np.maximum(ratio[..., None] * np.linspace(0.0, 1.0, 17), flat_radius)
         g = profile(x - flat_radius)
         gained = np.diff(g, axis=-1) * (x * self.normalized_contact_stiffness(x))[..., 1:]
         share = np.divide(gained, gained.sum(axis=-1, keepdims=True), out=np.zeros_like(gained), where=gained > 0.0)
@@ -377,7 +374,7 @@ class GradedSolution(FlatPunchSolution):
 
 def _compared_edges(end: float) -> FloatArray:
     """Edges up to the end at which systems of more nodes are solved."""
-    return np.append([share * SPLIT for share in SHARES_OF_SPLIT if share * SPLIT < end], end)
+    return np.append([edge for edge in COMPARED if edge < end], end)
 
 
 def _by_powers(x: FloatArray, edges: FloatArray, errors: FloatArray) -> FloatArray:
