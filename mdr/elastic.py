@@ -283,14 +283,13 @@ def _errors(
     """Relative errors of what was not prescribed; of the pressure in the norm weighted with 2 pi r."""
     if system.variants:
         return _table_errors(system, scene, radius, depth, force)
-    errors = system.relative_errors(radius, of_springs=False)
-    stiffness, given = errors["contact_stiffness"], type(scene.loading).__name__
-    ratio = radius / system.length_unit
-    exact = np.zeros_like(radius)
+    errors, given = system.relative_errors(radius, of_springs=False), type(scene.loading).__name__
+    stiffness, ratio, exact = errors["contact_stiffness"], radius / system.length_unit, np.zeros_like(radius)
     if isinstance(scene.indenter, FlatPunch):
-        linear = {"contact_radius": exact, "contact_stiffness": stiffness}
         of_depth = exact if given == "IndentationDepths" else stiffness
-        return linear | {
+        return {
+            "contact_radius": exact,
+            "contact_stiffness": stiffness,
             "pressure": system.flat_punch.punch_pressure_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "surface_displacement": system.flat_punch.spring_error(ratio) + of_depth + PRESSURE_ROUNDING,
             "indentation_depth": of_depth,
@@ -299,11 +298,12 @@ def _errors(
     # F = k_N g - int g dk_N: an error of g counts against the difference, one of k_N in F = int k_N dg does not
     spread = contact_stiffness * depth / force
     of_depth, of_moment = errors["indentation_depth"], system.moment_truncation(radius) * np.abs(spread - 1)
-    at_depth = system.error_at_depth(radius, stiffness=stiffness, depth=of_depth, spread=spread) + of_moment
+    passed = system.error_in_force(radius, stiffness=stiffness, spread=spread)
+    at_depth = system.error_at_depth(radius, stiffness=passed, depth=of_depth, spread=spread) + of_moment
     # Under a given radius F errs as under the given depth, and by k_N times the error of g, which is no part of that.
-    of_force = np.minimum(stiffness + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
+    of_force = np.minimum(passed + of_depth * spread + of_moment, np.hypot(at_depth, of_depth * spread))
     searched = of_force / spread if given == "NormalForces" else of_depth
-    moved, growth = exact, exact
+    moved, growth, of_density = exact, exact, system.flat_punch.contact_pressure_error(ratio, of_depth)
     rounding = PRESSURE_ROUNDING if has_closed_slope(scene.indenter) else SAMPLED_ROUNDING
     if given != "ContactRadii":  # dF = k_N dg: of g, or of F over k_N g; and d(ln k_N)/d(ln a)
         # The noise of a table may let its slope fall.
@@ -315,7 +315,8 @@ def _errors(
         "indentation_depth": exact if given == "IndentationDepths" else of_depth,
         "normal_force": exact if given == "NormalForces" else of_force,
         "contact_stiffness": stiffness + growth * moved,
-        "pressure": system.flat_punch.contact_pressure_error(ratio, errors["indentation_depth"]) + moved + rounding,
+        # Between the rim of a flat end and the edge pressures go with the excess.
+        "pressure": of_density + moved / np.maximum(1.0 - system.flat_radius / radius, PRESSURE_ROUNDING) + rounding,
         # An error of g moves the surface like a flat punch, by no more than itself; without an edge density that of a
         # does nothing.
         "surface_displacement": errors["indentation_depth"] + rounding,

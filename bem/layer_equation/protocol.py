@@ -119,6 +119,18 @@ class FlatPunchSolution(Protocol):
         start = np.divide(flat_radius, ratio, out=np.zeros_like(ratio), where=ratio > flat_radius)
         return self.profile_error(ratio, start)
 
+    def error_in_force(
+        self,
+        ratio: FloatArray,
+        profile: MappedFunction,
+        flat_radius: float,
+        *,
+        stiffness: FloatArray,
+        spread: FloatArray,
+    ) -> FloatArray:
+        """What errors of k_N make of F = int k_N dg, relative; that at the edge, where smaller contacts err no more."""
+        return stiffness
+
     def error_at_depth(
         self,
         ratio: FloatArray,

@@ -87,7 +87,8 @@ def force_error_at_depth(
     elongation, elastic = np.abs(g - depth), np.abs(stiffness * g - moment)
     spread = np.divide(stiffness * g, elastic, out=np.ones_like(g), where=elastic > 0.0)
     of_stiffness, of_profile = relative["contact_stiffness"], relative["indentation_depth"]
-    fixed = elastic * system.error_at_depth(radius, stiffness=of_stiffness, depth=of_profile, spread=spread)
+    passed = system.error_in_force(radius, stiffness=of_stiffness, spread=spread)
+    fixed = elastic * system.error_at_depth(radius, stiffness=passed, depth=of_profile, spread=spread)
     fixed = fixed + stiffness * elongation * of_stiffness + moment * system.moment_truncation(radius)
     return np.asarray(fixed + 2.0 * system.spring_stiffness(radius) * elongation * moved)
 

@@ -180,6 +180,11 @@ class EquivalentSystem:
             found | {"spring_stiffness": self.flat_punch.spring_error(ratio) + SPRING_ROUNDING} if of_springs else found
         )
 
+    def error_in_force(self, contact_radius: FloatArray, **known: FloatArray) -> FloatArray:
+        """Relative error of F = int k_N dg from the errors of k_N, at the edge and before."""
+        flat = self.flat_radius / self.length_unit
+        return self.flat_punch.error_in_force(self._ratio(contact_radius), self.profile, flat, **known)
+
     def error_at_depth(self, contact_radius: FloatArray, **errors: FloatArray) -> FloatArray:
         """Relative error of F under a given depth, from those of k_N and g as the flat-punch data take them."""
         flat = self.flat_radius / self.length_unit

@@ -27,7 +27,7 @@ from contact import (
 )
 from mdr import Mdr
 from mdr.adhesion.errors import force_error_at_depth
-from mdr.springs.assembly import equivalent_system
+from mdr.springs.assembly import contact_fields, equivalent_system
 
 PARABOLOID = Paraboloid(radius_of_curvature=10.0)
 AT_LOSS = ("pull_off_force", "pull_off_depth", "pull_off_contact_radius", "force_at_loss")
@@ -220,12 +220,51 @@ def test_pressures_state_what_the_kernel_leaves_on_the_last_panel():
     assert np.quantile(ratio, 0.9) < LARGEST_AT_90
 
 
+def test_a_wrong_depth_moves_pressures_by_what_is_stated():
+    """Seen to fail: 0.34 to 13 times as much, 0.9 to 3 now; a punch's psi may be large and hardly vary."""
+    ratio = []
+    for number in (number for number in range(40) if number not in PULLING):
+        scene = random_scene(np.random.default_rng([3, number]))
+        if isinstance(scene.indenter, FlatPunch):
+            continue
+        path, a = Mdr().solve(scene), float(scene.loading.values[0])
+        r = a * np.linspace(0.02, 0.98, 25)
+        system = equivalent_system(scene.layer, scene.indenter, a, Mdr().flat_punch, may_fall=True)
+        punch, own = system.flat_punch, float(path.indentation_depth[0])
+        place = {"excess": a - system.flat_radius, "edge": False}
+        p, q = (
+            contact_fields(scene.layer, scene.indenter, punch, depth=depth, **place).pressure(r)
+            for depth in (own, 1.001 * own)
+        )
+        weight = r * (a - r) * (a + r)
+        stated = punch.contact_pressure_error(np.array([a]) / system.length_unit, np.array([1e-3]))[0]
+        ratio.append(stated / np.sqrt(weight @ (q - p) ** 2 / (weight @ p**2)))
+    assert len(ratio) > 20
+    assert np.min(ratio) > 0.8
+    assert np.max(ratio) < 4.0
+
+
+def test_pressures_beside_a_rim_hardly_left_count_what_the_excess_errs():
+    """Seen to fail: 26 times what was stated, since an error of the radius counted over the radius."""
+    sublayers = tuple(
+        Sublayer(thickness=h, youngs_modulus=E, poissons_ratio=0.5) for h, E in ((0.745, 25.227), (0.255, 0.439))
+    )
+    layer = LayerStack(sublayers=sublayers, interfaces=("bonded",), support="bonded")
+    indenter = TruncatedCone(flat_radius=0.2273, slope=0.1)
+    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([0.22815]))
+    scene = scene.replace(loading=IndentationDepths(Mdr().solve(scene).indentation_depth))
+    r = np.append(0.2273 * np.linspace(0.05, 0.95, 10), np.linspace(0.22735, 0.2281, 10))
+    coarse, fine = (Mdr(flat_punch=IntegralEquation(nodes=nodes)).solve(scene) for nodes in (12, 36))
+    change = np.abs(coarse.pressure(r, 0) / fine.pressure(r, 0) - 1)
+    assert 1e-12 < np.median(change[r > 0.2273]) < coarse.error_estimate["pressure"][0]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(("nodes", "seed"), [(12, 61), (16, 62)])
+@pytest.mark.parametrize(("nodes", "seed"), [(12, 401), (16, 402)])
 def test_pressures_on_few_nodes_are_covered_and_sharp(nodes, seed):
     """Seen to fail: 36 times the true error in the median on 16 nodes, 102 at 90 %; of punches 89 % were covered."""
     found = []
-    for number in range(120):
+    for number in range(160):
         try:
             found.append(pressure_and_stated(number, seed, nodes, 36))
         except (InvalidInput, UnsupportedSceneError):
@@ -234,7 +273,7 @@ def test_pressures_on_few_nodes_are_covered_and_sharp(nodes, seed):
     ratio = stated[true > 2e-14] / true[true > 2e-14]
     assert true.size > 100
     assert np.mean(true <= stated + 2e-14) >= 0.97
-    assert np.median(ratio) < 1.5 * LARGEST_MEDIAN
+    assert np.median(ratio) < LARGEST_MEDIAN
     assert np.quantile(ratio, 0.9) < LARGEST_AT_90
 
 

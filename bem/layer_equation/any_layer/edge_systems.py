@@ -13,6 +13,7 @@ import numpy as np
 
 from bem.layer_equation.any_layer.point_kernel import PointKernel
 from bem.layer_equation.any_layer.relative_panels import RelativePanels, relative_panels
+from bem.polynomials.mapped import MappedFunction
 from contact.records.validation import FloatArray
 
 # Widest panel, in thicknesses; densities vary over one.
@@ -54,8 +55,13 @@ class EdgeSystems:
     known: dict[float, EdgeState] = field(default_factory=dict)
 
     def panels(self, x: float, count: int | None = None) -> RelativePanels:
-        """The panels for an edge, with the nodes of its own systems or more."""
-        return relative_panels(count or self.count, max(1, int(np.ceil(MIDDLE * x / WIDEST))))
+        """The panels for an edge, with the nodes of its own systems or more.
+
+        They are the same from one power of two to the next, where pieces in ln x begin: polynomials there would run
+        across a jump of what nodes leave.
+        """
+        last = 2.0 ** np.ceil(np.log2(x))
+        return relative_panels(count or self.count, max(1, int(np.ceil(MIDDLE * last / WIDEST))))
 
     def matrix(self, x: float, panels: RelativePanels) -> FloatArray:
         """M, and kappa as its last row, shape (n + 1, n)."""
@@ -75,6 +81,11 @@ class EdgeSystems:
             phi = np.linalg.solve(system, np.ones(len(panels.nodes)))
             self.known[x] = EdgeState(row, 1 + float(row.sum()), float(panels.weights @ phi))
         return self.known[x]
+
+    def edge_value(self, load: MappedFunction, x: float) -> float:
+        """g = yg/y1 of a load g_hs that begins at the axis."""
+        state, nodes = self.at(x), self.panels(x).nodes
+        return float(load(np.array(x)) + state.row @ load(x * nodes)) / state.edge_density
 
     def density(self, x: float, panels: RelativePanels, load: FloatArray) -> tuple[FloatArray, FloatArray]:
         """phi at the nodes, and the layer's share M phi at nodes and edge, of a load at the nodes."""

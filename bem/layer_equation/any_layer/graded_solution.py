@@ -13,7 +13,7 @@ from typing import ClassVar, Final
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from bem.layer_equation.any_layer.edge_systems import MIDDLE, WIDEST, EdgeSystems
+from bem.layer_equation.any_layer.edge_systems import WIDEST, EdgeSystems
 from bem.layer_equation.any_layer.graded_density import GradedDensity
 from bem.layer_equation.any_layer.graded_edge_values import ResolventTable
 from bem.layer_equation.any_layer.point_kernel import PointKernel
@@ -43,10 +43,9 @@ COARSER: Final = 9
 # Nodes of a panel where a density's slope is asked for, as pressures do. From 0.005 a to 0.999 a pressures are up to
 # 3e-10 off with 16, and 1.5e-8 with 12 (E = 100^z, a paraboloid at a = H against the direct equation, 2026-11-22).
 DENSITY_COUNT: Final = 16
-# Where the panels in the middle are as wide as they may be and are split, and the shares of it at which edges are
-# solved with more nodes: errors grow towards it by powers, fall behind it, and grow again.
-SPLIT: Final = WIDEST / MIDDLE
-SHARES_OF_SPLIT: Final = (0.1, 0.25, 0.5, 1.0, 1.0 + 1e-9)
+# Edges that are solved with more nodes besides the last: errors grow by powers up to a/h = 2, beyond which panels in
+# the middle are split, fall there, and grow again.
+COMPARED: Final = (0.2, 0.5, 1.0, 2.0, 2.0 + 2e-9)
 # Shares of the largest edge that are compared.
 CHECKED: Final = (0.02, 0.2, 0.6, 1.0)
 # Times the difference from more nodes: an error between the edges where both are solved. With it and what the resolvent
@@ -123,6 +122,24 @@ class ResolvedProfile(MappedFunction):
         return np.asarray(np.sqrt(np.sum(terms**2, axis=-1)))
 
 
+@dataclass(frozen=True)
+class SmoothProfile(MappedFunction):
+    """A profile without rims and bends, whose edge values are interpolated as those of punches are.
+
+    Attributes:
+        share: Of its edge values yg, (yg/g_hs - 1)/x.
+        node_errors: Some edges, and the relative error of g = yg/y1 that the nodes of panels leave there.
+    """
+
+    share: LogPieces
+    node_errors: tuple[FloatArray, FloatArray]
+
+    def error(self, x: FloatArray) -> FloatArray:
+        """Relative error of g at x, but for what polynomials leave of y1."""
+        between = x * self.share.error(x) / np.abs(1 + x * self.share(x))
+        return np.asarray(_by_powers(x, *self.node_errors) + between)
+
+
 @dataclass(frozen=True, eq=False)
 class GradedSolution(FlatPunchSolution):
     """The flat punch on one graded layer up to `max_ratio`.
@@ -186,12 +203,37 @@ class GradedSolution(FlatPunchSolution):
         return self.spring_error(ratio)
 
     def error_of_profile(self, ratio: FloatArray, profile: MappedFunction, flat_radius: float) -> FloatArray:
-        """Beyond flat ends and bends only y1 of g = yg/y1 is interpolated, and yg has what the resolvent leaves out."""
+        """Beyond flat ends and bends only y1 of g = yg/y1 is interpolated, and yg has what the resolvent leaves out.
+
+        Elsewhere most of what nodes leave cancels between yg and y1, and g itself is compared with more of them.
+        """
+        x = self._covered(ratio)
+        if isinstance(profile, SmoothProfile):
+            return profile.error(x) + self._error_between_edges(x)
         if not isinstance(profile, ResolvedProfile):
             return super().error_of_profile(ratio, profile, flat_radius)
-        x = self._covered(ratio)
         own = 2 * self._error_of_nodes(x) + self._error_between_edges(x)
         return np.asarray(own + profile.resolvent_error(x - flat_radius))
+
+    def error_in_force(
+        self,
+        ratio: FloatArray,
+        profile: MappedFunction,
+        flat_radius: float,
+        *,
+        stiffness: FloatArray,
+        spread: FloatArray,
+    ) -> FloatArray:
+        """Each edge has its own panels, so that k_N errs otherwise than int c_N dx, and F = k_N g - 2 int c_N g dx.
+
+        Behind a split panel the errors that c_N has before it are the larger ones.
+        """
+        x = np.maximum(ratio[..., None] * np.linspace(0.0, 1.0, 17), flat_radius)
+        g = profile(x - flat_radius)
+        gained = np.diff(g, axis=-1) * (x * self.normalized_contact_stiffness(x))[..., 1:]
+        share = np.divide(gained, gained.sum(axis=-1, keepdims=True), out=np.zeros_like(gained), where=gained > 0.0)
+        errors = self._error_of_nodes(x[..., 1:])
+        return np.asarray(spread * np.maximum(stiffness, np.sum(share * errors, axis=-1)))
 
     def panel_ends(self, ratio: float) -> FloatArray:
         """A profile and its moment have the logarithm's kink at the axis: pieces double from close to it."""
@@ -217,9 +259,9 @@ class GradedSolution(FlatPunchSolution):
             share, left_out = (column.reshape(load.node_values.shape) for column in found.T)
             edge = load.node_values + share
             return ResolvedProfile(load.grid, edge / np.sqrt(springs), load.lead, left_out / edge), 0.0
-        share = self._smooth_share(load)(load.grid.nodes)
-        values = load.node_values * (1 + load.grid.nodes * share) / np.sqrt(springs)
-        return MappedFunction(load.grid, values, load.lead), 0.0
+        share = self._smooth_share(load)
+        values = load.node_values * (1 + load.grid.nodes * share(load.grid.nodes)) / np.sqrt(springs)
+        return SmoothProfile(load.grid, values, load.lead, share, self._profile_errors(load)), 0.0
 
     def contact_density(
         self, load: MappedFunction | None, flat_radius: float, ratio: float, depth: float
@@ -258,23 +300,25 @@ class GradedSolution(FlatPunchSolution):
 
     def _error_of_nodes(self, ratio: FloatArray) -> FloatArray:
         """Relative error of edge values and of k_bar that the nodes of panels leave, by powers between known edges."""
-        edges, errors = self._node_errors
-        position = np.log(np.maximum(ratio, edges[0]))
-        return np.asarray(np.exp(np.interp(position, np.log(edges), np.log(errors))))
+        return _by_powers(ratio, *self._node_errors)
 
     @cached_property
     def _node_errors(self) -> tuple[FloatArray, FloatArray]:
         """At some edges, from more nodes on a panel."""
-        edges = np.append(
-            [share * SPLIT for share in SHARES_OF_SPLIT if share * SPLIT < self.max_ratio], self.max_ratio
-        )
-        finer = EdgeSystems(self.kernel, DENSITY_COUNT)
-        errors = []
+        edges, errors = _compared_edges(self.max_ratio), []
         for x in edges.tolist():
-            ours, other = self._edges.at(x), finer.at(x)
+            ours, other = self._edges.at(x), self._finer_edges.at(x)
             changes = ours.edge_density / other.edge_density - 1, ours.stiffness / other.stiffness - 1
             errors.append(MARGIN * max(np.abs(changes)) + KERNEL_ERROR * (1 + ours.stiffness))
         return edges, np.array(errors)
+
+    def _profile_errors(self, load: MappedFunction) -> tuple[FloatArray, FloatArray]:
+        """The same of g = yg/y1 under one profile."""
+        edges = _compared_edges(load.grid.end)
+        found = [[systems.edge_value(load, x) for systems in (self._edges, self._finer_edges)] for x in edges.tolist()]
+        ours, other = np.array(found).T
+        kernel = KERNEL_ERROR * (1 + self.normalized_contact_stiffness(edges))
+        return edges, MARGIN * np.abs(ours / other - 1) + kernel
 
     def _density(self, ratio: float, panels: RelativePanels, load: FloatArray) -> GradedDensity:
         phi, psi = self._edges.density(ratio, panels, load)
@@ -283,7 +327,11 @@ class GradedSolution(FlatPunchSolution):
     @cached_property
     def _resolvent(self) -> ResolventTable:
         ends = np.log(self._ends)
-        return ResolventTable.of_edges(EdgeSystems(self.kernel, DENSITY_COUNT), ends, _piece_nodes(ends))
+        return ResolventTable.of_edges(self._finer_edges, ends, _piece_nodes(ends))
+
+    @cached_property
+    def _finer_edges(self) -> EdgeSystems:
+        return EdgeSystems(self.kernel, DENSITY_COUNT)
 
     @cached_property
     def _edges(self) -> EdgeSystems:
@@ -322,6 +370,17 @@ class GradedSolution(FlatPunchSolution):
         if not np.all((x >= 0) & (x <= self.max_ratio * (1 + 1e-12))):
             raise InvalidInput(f"a/h = {x.max():g}: this flat-punch solution covers [0, {self.max_ratio:g}]")
         return np.asarray(np.minimum(x, self.max_ratio))
+
+
+def _compared_edges(end: float) -> FloatArray:
+    """Edges up to the end at which systems of more nodes are solved."""
+    return np.append([edge for edge in COMPARED if edge < end], end)
+
+
+def _by_powers(x: FloatArray, edges: FloatArray, errors: FloatArray) -> FloatArray:
+    """Errors known at some edges, at x between them."""
+    position = np.log(np.maximum(x, edges[0]))
+    return np.asarray(np.exp(np.interp(position, np.log(edges), np.log(errors))))
 
 
 def _piece_nodes(u: FloatArray) -> FloatArray:

@@ -1,15 +1,16 @@
 """Error bars that hold and are sharp: for each method, stated against true errors over hundreds of random scenes."""
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import count as counting
-from typing import Any, Final
+from typing import Any, Final, Literal, TypeAlias
 
 import numpy as np
 
 from cases.declare.methods import build
 from cases.measurements.campaigns.campaign import answered, refereed
+from cases.measurements.campaigns.pressures import beside_ends, ends_checks, stack_checks, stack_contact
 from cases.measurements.campaigns.random_scenes import Family, random_scene
 from cases.measurements.campaigns.referee import CHEAP_RATIO
 from cases.measurements.measurement import Measurement, answers, by_quantity, covered, median, sharpness
@@ -30,6 +31,8 @@ LARGEST_AT_90: Final = 100.0
 FEWEST_RATIOS: Final = 10
 # Seed of the scenes on which bars are judged. Error terms are chosen on other seeds, never on this one.
 SEED: Final = 1401
+# Scenes of pressures, drawn and judged in their own way.
+PressureFamily: TypeAlias = Literal["pressure", "pressure on stacks"]
 # Smallest contact radius over thickness.
 _SMALLEST_RATIO: Final = 1e-2
 _LARGEST_SHOWN: Final = 1e9
@@ -61,7 +64,7 @@ class CoveragePlan:
 
     method: str
     settings: Mapping[str, Any]
-    family: Family
+    family: Family | PressureFamily
     count: int
     only_radii: bool = False
     smallest: float = _SMALLEST_RATIO
@@ -88,6 +91,22 @@ NIGHTLY_PLANS: Final = (
     CoveragePlan(method="fem", settings={"accuracy": 1e-2}, family="many_loads", count=24, smallest=0.1, largest=5.0),
     CoveragePlan(method="fem", settings={"growth": 1.4}, family="elastic", count=40, smallest=0.1, largest=5.0),
     CoveragePlan(method="mdr", settings={}, family="growing", count=24, smallest=0.1, largest=5.0),
+    CoveragePlan(
+        method="mdr", settings={"nodes": 12}, family="pressure on stacks", count=120, smallest=0.1, largest=3.0
+    ),
+    CoveragePlan(
+        method="mdr", settings={"nodes": 16}, family="pressure on stacks", count=160, smallest=0.1, largest=3.0
+    ),
+    *(
+        CoveragePlan(method=method, settings=settings, family="pressure", count=count, claims_sharpness=False)
+        for method, settings, count in (
+            ("mdr", {}, 200),
+            ("integral_equation", {}, 100),
+            ("bem", {"points": 128}, 60),
+            ("fem", {"accuracy": 1e-4}, 40),
+            ("mdr_table", {"cells": 64, "ratios": 60, "radii": 100}, 40),
+        )
+    ),
 )
 _COARSE_TABLE: Final = {"cells": 64, "ratios": 60, "radii": 100}
 PLANS: Final = (
@@ -155,13 +174,26 @@ def rows_of(plan: CoveragePlan, seed: int, at_work: Say = silent) -> Iterator[Me
     of = Measurement(method=plan.method, settings=plan.settings, parameters={"family": plan.family}, seed=seed)
     numbers = announced(range(plan.count), lambda _: f"scenes of {plan.method}, {plan.family}", at_work)
     scenes = zip(numbers, _scenes(plan, seed, method), strict=True)
-    yield from answered(method, scenes, partial(refereed, method, other=finest), of)
+    _, judge = _drawn_and_judged(plan, method)
+    yield from answered(method, scenes, partial(judge, other=finest), of)
+
+
+def _drawn_and_judged(
+    plan: CoveragePlan, method: Method
+) -> tuple[Callable[..., Scene], Callable[..., Iterable[Measurement]]]:
+    """How scenes of a family are drawn in a range of ratios, and how answers are judged."""
+    if plan.family == "pressure":
+        return beside_ends, ends_checks
+    if plan.family == "pressure on stacks":
+        return stack_contact, stack_checks
+    return partial(random_scene, family=plan.family), partial(refereed, method)
 
 
 def _scenes(plan: CoveragePlan, seed: int, method: Method) -> Iterator[Scene]:
     """The first so many scenes of the seed that the plan asks for and the method supports."""
     limits = plan.smallest, plan.largest
-    drawn = (random_scene(np.random.default_rng([seed, n]), plan.family, limits) for n in counting())
+    draw, _ = _drawn_and_judged(plan, method)
+    drawn = (draw(np.random.default_rng([seed, n]), ratio=limits) for n in counting())
     left = plan.count
     while left:
         scene = next(drawn)

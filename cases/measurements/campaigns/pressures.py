@@ -8,16 +8,19 @@ Each field is one contact in random units. Four checks need no other method's co
 - **force of the pressure**: its integral over the contact against the normal force.
 
 Depth, force and stiffness are compared with the referee of elastic scenes, whose own profiles end further out.
+
+On stacks the referee is a finer method, and the integral of the pressure needs none (`stack_checks`).
 """
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
 import numpy as np
 
-from cases.measurements.campaigns.campaign import against_second_opinion
+from cases.measurements.campaigns.campaign import HUNDRED_ROUNDINGS, against_second_opinion
 from cases.measurements.campaigns.pressure_referee import reference_pressure
 from cases.measurements.campaigns.random_scenes import UNITS, log_uniform, poissons_ratio, tabulated
 from cases.measurements.campaigns.referee import CHEAP_RATIO, smallest_eigenvalue
@@ -27,10 +30,14 @@ from contact import (
     Cone,
     ContactPath,
     ContactRadii,
+    ElasticBase,
+    ElasticLayer,
     FlatPunch,
     IndentationDepths,
     Layer,
+    LayerStack,
     Loading,
+    Method,
     NormalForces,
     Paraboloid,
     PowerLaw,
@@ -38,11 +45,13 @@ from contact import (
     Scene,
     Solution,
     Sphere,
+    Sublayer,
     Tabulated,
     TruncatedCone,
     TruncatedParaboloid,
 )
 from contact.records.validation import FloatArray
+from contact.scene.layer import Support
 
 Draw = np.random.Generator
 
@@ -86,10 +95,9 @@ def referee_checks(path: ContactPath, step: int) -> tuple[Measurement, Measureme
     scene, a = path.scene, float(path.contact_radius[step])
     layer, indenter, punch = scene.layer, scene.indenter, isinstance(scene.indenter, FlatPunch)
     radius, weight = _compared_radii(indenter, a)
-    found = path.pressure(radius, step)
+    found, weight = path.pressure(radius, step), weight * _weight(indenter, radius, a)
     depth = float(path.indentation_depth[step]) if punch else None
     expected = reference_pressure(layer, indenter, a - indenter.flat_radius, depth, radius)
-    weight *= radius * ((a - radius) * (a + radius) if punch else 1.0)
     norm = float(np.sqrt(weight @ expected**2))
     error = float(np.sqrt(weight @ (found - expected) ** 2)) / norm
     size = np.maximum(np.abs(expected), norm / np.sqrt(weight.sum()))
@@ -99,6 +107,32 @@ def referee_checks(path: ContactPath, step: int) -> tuple[Measurement, Measureme
         _row("pressure", path, error, stated, allowance),
         _row("pressure at a radius", path, worst, _POINTWISE * stated, 10 * allowance),
     )
+
+
+def _weight(indenter: Profile, radius: FloatArray, a: float) -> FloatArray:
+    """Of squared pressures: that of an area, and of what is infinite at a punch's edge the distance from it."""
+    return radius * ((a - radius) * (a + radius) if isinstance(indenter, FlatPunch) else 1.0)
+
+
+def ends_checks(path: Solution, *, number: int, other: Method) -> tuple[Measurement, ...]:
+    """As `pressure_checks` of the first step; whose referee is always the same."""
+    return pressure_checks(path)
+
+
+def stack_checks(path: Solution, *, number: int, other: Method) -> tuple[Measurement, Measurement]:
+    """The weighted norm of the distance from another method's pressure, and the integral against the force."""
+    assert isinstance(path, ContactPath)
+    finer, indenter, a = other.solve(path.scene), path.scene.indenter, float(path.contact_radius[0])
+    assert isinstance(finer, ContactPath)
+    radius, weight = _compared_radii(indenter, min(a, float(finer.contact_radius[0])))
+    weight = weight * _weight(indenter, radius, a)
+    expected = finer.pressure(radius, 0)
+    error = float(np.sqrt(weight @ (path.pressure(radius, 0) - expected) ** 2 / (weight @ expected**2)))
+    stated, allowance = _stated(path, 0), _stated(finer, 0) + HUNDRED_ROUNDINGS
+    row = replace(
+        _row("pressure", path, error, stated, allowance), sharpness=stated / error if error > allowance else None
+    )
+    return row, force_check(path, 0)
 
 
 def referee_rounding(scene: Scene, a: float) -> float:
@@ -189,6 +223,43 @@ def random_contact(draw: Draw) -> Scene:
     return Scene(layer=layer, indenter=indenter, loading=_loading(draw, layer, indenter, a))
 
 
+def beside_ends(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """As `random_contact`, whose radii have a range of their own."""
+    return random_contact(draw)
+
+
+def stack_contact(draw: Draw, ratio: tuple[float, float]) -> Scene:
+    """One contact on a stack of up to four sublayers, thickness 1 in all, with moduli that differ up to 3 000 times.
+
+    Over the uppermost sublayer a contact is at most fifteen times as wide.
+    """
+    layer: Any = _stack(draw)
+    a = min(log_uniform(draw, *ratio), 15.0 * layer.surface.thickness)
+    slope, b = log_uniform(draw, 1e-5, 1.0), a * float(draw.uniform(0.2, 0.8))
+    indenter: Profile = (
+        Paraboloid(radius_of_curvature=a / slope),
+        Cone(slope=slope),
+        TruncatedCone(flat_radius=b, slope=slope),
+        FlatPunch(radius=a),
+        PowerLaw(exponent=log_uniform(draw, 1.2, 6.0), reference_radius=a, reference_height=slope * a),
+    )[draw.integers(5)]
+    return Scene(layer=layer, indenter=indenter, loading=_loading(draw, layer, indenter, a))
+
+
+def _stack(draw: Draw) -> LayerStack:
+    count = int(draw.integers(1, 5))
+    share = np.exp(draw.uniform(np.log(0.05), 0.0, count))
+    moduli = np.exp(draw.uniform(-4.0, 4.0, count + 1)).tolist()
+    sublayers = tuple(
+        Sublayer(thickness=h, youngs_modulus=modulus, poissons_ratio=poissons_ratio(draw))
+        for h, modulus in zip((share / share.sum()).tolist(), moduli[1:], strict=True)
+    )
+    base = ElasticBase(youngs_modulus=moduli[0], poissons_ratio=0.3)
+    supports: tuple[Support | ElasticBase, ...] = (base,) if count == 1 else (base, "bonded", "unbonded")
+    faces = draw.choice(["bonded", "unbonded"], count - 1, p=[0.8, 0.2]).tolist()
+    return LayerStack(sublayers=sublayers, interfaces=tuple(faces), support=supports[draw.integers(len(supports))])
+
+
 def _layer(draw: Draw, thickness: float, youngs_modulus: float) -> Layer:
     nu = poissons_ratio(draw)
     if draw.random() < 1 / 3:
@@ -224,7 +295,7 @@ def _other(draw: Draw, a: float) -> tuple[Profile, float]:
     return makers[draw.integers(len(makers))](draw, a, log_uniform(draw, 1e-5, 1.0)), a
 
 
-def _loading(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Loading:
+def _loading(draw: Draw, layer: ElasticLayer, indenter: Profile, a: float) -> Loading:
     """The radius itself in two of three scenes, else the half-space's depth or force at about that radius."""
     kind = draw.integers(2 if isinstance(indenter, FlatPunch) else 0, 4 if isinstance(indenter, FlatPunch) else 6)
     depth = float(np.minimum(indenter.height(a), a)) if a > indenter.flat_radius else 0.01 * a

@@ -142,7 +142,9 @@ def test_suite_nightly_judges_what_no_other_plan_does():
     kinds = {(plan.method, plan.family, plan.settings.get("points")) for plan in coverage.NIGHTLY_PLANS}
     wanted = {("bem", "elastic", 256), ("bem", "elastic", 512), ("bem", "adhering_table", 128)}
     by_elements = {("fem", family, None) for family in ("adhering_table", "many_loads", "elastic")}
-    assert kinds == wanted | by_elements | {("mdr", "growing", None)}
+    of_pressure = {("bem", "pressure", 128), ("mdr", "pressure on stacks", None)}
+    of_pressure |= {(method, "pressure", None) for method in ("mdr", "integral_equation", "fem", "mdr_table")}
+    assert kinds == wanted | by_elements | of_pressure | {("mdr", "growing", None)}
     assert all(plan in coverage.PLANS for plan in coverage.NIGHTLY_PLANS)
 
 
@@ -154,6 +156,67 @@ def planted(solve, **changes):
         return dataclasses.replace(path, **{name: factor * getattr(path, name) for name, factor in changes.items()})
 
     return wrong
+
+
+@dataclasses.dataclass(frozen=True)
+class OffByAPart:
+    """The fast method with pressures a little too large, or stated too largely."""
+
+    own: Mdr
+    much: float
+    stated: float
+    name: str = "mdr"
+
+    def supports(self, scene):
+        return self.own.supports(scene)
+
+    def solve(self, scene):
+        path = self.own.solve(scene)
+        errors = {name: self.stated * error for name, error in path.error_estimate.items()}
+        return dataclasses.replace(path, fields=MorePressure(path.fields, 1.0 + self.much), error_estimate=errors)
+
+
+@dataclasses.dataclass(frozen=True)
+class MorePressure:
+    fields: object
+    factor: float
+
+    def pressure(self, radius, step):
+        return self.factor * self.fields.pressure(radius, step)
+
+
+@pytest.mark.parametrize(
+    ("much", "stated", "failed"),
+    [(0.0, 1.0, set()), (1e-6, 1.0, {"stated errors hold"}), (0.0, 300.0, {"stated errors are sharp"})],
+    ids=["as it is", "a millionth too much", "three hundred times as much stated"],
+)
+def test_pressures_on_stacks_are_judged(monkeypatch, much, stated, failed):
+    """A slice of the nightly plan."""
+    plan = next(plan for plan in coverage.NIGHTLY_PLANS if plan.family == "pressure on stacks")
+    own = coverage.build
+    planted = OffByAPart(own("mdr", plan.settings), much, stated)
+    monkeypatch.setattr(coverage, "build", lambda name, s: planted if s == plan.settings else own(name, s))
+    claims = coverage_case([dataclasses.replace(plan, count=16)], seed=3).claims
+    of_pressure = [claim for claim in claims if claim.name.endswith(", pressure")]
+    assert len(of_pressure) == 2
+    assert {claim.name.split(",")[0] for claim in of_pressure if claim.status is not Status.PASS} == failed
+
+
+@pytest.mark.parametrize(
+    ("method", "changes", "failed"),
+    [
+        ("mdr", {}, set()),
+        ("integral_equation", {"indentation_depth": 1.0 + 1e-9}, {"indentation_depth"}),
+        ("bem", {"normal_force": 1.5}, {"normal_force", "force_of_the_pressure"}),
+    ],
+)
+def test_contacts_beside_ends_are_judged(monkeypatch, method, changes, failed):
+    """A slice of the nightly plans; depth and force are compared as well as pressures."""
+    plan = next(plan for plan in coverage.NIGHTLY_PLANS if (plan.method, plan.family) == (method, "pressure"))
+    kind = type(coverage.build(method, plan.settings))
+    monkeypatch.setattr(kind, "solve", planted(kind.solve, **changes))
+    claims = coverage_case([dataclasses.replace(plan, count=5)], seed=3).claims
+    assert {claim.quantity.replace(" ", "_") for claim in claims if claim.status is not Status.PASS} == failed
 
 
 @pytest.mark.slow
