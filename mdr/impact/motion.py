@@ -133,6 +133,8 @@ class _Motion:
         for leg in reversed(way_in):
             starting = np.flatnonzero(turned_in == leg.section)
             state[2, starting] = lanes.take(starting).springs(turn[:1, starting], leg.section, 1)[0, 0]
+            # On the way in it is the time without g.
+            state[1, starting] += state[2, starting]
             steps = leg.memory.low.shape[0] if leg.memory else 1
             legs += [self._back(leg, step, state) for step in reversed(range(steps))]
         return tuple(legs), state
