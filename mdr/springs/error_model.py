@@ -71,5 +71,3 @@ DEFAULT_ACCURACY: Final = 1e-9
 COARSER_POWER: Final = 0.46
 # Share of the largest error of a peak that counts in the contact time, times the way left over the leaving speed.
 LEAVING_SHARE: Final = 0.25
-# Share of the errors within steps that counts in the contact time: half of the true errors are below 0.0002 of them.
-WITHIN_STEPS_SHARE: Final = 0.0003
