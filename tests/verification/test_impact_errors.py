@@ -21,9 +21,9 @@ def outcome(scene, accuracy):
     return np.array([getattr(found, name)[0] for name in IMPACT_NUMBERS]), found.relative_error[:, 0]
 
 
-# Of seed 9 these are the scenes in which both runs miss the truth alike: by up to 7 times their difference.
+# Of seed 9 these are the scenes in which both runs miss the truth alike: by up to 68 times what they tell.
 @pytest.mark.parametrize(
-    ("number", "accuracy"), [(23, 1e-5), (65, 1e-5), (86, 1e-5), (11, 1e-6), (24, 1e-6), (48, 1e-6), (40, 1e-9)]
+    ("number", "accuracy"), [(39, 1e-5), (59, 1e-5), (78, 1e-5), (28, 1e-6), (33, 1e-6), (41, 1e-6), (8, 1e-9)]
 )
 def test_two_runs_that_agree_by_chance_still_state_an_error(number, accuracy):
     """Fails without the floor under stated errors: three tenths of the accuracy asked for."""
