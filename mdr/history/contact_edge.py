@@ -21,6 +21,7 @@ from mdr.history.springs_in_time import BedState, SpringLaw
 _FEW = 5
 # Number of springs of one section from which the place of the front is extrapolated, by a parabola.
 _NEEDED = 3
+_NONE = np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -134,34 +135,86 @@ def way_to_zero(values: FloatArray, step: float) -> float:
     return float(min(max(way, 0.0), step))
 
 
-def total_force(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float, at_front: float) -> float:
-    """Force of all springs within the front at y, `at_front` the spring force there."""
-    last = int(np.flatnonzero(touching)[-1])
-    own, load = bed.section(last), bed.density * forces
-    inner = sum(_integral(load[one], bed.step(one.start)) for one in bed.sections() if one.start < own.start)
-    inner += _integral(load[own.start : last + 1], bed.step(last))
-    return float(bed.core * forces[0] + inner + _beyond(bed, load, last, y, at_front))
+def total_force(
+    bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, front: tuple[float, float], bends: FloatArray
+) -> float:
+    """Force of all springs within the front.
+
+    Args:
+        bed: The springs.
+        touching: Which of them are in contact.
+        forces: What they carry.
+        front: Its y, and the spring force there.
+        bends: The y where spring forces bend, increasing, shape (bends,).
+    """
+    last, load, total = int(np.flatnonzero(touching)[-1]), bed.density * forces, bed.core * float(forces[0])
+    for one in bed.sections():
+        if one.start > last:
+            break
+        own = slice(one.start, min(one.stop, last + 1))
+        y, values = bed.y[own], load[own]
+        end = float(y[-1]), float(values[-1])
+        if one.stop > last and front[0] > end[0]:
+            end = front[0], float(np.interp(front[0], bed.y[one], bed.density[one])) * front[1]
+        inside = bends[(bends > y[0]) & (bends < end[0])].tolist()
+        total += _bent_integral(y, values, bed.step(one.start), inside, end)
+    return float(total)
+
+
+def _bent_integral(y: FloatArray, load: FloatArray, step: float, bends: list[float], end: tuple[float, float]) -> float:
+    """Integral of values at equidistant y to an end with its own value, piece by piece between bends."""
+    total, start, low = 0.0, 0, (float(y[0]), float(load[0]))
+    stops = [*np.searchsorted(y, bends).tolist(), y.size]
+    for number, stop in enumerate(stops):
+        own = load[start:stop]
+        high = end
+        if number < len(bends):
+            around = own, load[stop : stops[number + 1]]
+            high = bends[number], _at_bend(y, load, stop, bends[number], around, end)
+        if own.size:
+            total += _beyond(own[::-1], step, float(y[start]) - low[0], low[1])
+            total += _integral(own, step) + _beyond(own, step, high[0] - float(y[stop - 1]), high[1])
+        else:
+            total += 0.5 * (high[0] - low[0]) * (low[1] + high[1])
+        start, low = stop, high
+    return total
+
+
+def _at_bend(
+    y: FloatArray,
+    load: FloatArray,
+    outside: int,
+    bend: float,
+    around: tuple[FloatArray, FloatArray],
+    end: tuple[float, float],
+) -> float:
+    """Value at a bend, from the values on one of its sides, or from its neighbours where these are too few."""
+    inner, outer = around
+    if inner.size >= _NEEDED:
+        return _extrapolated(inner[::-1], (bend - float(y[outside - 1])) / float(y[1] - y[0]))
+    if outer.size >= _NEEDED:
+        return _extrapolated(outer, (float(y[outside]) - bend) / float(y[1] - y[0]))
+    beyond = (float(y[outside]), float(load[outside])) if outside < y.size else end
+    return float(np.interp(bend, [float(y[outside - 1]), beyond[0]], [float(load[outside - 1]), beyond[1]]))
 
 
 def _integral(load: FloatArray, step: float) -> float:
     """Trapezoidal rule with end corrections."""
     inner = step * (load.sum() - 0.5 * (load[0] + load[-1])) if load.size > 1 else 0.0
-    if load.size >= _FEW:
+    if load.size >= _NEEDED:
         end = (1.5 * load[-1] - 2.0 * load[-2] + 0.5 * load[-3]) / step
         begin = (-1.5 * load[0] + 2.0 * load[1] - 0.5 * load[2]) / step
         inner -= step**2 / 12.0 * (end - begin)
     return float(inner)
 
 
-def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: float) -> float:
-    """Integral from the last spring in contact to the front, by a parabola through its inner neighbour."""
-    own, way, step = bed.section(last), y - float(bed.y[last]), bed.step(last)
+def _beyond(load: FloatArray, step: float, way: float, edge: float) -> float:
+    """Integral from the last of equidistant values to an edge, by a parabola through the last but one."""
     if way <= 0.0:
         return 0.0
-    edge = float(np.interp(y, bed.y[own], bed.density[own])) * at_front
-    rise = (edge - load[last]) / way
-    bend = (rise - (load[last] - load[last - 1]) / step) / (way + step) if last > own.start else 0.0
-    return float(load[last] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
+    rise = (edge - load[-1]) / way
+    bend = (rise - (load[-1] - load[-2]) / step) / (way + step) if load.size > 1 else 0.0
+    return float(load[-1] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
 def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
@@ -180,15 +233,25 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
 
 
-def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tuple[float, float]:
-    """Force [N] and front coordinate, which is negative where nothing touches."""
+def carried(
+    law: SpringLaw, bed: SpringBed, state: BedState, speed: float, bends: FloatArray = _NONE
+) -> tuple[float, float]:
+    """Force [N] and front coordinate, which is negative where nothing touches.
+
+    Args:
+        law: Of the springs.
+        bed: The springs.
+        state: What they are in.
+        speed: Of the depth [m/s].
+        bends: Where fronts stood when that speed changed, increasing: spring forces bend there.
+    """
     if not state.touching.any():
         return 0.0, -1.0
     forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:
         return bed.core * float(forces[0]), 0.0
     y, at_front = front(law, bed, state, forces, speed)
-    return total_force(bed, state.touching, forces, y, at_front), y
+    return total_force(bed, state.touching, forces, (y, at_front), bends), y
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:
@@ -196,6 +259,10 @@ def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, 
     last = int(np.flatnonzero(touching)[-1])
     if last - bed.section(last).start < _NEEDED - 1:
         return float(forces[last])
-    share = (y - float(bed.y[last])) / bed.step(last)
-    outer, middle, inner = forces[last], forces[last - 1], forces[last - 2]
+    return _extrapolated(forces[last - 2 : last + 1][::-1], (y - float(bed.y[last])) / bed.step(last))
+
+
+def _extrapolated(values: FloatArray, share: float) -> float:
+    """The parabola through the first three values, a share of their distance before the first."""
+    outer, middle, inner = values[:_NEEDED]
     return float(outer + share * (outer - middle) + 0.5 * share * (share + 1.0) * (outer - 2.0 * middle + inner))

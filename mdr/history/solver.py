@@ -381,10 +381,12 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
-    records, bent = [], False
+    records: list[tuple[float, float, float]] = []
+    bent, by_depth = False, isinstance(loading, DepthHistory)
     for (state, speed), instant in zip(states_at(law, bed, loading, substeps), loading.time, strict=True):
         bent |= _check_circle(law, state, speed, float(instant))
-        records.append((state.depth, *carried(law, bed, state, speed)))
+        bends = np.unique([y for _, _, y in records]) if by_depth else np.empty(0)
+        records.append((state.depth, *carried(law, bed, state, speed, bends)))
     depth, force, y = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
