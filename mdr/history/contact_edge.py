@@ -21,6 +21,7 @@ from mdr.history.springs_in_time import BedState, SpringLaw
 _FEW = 5
 # Number of springs of one section from which the place of the front is extrapolated, by a parabola.
 _NEEDED = 3
+_MOST = 4
 _NONE = np.empty(0)
 
 
@@ -66,7 +67,7 @@ def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArr
     start = bed.section(last).start
     if last - start < _NEEDED - 1 and start:
         return _by_radius(bed, last, (start - 2, last), forces)
-    inner = forces[max(last - 2, start) : last + 1][::-1]
+    inner = forces[max(last + 1 - _MOST, start) : last + 1][::-1]
     return float(bed.y[last] + way_to_zero(inner, bed.step(last)))
 
 
@@ -83,7 +84,7 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
         share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
         return float(bed.y[around.start] + share * bed.step(first))
     if own.stop - first >= _NEEDED or own.stop == bed.y.size:
-        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, own.stop)], bed.step(first)))
+        return float(bed.y[first] - way_to_zero(gaps[first : min(first + _MOST, own.stop)], bed.step(first)))
     return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
 
 
@@ -132,6 +133,12 @@ def way_to_zero(values: FloatArray, step: float) -> float:
     curvature = (values[0] - 2.0 * values[1] + values[2]) / step**2
     root = slope + np.sqrt(max(slope**2 - 2.0 * curvature * values[0], 0.0))
     way = 2.0 * values[0] / root if root > 0.0 else step
+    if values.size > _NEEDED:
+        # What a cubic through one value more adds to the parabola at its zero, over the slope there.
+        share = way / step
+        third = values[0] - 3.0 * values[1] + 3.0 * values[2] - values[3]
+        added = third * share * (share + 1.0) * (share + 2.0) / 6.0
+        way += added / (slope - curvature * way) if slope > curvature * way else 0.0
     return float(min(max(way, 0.0), step))
 
 
