@@ -144,8 +144,8 @@ def way_to_zero(values: FloatArray, step: float) -> float:
 
 def total_force(
     bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, front: tuple[float, float], bends: FloatArray
-) -> float:
-    """Force of all springs within the front.
+) -> FloatArray:
+    """Force of all springs within the front, and how much of it may be wrong because no spring stands there.
 
     Args:
         bed: The springs.
@@ -154,7 +154,8 @@ def total_force(
         front: Its y, and the spring force there.
         bends: The y where spring forces bend, increasing, shape (bends,).
     """
-    last, load, total = int(np.flatnonzero(touching)[-1]), bed.density * forces, bed.core * float(forces[0])
+    last, load = int(np.flatnonzero(touching)[-1]), bed.density * forces
+    total = np.array([bed.core * float(forces[0]), 0.0])
     for one in bed.sections():
         if one.start > last:
             break
@@ -165,12 +166,18 @@ def total_force(
             end = front[0], float(np.interp(front[0], bed.y[one], bed.density[one])) * front[1]
         inside = bends[(bends > y[0]) & (bends < end[0])].tolist()
         total += _bent_integral(y, values, bed.step(one.start), inside, end)
-    return float(total)
+    return total
 
 
-def _bent_integral(y: FloatArray, load: FloatArray, step: float, bends: list[float], end: tuple[float, float]) -> float:
-    """Integral of values at equidistant y to an end with its own value, piece by piece between bends."""
-    total, start, low = 0.0, 0, (float(y[0]), float(load[0]))
+def _bent_integral(
+    y: FloatArray, load: FloatArray, step: float, bends: list[float], end: tuple[float, float]
+) -> FloatArray:
+    """Integral of values at equidistant y to an end with its own value, piece by piece between bends, and its doubt.
+
+    Between bends without a value in between the chord is taken: where a parabola that is level at one end would be
+    right, a third of what is above the lower end is wrong.
+    """
+    total, start, low = np.zeros(2), 0, (float(y[0]), float(load[0]))
     stops = [*np.searchsorted(y, bends).tolist(), y.size]
     for number, stop in enumerate(stops):
         own = load[start:stop]
@@ -179,10 +186,10 @@ def _bent_integral(y: FloatArray, load: FloatArray, step: float, bends: list[flo
             around = own, load[stop : stops[number + 1]]
             high = bends[number], _at_bend(y, load, stop, bends[number], around, end)
         if own.size:
-            total += _beyond(own[::-1], step, float(y[start]) - low[0], low[1])
-            total += _integral(own, step) + _beyond(own, step, high[0] - float(y[stop - 1]), high[1])
+            total[0] += _beyond(own[::-1], step, float(y[start]) - low[0], low[1])
+            total[0] += _integral(own, step) + _beyond(own, step, high[0] - float(y[stop - 1]), high[1])
         else:
-            total += 0.5 * (high[0] - low[0]) * (low[1] + high[1])
+            total += 0.5 * (high[0] - low[0]) * np.array([low[1] + high[1], abs(low[1] - high[1]) / 3.0])
         start, low = stop, high
     return total
 
@@ -242,8 +249,8 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
 
 def carried(
     law: SpringLaw, bed: SpringBed, state: BedState, speed: float, bends: FloatArray = _NONE
-) -> tuple[float, float]:
-    """Force [N] and front coordinate, which is negative where nothing touches.
+) -> tuple[float, float, float]:
+    """Force [N]; front coordinate, which is negative where nothing touches; doubt of the force [N].
 
     Args:
         law: Of the springs.
@@ -253,12 +260,13 @@ def carried(
         bends: Where fronts stood when that speed changed, increasing: spring forces bend there.
     """
     if not state.touching.any():
-        return 0.0, -1.0
+        return 0.0, -1.0, 0.0
     forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:
-        return bed.core * float(forces[0]), 0.0
+        return bed.core * float(forces[0]), 0.0, 0.0
     y, at_front = front(law, bed, state, forces, speed)
-    return total_force(bed, state.touching, forces, (y, at_front), bends), y
+    force, doubt = total_force(bed, state.touching, forces, (y, at_front), bends).tolist()
+    return force, y, doubt
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:

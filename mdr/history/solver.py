@@ -89,12 +89,14 @@ class _Track:
         force: F_N [N], shape (n,).
         y: Front coordinate, negative where there is no contact, shape (n,).
         bent: Whether the spring forces ever rose outwards.
+        doubt: Share of the largest force that lies between bends of the spring forces where no spring stands.
     """
 
     depth: FloatArray
     force: FloatArray
     y: FloatArray
     bent: bool
+    doubt: float
 
 
 def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
@@ -241,7 +243,7 @@ def _followed(
     if isinstance(loading, DepthHistory) or law.is_elastic:
         fine, *others = (_follow(law, bed, loading, _finest(loading, law, substeps)) for bed in beds)
         pairs = [(fine, other) for other in others]
-        return _FoundHistory(fine, pairs, [], _error_of_springs(pairs))
+        return _FoundHistory(fine, pairs, [], _error_of_springs(pairs) + fine.doubt)
     tracks = [_follow(law, beds[0], loading, level * substeps) for level in _LEVELS]
     pairs = [(tracks[-1], _follow(law, bed, loading, substeps)) for bed in beds[1:]]
     depth, before = (_limit(*(track.depth for track in three)) for three in (tracks[:3], tracks[1:]))
@@ -381,18 +383,18 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
-    records: list[tuple[float, float, float]] = []
+    records: list[tuple[float, ...]] = []
     bent, by_depth = False, isinstance(loading, DepthHistory)
     for (state, speed), instant in zip(states_at(law, bed, loading, substeps), loading.time, strict=True):
         bent |= _check_circle(law, state, speed, float(instant))
-        bends = np.unique([y for _, _, y in records]) if by_depth else np.empty(0)
+        bends = np.unique([y for _, _, y, _ in records]) if by_depth else np.empty(0)
         records.append((state.depth, *carried(law, bed, state, speed, bends)))
-    depth, force, y = np.array(records).T
+    depth, force, y, doubt = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
     held = own > _HELD * own.max()
     force, y = np.where(held, own, 0.0) if own is force else own, np.where(held, y, -1.0)
-    return _Track(depth, force, y, bent)
+    return _Track(depth, force, y, bent, float(doubt.max() / max(force.max(), np.finfo(float).tiny)))
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:
