@@ -238,8 +238,7 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     inside, of springs touched one after the other, bend within the way that it goes in a relaxation time. A front that
     recedes lies where the forces inside vanish, for the same reason turned around.
     """
-    outside = int(np.flatnonzero(state.touching)[-1]) + 1
-    if outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside]):
+    if _advances(law, bed, state, speed):
         y = touched_front(bed, state)
         return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
     # Nothing is in contact beyond where an undeformed surface would be.
@@ -247,10 +246,19 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
 
 
+def _advances(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> bool:
+    """Whether the indenter reaches springs outside the front."""
+    outside = int(np.flatnonzero(state.touching)[-1]) + 1
+    return outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside])
+
+
 def carried(
     law: SpringLaw, bed: SpringBed, state: BedState, speed: float, bends: FloatArray = _NONE
-) -> tuple[float, float, float]:
-    """Force [N]; front coordinate, which is negative where nothing touches; doubt of the force [N].
+) -> tuple[float, float, float, float]:
+    """Force [N]; front coordinate, which is negative where nothing touches; how far no spring tells these two.
+
+    Outside an advancing front the surface bends where fronts have been: if no spring stands before that place, the
+    front may.
 
     Args:
         law: Of the springs.
@@ -260,13 +268,14 @@ def carried(
         bends: Where fronts stood when that speed changed, increasing: spring forces bend there.
     """
     if not state.touching.any():
-        return 0.0, -1.0, 0.0
+        return 0.0, -1.0, 0.0, 0.0
     forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:
-        return bed.core * float(forces[0]), 0.0, 0.0
+        return bed.core * float(forces[0]), 0.0, 0.0, 0.0
     y, at_front = front(law, bed, state, forces, speed)
     force, doubt = total_force(bed, state.touching, forces, (y, at_front), bends).tolist()
-    return force, y, doubt
+    hidden = bends[(bends > y) & (bends < bed.y[int(np.flatnonzero(state.touching)[-1]) + 1 :][:1])]
+    return force, y, doubt, float(hidden[-1]) - y if hidden.size and _advances(law, bed, state, speed) else 0.0
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:

@@ -90,6 +90,7 @@ class _Track:
         y: Front coordinate, negative where there is no contact, shape (n,).
         bent: Whether the spring forces ever rose outwards.
         doubt: Share of the largest force that lies between bends of the spring forces where no spring stands.
+        hidden: How far beyond y the front may stand, for the same reason, shape (n,).
     """
 
     depth: FloatArray
@@ -97,6 +98,7 @@ class _Track:
     y: FloatArray
     bent: bool
     doubt: float
+    hidden: FloatArray
 
 
 def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
@@ -175,7 +177,9 @@ def _errors(scene: Scene, table: SpringTable | None, found: _FoundHistory, sprin
         for pairs in (found.by_springs, found.by_steps)
     )
     known = SPRINGS_TO_MOTION * springs + _ROUNDING
-    moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + known
+    track = found.track
+    hidden = _change(_radius(scene, table, track.y), _radius(scene, table, track.y + track.hidden))
+    moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + hidden + known
     if found.error > LARGEST_HISTORY_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
     error = np.full(found.track.y.size, found.error + known)
@@ -387,14 +391,14 @@ def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory
     bent, by_depth = False, isinstance(loading, DepthHistory)
     for (state, speed), instant in zip(states_at(law, bed, loading, substeps), loading.time, strict=True):
         bent |= _check_circle(law, state, speed, float(instant))
-        bends = np.unique([y for _, _, y, _ in records]) if by_depth else np.empty(0)
+        bends = np.unique([record[2] for record in records]) if by_depth else np.empty(0)
         records.append((state.depth, *carried(law, bed, state, speed, bends)))
-    depth, force, y, doubt = np.array(records).T
+    depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
     held = own > _HELD * own.max()
     force, y = np.where(held, own, 0.0) if own is force else own, np.where(held, y, -1.0)
-    return _Track(depth, force, y, bent, float(doubt.max() / max(force.max(), np.finfo(float).tiny)))
+    return _Track(depth, force, y, bent, float(doubt.max() / max(force.max(), np.finfo(float).tiny)), hidden)
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:
