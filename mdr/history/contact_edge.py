@@ -183,8 +183,8 @@ def _bent_integral(
         own = load[start:stop]
         high = end
         if number < len(bends):
-            around = own, load[stop : stops[number + 1]]
-            high = bends[number], _at_bend(y, load, stop, bends[number], around, end)
+            pieces = slice(start, stop), slice(stop, stops[number + 1])
+            high = bends[number], _at_bend(y, load, bends[number], pieces, end)
         if own.size:
             total[0] += _beyond(own[::-1], step, float(y[start]) - low[0], low[1])
             total[0] += _integral(own, step) + _beyond(own, step, high[0] - float(y[stop - 1]), high[1])
@@ -195,21 +195,17 @@ def _bent_integral(
 
 
 def _at_bend(
-    y: FloatArray,
-    load: FloatArray,
-    outside: int,
-    bend: float,
-    around: tuple[FloatArray, FloatArray],
-    end: tuple[float, float],
+    y: FloatArray, load: FloatArray, bend: float, pieces: tuple[slice, slice], end: tuple[float, float]
 ) -> float:
-    """Value at a bend, from the values on one of its sides, or from its neighbours where these are too few."""
-    inner, outer = around
+    """Value at a bend, from values of the piece on one of its sides, or from its neighbours where these are too few."""
+    (inner, outer), step = (load[piece] for piece in pieces), float(y[1] - y[0]) if y.size > 1 else 1.0
+    last, first = pieces[0].stop - 1, pieces[1].start
     if inner.size >= _NEEDED:
-        return _extrapolated(inner[::-1], (bend - float(y[outside - 1])) / float(y[1] - y[0]))
+        return _extrapolated(inner[::-1], (bend - float(y[last])) / step)
     if outer.size >= _NEEDED:
-        return _extrapolated(outer, (float(y[outside]) - bend) / float(y[1] - y[0]))
-    beyond = (float(y[outside]), float(load[outside])) if outside < y.size else end
-    return float(np.interp(bend, [float(y[outside - 1]), beyond[0]], [float(load[outside - 1]), beyond[1]]))
+        return _extrapolated(outer, (float(y[first]) - bend) / step)
+    beyond = (float(y[first]), float(load[first])) if first < y.size else end
+    return float(np.interp(bend, [float(y[last]), beyond[0]], [float(load[last]), beyond[1]]))
 
 
 def _integral(load: FloatArray, step: float) -> float:

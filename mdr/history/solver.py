@@ -388,17 +388,26 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
     records: list[tuple[float, ...]] = []
-    bent, by_depth = False, isinstance(loading, DepthHistory)
-    for (state, speed), instant in zip(states_at(law, bed, loading, substeps), loading.time, strict=True):
-        bent |= _check_circle(law, state, speed, float(instant))
-        bends = np.unique([record[2] for record in records]) if by_depth else np.empty(0)
+    bent, turns, bends = False, _turns(loading), np.empty(0)
+    for i, (state, speed) in enumerate(states_at(law, bed, loading, substeps)):
+        bent |= _check_circle(law, state, speed, float(loading.time[i]))
         records.append((state.depth, *carried(law, bed, state, speed, bends)))
+        if turns[i]:
+            bends = np.unique([*bends, records[-1][2]])
     depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
     held = own > _HELD * own.max()
     force, y = np.where(held, own, 0.0) if own is force else own, np.where(held, y, -1.0)
     return _Track(depth, force, y, bent, float(doubt.max() / max(force.max(), np.finfo(float).tiny)), hidden)
+
+
+def _turns(loading: DepthHistory | ForceHistory) -> NDArray[np.bool_]:
+    """At which instants the speed of a prescribed depth changes, shape (n,); under a force it is not prescribed."""
+    if isinstance(loading, ForceHistory):
+        return np.full(loading.time.size, False)
+    speeds = np.diff(loading.depth) / np.diff(loading.time)
+    return np.concatenate([[True], ~np.isclose(speeds[1:], speeds[:-1], atol=0.0), [True]])
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:
