@@ -178,6 +178,7 @@ def _errors(scene: Scene, table: SpringTable | None, found: _FoundHistory, sprin
     )
     known = SPRINGS_TO_MOTION * springs + _ROUNDING
     track = found.track
+    # Fronts are cubics' zeros, far better than the bound's second order: they need no safety factor.
     hidden = _change(_radius(scene, table, track.y), _radius(scene, table, track.y + track.hidden))
     moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + hidden + known
     if found.error > LARGEST_HISTORY_ERROR:
@@ -267,7 +268,7 @@ def _left(change: float, before: float) -> float:
 
 def _error_of_springs(pairs: list[tuple[_Track, _Track]]) -> float:
     """Of force or depth, whichever is not prescribed."""
-    return _on_all_springs(
+    return HISTORY_SAFETY * _on_all_springs(
         [max(_change(one.force, other.force), _change(one.depth, other.depth)) for one, other in pairs]
     )
 
@@ -283,7 +284,7 @@ def _on_all_springs(changes: list[float]) -> float:
         few, fewer = ((1.0 / share) ** _ORDERS - 1.0 for share in SPRING_SHARES[1:])
         seen = changes[1] / changes[0] if changes[0] > 0.0 else np.inf
         bounds.append(changes[1] / float(np.interp(seen, fewer / few, fewer)))
-    return HISTORY_SAFETY * max(bounds)
+    return max(bounds)
 
 
 def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> FloatArray:
