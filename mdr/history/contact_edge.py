@@ -1,8 +1,8 @@
 """Where the front of a spring bed stands, and what the springs within it carry.
 
-The front lies between two springs. Its place is extrapolated from the three outermost springs in contact, the force
-integrated by the trapezoidal rule with end corrections and a parabola beyond the last spring: fourth order in the
-spring distance while spring forces are smooth, second where old fronts have left a bend.
+The front lies between two springs. Its place is extrapolated from the four outermost springs in contact, the force
+integrated by the trapezoidal rule with end corrections and parabolas beyond the last spring and beside bends, which
+older fronts have left: fourth order in the spring distance.
 """
 
 from __future__ import annotations
@@ -19,9 +19,10 @@ from mdr.history.springs_in_time import BedState, SpringLaw
 
 # A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
-# Number of springs of one section from which the place of the front is extrapolated, by a parabola.
+# Number of springs of one section from which the place of the front is extrapolated, by a parabola; with one more, by a
+# cubic.
 _NEEDED = 3
-_MOST = 4
+
 _NONE = np.empty(0)
 
 
@@ -67,7 +68,7 @@ def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArr
     start = bed.section(last).start
     if last - start < _NEEDED - 1 and start:
         return _by_radius(bed, last, (start - 2, last), forces)
-    inner = forces[max(last + 1 - _MOST, start) : last + 1][::-1]
+    inner = forces[max(last - _NEEDED, start) : last + 1][::-1]
     return float(bed.y[last] + way_to_zero(inner, bed.step(last)))
 
 
@@ -84,7 +85,7 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
         share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
         return float(bed.y[around.start] + share * bed.step(first))
     if own.stop - first >= _NEEDED or own.stop == bed.y.size:
-        return float(bed.y[first] - way_to_zero(gaps[first : min(first + _MOST, own.stop)], bed.step(first)))
+        return float(bed.y[first] - way_to_zero(gaps[first : min(first + _NEEDED + 1, own.stop)], bed.step(first)))
     return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
 
 
@@ -121,7 +122,7 @@ def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatAr
 
 
 def way_to_zero(values: FloatArray, step: float) -> float:
-    """How far before the first of up to three equidistant values their polynomial vanishes, at most one step."""
+    """How far before the first of up to four equidistant values their polynomial vanishes, at most one step."""
     # Beyond a flat punch's rim the gap is infinite.
     if not np.isfinite(values).all():
         return step
