@@ -1,8 +1,8 @@
 """Where the front of a spring bed stands, and what the springs within it carry.
 
-The front lies between two springs. Its place is extrapolated from the three outermost springs in contact, the force
-integrated by the trapezoidal rule with end corrections and a parabola beyond the last spring: fourth order in the
-spring distance while spring forces are smooth, second where old fronts have left a bend.
+The front lies between two springs. Its place is extrapolated from the four outermost springs in contact, the force
+integrated by the trapezoidal rule with end corrections and parabolas beyond the last spring and beside bends, which
+older fronts have left: fourth order in the spring distance.
 """
 
 from __future__ import annotations
@@ -19,8 +19,11 @@ from mdr.history.springs_in_time import BedState, SpringLaw
 
 # A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
-# Number of springs of one section from which the place of the front is extrapolated, by a parabola.
+# Number of springs of one section from which the place of the front is extrapolated, by a parabola; with one more, by a
+# cubic.
 _NEEDED = 3
+
+_NONE = np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArr
     start = bed.section(last).start
     if last - start < _NEEDED - 1 and start:
         return _by_radius(bed, last, (start - 2, last), forces)
-    inner = forces[max(last - 2, start) : last + 1][::-1]
+    inner = forces[max(last - _NEEDED, start) : last + 1][::-1]
     return float(bed.y[last] + way_to_zero(inner, bed.step(last)))
 
 
@@ -82,7 +85,7 @@ def touched_front(bed: SpringBed, state: BedState) -> float:
         share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
         return float(bed.y[around.start] + share * bed.step(first))
     if own.stop - first >= _NEEDED or own.stop == bed.y.size:
-        return float(bed.y[first] - way_to_zero(gaps[first : min(first + 3, own.stop)], bed.step(first)))
+        return float(bed.y[first] - way_to_zero(gaps[first : min(first + _NEEDED + 1, own.stop)], bed.step(first)))
     return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
 
 
@@ -119,7 +122,7 @@ def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatAr
 
 
 def way_to_zero(values: FloatArray, step: float) -> float:
-    """How far before the first of up to three equidistant values their polynomial vanishes, at most one step."""
+    """How far before the first of up to four equidistant values their polynomial vanishes, at most one step."""
     # Beyond a flat punch's rim the gap is infinite.
     if not np.isfinite(values).all():
         return step
@@ -131,37 +134,98 @@ def way_to_zero(values: FloatArray, step: float) -> float:
     curvature = (values[0] - 2.0 * values[1] + values[2]) / step**2
     root = slope + np.sqrt(max(slope**2 - 2.0 * curvature * values[0], 0.0))
     way = 2.0 * values[0] / root if root > 0.0 else step
+    if values.size > _NEEDED:
+        # What a cubic through one value more adds to the parabola at its zero, over the slope there.
+        share = way / step
+        third = values[0] - 3.0 * values[1] + 3.0 * values[2] - values[3]
+        added = third * share * (share + 1.0) * (share + 2.0) / 6.0
+        way += added / (slope - curvature * way) if slope > curvature * way else 0.0
     return float(min(max(way, 0.0), step))
 
 
-def total_force(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float, at_front: float) -> float:
-    """Force of all springs within the front at y, `at_front` the spring force there."""
-    last = int(np.flatnonzero(touching)[-1])
-    own, load = bed.section(last), bed.density * forces
-    inner = sum(_integral(load[one], bed.step(one.start)) for one in bed.sections() if one.start < own.start)
-    inner += _integral(load[own.start : last + 1], bed.step(last))
-    return float(bed.core * forces[0] + inner + _beyond(bed, load, last, y, at_front))
+def total_force(
+    bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, front: tuple[float, float], bends: FloatArray
+) -> FloatArray:
+    """Force of all springs within the front, and how much of it may be wrong because no spring stands there.
+
+    Args:
+        bed: The springs.
+        touching: Which of them are in contact.
+        forces: What they carry.
+        front: Its y, and the spring force there.
+        bends: The y where spring forces bend, increasing, shape (bends,).
+    """
+    last, load = int(np.flatnonzero(touching)[-1]), bed.density * forces
+    total = np.array([bed.core * float(forces[0]), 0.0])
+    for one in bed.sections():
+        if one.start > last:
+            break
+        own = slice(one.start, min(one.stop, last + 1))
+        y, values = bed.y[own], load[own]
+        end = float(y[-1]), float(values[-1])
+        if one.stop > last and front[0] > end[0]:
+            end = front[0], float(np.interp(front[0], bed.y[one], bed.density[one])) * front[1]
+        inside = bends[(bends > y[0]) & (bends < end[0])].tolist()
+        total += _bent_integral(y, values, bed.step(one.start), inside, end)
+    return total
+
+
+def _bent_integral(
+    y: FloatArray, load: FloatArray, step: float, bends: list[float], end: tuple[float, float]
+) -> FloatArray:
+    """Integral of values at equidistant y to an end with its own value, piece by piece between bends, and its doubt.
+
+    Between bends without a value in between the chord is taken: where a parabola that is level at one end would be
+    right, a third of what is above the lower end is wrong.
+    """
+    total, start, low = np.zeros(2), 0, (float(y[0]), float(load[0]))
+    stops = [*np.searchsorted(y, bends).tolist(), y.size]
+    for number, stop in enumerate(stops):
+        own = load[start:stop]
+        high = end
+        if number < len(bends):
+            pieces = slice(start, stop), slice(stop, stops[number + 1])
+            high = bends[number], _at_bend(y, load, bends[number], pieces, end)
+        if own.size:
+            total[0] += _beyond(own[::-1], step, float(y[start]) - low[0], low[1])
+            total[0] += _integral(own, step) + _beyond(own, step, high[0] - float(y[stop - 1]), high[1])
+        else:
+            total += 0.5 * (high[0] - low[0]) * np.array([low[1] + high[1], abs(low[1] - high[1]) / 3.0])
+        start, low = stop, high
+    return total
+
+
+def _at_bend(
+    y: FloatArray, load: FloatArray, bend: float, pieces: tuple[slice, slice], end: tuple[float, float]
+) -> float:
+    """Value at a bend, from values of the piece on one of its sides, or from its neighbours where these are too few."""
+    (inner, outer), step = (load[piece] for piece in pieces), float(y[1] - y[0]) if y.size > 1 else 1.0
+    last, first = pieces[0].stop - 1, pieces[1].start
+    if inner.size >= _NEEDED:
+        return _extrapolated(inner[::-1], (bend - float(y[last])) / step)
+    if outer.size >= _NEEDED:
+        return _extrapolated(outer, (float(y[first]) - bend) / step)
+    beyond = (float(y[first]), float(load[first])) if first < y.size else end
+    return float(np.interp(bend, [float(y[last]), beyond[0]], [float(load[last]), beyond[1]]))
 
 
 def _integral(load: FloatArray, step: float) -> float:
     """Trapezoidal rule with end corrections."""
     inner = step * (load.sum() - 0.5 * (load[0] + load[-1])) if load.size > 1 else 0.0
-    if load.size >= _FEW:
+    if load.size >= _NEEDED:
         end = (1.5 * load[-1] - 2.0 * load[-2] + 0.5 * load[-3]) / step
         begin = (-1.5 * load[0] + 2.0 * load[1] - 0.5 * load[2]) / step
         inner -= step**2 / 12.0 * (end - begin)
     return float(inner)
 
 
-def _beyond(bed: SpringBed, load: FloatArray, last: int, y: float, at_front: float) -> float:
-    """Integral from the last spring in contact to the front, by a parabola through its inner neighbour."""
-    own, way, step = bed.section(last), y - float(bed.y[last]), bed.step(last)
+def _beyond(load: FloatArray, step: float, way: float, edge: float) -> float:
+    """Integral from the last of equidistant values to an edge, by a parabola through the last but one."""
     if way <= 0.0:
         return 0.0
-    edge = float(np.interp(y, bed.y[own], bed.density[own])) * at_front
-    rise = (edge - load[last]) / way
-    bend = (rise - (load[last] - load[last - 1]) / step) / (way + step) if last > own.start else 0.0
-    return float(load[last] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
+    rise = (edge - load[-1]) / way
+    bend = (rise - (load[-1] - load[-2]) / step) / (way + step) if load.size > 1 else 0.0
+    return float(load[-1] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
 def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
@@ -171,8 +235,7 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     inside, of springs touched one after the other, bend within the way that it goes in a relaxation time. A front that
     recedes lies where the forces inside vanish, for the same reason turned around.
     """
-    outside = int(np.flatnonzero(state.touching)[-1]) + 1
-    if outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside]):
+    if _advances(law, bed, state, speed):
         y = touched_front(bed, state)
         return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
     # Nothing is in contact beyond where an undeformed surface would be.
@@ -180,15 +243,36 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
 
 
-def carried(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> tuple[float, float]:
-    """Force [N] and front coordinate, which is negative where nothing touches."""
+def _advances(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> bool:
+    """Whether the indenter reaches springs outside the front."""
+    outside = int(np.flatnonzero(state.touching)[-1]) + 1
+    return outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside])
+
+
+def carried(
+    law: SpringLaw, bed: SpringBed, state: BedState, speed: float, bends: FloatArray = _NONE
+) -> tuple[float, float, float, float]:
+    """Force [N]; front coordinate, which is negative where nothing touches; how far no spring tells these two.
+
+    Outside an advancing front the surface bends where fronts have been: if no spring stands before that place, the
+    front may.
+
+    Args:
+        law: Of the springs.
+        bed: The springs.
+        state: What they are in.
+        speed: Of the depth [m/s].
+        bends: Where fronts stood when that speed changed, increasing: spring forces bend there.
+    """
     if not state.touching.any():
-        return 0.0, -1.0
+        return 0.0, -1.0, 0.0, 0.0
     forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:
-        return bed.core * float(forces[0]), 0.0
+        return bed.core * float(forces[0]), 0.0, 0.0, 0.0
     y, at_front = front(law, bed, state, forces, speed)
-    return total_force(bed, state.touching, forces, y, at_front), y
+    force, doubt = total_force(bed, state.touching, forces, (y, at_front), bends).tolist()
+    hidden = bends[(bends > y) & (bends < bed.y[int(np.flatnonzero(state.touching)[-1]) + 1 :][:1])]
+    return force, y, doubt, float(hidden[-1]) - y if hidden.size and _advances(law, bed, state, speed) else 0.0
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:
@@ -196,6 +280,10 @@ def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, 
     last = int(np.flatnonzero(touching)[-1])
     if last - bed.section(last).start < _NEEDED - 1:
         return float(forces[last])
-    share = (y - float(bed.y[last])) / bed.step(last)
-    outer, middle, inner = forces[last], forces[last - 1], forces[last - 2]
+    return _extrapolated(forces[last - 2 : last + 1][::-1], (y - float(bed.y[last])) / bed.step(last))
+
+
+def _extrapolated(values: FloatArray, share: float) -> float:
+    """The parabola through the first three values, a share of their distance before the first."""
+    outer, middle, inner = values[:_NEEDED]
     return float(outer + share * (outer - middle) + 0.5 * share * (share + 1.0) * (outer - 2.0 * middle + inner))

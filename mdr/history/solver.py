@@ -89,12 +89,16 @@ class _Track:
         force: F_N [N], shape (n,).
         y: Front coordinate, negative where there is no contact, shape (n,).
         bent: Whether the spring forces ever rose outwards.
+        doubt: Share of the largest force that lies between bends of the spring forces where no spring stands.
+        hidden: How far beyond y the front may stand, for the same reason, shape (n,).
     """
 
     depth: FloatArray
     force: FloatArray
     y: FloatArray
     bent: bool
+    doubt: float
+    hidden: FloatArray
 
 
 def solve_history(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> HistoryPath:
@@ -173,7 +177,10 @@ def _errors(scene: Scene, table: SpringTable | None, found: _FoundHistory, sprin
         for pairs in (found.by_springs, found.by_steps)
     )
     known = SPRINGS_TO_MOTION * springs + _ROUNDING
-    moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + known
+    track = found.track
+    # Fronts are cubics' zeros, far better than the bound's second order: they need no safety factor.
+    hidden = _change(_radius(scene, table, track.y), _radius(scene, table, track.y + track.hidden))
+    moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + hidden + known
     if found.error > LARGEST_HISTORY_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
     error = np.full(found.track.y.size, found.error + known)
@@ -241,7 +248,7 @@ def _followed(
     if isinstance(loading, DepthHistory) or law.is_elastic:
         fine, *others = (_follow(law, bed, loading, _finest(loading, law, substeps)) for bed in beds)
         pairs = [(fine, other) for other in others]
-        return _FoundHistory(fine, pairs, [], _error_of_springs(pairs))
+        return _FoundHistory(fine, pairs, [], _error_of_springs(pairs) + fine.doubt)
     tracks = [_follow(law, beds[0], loading, level * substeps) for level in _LEVELS]
     pairs = [(tracks[-1], _follow(law, bed, loading, substeps)) for bed in beds[1:]]
     depth, before = (_limit(*(track.depth for track in three)) for three in (tracks[:3], tracks[1:]))
@@ -261,7 +268,7 @@ def _left(change: float, before: float) -> float:
 
 def _error_of_springs(pairs: list[tuple[_Track, _Track]]) -> float:
     """Of force or depth, whichever is not prescribed."""
-    return _on_all_springs(
+    return HISTORY_SAFETY * _on_all_springs(
         [max(_change(one.force, other.force), _change(one.depth, other.depth)) for one, other in pairs]
     )
 
@@ -277,7 +284,7 @@ def _on_all_springs(changes: list[float]) -> float:
         few, fewer = ((1.0 / share) ** _ORDERS - 1.0 for share in SPRING_SHARES[1:])
         seen = changes[1] / changes[0] if changes[0] > 0.0 else np.inf
         bounds.append(changes[1] / float(np.interp(seen, fewer / few, fewer)))
-    return HISTORY_SAFETY * max(bounds)
+    return max(bounds)
 
 
 def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> FloatArray:
@@ -381,16 +388,27 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
-    records, bent = [], False
-    for (state, speed), instant in zip(states_at(law, bed, loading, substeps), loading.time, strict=True):
-        bent |= _check_circle(law, state, speed, float(instant))
-        records.append((state.depth, *carried(law, bed, state, speed)))
-    depth, force, y = np.array(records).T
+    records: list[tuple[float, ...]] = []
+    bent, turns, bends = False, _turns(loading), np.empty(0)
+    for i, (state, speed) in enumerate(states_at(law, bed, loading, substeps)):
+        bent |= _check_circle(law, state, speed, float(loading.time[i]))
+        records.append((state.depth, *carried(law, bed, state, speed, bends)))
+        if turns[i]:
+            bends = np.unique([*bends, records[-1][2]])
+    depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
     held = own > _HELD * own.max()
     force, y = np.where(held, own, 0.0) if own is force else own, np.where(held, y, -1.0)
-    return _Track(depth, force, y, bent)
+    return _Track(depth, force, y, bent, float(doubt.max() / max(force.max(), np.finfo(float).tiny)), hidden)
+
+
+def _turns(loading: DepthHistory | ForceHistory) -> NDArray[np.bool_]:
+    """At which instants the speed of a prescribed depth changes, shape (n,); under a force it is not prescribed."""
+    if isinstance(loading, ForceHistory):
+        return np.full(loading.time.size, False)
+    speeds = np.diff(loading.depth) / np.diff(loading.time)
+    return np.concatenate([[True], ~np.isclose(speeds[1:], speeds[:-1], atol=0.0), [True]])
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:

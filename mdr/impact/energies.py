@@ -15,7 +15,7 @@ from mdr.impact.collocation_step import CHANGE, POINTS, STAGES, TO_END, TO_STAGE
 from mdr.impact.equations import ImpactBatch, force, missing, outline, remembered
 from mdr.impact.memory import Memory
 from mdr.impact.motion import Leg
-from mdr.springs.table import MOMENT, PROFILE, SECOND_MOMENT, STIFFENING, STIFFNESS
+from mdr.springs.table import MOMENT, PROFILE, SECOND_MOMENT, SLOPE, STIFFENING, STIFFNESS
 
 # Places of the samples on each step, z in [-1, 1], both ends among them.
 SAMPLES = -np.cos(np.pi * np.arange(2 * STAGES + 1) / (2 * STAGES))
@@ -59,13 +59,14 @@ def _pressing(lanes: ImpactBatch, leg: Leg, squares: FloatArray) -> tuple[FloatA
     shared, memory = outline(lanes.branches)
     springs = lanes.springs(state[0], leg.section, 6)
     g, k = springs[PROFILE], springs[STIFFNESS]
+    passing = rate[1] + rate[0] * _at_gauss(springs[SLOPE])
     history, past = lanes.weights * g - state[shared], lanes.weights * springs[MOMENT] - state[memory]
-    slopes = _fading(rate[0] * _at_gauss(springs[STIFFENING] * history**2), 2.0 * lanes.rates * rate[1], squares)
+    slopes = _fading(rate[0] * _at_gauss(springs[STIFFENING] * history**2), 2.0 * lanes.rates * passing, squares)
     met = _along(slopes, squares)[0].reshape(history.shape)
     strain = k * history**2 - 2.0 * history * past + met
     f = force(lanes, springs, g, state[2], springs[MOMENT] + np.add.reduce(k * state[shared] - state[memory]))
-    rows = np.stack([state[1], g, state[2], f, state[0], stored(lanes, springs, g, strain)])
-    return rows, _at_gauss(dissipation(lanes, k, state[2], strain)) * rate[1], slopes
+    rows = np.stack([state[1] + g, g, state[2], f, state[0], stored(lanes, springs, g, strain)])
+    return rows, _at_gauss(dissipation(lanes, k, state[2], strain)) * passing, slopes
 
 
 def _receding(lanes: ImpactBatch, leg: Leg, squares: Memory | None) -> tuple[FloatArray, FloatArray]:

@@ -88,7 +88,11 @@ def outline(branches: int) -> tuple[slice, slice]:
 
 @dataclass(frozen=True)
 class Pressing:
-    """From first touch to the turn. State: y, t, v, and per branch what has relaxed of S_j and of M_j."""
+    """From first touch to the turn. State: y, t - g, v, and per branch what has relaxed of S_j and of M_j.
+
+    A body that nothing slowed down would be at depth g at t = g. What is left of t is as smooth as its loss of speed,
+    while t itself, the integral of dg/dy, would ask short steps of every tip whose power is no integer.
+    """
 
     lanes: ImpactBatch
     section: int
@@ -113,7 +117,7 @@ class Pressing:
             relaxation = own.rates * g_y
             slopes = np.empty_like(state)
             slopes[0] = v
-            slopes[1] = g_y
+            slopes[1] = g_y * (1.0 - v)
             # Eq. (48) for any profile.
             slopes[2] = force(own, springs, g, v, gaps) * (g_y * slowing)
             slopes[shared] = relaxation * (own.weights * g - relaxed)
@@ -198,7 +202,7 @@ def remembered(
         # Without branches these are four empty arrays.
         return history, history, history, history
     past = recall(state[0])
-    fading = np.exp((past[0] - state[1]) * own.rates)
+    fading = np.exp((past[0] + springs[PROFILE] - state[1]) * own.rates)
     front = history - fading * (own.weights * springs[PROFILE] - past[1 : 1 + n])
     return history, front, fading * (own.weights * springs[MOMENT] - past[1 + n :]), fading
 

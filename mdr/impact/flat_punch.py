@@ -152,7 +152,7 @@ def _results(problem: _Problem, motion: Trajectory, accuracy: float) -> ImpactRe
     refuse_rest(motion.final[3, : problem.mass.size], problem.lanes.long_term)
     radius = np.tile(problem.radius, 2)
     both = np.stack([-motion.final[3], motion.final[1], _peak(motion, 0), _peak(motion, 2), radius])
-    values, change = fine_and_change(both, _accuracy(problem, accuracy), motion.error)
+    values, change = fine_and_change(both, _accuracy(problem, accuracy))
     # Force and speed carry a rounding of what they began with, eta and one; at no force v = -G_inf delta/eta is left.
     change[0] += 2.0 * EPS / values[0]
     return ImpactResults(

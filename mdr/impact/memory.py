@@ -1,4 +1,4 @@
-"""What the front met on its way in: contact time and what had relaxed, as functions of the front coordinate."""
+"""What the front met on its way in: contact time less g and what had relaxed, as functions of the front coordinate."""
 
 from __future__ import annotations
 

@@ -17,8 +17,10 @@ from mdr.impact.memory import Memory, memory_of
 TURN, SECTION_END = 0, 1
 
 
-# First step for a tolerance of one, in units of the way that an elastic impact of the same energy goes; chosen.
-_FIRST_STEP = 1.5
+# First step for a tolerance of one, in units of the way that an elastic impact of the same energy goes. At a tip whose
+# power is no integer both runs err alike on it: with 1.5, 96 to 99 % of each of the five outcomes were covered at 1e-9,
+# with this 99 to 100 %, for as many sweeps (120 random impacts, seed 7301, 2026-11-23).
+_FIRST_STEP = 0.75
 
 # First step of the way out over the last one of the way in: the front leaves its turn faster than it came. Chosen.
 _AFTER_TURN = 0.4
@@ -133,6 +135,8 @@ class _Motion:
         for leg in reversed(way_in):
             starting = np.flatnonzero(turned_in == leg.section)
             state[2, starting] = lanes.take(starting).springs(turn[:1, starting], leg.section, 1)[0, 0]
+            # On the way in it is the time without g.
+            state[1, starting] += state[2, starting]
             steps = leg.memory.low.shape[0] if leg.memory else 1
             legs += [self._back(leg, step, state) for step in reversed(range(steps))]
         return tuple(legs), state

@@ -22,7 +22,6 @@ from mdr.springs.error_model import (
     LEAVING_SHARE,
     PROFILE_ROUNDING,
     SPRINGS_TO_MOTION,
-    WITHIN_STEPS_SHARE,
 )
 from mdr.springs.table import MOMENT, PROFILE, STIFFNESS
 
@@ -77,9 +76,7 @@ def results(scaled: ScaledImpacts, impacts: Impacts, accuracy: float) -> ImpactR
         peak[leg.lanes] = np.maximum(peak[leg.lanes], _peak_force(lanes, leg))
     radius = lanes.table.radius(impacts.turn[0] * lanes.units[6])
     both = np.stack([-impacts.end[3], impacts.end[1] + impacts.drift, peak, depth, radius])
-    values, change = fine_and_change(
-        both, accuracy, impacts.within, IMPACT_ROUNDING + _depth_rounding(scaled.lanes, depth)
-    )
+    values, change = fine_and_change(both, accuracy, IMPACT_ROUNDING + _depth_rounding(scaled.lanes, depth))
     change += SPRINGS_TO_MOTION * lanes.table.error
     change[_TIME] += SPRINGS_TO_MOTION * lanes.table.error * leaving(values)
     return ImpactResults(
@@ -100,27 +97,22 @@ def _depth_rounding(lanes: ImpactBatch, depth: FloatArray) -> FloatArray:
 
 
 def fine_and_change(
-    both: FloatArray, accuracy: FloatArray | float, within: FloatArray, rounding: FloatArray | float = IMPACT_ROUNDING
+    both: FloatArray, accuracy: FloatArray | float, rounding: FloatArray | float = IMPACT_ROUNDING
 ) -> tuple[FloatArray, FloatArray]:
     """Outcomes of the first half of the lanes, and their errors as the second half, integrated more coarsely, tells.
 
-    Two numbers may agree by chance, so an error is never stated far below what their steps were chosen for. Where
-    relaxation is fast or a tip is not smooth, times converge slower: they also get a share of what stays open within
-    the steps.
+    Two numbers may agree by chance, so an error is never stated far below what their steps were chosen for.
 
     Args:
         both: Restitution, contact time, peaks of force, depth and radius, shape (5, 2 n).
         accuracy: That was asked for, shape (n,) or one.
-        within: Sum of the local errors within steps, shape (2 n,).
         rounding: Relative, shape (n,).
     """
     fine, coarse = np.split(both, 2, axis=1)
     chance = AGREEMENT_SHARES * accuracy * np.maximum(accuracy / DEFAULT_ACCURACY, 1.0) ** COARSER_POWER
     change = np.abs(fine - coarse) / np.abs(fine) + chance + rounding
     of_peaks = change[_TIME + 1 :].max(axis=0)
-    change[_TIME] += (
-        LEAVING_SHARE * of_peaks * leaving(fine) + WITHIN_STEPS_SHARE * within[: fine.shape[1]] / fine[_TIME]
-    )
+    change[_TIME] += LEAVING_SHARE * of_peaks * leaving(fine)
     return fine, change
 
 

@@ -39,14 +39,16 @@ _Solver: TypeAlias = Callable[[list[int]], ImpactResults]
 def step_tolerance(accuracy: float) -> float:
     """Tolerance inside a collocation step for a wanted relative accuracy of its end, which is of higher order.
 
-    The relation is fitted to random impacts on a/h from 1e-3 to 20.
+    The power is fitted to random impacts on a/h from 1e-3 to 20. With 1e4 in front, 96 to 99 % of each of the five
+    outcomes were covered at 1e-9, with this 97 to 100 % for 1.01 times the sweeps (398 random impacts, seeds 7302 and
+    7405, 2026-11-23).
 
     Raises:
         InvalidInput: If the accuracy is out of reach or worthless.
     """
     if not _BEST_ACCURACY <= accuracy <= _LEAST_ACCURACY:
         raise InvalidInput(f"accuracy = {accuracy:g}: choose between {_BEST_ACCURACY:g} and {_LEAST_ACCURACY:g}")
-    return float(max(1e4 * accuracy ** (4.0 / 3.0), 1e-12))
+    return float(max(6e3 * accuracy ** (4.0 / 3.0), 1e-12))
 
 
 def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:

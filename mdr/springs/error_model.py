@@ -45,8 +45,8 @@ SPRING_SHARES: Final = (1.0, 0.7, 0.5)
 # least with the square of the number of springs. Each change over its number bounds the error on all, and the largest
 # bound counts.
 EXCESS_ERRORS: Final = tuple(share**-2 - 1.0 for share in SPRING_SHARES[1:])
-# Safety factor on that bound. Of 56 forces and radii of random histories, against four times as many springs, the bound
-# itself covers 94 %, and is 3 to 7 times the error in the median (2026-11-22).
+# Safety factor on that bound of forces and depths. Of 56 forces and radii of random histories, against four times as
+# many springs, the bound itself covers 94 %, and is 3 to 7 times the error in the median (2026-11-22).
 HISTORY_SAFETY: Final = 1.3
 # Largest error that a history states; beyond, the method refuses. The estimate is none there: all numbers of springs
 # miss the same kinks of a profile.
@@ -71,5 +71,3 @@ DEFAULT_ACCURACY: Final = 1e-9
 COARSER_POWER: Final = 0.46
 # Share of the largest error of a peak that counts in the contact time, times the way left over the leaving speed.
 LEAVING_SHARE: Final = 0.25
-# Share of the errors within steps that counts in the contact time: half of the true errors are below 0.0002 of them.
-WITHIN_STEPS_SHARE: Final = 0.0003

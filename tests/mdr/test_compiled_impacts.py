@@ -114,7 +114,7 @@ def test_a_walk_begins_again_with_more_room(plain, monkeypatch):
 
 
 def test_lanes_that_the_walk_leaves_are_numpys(plain, monkeypatch):
-    walked, scene = walk.walked, blow("standard solid")
+    walked, scene = walk.walked, blow("Kelvin-Voigt")
     expected = numbers(impacts([scene], PUNCH, accuracy=1e-6, compiled=True))
 
     def without_the_first(task):

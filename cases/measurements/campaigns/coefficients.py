@@ -67,11 +67,10 @@ GROUPS: Final = (
             "DEFAULT_ACCURACY",
             "COARSER_POWER",
             "LEAVING_SHARE",
-            "WITHIN_STEPS_SHARE",
         ),
         methods=_MDR,
         families=("impact",),
-        quantities={"LEAVING_SHARE": _CONTACT_TIME, "WITHIN_STEPS_SHARE": _CONTACT_TIME},
+        quantities={"LEAVING_SHARE": _CONTACT_TIME},
     ),
     Group(place="bem.grid.error_model:TABLES", methods=("mdr_table",), families=("elastic",)),
     Group(

@@ -482,7 +482,7 @@ def _pressing(
             gaps += k * relaxed - faded
             slopes[3 + j, i] = relaxation * (weight * g - relaxed)
             slopes[3 + count + j, i] = k_y * v * relaxed + relaxation * (weight * moment - faded)
-        slopes[0, i], slopes[1, i] = v, g_y
+        slopes[0, i], slopes[1, i] = v, g_y * (1.0 - v)
         slopes[2, i] = (k * (g + numbers[VISCOSITY] * v) - (moment + gaps)) * (g_y * -numbers[INERTIA])
 
 
@@ -497,7 +497,7 @@ def _receding(walk: Walk, numbers: FloatArray, branches: FloatArray, slopes: Flo
         taken, tip, held = 0.0, 0.0, long_term
         for j in range(count):
             weight, rate, relaxed = branches[0, j], branches[1, j], states[4 + j, i]
-            history, fading = weight * delta - relaxed, np.exp((past[0, i] - t) * rate)
+            history, fading = weight * delta - relaxed, np.exp((past[0, i] + g - t) * rate)
             front = history - fading * (weight * g - past[1 + j, i])
             taken += k * relaxed + fading * (weight * moment - past[1 + count + j, i])
             tip += weight * v - rate * front
