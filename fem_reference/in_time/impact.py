@@ -71,7 +71,7 @@ def simulate_impact(
     depth, velocity = 0.0, body.velocity
     record = HistorySamples()
     record.add(time=0.0, depth=0.0, velocity=velocity, force=force, radius=0.0, stored=0.0, dissipated=0.0)
-    active, overlap = None, 0.0
+    active, overlaps = None, (0.0, 0.0, 0.0)
     for n in range(1, MAX_STEPS):
         now = step.first if n == 1 else step
         matrix, offset = surface.begin(now)
@@ -79,10 +79,10 @@ def simulate_impact(
         approach = ballistic * w - condensed.profile - offset
         state = solve_complementarity(matrix + kappa * np.outer(w, w), approach, active)
         surface.accept(now, state.pressure)
-        following, overlap_before = float(w @ state.pressure), overlap
-        mean, overlap, active = (force + following) / 2, float((approach / w).max()), state.active
+        following, overlaps = float(w @ state.pressure), (*overlaps[1:], float((approach / w).max()))
+        mean, active = (force + following) / 2, state.active
         is_free = following == 0 and velocity - duration * mean / body.mass < 0
-        part = duration * (_release_fraction(overlap_before, overlap) if is_free else 1.0)
+        part = duration * (_release_fraction(*overlaps) if is_free else 1.0)
         depth += part * velocity - part * duration * mean / (2 * body.mass)
         velocity -= part * mean / body.mass
         force = following
@@ -112,10 +112,14 @@ def touch(condensed: CondensedLayer, body: FallingBody, step: RelaxationStep) ->
     return float(surface.resultants @ pressure)
 
 
-def _release_fraction(before: float, after: float) -> float:
-    """Part of the last step after which contact is lost.
+def _release_fraction(earlier: float, before: float, after: float) -> float:
+    """Part of the last step after which contact is lost, from the overlap at its ends and one step earlier.
 
-    The overlap of the indenter with the surface as it would be without pressure passes zero there; it does so in a
-    straight line, while the force of a round indenter vanishes like its power 3/2.
+    The overlap of the indenter with the surface as it would be without pressure passes zero there, and smoothly, while
+    the force of a round indenter vanishes like its power 3/2. The zero is that of the parabola through the three: a
+    straight line would err by the second order of the step times a factor that moves with the place of the zero.
     """
-    return before / (before - after) if before > 0 > after else 1.0
+    if not before > 0 > after:
+        return 1.0
+    slope, bend = (after - earlier) / 2, (after - 2 * before + earlier) / 2
+    return float(2 * before / (-slope + np.sqrt(slope**2 - 4 * bend * before)))
