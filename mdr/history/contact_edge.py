@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
+from mdr.springs.error_model import SPRING_ROUNDING
 
 # A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
@@ -165,7 +166,8 @@ def total_force(
         end = float(y[-1]), float(values[-1])
         if one.stop > last and front[0] > end[0]:
             end = front[0], float(np.interp(front[0], bed.y[one], bed.density[one])) * front[1]
-        inside = bends[(bends > y[0]) & (bends < end[0])].tolist()
+        # A front that is back at an old one, but for roundings, stands at it.
+        inside = bends[(bends > y[0]) & (bends < (1.0 - SPRING_ROUNDING) * end[0])].tolist()
         total += _bent_integral(y, values, bed.step(one.start), inside, end)
     return total
 

@@ -7,6 +7,7 @@ import pytest
 
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
+from mdr.history.contact_edge import SpringBed, total_force
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
@@ -74,3 +75,15 @@ def test_forces_and_radii_between_bends_of_the_spring_forces(kind):
         error = np.abs(getattr(answer, quantity) - expected).max() / expected.max()
         assert error <= answer.error_estimate[quantity].max() + min(finer.error_estimate[quantity].max(), 1e-9)
         assert error <= limit
+
+
+def test_a_front_back_at_an_old_one_but_for_roundings():
+    """A piece of no width beside the front moved forces by 1e-10 with the unit of time, where 1e-12 is claimed."""
+    y, front = np.linspace(0.0, 1.0, 641), 0.9551
+    bed = SpringBed(y=y, radius=y**2, profile=y**2, density=1.0 + y, core=0.0)
+    forces = np.maximum(np.exp(3.0 * front) - np.exp(3.0 * y), 0.0)
+
+    def force(bend: float) -> float:
+        return float(total_force(bed, y < front, forces, (front, 0.0), np.array([0.5, bend]))[0])
+
+    assert force(front * (1.0 - 1e-15)) == pytest.approx(force(front), rel=1e-14, abs=0.0)
