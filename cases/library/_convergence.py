@@ -209,10 +209,13 @@ ROWS = Refinement(
     ladder=neighbours("ratios", ([1 + n * m for m in (24, 25, 26, 27)] for n in (4, 8, 16)), cells=64, radii=100),
     reason=WHY["rows"],
 )
-FEW_ROWS = Refinement(
-    name="rows, four tables a refinement",
+# So many rows more each put a/h = 2 at each eighth of the way between two rows; fewer rows than these are no smooth
+# function of their distance yet.
+EIGHTHS = (0, 2, 5, 7, 10, 12, 15, 17)
+FINE_ROWS = Refinement(
+    name="rows, eight tables a refinement",
     method="mdr_table",
-    ladder=neighbours("ratios", ([1 + n * m // 2 for m in (12, 14, 16, 18)] for n in (4, 6, 9)), cells=64, radii=100),
+    ladder=neighbours("ratios", ([n + m for m in EIGHTHS] for n in (112, 172, 262)), cells=64, radii=100),
     reason=WHY["rows"],
     ratio=1.5,
     floor=1e-13,

@@ -19,7 +19,7 @@ from cases.declare.task import Answers, Sampling
 from cases.library._claims import agreements, exact
 from cases.library._convergence import (
     EQUATION_NODES,
-    FEW_ROWS,
+    FINE_ROWS,
     FINEST_MDR,
     MANY_ROWS,
     NODES,
@@ -217,7 +217,7 @@ COMPRESSIBLE = tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.3",
 ORDERS = (
     *studies(AT_ONE, PUNCH_POINTS, {"contact_stiffness": 2.5}, against="integral_equation"),
     *studies(AT_ONE, TABLE_CELLS, {"contact_stiffness": 2.5}, against="integral_equation", nightly=True),
-    *studies(AT_TWO, FEW_ROWS, {"contact_stiffness": 6.0}, against=MANY_ROWS, uncertainty=1e-13, nightly=True),
+    *studies(AT_TWO, FINE_ROWS, {"contact_stiffness": 6.0}, against=MANY_ROWS, uncertainty=1e-13, nightly=True),
     *studies(AT_TWO, NODES, ("contact_stiffness",), against="integral_equation"),
     *studies(AT_TWO, EQUATION_NODES, ("contact_stiffness",), against=FINEST_MDR),
     *studies(COMPRESSIBLE, fem_cells(2), {"contact_stiffness": 4.0}, against="integral_equation", nightly=True),
