@@ -143,6 +143,8 @@ class FlatPunchSolution(Protocol):
     ) -> FloatArray:
         """Relative error of the force under a given depth, F = k_N g - int g dk_N.
 
+        One is an integral over all smaller contacts, the other a value at the edge: they seldom add up.
+
         Args:
             ratio: a/h.
             profile: g over the excess x - b, in thicknesses.
@@ -151,7 +153,7 @@ class FlatPunchSolution(Protocol):
             depth: relative error of g.
             spread: k_N g/F.
         """
-        return stiffness + depth * spread
+        return np.hypot(stiffness, depth * spread)
 
     def kernel_errors(self, ratio: FloatArray) -> FloatArray:
         """The parts of `spring_error` and `profile_error` that one wrong kernel makes, shape (2, n); 0 if not known."""
