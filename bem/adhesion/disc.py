@@ -99,7 +99,12 @@ class AdheringDisc:
 
     @property
     def moment(self) -> float:
-        """-F_N/E* at no depth [m^2], so that F_N = E* (stiffness depth - moment)."""
+        """-F_N/E* at no depth [m^2], so that F_N = E* (stiffness depth - moment).
+
+        Of a profile that rises beyond the last cell it is that of a load at the edge.
+        """
+        if self.known_moment > 0.0 and not self.measured.any():
+            return self.known_moment * self.edge_flat
         return self.known_moment + self._layer_share * self._total(self.risen - self.measured)
 
     @property

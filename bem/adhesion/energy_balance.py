@@ -13,7 +13,7 @@ from typing import Final
 
 import numpy as np
 
-from bem.adhesion.branch import RIM, DiscBranch
+from bem.adhesion.branch import RIM, DiscBranch, is_told_by_energy
 from bem.grid.error_model import DISCS
 from contact.records.validation import BoolArray, FloatArray
 
@@ -27,8 +27,10 @@ STEP: Final = 1e-2
 def edge_errors(fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Least and largest errors of depth [m] and force [N] by edge values at contact radii [m], each of shape (2, n).
 
-    Where nothing is told they are zero and infinite.
+    Where nothing is told, or the edge values are told by the same, they are zero and infinite.
     """
+    if is_told_by_energy(fine.scene):
+        return np.zeros((2, radius.size)), np.full((2, radius.size), np.inf)
     best = fine.extrapolated(coarse)
     told, rough, short = (_released(branch, radius) for branch in (best, fine, best.cut(DISCS.released_orders)))
     answer = np.stack([fine.depth(radius), fine.force(radius)])
@@ -61,6 +63,8 @@ def pull_off_errors(
         lost: Radius [m] at which contact is lost: where that quantity is least, or a rim or the branch's end.
         strongest: Radius [m] of the least force.
     """
+    if is_told_by_energy(fine.scene):
+        return np.zeros(4), np.full(4, np.inf)
     held = lost >= (1.0 - RIM) * fine.largest_radius or abs(lost - fine.scene.indenter.flat_radius) < RIM * lost
     around = lost * np.exp((0.0 if held else STEP) * np.array([-1.0, 0.0, 1.0]))
     places = np.append(around, strongest)

@@ -84,7 +84,7 @@ class AdheringDiscs:
         fields = tuple(self._fields(state, self.points) for state in states)
         changes = {name: _difference(values[name], other[name]) for name in ContactPath.ARRAYS}
         floors = self._floors(fine, radius)
-        errors = {name: DISCS.difference * change + floors[name] for name, change in changes.items()}
+        errors = {name: self._counted * change + floors[name] for name, change in changes.items()}
         errors["pressure"] = self._pressure_errors(fields, others) + floors["pressure"]
         if isinstance(self.scene.loading, ContactRadii):
             errors |= self._given_errors(fine, coarse, radius)
@@ -148,13 +148,13 @@ class AdheringDiscs:
         pull_off, other = route.scalars(*ways), _compared(route, coarse, quantity)
         again = branch.cut().route(_radius(route, route.start))
         cut = again.scalars(again.loss(quantity), again.largest_tension(quantity))
-        left_out = DISCS.broken_orders if self.scene.indenter.breakpoints else 1.0
+        left_out = DISCS.energy_orders if is_told_by_energy(self.scene) else DISCS.broken_orders
         places = np.array([_radius(route, y) for y in ways])
         floors = self._pull_off_floors(branch, places)
         change, beyond = (
             {name: abs(values[name] / value - 1.0) for name, value in pull_off.items()} for values in (other, cut)
         )
-        by_grids = {name: DISCS.difference * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
+        by_grids = {name: self._counted * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
         (depth, at_loss), (_, tension) = (self._solved(branch, place[None]) for place in places)
         shares = {DEPTH: (1.0, 0.0), FORCE: (0.0, 1.0), MACHINE: (1.0, branch.compliance)}
         released = pull_off_errors(branch, coarse, np.array(shares[quantity]), *places.tolist())
@@ -169,7 +169,7 @@ class AdheringDiscs:
 
     def _solved(self, branch: DiscBranch, radius: FloatArray) -> FloatArray:
         """Errors of depth [m] and force [N] by linear solutions and the branch's polynomials at one radius [m]."""
-        terms = np.abs(branch.depth(radius)) + branch.elongation(radius)
+        terms = branch.displaced(radius)
         error = (branch.floor + branch.truncation(radius)) * terms
         return np.concatenate([error, branch.stiffness(radius) * error])
 
@@ -204,13 +204,13 @@ class AdheringDiscs:
         """Depth [m] and force [N] along a branch, the terms whose differences they are, and errors by edge values."""
         depth, force, found = fine.depth(radius), fine.force(radius), {}
         released = edge_errors(fine, coarse, radius)
-        displaced = np.abs(depth) + fine.elongation(radius)
+        displaced = fine.displaced(radius)
         for name, values, others, terms, by_energy in (
             ("indentation_depth", depth, coarse.depth(radius), displaced, [b[0] for b in released]),
             ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, [b[1] for b in released]),
         ):
             nearby = _largest_nearby(np.abs(values - others) / terms, radius)
-            by_grids = (DISCS.difference * nearby + self._of_edges(radius)) * terms
+            by_grids = (self._counted * nearby + self._of_edges(radius)) * terms
             found[name] = values, terms, np.clip(by_grids, *by_energy) + fine.floor * terms
         return found
 
@@ -245,7 +245,7 @@ class AdheringDiscs:
         """The same of a pull-off lost and strongest at these radii [m]; its depth is a difference, of two terms."""
         lost, strongest = fine.floor + fine.truncation(places) + self._of_edges(places)
         depth = np.abs(fine.depth(places[:1]))
-        terms = (depth + fine.elongation(places[:1])) / depth
+        terms = fine.displaced(places[:1]) / depth
         return {
             "pull_off_force": float(strongest),
             "force_at_loss": float(lost * self._force_terms(fine, places[:1])[0]),
@@ -255,8 +255,7 @@ class AdheringDiscs:
 
     def _force_terms(self, fine: DiscBranch, lost_at: FloatArray) -> FloatArray:
         """The terms whose difference the force is at a radius [m], over it."""
-        displaced = np.abs(fine.depth(lost_at)) + fine.elongation(lost_at)
-        return np.asarray(fine.stiffness(lost_at) * displaced / np.abs(fine.force(lost_at)))
+        return np.asarray(fine.stiffness(lost_at) * fine.displaced(lost_at) / np.abs(fine.force(lost_at)))
 
     def _at_rim(self, radius: FloatArray) -> BoolArray:
         """Whether radii [m] are that of the flat end, where the edge is held."""
@@ -278,6 +277,11 @@ class AdheringDiscs:
         if isinstance(loading, Detachment) and loading.initial_contact_radius is not None:
             return loading.initial_contact_radius
         return long_enough(self.scene, self.threads, self._reaches)
+
+    @property
+    def _counted(self) -> float:
+        """Times the difference of two branches that counts as an error."""
+        return DISCS.energy_difference if is_told_by_energy(self.scene) else DISCS.difference
 
     def _reaches(self, branch: DiscBranch) -> bool:
         """Whether the branch holds all prescribed values, or all of a withdrawal.
@@ -319,7 +323,14 @@ class AdheringDiscs:
 
     def _of_edges(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] beyond what two grids show."""
-        return np.zeros_like(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
+        return self._by_moments(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
+
+    def _by_moments(self, radius: FloatArray) -> FloatArray:
+        """The same where stiffness and moment tell them: of discs whose mean square distances are off."""
+        ratio, disc = radius / self.scene.layer.surface.thickness, measured_disc(self.points, False)
+        moment = max(abs(disc.moment_error), DISCS.least_mean_square / disc.radius**2)
+        share = DISCS.mean_square * ratio**3
+        return np.asarray(moment * share / (1.0 + share))
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""

@@ -55,10 +55,14 @@ class Route:
         return (depth, force, depth + self.compliance * force)[control]
 
     def state(self, y: float) -> tuple[float, float, float]:
-        """Contact radius, depth and force; the tip itself carries nothing."""
+        """Contact radius, depth and force; the tip itself carries nothing.
+
+        At a rim those that hold from inside: beyond it depths soon exceed by far what weak adhesion holds there.
+        """
         if y == 0.0:
             return 0.0, 0.0, 0.0
-        depth, force = self.branch.values(np.array([y]))[:, 0]
+        inside = np.nextafter(y, 0.0) if y in self.branch.section_ends else y
+        depth, force = self.branch.values(np.array([inside]))[:, 0]
         return float(self.branch.radius(np.array([y]))[0]), float(depth), float(force)
 
     def loss(self, control: int) -> float:

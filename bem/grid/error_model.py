@@ -89,22 +89,34 @@ class AdheringDiscCoefficients:
     # Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error; where depth or force cross over
     # from one order to another up to 2.2 was needed.
     difference: float = 2.5
+    # The same of what stiffness and moment tell: second order leaves a third.
+    energy_difference: float = 2.0
+    # Times (a/h)^3 of how far the disc's mean square distance is off (`calibrated_disc.PixelDisc`), or of at least so
+    # many squares of a cell over the radius, but never more than all of it: what of it reaches a layer's edge values
+    # may be alike on two grids.
+    mean_square: float = 1.25
+    least_mean_square: float = 0.01
     # The same for the pressure where the profile has a kink under the contact, whose logarithm or root is resolved with
     # order one half: that leaves 2.4 of the difference, and 3.2 was needed where a truncated cone's rim lies just
     # inside the edge (unbonded layer, 96 cells, 2026-11-22).
     kink_difference: float = 4.0
     # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
     # an odd power, added up to three times as much.
-    truncation: float = 4.0
+    truncation: float = 1.0
     # Times what the last quarter of them contributes where the profile has breakpoints, whose orders fall like a power:
     # 0.7 was needed at most (10 tables of seeds 7104 and 7301, 2026-11-22).
     broken_truncation: float = 1.5
     # Times what the last quarter of those orders moves a pull-off of a profile with breakpoints: orders that fall with
     # their square leave three times as much beyond.
     broken_orders: float = 3.0
+    # The same of other profiles, whose orders fall faster.
+    energy_orders: float = 0.4
     # Relative error of depth and force by the linear solutions, which are solved to 1e-10; 2.5e-10 was needed at most
     # (22 detachments, seed 8501, 2026-11-22).
     floor: float = 5e-10
+    # The same where stiffness and moment tell the edge values, of which one is stationary at the solution; errors of
+    # weak adhesion, which no cell resolves, were 4e-11 at most (79 detachments, seeds 1401 and 9001, 2026-11-23).
+    energy_floor: float = 4e-11
     # The same of a measured profile on the half-space, where polynomials follow integrals over it to 1e-12.
     known_floor: float = 1e-12
     # Times that floor: relative error of a radius at which depth or force is found least, for the square of the step of
