@@ -258,6 +258,19 @@ def test_a_pull_off_that_the_grid_does_not_resolve_is_refused():
         Bem(points=128).solve(thin)
 
 
+def test_weak_adhesion_of_a_flat_end_is_refused():
+    """What holds is a millionth of the depths beyond the rim; on 128 cells the force was 15 to 43 % too large."""
+    layer = Layer.incompressible(thickness=1.2, shear_modulus=1.0)
+    weak = Scene(
+        layer=layer,
+        indenter=TruncatedCone(flat_radius=1.0, slope=0.02),
+        loading=Detachment(control="force"),
+        effects=(Adhesion(work_of_adhesion=1e-17),),
+    )
+    with pytest.raises(UnsupportedSceneError, match=r"too little beside depths up to .*; ask mdr or fem"):
+        Bem(points=96).solve(weak)
+
+
 def test_measured_profiles_on_layers_pull_off_within_their_stated_errors():
     """Against MDR. What the polynomials of the branch leave of kinks moves the pull-off: radius 4.5e-3 off at first."""
     radii = np.array([0.0, 0.35, 0.69, 1.01, 1.11, 1.26, 1.39, 1.71, 1.9, 2.03, 2.36, 2.57])
