@@ -109,6 +109,7 @@ class AdheringDiscs:
 
         Raises:
             Unresolved: If the layer is thinner than `LEAST_LAYER` cells.
+            UnsupportedSceneError: If the indenter would touch beside its circle of contact.
         """
         fine, coarse = self._branches()
         start = self._start(fine)

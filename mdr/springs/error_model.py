@@ -66,8 +66,8 @@ AGREEMENT_SHARES: Final[FloatArray] = np.array([[0.02], [0.006], [0.0085], [0.00
 # Accuracy of motions and histories where none is asked for; these shares belong to it.
 DEFAULT_ACCURACY: Final = 1e-9
 # The shares grow like this power of the accuracy: ends of collocated steps converge faster than the errors within them
-# that choose the step. Of the same impacts 96 to 99 % of the errors are covered at 1e-5 and 1e-6, and 81 to 86 % at 1e-5
-# with shares that do not grow (seeds 9 and 31, 2026-11-22 and 2026-11-23).
+# that choose the step. Of the same impacts 96 to 99 % of the errors are covered at 1e-5 and 1e-6; with shares that do
+# not grow 81 to 86 % were at 1e-5 (seeds 9 and 31, 2026-11-22 and 2026-11-23).
 COARSER_POWER: Final = 0.46
 # Share of the largest error of a peak that counts in the contact time, times the way left over the leaving speed.
 LEAVING_SHARE: Final = 0.25
