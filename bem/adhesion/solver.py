@@ -39,10 +39,12 @@ from contact.scene.loading import Controlled
 
 # Least thickness of the layer in cells: with it the ring of the coarse grid begins within half the layer's thickness.
 LEAST_LAYER: Final = 12.0
-# Radii looked at from a given one down to `DISCS.nearby` below it, since errors change sign along a branch; chosen.
-BELOW: Final = 4
+# Radii looked at within `DISCS.nearby` of a given one, since errors change sign along a branch; chosen.
+PROBES: Final = 4
 # States along a detachment.
 STATES: Final = 100
+# The branch on coarser grids.
+Coarser = tuple[DiscBranch, ...]
 PRESCRIBED: Final = {IndentationDepths: "indentation_depth", NormalForces: "normal_force"}
 
 
@@ -52,7 +54,7 @@ class AdheringDiscs:
 
     Attributes:
         scene: An adhesive scene.
-        points: Cells of the fine grid; the coarse one has half as many.
+        points: Cells of the fine grid; the coarser ones have half and three eighths as many.
         threads: Of FFTW.
         settings: Of the method, for the answer.
         log: Stage log.
@@ -72,22 +74,25 @@ class AdheringDiscs:
             UnsupportedSceneError: If the indenter would touch beside its circle of contact.
             Unresolved: If the layer is thinner than `LEAST_LAYER` cells.
         """
-        fine, coarse = self._branches()
-        states, others = self._states(fine), self._states(coarse)
-        values, other = (
+        fine, coarser = self._branches()
+        states, others = self._states(fine), [self._states(branch) for branch in coarser]
+        values, *other = (
             {name: np.array([getattr(state, name) for state in steps]) for name in ContactPath.ARRAYS}
-            for steps in (states, others)
+            for steps in (states, *others)
         )
         radius = values["contact_radius"]
         self._refuse_thin_layer(float(radius.max()))
         refuse_touching_beside(self.scene, radius, values["indentation_depth"], self.points, self.threads)
         fields = tuple(self._fields(state, self.points) for state in states)
-        changes = {name: _difference(values[name], other[name]) for name in ContactPath.ARRAYS}
+        changes = {
+            name: self._by_grids(coarser, [_difference(values[name], found[name]) for found in other])
+            for name in ContactPath.ARRAYS
+        }
         floors = self._floors(fine, radius)
-        errors = {name: self._counted * change + floors[name] for name, change in changes.items()}
-        errors["pressure"] = self._pressure_errors(fields, others) + floors["pressure"]
+        errors = {name: change + floors[name] for name, change in changes.items()}
+        errors["pressure"] = self._pressure_errors(fields, others[0]) + floors["pressure"]
         if isinstance(self.scene.loading, ContactRadii):
-            errors |= self._given_errors(fine, coarse, radius)
+            errors |= self._given_errors(fine, coarser, radius)
         errors[PRESCRIBED.get(type(self.scene.loading), "contact_radius")] = np.zeros(len(states))
         return ContactPath(
             scene=self.scene,
@@ -111,7 +116,7 @@ class AdheringDiscs:
             Unresolved: If the layer is thinner than `LEAST_LAYER` cells.
             UnsupportedSceneError: If the indenter would touch beside its circle of contact.
         """
-        fine, coarse = self._branches()
+        fine, coarser = self._branches()
         start = self._start(fine)
         self._refuse_thin_layer(start)
         route, quantity = fine.route(start), CONTROLS.index(control)
@@ -120,8 +125,8 @@ class AdheringDiscs:
         depth, force = fine.depth(radius), fine.force(radius)
         rising = fine.equilibria.slopes(fine.equilibria.position(radius)) > 0.0
         refuse_touching_beside(self.scene, radius, depth, self.points, self.threads)
-        errors = self._pull_off_errors(fine, coarse, route, quantity)
-        errors |= self._branch_errors(fine, coarse, radius)
+        errors = self._pull_off_errors(fine, coarser, route, quantity)
+        errors |= self._branch_errors(fine, coarser, radius)
         return DetachmentPath(
             scene=self.scene,
             method="bem",
@@ -142,23 +147,29 @@ class AdheringDiscs:
         )
 
     def _pull_off_errors(
-        self, branch: DiscBranch, coarse: DiscBranch, route: Route, quantity: int
+        self, branch: DiscBranch, coarser: Coarser, route: Route, quantity: int
     ) -> dict[str, FloatArray]:
         """Relative errors of the scalars: of depth and force the lesser of two estimates, as along the branch."""
         ways = route.loss(quantity), route.largest_tension(quantity)
-        pull_off, other = route.scalars(*ways), _compared(route, coarse, quantity)
+        pull_off = route.scalars(*ways)
         again = branch.cut().route(_radius(route, route.start))
         cut = again.scalars(again.loss(quantity), again.largest_tension(quantity))
         left_out = DISCS.energy_orders if is_told_by_energy(self.scene) else DISCS.broken_orders
         places = np.array([_radius(route, y) for y in ways])
         floors = self._pull_off_floors(branch, places)
-        change, beyond = (
-            {name: abs(values[name] / value - 1.0) for name, value in pull_off.items()} for values in (other, cut)
+        *changes, beyond = (
+            {name: abs(values[name] / value - 1.0) for name, value in pull_off.items()}
+            for values in (*(_compared(route, other, quantity) for other in coarser), cut)
         )
-        by_grids = {name: self._counted * change[name] + left_out * beyond[name] + floors[name] for name in pull_off}
+        by_grids = {
+            name: float(self._by_grids(coarser, [change[name] for change in changes]))
+            + left_out * beyond[name]
+            + floors[name]
+            for name in pull_off
+        }
         (depth, at_loss), (_, tension) = (self._solved(branch, place[None]) for place in places)
         shares = {DEPTH: (1.0, 0.0), FORCE: (0.0, 1.0), MACHINE: (1.0, branch.compliance)}
-        released = pull_off_errors(branch, coarse, np.array(shares[quantity]), *places.tolist())
+        released = pull_off_errors(branch, coarser[0], np.array(shares[quantity]), *places.tolist())
         names = ("pull_off_depth", "pull_off_force", "pull_off_contact_radius", "force_at_loss")
         # The place is told by its logarithm.
         sizes = np.array([1.0 if "radius" in name else abs(pull_off[name]) for name in names])
@@ -174,45 +185,49 @@ class AdheringDiscs:
         error = (branch.floor + branch.truncation(radius)) * terms
         return np.concatenate([error, branch.stiffness(radius) * error])
 
-    def _branch_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
+    def _branch_errors(self, fine: DiscBranch, coarser: Coarser, radius: FloatArray) -> dict[str, FloatArray]:
         """Errors of depth and force along a branch, relative to their largest values: the lesser of two estimates.
 
         Two grids agree on what the ring of their edge values leaves out; stiffness and moment do not tell errors beside
         a rim or a kink.
         """
-        edges = self._edge_errors(fine, coarse, radius)
+        edges = self._edge_errors(fine, coarser, radius)
         truncated, errors = fine.truncation(radius), {}
         for name, (values, terms, edge) in edges.items():
             errors[name] = (edge + truncated * np.max(terms)) / np.max(np.abs(values))
         return errors
 
-    def _given_errors(self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
+    def _given_errors(self, fine: DiscBranch, coarser: Coarser, radius: FloatArray) -> dict[str, FloatArray]:
         """The same at given radii: their share of the terms is the largest down to `DISCS.nearby` below each.
 
         Errors change sign along a branch, where they are small by accident.
         """
-        below = np.multiply.outer(np.geomspace(1.0 / DISCS.nearby, 1.0, BELOW), radius)
+        below = np.multiply.outer(np.geomspace(1.0 / DISCS.nearby, 1.0, PROBES), radius)
         truncated, errors = fine.truncation(radius), {}
-        for name, found in self._edge_errors(fine, coarse, below.ravel()).items():
+        for name, found in self._edge_errors(fine, coarser, below.ravel()).items():
             values, terms, edge = (of.reshape(below.shape) for of in found)
             largest = np.max(edge / terms, axis=0) + truncated
             errors[name] = largest * terms[-1] / np.max(np.abs(values[-1]))
         return errors
 
     def _edge_errors(
-        self, fine: DiscBranch, coarse: DiscBranch, radius: FloatArray
+        self, fine: DiscBranch, coarser: Coarser, radius: FloatArray
     ) -> dict[str, tuple[FloatArray, FloatArray, FloatArray]]:
         """Depth [m] and force [N] along a branch, the terms whose differences they are, and errors by edge values."""
-        depth, force, found = fine.depth(radius), fine.force(radius), {}
-        released = edge_errors(fine, coarse, radius)
-        displaced = fine.displaced(radius)
-        for name, values, others, terms, by_energy in (
-            ("indentation_depth", depth, coarse.depth(radius), displaced, [b[0] for b in released]),
-            ("normal_force", force, coarse.force(radius), fine.stiffness(radius) * displaced, [b[1] for b in released]),
+        released, found = edge_errors(fine, coarser[0], radius), {}
+        # Grids are compared beyond the largest radius, too.
+        beyond = np.minimum(np.max(radius) * np.geomspace(1.0, DISCS.nearby, PROBES), fine.largest_radius)
+        places = np.append(radius, beyond)
+        displaced = fine.displaced(places)
+        for quantity, (name, terms) in enumerate(
+            (("indentation_depth", displaced), ("normal_force", fine.stiffness(places) * displaced))
         ):
-            nearby = _largest_nearby(np.abs(values - others) / terms, radius)
-            by_grids = (self._counted * nearby + self._of_edges(radius)) * terms
-            found[name] = values, terms, np.clip(by_grids, *by_energy) + fine.floor * terms
+            values = fine.value(quantity, places)
+            shares = [np.abs(values - other.value(quantity, places)) / terms for other in coarser]
+            nearby = _largest_nearby(self._by_grids(coarser, shares), places)[: radius.size]
+            values, terms = values[: radius.size], terms[: radius.size]
+            by_grids = (nearby + self._of_edges(radius)) * terms
+            found[name] = values, terms, np.clip(by_grids, *(bound[quantity] for bound in released)) + fine.floor * terms
         return found
 
     def _pressure_errors(self, fields: tuple[AdheringFields, ...], others: list[FollowedState]) -> FloatArray:
@@ -220,7 +235,7 @@ class AdheringDiscs:
         first = min(self.scene.indenter.kinks, default=np.inf)
         errors = []
         for own, state in zip(fields, others, strict=True):
-            times = DISCS.kink_difference if own.contact_radius > first else DISCS.difference
+            times = DISCS.kink_difference if own.contact_radius > first else DISCS.pressure_difference
             errors.append(times * pressure_change(own, self._fields(state, self.points // 2)))
         return np.array(errors)
 
@@ -262,14 +277,18 @@ class AdheringDiscs:
         """Whether radii [m] are that of the flat end, where the edge is held."""
         return np.asarray(np.abs(radius - self.scene.indenter.flat_radius) <= RIM * radius)
 
-    def _branches(self) -> tuple[DiscBranch, DiscBranch]:
-        """On the fine and on the coarse grid."""
+    def _branches(self) -> tuple[DiscBranch, Coarser]:
+        """On the fine and on coarser grids; rings that tell edge values need half as many cells."""
         with self.log.stage("first_guess"):
             radius = self._largest_radius()
+        grids = [self.points // 2, 2 * (3 * self.points // 16)]
         with self.log.stage("adhesion"):
             fine = DiscBranch.up_to(radius, self.scene, self.points, self.threads)
-            coarse = DiscBranch.up_to(radius, self.scene, self.points // 2, self.threads, fine)
-        return fine, coarse
+            coarser = tuple(
+                DiscBranch.up_to(radius, self.scene, cells, self.threads, fine)
+                for cells in (grids if is_told_by_energy(self.scene) else grids[:1])
+            )
+        return fine, coarser
 
     def _largest_radius(self) -> float:
         loading = self.scene.loading
@@ -279,10 +298,12 @@ class AdheringDiscs:
             return loading.initial_contact_radius
         return long_enough(self.scene, self.threads, self._reaches)
 
-    @property
-    def _counted(self) -> float:
-        """Times the difference of two branches that counts as an error."""
-        return DISCS.energy_difference if is_told_by_energy(self.scene) else DISCS.difference
+    def _by_grids(self, coarser: Coarser, changes: list[FloatArray] | list[float]) -> FloatArray:
+        """The error that differences to coarser grids tell: the largest, since two grids may agree by accident."""
+        times = DISCS.energy_difference if is_told_by_energy(self.scene) else DISCS.difference
+        # Of a difference this is left by second order.
+        left = [1.0 / ((self.points / other.cells) ** 2 - 1.0) for other in coarser]
+        return np.asarray(times * np.max([one * change for one, change in zip(left, changes, strict=True)], axis=0))
 
     def _reaches(self, branch: DiscBranch) -> bool:
         """Whether the branch holds all prescribed values, or all of a withdrawal.
@@ -324,14 +345,7 @@ class AdheringDiscs:
 
     def _of_edges(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] beyond what two grids show."""
-        return self._by_moments(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
-
-    def _by_moments(self, radius: FloatArray) -> FloatArray:
-        """The same where stiffness and moment tell them: of discs whose mean square distances are off."""
-        ratio, disc = radius / self.scene.layer.surface.thickness, measured_disc(self.points, False)
-        moment = max(abs(disc.moment_error), DISCS.least_mean_square / disc.radius**2)
-        share = DISCS.mean_square * ratio**3
-        return np.asarray(moment * share / (1.0 + share))
+        return np.zeros_like(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:
         """Relative error of the edge values at radii [m] by the ring of cells that tells them, at most `DISCS.ring`."""

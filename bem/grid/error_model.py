@@ -86,23 +86,22 @@ class AdheringDiscCoefficients:
     Measured on 30 detachments on 128 cells, a/h to 5, seed 1, 2026-11-22, unless something else is said.
     """
 
-    # Times the difference to half as many cells. Order 1.5 leaves 0.55 of it as error; where depth or force cross over
-    # from one order to another up to 2.2 was needed.
-    difference: float = 2.5
-    # The same of what stiffness and moment tell: second order leaves a third.
-    energy_difference: float = 2.0
-    # Times (a/h)^3 of how far the disc's mean square distance is off (`calibrated_disc.PixelDisc`), or of at least so
-    # many squares of a cell over the radius, but never more than all of it: what of it reaches a layer's edge values
-    # may be alike on two grids.
-    mean_square: float = 1.25
-    least_mean_square: float = 0.01
+    # Times what second order leaves of the difference to half as many cells. Order 1.5 leaves 1.6 of it; where depth or
+    # force cross over from one order to another up to 6.6 was needed.
+    difference: float = 7.5
+    # The same where stiffness and moment tell the edge values, of the larger of two: also to three eighths as many. 95
+    # of 100 pull-off forces needed less than 2.3 of it, with one coarser grid 5.1, and 10 at most, for two grids agree
+    # by accident (121 detachments on 96 and 128 cells, seeds 1401, 7105, 9001 and 9002, 2026-11-23).
+    energy_difference: float = 3.0
+    # Times the difference of the pressures to half as many cells. Order 1.5 leaves 0.55 of it.
+    pressure_difference: float = 2.5
     # The same for the pressure where the profile has a kink under the contact, whose logarithm or root is resolved with
     # order one half: that leaves 2.4 of the difference, and 3.2 was needed where a truncated cone's rim lies just
     # inside the edge (unbonded layer, 96 cells, 2026-11-22).
     kink_difference: float = 4.0
     # Times what the last two orders of the branch's polynomials contribute. Those beyond, of profiles that begin with
     # an odd power, added up to three times as much.
-    truncation: float = 1.0
+    truncation: float = 2.5
     # Times what the last quarter of them contributes where the profile has breakpoints, whose orders fall like a power:
     # 0.7 was needed at most (10 tables of seeds 7104 and 7301, 2026-11-22).
     broken_truncation: float = 1.5
