@@ -72,7 +72,7 @@ class Bem(Record):
     what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. Depth and force
     converge with second order in the cell size. A flat punch is a disc of cells measured by the half-space
     (`calibrated_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on
-    discs converge with about order 1.5, detachment by cells with about first order. Adhesive depths and forces are
+    discs converge with second order, detachment by cells with about first order. Adhesive depths and forces are
     followed in their order, from out of contact (`bem.adhesion.sequence`).
 
     Raises:

@@ -7,10 +7,11 @@ of the two computed pressures is a smooth function of r^2, and its value at the 
 `bem.grid.calibrated_disc`).
 
 By Griffith the edge rests where G equals the work of adhesion: phi = -sqrt(2 pi dgamma a/E*). Kendall's flat punch on
-the half-space is the measure here and hence exact; other contacts are of about order 1.5 in the cell size.
+the half-space is the measure here and hence exact; other contacts are of second order in the cell size.
 
-Under a graded surface the quotient has logarithms at the edge, and stiffness and moment tell the edge values instead
-(`bem.adhesion.branch`).
+The quotient is needed for profiles with breakpoints only. Elsewhere, and under a graded surface, where it has
+logarithms at the edge, stiffness and moment tell the edge values (`bem.adhesion.branch`): sums over all cells, which
+one ring of cells is not.
 
 The displacement f of a profile leaves in the quotient what the grid makes of its tip, its kinks and the root-like part
 of the pressure. The half-space suffers the same, and its phi = g_hs(a) is an integral of the profile's slope; so on a

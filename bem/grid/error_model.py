@@ -89,10 +89,10 @@ class AdheringDiscCoefficients:
     # Times what second order leaves of the difference to half as many cells. Order 1.5 leaves 1.6 of it; where depth or
     # force cross over from one order to another up to 6.6 was needed.
     difference: float = 7.5
-    # The same where stiffness and moment tell the edge values, of the larger of two: also to three eighths as many. 95
-    # of 100 pull-off forces needed less than 2.3 of it, with one coarser grid 5.1, and 10 at most, for two grids agree
-    # by accident (121 detachments on 96 and 128 cells, seeds 1401, 7105, 9001 and 9002, 2026-11-23).
-    energy_difference: float = 3.0
+    # The same where stiffness and moment tell the edge values, to five and three eighths as many, of which the larger
+    # counts: 95 of 100 pull-off forces needed less than 1.6 of it, of half as many cells alone 5.1, and 10 at most, for
+    # two grids agree by accident (121 detachments on 96 and 128 cells, seeds 1401, 7105, 9001 and 9002, 2026-11-23).
+    energy_difference: float = 1.75
     # Times the difference of the pressures to half as many cells. Order 1.5 leaves 0.55 of it.
     pressure_difference: float = 2.5
     # The same for the pressure where the profile has a kink under the contact, whose logarithm or root is resolved with

@@ -161,9 +161,9 @@ PUNCH_POINTS = Refinement(
     ratio=1.5,
 )
 DISCS = Refinement(
-    name="points, four grids a refinement",
+    name="points, all grids of a refinement",
     method="bem",
-    ladder=neighbours("points", ([n * m for m in (12, 14, 16, 18)] for n in (8, 12, 18))),
+    ladder=neighbours("points", (range(n, 15 * n // 8, 4) for n in (96, 144, 216))),
     reason=WHY["discs"],
     ratio=1.5,
 )
