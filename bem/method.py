@@ -68,12 +68,12 @@ class Bem(Record):
             measures (`bem.adhesion.disc`), or single "cells" beyond a stress that depends on their size
             (`bem.adhesion.cell_by_cell`).
 
-    Every quantity is computed on `points` and on half as many cells; the stated relative error is their difference and
-    what the contact radius, read from the slope of force over depth (`contact_edge`), may be off. Depth and force
-    converge with second order in the cell size. A flat punch is a disc of cells measured by the half-space
-    (`calibrated_disc`), so that on the half-space itself its stiffness is exact by construction. Adhesive contacts on
-    discs converge with second order, detachment by cells with about first order. Adhesive depths and forces are
-    followed in their order, from out of contact (`bem.adhesion.sequence`).
+    Every quantity is computed on `points` and on half as many cells, adhesive ones on two coarser grids; the stated
+    relative error is their difference and what the contact radius, read from the slope of force over depth
+    (`contact_edge`), may be off. Depth and force converge with second order in the cell size. A flat punch is a disc of
+    cells measured by the half-space (`calibrated_disc`), so that on the half-space itself its stiffness is exact by
+    construction. Adhesive contacts on discs converge with second order, detachment by cells with about first order.
+    Adhesive depths and forces are followed in their order, from out of contact (`bem.adhesion.sequence`).
 
     Raises:
         InvalidInput: If a setting is of the wrong kind, `points` is too small or no multiple of 4, the tolerance is not

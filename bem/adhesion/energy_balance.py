@@ -1,10 +1,10 @@
-"""How far edge values are off: the same branch told by its stiffness and moment alone, which know no edge.
+"""How far edge values of a ring are off: the branch told by its stiffness and moment alone, which know no edge.
 
 By Eqs. (5) and (6) dk_N/da = 2 E* phi_1^2, and the moment M of a profile grows by dM/da = 2 phi_1 phi_f, with phi_1 and
 phi_f the edge values under a unit depth and of the displacement f. Stiffness and moment are sums over all cells: they
 converge with second order, and two grids extrapolate them. What this second route says of depth and force is the more
-exact, except where a contact has hardly left a rim and where kinks slow its polynomials down; so it is no answer, but
-tells the error of one.
+exact, except where a contact has hardly left a rim and where kinks slow its polynomials down; so of profiles
+with breakpoints it is no answer, but tells the error of one; of others it is the answer (`branch.is_told_by_energy`).
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
-"""Adhesive scenes on discs of cells: equilibria at prescribed values, and detachment, each on two grids."""
+"""Adhesive scenes on discs of cells: equilibria at prescribed values, and detachment, each on two or three grids."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import log
 from typing import Final
@@ -190,8 +191,8 @@ class AdheringDiscs:
     def _branch_errors(self, fine: DiscBranch, coarser: Coarser, radius: FloatArray) -> dict[str, FloatArray]:
         """Errors of depth and force along a branch, relative to their largest values: the lesser of two estimates.
 
-        Two grids agree on what the ring of their edge values leaves out; stiffness and moment do not tell errors beside
-        a rim or a kink.
+        Two grids agree on what the ring of their edge values leaves out; `bem.adhesion.energy_balance` does not tell
+        errors beside a rim or a kink.
         """
         edges = self._edge_errors(fine, coarser, radius)
         truncated, errors = fine.truncation(radius), {}
@@ -243,7 +244,7 @@ class AdheringDiscs:
         return np.array(errors)
 
     def _floors(self, fine: DiscBranch, radius: FloatArray) -> dict[str, FloatArray]:
-        """What two grids do not show, of each quantity at equilibria of radii [m], relative.
+        """What grids do not show, of each quantity at equilibria of radii [m], relative.
 
         Edge values say nothing where the radius is prescribed, of the stiffness, or held at a rim, of all but the
         pressure: then flat punches of a known radius are what is left.
@@ -299,12 +300,13 @@ class AdheringDiscs:
             return loading.initial_contact_radius
         return long_enough(self.scene, self.threads, self._reaches)
 
-    def _by_grids(self, coarser: Coarser, changes: list[FloatArray] | list[float]) -> FloatArray:
+    def _by_grids(self, coarser: Coarser, changes: Sequence[FloatArray | float]) -> FloatArray:
         """The error that differences to coarser grids tell: the largest, since two grids may agree by accident."""
         times = DISCS.energy_difference if is_told_by_energy(self.scene) else DISCS.difference
         # Of a difference this is left by second order.
         left = [1.0 / ((self.points / other.cells) ** 2 - 1.0) for other in coarser]
-        return np.asarray(times * np.max([one * change for one, change in zip(left, changes, strict=True)], axis=0))
+        told = [one * np.asarray(change) for one, change in zip(left, changes, strict=True)]
+        return np.asarray(times * np.max(told, axis=0))
 
     def _reaches(self, branch: DiscBranch) -> bool:
         """Whether the branch holds all prescribed values, or all of a withdrawal.
@@ -345,7 +347,7 @@ class AdheringDiscs:
         refuse_thin_layer(self.scene.layer, radius / measured_disc(self.points, False).radius, LEAST_LAYER)
 
     def _of_edges(self, radius: FloatArray) -> FloatArray:
-        """Relative error of the edge values at radii [m] beyond what two grids show."""
+        """Relative error of the edge values at radii [m] beyond what grids show."""
         return np.zeros_like(radius) if is_told_by_energy(self.scene) else self._by_ring(radius)
 
     def _by_ring(self, radius: FloatArray) -> FloatArray:

@@ -88,7 +88,11 @@ GROUPS: Final = (
         place="bem.grid.error_model:DISCS",
         methods=("bem",),
         families=("adhesive",),
-        quantities={"radius_floors": ("pull_off_contact_radius",)},
+        quantities={
+            "radius_floors": ("pull_off_contact_radius",),
+            "pressure_difference": _PRESSURE,
+            "kink_difference": _PRESSURE,
+        },
     ),
     Group(place="bem.grid.error_model:CELLS", methods=("bem",)),
     Group(
