@@ -114,8 +114,7 @@ def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
     """Error of depth [m] or force / E* [m^2], row 0 or 1, at the end of a piece; zero elsewhere.
 
     That is one solved contact.  Smooth load, stiffness and what adhesion takes away may err against each other at every
-    degree, so that the load changes little by accident: what each of them alone changes is added up, which hardly ever
-    happens at once.
+    degree, so that the load changes little by accident: the root of the squares of what each of them alone changes.
     """
     if not is_end(branch, radius):
         return 0.0
@@ -133,7 +132,7 @@ def held_error(branch: InterpolatedBranch, radius: float, row: int) -> float:
         pulled = level.stiffness * elongation(answer), answer.stiffness * elongation(level)
         return np.array([level.smooth_force, *pulled])
 
-    changed = contact.rate_of_several * contact.changes_of(terms).sum() * radius ** (1 + row)
+    changed = contact.rate_of_several * float(np.linalg.norm(contact.changes_of(terms))) * radius ** (1 + row)
     load = (InterpolatedBranch.depth, InterpolatedBranch.force)[row]
     edge = edge_error(branch, lambda other: load(other, here))[0]
     return float(changed + edge + branch.errors_far(here)[row, 0])
