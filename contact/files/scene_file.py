@@ -105,8 +105,10 @@ def _layer(mapping: Mapping[str, Any], folder: Path | None) -> ElasticLayer:
         return layer_of(table)
     models = [effect for effect in _effects(mapping, folder) if isinstance(effect, Viscoelasticity)]
     ratio = table.get("poissons_ratio")
-    if models and isinstance(ratio, int | float):
-        table["youngs_modulus"] = 2 * (1 + ratio) * models[0].relaxation.instantaneous_modulus
+    if models:
+        # A ratio that is none is refused by the layer itself, not as a modulus that nobody wrote.
+        nu = ratio if isinstance(ratio, int | float) and 0 <= ratio <= 0.5 else 0.5
+        table["youngs_modulus"] = 2 * (1 + nu) * models[0].relaxation.instantaneous_modulus
     return layer_of(table)
 
 

@@ -16,7 +16,7 @@ from contact.files.scene_text import MAX_BYTES
 from contact.files.units import factor_of, in_si
 from contact.records.errors import InvalidInput, printable
 from contact.records.record import shown
-from contact.records.validation import MAX_ENTRIES, FloatArray
+from contact.records.validation import LARGEST, MAX_ENTRIES, FloatArray
 
 _RANGE: Final = frozenset({"start", "stop", "count", "spacing"})
 _COLUMN: Final = frozenset({"file", "column", "unit"})
@@ -187,6 +187,7 @@ def _range(table: Mapping[str, Any], unit: str | None, place: str) -> FloatArray
 
 def _end(value: object, unit: str | None, place: str) -> float:
     number = value if unit is None else in_si(value, unit, place)
-    if isinstance(number, bool) or not isinstance(number, int | float) or not math.isfinite(number):
-        raise InvalidInput(f"{place} = {shown(value)}: must be a finite number, or a text with its unit")
+    # Whole numbers of any length compare with a float; not all of them convert to one.
+    if isinstance(number, bool) or not isinstance(number, int | float) or not abs(number) <= LARGEST:
+        raise InvalidInput(f"{place} = {shown(value)}: must be a number up to {LARGEST:g}, or a text with its unit")
     return float(number)
