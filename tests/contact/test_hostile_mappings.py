@@ -61,14 +61,19 @@ def with_entry(mapping, place, entry):
     return changed
 
 
+def refusal_of(mapping):
+    """What is said of a mapping; nothing if it is a scene."""
+    try:
+        scene_from_mapping(mapping)
+    except InvalidInput as refusal:
+        return str(refusal)
+    return ""
+
+
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_any_entry_of_an_example_may_be_anything(name):
-    for place in places(EXAMPLES[name]):
-        for entry in HOSTILE:
-            try:
-                scene_from_mapping(with_entry(EXAMPLES[name], place, entry))
-            except InvalidInput as refusal:
-                assert len(str(refusal)) < 1500
+    scenes = [with_entry(EXAMPLES[name], place, entry) for place in places(EXAMPLES[name]) for entry in HOSTILE]
+    assert max(len(refusal_of(scene)) for scene in scenes) < 1500
 
 
 def test_numbers_under_a_mask_are_not_read():
