@@ -2,8 +2,8 @@
 
     python -m benchmarks REVISION [--rounds 7]
 
-Two tables: `benchmarks.waiting`, and `benchmarks.side_by_side` in the order of its ratio to MDR, in which a peer below
-one is ahead.  Peers are found as by the suite `referees`; absent ones are left out.
+Two tables: `benchmarks.waiting`, and `benchmarks.side_by_side`, error against seconds of at least four settings each.
+Peers are found as by the suite `referees`; absent ones are left out.
 """
 
 from __future__ import annotations
@@ -16,14 +16,6 @@ from pathlib import Path
 from cases.run.timing import SAMPLES
 
 ROOT = Path(__file__).resolve().parent.parent
-# The column of `side_by_side` with the ratio.
-RATIO = 5
-
-
-def losing_first(table: str) -> str:
-    """The table with its rows in the order of their ratio to MDR."""
-    head, rule, *rows = table.strip().splitlines()
-    return "\n".join([head, rule, *sorted(rows, key=lambda row: float(row.split("|")[RATIO].split()[0]))])
 
 
 def _told(module: str, *arguments: str) -> str:
@@ -39,7 +31,7 @@ def main() -> None:
     given = parser.parse_args()
     rounds = ("--rounds", str(given.rounds))
     sys.stdout.write(f"{_told('waiting', given.revision, *rounds)}\n")
-    sys.stdout.write(f"{losing_first(_told('side_by_side', *rounds))}\n")
+    sys.stdout.write(f"{_told('side_by_side', *rounds)}\n")
 
 
 if __name__ == "__main__":

@@ -32,6 +32,7 @@ from cases.library._reasons import SHARED, reasons, with_tolerance
 from cases.library._references import numbers
 from cases.library.in_time.held_indentation import CREEPING_HALF_SPACE, creep
 from cases.library.in_time.sphere_impact import RADIUS_OF_CURVATURE
+from cases.measurements.cost.settings import costs_beside_others
 from contact import (
     Adhesion,
     Detachment,
@@ -97,6 +98,8 @@ def at_depth(label: str, indenter: str) -> CaseScene:
 
 PLACES = tuple((label, indenter) for indenter in INDENTERS for label in LAYERS)
 SCENES = tuple(at_depth(label, indenter) for label, indenter in PLACES)
+# Scenes on which error is measured against seconds, our settings and theirs.
+PRICED = ("paraboloid, half-space", "flat punch, bonded nu=0.3", "truncated cone, bonded nu=0.3")
 PULLED = CaseScene(
     name="pull-off of a paraboloid, half-space",
     parameters={"indenter": "paraboloid", "layer": "half-space"},
@@ -260,4 +263,5 @@ CASE = Case(
     scenes=(*SCENES, PULLED, CREEPING, *CURVES),
     methods=(MDR, FEM, BEM, EQUATION, *REFEREES),
     claims=CLAIMS,
+    work=tuple(study for scene in PRICED for study in costs_beside_others(scene)),
 )

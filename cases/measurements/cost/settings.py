@@ -32,6 +32,14 @@ FEM: Final = (
     ),
     *_each("fem", "accuracy", (1e-2, 1e-4, 1e-6), "accuracy {:g}"),
 )
+# Solvers of others, each refined by its own grid or mesh; the closed forms of nanite have nothing to refine.
+OTHERS: Final = (
+    *_each("calculix", "cells", (4, 6, 8, 16), "{} cells"),
+    *_each("contact_mechanics", "points", (32, 64, 128, 256), "{} points"),
+    *_each("tamaas", "points", (32, 64, 128, 256), "{} points"),
+    MethodUse(label="closed form", method="nanite"),
+)
+FEM_BESIDE_OTHERS: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), "accuracy {:g}")
 FEM_DETACHING: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4), "accuracy {:g}")
 FEM_IN_TIME: Final = _each("fem", "growth", (1.0, 0.5, 0.25), "growth {:g}")
 BEM: Final = (
@@ -73,6 +81,12 @@ def elastic_costs(
     grids = (*BEM, PERIODIC) if periodic else BEM
     tables = (*TABLE, PUBLISHED_TABLE) if as_published else TABLE
     return _studies(scene, quantities, (*MDR, *EQUATION, *FEM, *grids, *tables), FINEST_EQUATION, cheap)
+
+
+def costs_beside_others(scene: str) -> tuple[WorkStudy, ...]:
+    """What a force costs by our methods and by solvers of others; theirs run in a process whose start counts."""
+    ladder = (*MDR, *FEM_BESIDE_OTHERS, *BEM[:4], *OTHERS)
+    return _studies(scene, ("normal_force",), ladder, FINEST_EQUATION, MDR[2:3])
 
 
 def inside_costs(scene: str) -> tuple[WorkStudy, ...]:
