@@ -8,6 +8,8 @@ OUT := build/verification
 # One thread for BLAS: jobs run side by side in processes, and results do not depend on a thread count.
 export OMP_NUM_THREADS ?= 1
 export OPENBLAS_NUM_THREADS ?= 1
+# Bytecode is kept, whatever the environment says: tests are collected in half of the time (9.7 s for 19.6 s).
+export PYTHONDONTWRITEBYTECODE :=
 export PIP_CONSTRAINT := $(CURDIR)/constraints.txt
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
@@ -19,11 +21,14 @@ help:  ## Show the targets
 verify: $(READY)  ## Run the verification cases through all methods; report in build/verification/report.html
 	$(BIN)/contact-verify run --suite ci --out $(OUT)
 
+# Neighbouring tests share scenes: each process takes half of the tests as they stand, and what the other has left.
+PYTEST := $(BIN)/python -m pytest -n 2 --dist worksteal
+
 test: lint types imports  ## Lint, types, import contract and the fast tests
-	$(BIN)/python -m pytest -n 2
+	$(PYTEST)
 
 test-slow: $(READY)  ## The slow tests as well
-	$(BIN)/python -m pytest -n 2 -m "slow or not slow"
+	$(PYTEST) -m "slow or not slow"
 
 lint: $(READY)  ## Format and lint rules
 	$(BIN)/ruff format --check .

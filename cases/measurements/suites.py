@@ -2,13 +2,17 @@
 
 import time
 from collections.abc import Callable, Iterable
+from concurrent.futures import Future
+from contextlib import ExitStack
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
+from types import TracebackType
+from typing import Self
 
 from cases.results.files import write_run
 from cases.results.records.run import CaseResult, RunResult
-from cases.run.executors import ClusterLost, ExecutorFactory
+from cases.run.executors import ClusterLost, ExecutorFactory, closing, serial
 from cases.run.stamp import stamp
 
 QUICK_LADDERS = ("vanishing flat end", "stability reverses", "damping ratio")
@@ -23,22 +27,53 @@ def run_of(studies: Iterable[CaseResult], out: Path) -> RunResult:
     return run
 
 
-def with_studies(run: RunResult, out: Path, executor: ExecutorFactory, jobs: int) -> RunResult:
-    """Add the studies of its suite to a finished run and write it again.
+class SuiteStudies:
+    """The studies of a suite, carried out in processes of their own while its cases are judged.
 
-    An interrupt or a lost cluster leaves it incomplete.
+    Args:
+        suite: Its name.
+        executor: Where they are carried out.
+        jobs: How many at a time.
     """
-    clock = time.perf_counter()
-    try:
-        with executor(jobs) as pool:
-            futures = [pool.submit(study) for study in (NIGHTLY if run.suite == "nightly" else QUICK)]
-            studies = tuple(future.result() for future in futures)
-    except (KeyboardInterrupt, ClusterLost):
-        run, studies = replace(run, complete=False), ()
-    seconds = run.stamp.wall_seconds + time.perf_counter() - clock
-    whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))
-    write_run(whole, out)
-    return whole
+
+    def __init__(self, suite: str, executor: ExecutorFactory, jobs: int) -> None:
+        self._studies = NIGHTLY if suite == "nightly" else QUICK
+        self._executor, self._jobs = executor, jobs
+        self._begun = ExitStack()
+        self._futures: list[Future[CaseResult]] = []
+
+    def begin(self) -> None:
+        """Hand them over; in this process they would not let anything else be done, so they wait until `join`."""
+        if self._executor is not serial:
+            self._hand_over()
+
+    def _hand_over(self) -> None:
+        pool = self._begun.enter_context(closing(self._executor(self._jobs)))
+        self._futures = [pool.submit(study) for study in self._studies]
+
+    def join(self, run: RunResult, out: Path) -> RunResult:
+        """Add them to the finished run and write it again; an interrupt or a lost cluster leaves it incomplete."""
+        clock = time.perf_counter()
+        try:
+            with self._begun:
+                if not self._futures:
+                    self._hand_over()
+                studies = tuple(future.result() for future in self._futures)
+        except (KeyboardInterrupt, ClusterLost):
+            run, studies = replace(run, complete=False), ()
+        seconds = run.stamp.wall_seconds + time.perf_counter() - clock
+        whole = replace(run, cases=(*run.cases, *studies), stamp=replace(run.stamp, wall_seconds=seconds))
+        write_run(whole, out)
+        return whole
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        """Leave no process behind where the run ended before they were joined."""
+        self._begun.__exit__(kind, error, trace)
 
 
 def quick_ladders() -> CaseResult:

@@ -6,7 +6,7 @@ import hashlib
 import importlib.util
 import json
 import platform
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from functools import cache
 from importlib.machinery import ModuleSpec, PathFinder
 from importlib.metadata import packages_distributions, version
@@ -149,7 +149,7 @@ def _place(module: str) -> ModuleSpec | None:
 
 def _imports(tree: ast.Module, path: Path, module: str) -> list[str]:
     found: list[str] = []
-    for node in ast.walk(tree):
+    for node in _statements(tree):
         if isinstance(node, ast.Import):
             found += [alias.name for alias in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
@@ -161,6 +161,14 @@ def _imports(tree: ast.Module, path: Path, module: str) -> list[str]:
         elif isinstance(node, ast.FunctionDef) and node.name == "__getattr__" and path.name == "__init__.py":
             found += [f"{module}.{file.stem}" for file in path.parent.glob("*.py") if file.stem != "__init__"]
     return [*found, *_parents(module)]
+
+
+def _statements(node: ast.AST) -> Iterator[ast.AST]:
+    """All statements below a node: none lies within an expression, where most nodes of a source do."""
+    for inner in ast.iter_child_nodes(node):
+        if not isinstance(inner, ast.expr):
+            yield inner
+            yield from _statements(inner)
 
 
 def _parents(module: str) -> list[str]:

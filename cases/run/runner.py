@@ -5,7 +5,7 @@ incomplete; timing tasks run after all others, one by one, so that they never sh
 """
 
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -50,6 +50,7 @@ class RunOptions:
         timing: whether timing tasks run; without them there are no work-precision records.
         only_costs: whether only the tasks of work studies run; no claim is then judged.
         progress: told of every event.
+        solved: called once all tasks have run, before claims are judged.
     """
 
     out: Path
@@ -62,6 +63,7 @@ class RunOptions:
     timing: bool = True
     only_costs: bool = False
     progress: Progress = silent
+    solved: Callable[[], object] = lambda: None
 
 
 @dataclass
@@ -124,6 +126,7 @@ def _run(cases: Sequence[Case], options: RunOptions) -> RunResult:
     complete = True
     try:
         _carry_out(run, planned)
+        options.solved()
     except KeyboardInterrupt:
         complete = False
     except ClusterLost as error:

@@ -14,7 +14,7 @@ from cases.declare.foreign_methods import with_registered
 from cases.declare.methods import registered
 from cases.declare.registry import load_cases, select
 from cases.declare.selection import only_methods
-from cases.measurements.suites import with_studies
+from cases.measurements.suites import SuiteStudies
 from cases.results.records.run import RunResult
 from cases.results.status import ExitCode, exit_code
 from cases.run.executors import by_name
@@ -96,11 +96,11 @@ def _against(names: list[str], methods: list[str], others: list[str], suite: str
 
 def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, quiet: bool) -> RunResult:
     """Run cases and, if this is a whole suite, its studies."""
-    with RunDisplay(console(), quiet=quiet) as display:
-        result = run_cases(cases, dataclasses.replace(options, progress=display))
-    if studied and result.complete:
-        return with_studies(result, options.out, options.executor, options.jobs)
-    return result
+    with SuiteStudies(options.suite, options.executor, options.jobs) as studies:
+        solved = studies.begin if studied else options.solved
+        with RunDisplay(console(), quiet=quiet) as display:
+            result = run_cases(cases, dataclasses.replace(options, progress=display, solved=solved))
+        return studies.join(result, options.out) if studied and result.complete else result
 
 
 def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:

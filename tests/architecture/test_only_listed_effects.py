@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -45,8 +46,9 @@ COARSE_TABLE = '{"cells": 64, "ratios": 60, "radii": 100}'
 COARSE_FEM = '{"order": 2, "edge_cell": 1e-2}'
 
 
+@cache
 def solved(method, scene, settings="{}"):
-    """Import set and stage set of one solution in a process of its own."""
+    """Import set and stage set of one solution in a process of its own, started once for all tests that ask."""
     command = [sys.executable, "-W", "error::RuntimeWarning", "-c", SCENES, method, scene, settings]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     return json.loads(done.stdout)
@@ -62,7 +64,7 @@ def effects_among(found):
     return [name for name in found["modules"] if name.startswith(EFFECT_ROOMS)]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def elastic():
     return solved("mdr", "elastic")
 

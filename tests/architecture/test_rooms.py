@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 import graphlib
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -21,22 +22,37 @@ LARGEST_FOLDER = 13
 MOST_ARROWS = {"contact": 15, "bem": 15, "mdr": 15, "fem_reference": 15, "reports": 15, "cases": 21}
 
 
-def imports_of(source, known=FILES):
+@cache
+def read(module):
+    """What a module says of itself and what it imports, read once and without keeping its syntax."""
+    tree = ast.parse(FILES[module].read_text(encoding="utf-8"))
+    return ast.get_docstring(tree), set(imports_of(tree)) - {module}
+
+
+def loaded(node):
+    """Statements that run when a source is loaded: none of a function's."""
+    for inner in ast.iter_child_nodes(node):
+        if not isinstance(inner, ast.FunctionDef | ast.expr):
+            yield inner
+            yield from loaded(inner)
+
+
+def imports_of(tree, known=FILES):
     """Modules of ours that a source imports when it is loaded, those for type checkers included."""
-    tree = ast.parse(source)
-    later = {id(n) for f in ast.walk(tree) if isinstance(f, ast.FunctionDef) for n in ast.walk(f)}
-    for node in ast.walk(tree):
-        if id(node) in later or not isinstance(node, ast.Import | ast.ImportFrom):
-            continue
+    for node in loaded(tree):
         if isinstance(node, ast.Import):
             names = [alias.name for alias in node.names]
-        else:
+        elif isinstance(node, ast.ImportFrom):
             inner = [f"{node.module}.{alias.name}" for alias in node.names]
             names = [name for name in inner if name in known] or [node.module or ""]
+        else:
+            continue
         yield from (name for name in names if name in known)
 
 
-IMPORTS = {name: set(imports_of(file.read_text(encoding="utf-8"))) - {name} for name, file in FILES.items()}
+def imports():
+    """What each module imports, drawn up when a test asks: every process of the test runner loads this file."""
+    return {name: read(name)[1] for name in FILES}
 
 
 def room(module):
@@ -52,7 +68,7 @@ def test_no_folder_holds_more_than_a_reader_surveys():
 def test_few_arrows_between_rooms(package):
     arrows = {
         (room(one), room(other))
-        for one, others in IMPORTS.items()
+        for one, others in imports().items()
         for other in others
         if one.split(".")[0] == other.split(".")[0] == package and room(one) != room(other)
     }
@@ -60,19 +76,19 @@ def test_few_arrows_between_rooms(package):
 
 
 def test_no_import_circle():
-    assert list(graphlib.TopologicalSorter(IMPORTS).static_order())
+    assert list(graphlib.TopologicalSorter(imports()).static_order())
 
 
 def test_a_circle_and_a_type_checkers_import_are_seen():
     source = "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from mdr.method import Mdr\n"
-    assert set(imports_of(source)) == {"mdr.method"}
+    assert set(imports_of(ast.parse(source))) == {"mdr.method"}
     with pytest.raises(graphlib.CycleError):
-        list(graphlib.TopologicalSorter({**IMPORTS, "contact.scene.layer": {"mdr.method"}}).static_order())
+        list(graphlib.TopologicalSorter({**imports(), "contact.scene.layer": {"mdr.method"}}).static_order())
 
 
 @pytest.mark.parametrize("module", sorted(FILES))
 def test_a_module_says_what_it_is_for_in_one_line(module):
-    text = ast.get_docstring(ast.parse(FILES[module].read_text(encoding="utf-8")))
+    text = read(module)[0]
     assert text, f"{module} has no docstring"
     assert text.splitlines()[0].endswith((".", "?")), f"{module}: the first line is no sentence"
 

@@ -9,8 +9,10 @@ from cases.measurements.ladders import ladder_study
 from cases.measurements.ladders.ladder_table import LADDERS
 from cases.results.files import read_run
 from cases.results.records.reliability import Ladder
-from cases.run.executors import serial
+from cases.run.executors import SerialExecutor, serial
+from cases.run.runner import RunOptions, run_cases
 from tests.cases.example_run import example_run
+from tests.cases.fake_case import fake_case
 
 # The claims of `code_verification` are judged by tests/verification/test_fem_code_verification.py, too.
 # Suite ci runs the study of coverage itself; tests/cases/measurements/stability/test_coverage.py plants its faults.
@@ -31,16 +33,28 @@ def test_an_interrupt_keeps_the_run_and_says_that_it_is_incomplete(tmp_path, mon
         raise KeyboardInterrupt
 
     monkeypatch.setattr(studies, "QUICK", (interrupted,))
-    run = studies.with_studies(example_run(), tmp_path, serial, 1)
+    run = studies.SuiteStudies("ci", serial, 1).join(example_run(), tmp_path)
     assert (run.complete, run.cases) == (False, example_run().cases)
     assert read_run(tmp_path) == run
 
 
 def test_studies_join_a_finished_run(tmp_path, monkeypatch):
     monkeypatch.setattr(studies, "QUICK", (studies.quick_maps,))
-    run = studies.with_studies(example_run(), tmp_path, serial, 1)
+    run = studies.SuiteStudies("ci", serial, 1).join(example_run(), tmp_path)
     assert [case.name for case in run.cases[len(example_run().cases) :]] == ["error_maps"]
     assert read_run(tmp_path) == run
+
+
+def test_studies_begin_when_all_is_solved_and_before_anything_is_judged(tmp_path, monkeypatch):
+    """Seen to fail: claims and figures were judged first, on one core."""
+    events, judged = [], example_run().cases[0]
+    monkeypatch.setattr(studies, "QUICK", (lambda: events.append("study") or judged,))
+    options = RunOptions(out=tmp_path, executor=serial, progress=lambda event: events.append(event.kind))
+    with studies.SuiteStudies("ci", lambda jobs: SerialExecutor(), 1) as begun:
+        run = run_cases([fake_case()], dataclasses.replace(options, solved=begun.begin))
+        whole = begun.join(run, tmp_path)
+    assert events[-3:] == ["finished", "study", "judged"]
+    assert whole.cases == (*run.cases, judged)
 
 
 def test_the_nightly_suite_walks_all_ladders_by_all_methods(tmp_path, monkeypatch):
@@ -50,6 +64,6 @@ def test_the_nightly_suite_walks_all_ladders_by_all_methods(tmp_path, monkeypatc
     monkeypatch.setattr(studies, "NIGHTLY", (studies.all_ladders,))
     monkeypatch.setattr(ladder_study, "climb", glanced_at)
     nightly = dataclasses.replace(example_run(), suite="nightly")
-    case = studies.with_studies(nightly, tmp_path, serial, 1).cases[-1]
+    case = studies.SuiteStudies("nightly", serial, 1).join(nightly, tmp_path).cases[-1]
     assert {ladder.name for ladder in case.ladders} == {plan.name for plan in LADDERS}
     assert {ladder.method for ladder in case.ladders} == set(ladder_study.CLIMBERS)

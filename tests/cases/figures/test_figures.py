@@ -1,5 +1,7 @@
 """The data behind the paper's figures: against closed forms, published tables and the statements in the captions."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -17,18 +19,18 @@ from cases.library._figures import (
 from cases.library._figures._parts import UNBONDED, layer
 
 NUMBERS = (3, 4, 5, 7, 8, 9, 11, 12)
-MADE = {n: paper_figure(n) for n in NUMBERS}
+made = cache(paper_figure)
 
 
 def series(number, group, method="mdr", panel=0):
-    lines = [s for s in MADE[number].panels[panel].series if s.style == "by method"]
+    lines = [s for s in made(number).panels[panel].series if s.style == "by method"]
     (found,) = (s for s in lines if s.group == group and s.method.partition(",")[0] == method)
     return np.array(found.x), np.array(found.y)
 
 
 @pytest.mark.parametrize("number", NUMBERS)
 def test_every_figure_has_finite_labelled_curves_with_errors(number):
-    figure = MADE[number]
+    figure = made(number)
     assert figure.name == f"fig_{number}"
     assert len(figure.caption) > 60
     for panel in figure.panels:
@@ -77,7 +79,7 @@ def test_figure_7_profiles_and_pressures():
     assert figure_07.depth_over_height(layer(0.5), 1.0) == pytest.approx(0.556930 / 0.5, abs=1e-6)  # REFERENCES 4
     assert figure_07.depth_over_height(layer(0.5), 2.0) == pytest.approx(0.440614 / 0.5, abs=1e-6)
     assert figure_07.depth_over_height(layer(0.45), 2.0) == pytest.approx(0.502610 / 0.5, abs=1e-6)
-    for panel in MADE[7].panels[1::2]:
+    for panel in made(7).panels[1::2]:
         for one in panel.series:
             r, p = np.array(one.x), np.array(one.y)
             assert np.trapezoid(2.0 * p * r, r) == pytest.approx(1.0, abs=0.05)  # over its mean; a ring is left out
@@ -96,7 +98,7 @@ def test_figure_8_reversals():
 
 def test_figure_9_starts_on_the_line_of_the_half_space_and_peels_only_when_thin():
     for ratio in figure_09.RATIOS:
-        lines = [s for s in MADE[9].panels[0].series if s.group == f"a*/h = {ratio:g}"]
+        lines = [s for s in made(9).panels[0].series if s.group == f"a*/h = {ratio:g}"]
         assert len(lines) == (2 if ratio > 0.461904 else 1)
         depth, force = np.array(lines[0].x), np.array(lines[0].y)
         assert force[0] == 0.0
@@ -115,9 +117,9 @@ def test_figure_11_is_the_closed_form_on_the_half_space():
 
 
 def test_figure_12_values_and_loop():
-    assert "0.45457" in MADE[12].caption
+    assert "0.45457" in made(12).caption
     for number in ("0.52344", "0.55924", "0.64341", "1.099", "2.241"):  # independent integration, REFERENCES section 7
-        assert number in MADE[12].caption
+        assert number in made(12).caption
     time, _ = series(12, figure_12.kind_name("elastic"), panel=3)
     thickness, usual = series(12, figure_12.kind_name(2.65), panel=5)
     _, other = series(12, figure_12.kind_name(0.1), panel=5)
@@ -131,13 +133,13 @@ def test_figure_12_values_and_loop():
 
 
 def test_captions_give_the_numbers_behind_loose_statements():
-    assert "12.6 %" in MADE[3].caption
-    assert "8.0 %" in MADE[3].caption
-    assert "-10.9 %" in MADE[3].caption
+    assert "12.6 %" in made(3).caption
+    assert "8.0 %" in made(3).caption
+    assert "-10.9 %" in made(3).caption
     for drift in ("-0.3 % at a/h = 1,", "-0.9 % at a/h = 2,", "-5.9 % at a/h = 8."):
-        assert drift in MADE[3].caption
-    assert "0.881" in MADE[7].caption
-    assert "1.005" in MADE[7].caption
+        assert drift in made(3).caption
+    assert "0.881" in made(7).caption
+    assert "1.005" in made(7).caption
     assert figure_03.thin_layer_stiffness(layer(0.3), np.array(1.0)) == pytest.approx(
         0.5 * np.pi * 0.49 / 0.4, rel=1e-12, abs=0.0
     )
