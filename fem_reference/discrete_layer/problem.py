@@ -127,9 +127,10 @@ class LayerProblem:
     @cached_property
     def supported_unknowns(self) -> IntArray:
         """Displacements that the axis and the base hold at zero."""
-        held = [2 * self.nodes_on("axis"), 2 * self.nodes_on("base") + 1]
+        base = self.nodes_on("base")
+        held = [2 * self.nodes_on("axis"), 2 * base + 1]
         if self.support == "bonded":
-            held.append(2 * self.nodes_on("base"))
+            held.append(2 * base)
         return np.unique(np.concatenate(held))
 
     def top_nodes(self, radius: float) -> IntArray:

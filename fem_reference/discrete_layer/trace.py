@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.linalg import splu
+from scipy.linalg import solveh_banded
 
 from contact.records.errors import NotConvergedError
 from contact.records.validation import FloatArray, IntArray
@@ -91,17 +90,17 @@ class TraceSpace:
     def _cell_nodes(self) -> IntArray:
         return np.arange(0, len(self.radii) - 1, self.degree)[:, None] + np.arange(self.degree + 1)
 
-    def mass_matrix(self) -> coo_array:
-        """``int u v 2 pi r dr``."""
+    def mass_bands(self) -> FloatArray:
+        """``int u v 2 pi r dr``, its diagonals from the first one down, shape (degree + 1, node)."""
         points = self.degree + 2
         x, _ = _gauss_rule(points)
         basis = self.basis((x + 1) / 2)
         local = np.einsum("cq,qi,qj->cij", self.gauss(points)[1], basis, basis)
-        nodes = self._cell_nodes
-        rows = np.broadcast_to(nodes[:, :, None], local.shape)
-        columns = np.broadcast_to(nodes[:, None, :], local.shape)
-        size = len(self.radii)
-        return coo_array((local.ravel(), (rows.ravel(), columns.ravel())), shape=(size, size))
+        bands = np.zeros((self.degree + 1, len(self.radii)))
+        for j in range(self.degree + 1):
+            for i in range(j, self.degree + 1):
+                bands[i - j, j :: self.degree][: len(local)] += local[:, i, j]
+        return bands
 
     def recover(self, nodal_forces: FloatArray) -> FloatArray:
         """Nodal values of the pressure p with ``int p v 2 pi r dr = force(v)`` for every v: the consistent recovery.
@@ -113,4 +112,4 @@ class TraceSpace:
             raise NotConvergedError(
                 "two nodes of the contact coincide: its cells are smaller than roundings of the radius"
             )
-        return np.asarray(splu(self.mass_matrix().tocsc()).solve(nodal_forces))
+        return np.asarray(solveh_banded(self.mass_bands(), nodal_forces, lower=True, check_finite=False))

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from contact.records.validation import FloatArray, IntArray
-from fem_reference.discrete_layer.problem import LayerProblem
+from fem_reference.discrete_layer.problem import LayerProblem, facet_nodes
 from fem_reference.discrete_layer.solving.condensed import forces
 
 # The radial strain s, any number of the size of the volume strain 1 - 2 nu: with c = (1 - 2 nu) - 2 s the pressure is
@@ -41,5 +41,6 @@ def constant_strain(problem: LayerProblem) -> FloatArray:
 
 
 def _boundary_unknowns(problem: LayerProblem) -> IntArray:
-    nodes = np.concatenate([problem.nodes_on(name) for name in problem.layer_mesh.mesh.boundaries])
+    boundaries = problem.layer_mesh.mesh.boundaries
+    nodes = facet_nodes(problem.space, np.concatenate([*boundaries.values()]))
     return np.concatenate([2 * nodes, 2 * nodes + 1])
