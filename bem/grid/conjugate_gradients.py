@@ -11,8 +11,8 @@ grid: the search direction is preconditioned by the inverse kernel, restricted t
 J. Comput. Phys. 257, 431), and callers start from a coarser grid's answer.
 
 With a prescribed force the depth is an unknown too: directions are kept free of net force, and the depth follows from
-the same projection. The displacement follows each step by that step's own, in single precision: steps are small against
-the pressure. What they add up to is computed afresh at the end, and the end is reached when it still holds then.
+the same projection. The displacement follows each step by that step's own, in single precision, for steps are small
+against the pressure. At the end it is computed afresh, and the iteration goes on where that tells more.
 
 Sums over cells mean the same on a whole grid and on a quadrant, whose cells each stand for four.
 """
@@ -28,8 +28,8 @@ from bem.grid.operators import Operator
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
 
-# Share of a residual down to which the displacements of steps are followed in single precision, whose roundings are
-# 4e-7 of a field at most (32 to 512 cells, 2026-11-26).
+# Times a residual: what roundings may make of the displacements that are followed from there in single precision, 4e-7
+# of a field at most (32 to 512 cells, 2026-11-26).
 FOLLOWED: Final = 1e-6
 
 
