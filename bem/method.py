@@ -63,7 +63,7 @@ class Bem(Record):
             `ACCURACY_POINTS` are tried in turn until the stated errors hold.
         boundary: "free" space, or "periodic" with 16 thicknesses between images (thin layers; no half-space).
         tolerance: Of the complementarity problem, see `conjugate_gradients.complementarity_residual`.
-        threads: Threads of FFTW.
+        threads: Of the transforms.
         adhesion: What lets go of an adhering indenter: the edge of "discs" of cells, whose intensity the half-space
             measures (`bem.adhesion.disc`), or single "cells" beyond a stress that depends on their size
             (`bem.adhesion.cell_by_cell`).

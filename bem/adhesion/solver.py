@@ -58,7 +58,7 @@ class AdheringDiscs:
     Attributes:
         scene: An adhesive scene.
         points: Cells of the fine grid; see `SHARES` for the coarser ones.
-        threads: Of FFTW.
+        threads: Of the transforms.
         settings: Of the method, for the answer.
         log: Stage log.
     """

@@ -212,7 +212,7 @@ class GridContactSearch:
         indenter: A profile that is no flat punch.
         boundary: "free" or "periodic".
         tolerance: Of the complementarity problem.
-        threads: Of FFTW.
+        threads: Of the transforms.
         log: Stage log.
     """
 

@@ -50,11 +50,9 @@ class DirectContactCoefficients:
     # A relative error of the contact radius counts this many times in the pressure. It is the largest growth of a
     # contact's pressure with its radius: on a thin incompressible layer p goes with a^4 and F_N with a^6.
     pressure_exponent: float = 6.0
-    # Times s/a, and times its square: what the radius read from the slope of force over depth may be off although both
-    # grids agree. Beyond the other parts radii needed 0.0004 s/a on 512 cells, 0.0012 on 256 and 0.0032 on 128 (60
-    # scenes, seed 4, 2026-11-22).
-    slope_scatter: float = 0.001
-    slope_square: float = 0.2
+    # Times (s/a)^2: what the radius read from the slope of force over depth may be off though both grids agree. Beyond
+    # the other parts radii needed 0.09 on 512 cells, 0.14 on 256 and 0.18 on 128 (60 scenes, seed 4, 2026-11-22).
+    slope_scatter: float = 0.3
     # Share of what is taken off the slope for its step beyond the half-space's that counts as an error of the radius:
     # the next power of both steps is 17 times 0.03 squared, 1.5 %, of it for every unit by which that varies faster;
     # chosen.
@@ -76,7 +74,7 @@ class DirectContactCoefficients:
 
     def scatter(self, cell: float) -> float:
         """Of the radius read from the slope, relative, from the cell's share s/a of it."""
-        return self.slope_scatter * cell + self.slope_square * cell**2
+        return self.slope_scatter * cell**2
 
 
 @dataclass(frozen=True)
@@ -167,9 +165,10 @@ class TableCoefficients:
     # Share of the difference to the table of half as many cells that counts as error. Second order makes it 1/3, and
     # it counts in full.
     half_share: float = 1.0
-    # Share of the difference to the table of a quarter as many cells, for where those two agree by accident: between
-    # what second order makes of it, 1/15, and first order, 1/3.
-    quarter_share: float = 0.25
+    # Share of the difference of the tables of half and a quarter as many cells, for where the finer two agree by
+    # accident: between what second order makes of it, 1/12, and first order, 1/2. Of the difference to the finest table
+    # a quarter was too little where that passes zero, too: beside a sphere's equator (64 cells, 2026-11-26).
+    quarter_share: float = 0.4
     # Times the share of the difference to fewer cells that the mean square distances of both discs leave of it in k_bar
     # (`calibrated_disc.PixelDisc.moment_error`), where the layer is many cells thick. That share itself was 0.8 to 1.3
     # of the true one (64 and 128 cells, nu = 0.3 and 1/2, a/h = 0.01 to 3, 2026-11-22).

@@ -25,18 +25,22 @@ RADIUS_TOLERANCE: Final = 1e-7
 
 
 def grid_punch(
-    layer: ElasticLayer, radius: float, cells: int, tolerance: float = TOLERANCE
+    layer: ElasticLayer,
+    radius: float,
+    cells: int,
+    tolerance: float = TOLERANCE,
+    start: FloatArray | None = None,
 ) -> tuple[PunchSolution, PixelDisc]:
-    """The flat punch of this radius [m], and the grid disc it was computed with."""
+    """The flat punch of this radius [m], and the grid disc it was computed with; from the pressure of one nearby."""
     # The ratio is zero on a half-space.
     ratio = radius / layer.thickness
     if not isinstance(layer, Layer):
         disc = measured_disc(cells, False)
-        return disc.on_layer(layer.in_own_units().stretched(disc.radius / ratio), ratio, None, tolerance), disc
+        return disc.on_layer(layer.in_own_units().stretched(disc.radius / ratio), ratio, start, tolerance), disc
     disc = measured_disc(cells, bool(ratio > THIN))
     if layer.is_half_space:
         return PunchSolution(1.0, np.array([0.5]), disc.half_space.pressure, 0), disc  # Eq. (14)
-    return disc.solve(ratio, layer.support, layer.poissons_ratio, None, tolerance), disc
+    return disc.solve(ratio, layer.support, layer.poissons_ratio, start, tolerance), disc
 
 
 def stiffness_exponent(ratio: float) -> float:
@@ -70,6 +74,7 @@ class StiffnessNearby:
         cells: Cells across the grid.
         exponent: d ln(k_N)/d ln(a).
         doubt: How wrong the exponent may be.
+        pressure: Of that punch, as `PunchSolution` has it.
     """
 
     radius: float
@@ -77,17 +82,20 @@ class StiffnessNearby:
     cells: int
     exponent: float
     doubt: float
+    pressure: FloatArray
 
     @classmethod
-    def at(cls, layer: ElasticLayer, radius: float, cells: int) -> Self:
+    def at(cls, layer: ElasticLayer, radius: float, cells: int, start: FloatArray | None = None) -> Self:
         """With the exponent that the pressure at the edge tells, a/k_N dk_N/da = 4 k_bar q(1)^2."""
-        punch, _ = grid_punch(layer, radius, cells, STIFFNESS_TOLERANCE)
+        punch, _ = grid_punch(layer, radius, cells, STIFFNESS_TOLERANCE, start)
         exponent = 4.0 * punch.stiffness * float(punch.shape.sum()) ** 2
-        return cls(radius, punch_stiffness(layer, radius, punch), cells, exponent, EDGE_DOUBT * exponent)
+        return cls(
+            radius, punch_stiffness(layer, radius, punch), cells, exponent, EDGE_DOUBT * exponent, punch.pressure
+        )
 
     def moved(self, layer: ElasticLayer, step: float) -> Self:
         """About the radius exp(step) times as large, with the exponent between the two."""
-        there = type(self).at(layer, self.radius * exp(step), self.cells)
+        there = type(self).at(layer, self.radius * exp(step), self.cells, self.pressure)
         between = log(there.stiffness / self.stiffness) / step
         return replace(there, exponent=between, doubt=abs(between - self.exponent))
 

@@ -20,6 +20,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
+from bem.grid.transforms import cosines
 from bem.kernels.layer import one_minus_kernel, zero_mode
 from bem.polynomials.cubics import PiecewiseCubic
 from bem.polynomials.gauss import legendre_rule
@@ -29,8 +30,8 @@ from contact.scene.layer import Support
 
 # Distance r/h beyond which a layer does not answer: exp(-0.739 REACH) is 4e-16.
 REACH: Final = 48.0
-# From so many cells across a layer on, two Gauss points a cell average the correction to 4e-11 of the largest influence
-# (nu = 0.3 and 0.5, either support, 2026-11-22).
+# From so many cells across a layer on, the correction's Laplacian tells its mean over a cell, to 1.4e-10 of the largest
+# influence (nu = 0.3 and 0.5, either support, 2026-11-26).
 THICK: Final = 32.0
 
 
@@ -49,7 +50,8 @@ def rectangle_influence(offsets: int) -> FloatArray:
     """
     corner = np.arange(offsets + 2) - 0.5
     x, y = corner[:, None], corner[None, :]
-    antiderivative = x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
+    half = x * np.arcsinh(y / np.abs(x))
+    antiderivative = half + half.T
     return np.asarray(np.diff(np.diff(antiderivative, axis=0), axis=1) / np.pi)
 
 
@@ -81,9 +83,14 @@ def layer_influence(offsets: int, thickness: float, support: Support, poissons_r
 def _cell_average(
     i: npt.NDArray[np.intp], j: npt.NDArray[np.intp], thickness: float, support: Support, poissons_ratio: float
 ) -> FloatArray:
-    """Gauss quadrature of V(r/h)/(pi h) over the unit cell at (i, j); more points as the cell outgrows h."""
-    smooth = correction_function(support, poissons_ratio)
-    points, weights = legendre_rule(2 if thickness >= THICK else 2 + ceil(4.0 / thickness))
+    """Gauss quadrature of V(r/h)/(pi h) over the unit cell at (i, j); more points as the cell outgrows h.
+
+    The mean over a cell many of which span h is V + s^2/24 times its Laplacian.
+    """
+    smooth, laplacian = _correction_and_laplacian(support, poissons_ratio)
+    if thickness >= THICK:
+        smooth = PiecewiseCubic(smooth.x, smooth.powers + laplacian.powers / (24.0 * thickness**2))
+    points, weights = legendre_rule(1 if thickness >= THICK else 2 + ceil(4.0 / thickness))
     total = np.zeros(i.shape)
     for x, wx in zip(points / 2.0, weights / 2.0, strict=True):
         for y, wy in zip(points / 2.0, weights / 2.0, strict=True):
@@ -92,9 +99,14 @@ def _cell_average(
     return total / (np.pi * thickness)
 
 
-@lru_cache(maxsize=32)
 def correction_function(support: Support, poissons_ratio: float) -> PiecewiseCubic:
-    """V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq on [0, REACH], Gauss-Legendre with 8 nodes a period of J0.
+    """V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq on [0, REACH]."""
+    return _correction_and_laplacian(support, poissons_ratio)[0]
+
+
+@lru_cache(maxsize=32)
+def _correction_and_laplacian(support: Support, poissons_ratio: float) -> tuple[PiecewiseCubic, PiecewiseCubic]:
+    """V(rho) by Gauss-Legendre with 8 nodes a period of J0, and its Laplacian, in which J0 counts -q^2 times.
 
     The integral ends at q = 24, where 1 - chi is about 1e-18. The spline's 1200 knots are dense near the axis, which
     makes its error less than 1e-9.
@@ -107,7 +119,8 @@ def correction_function(support: Support, poissons_ratio: float) -> PiecewiseCub
     density = np.tile(half * weights, panels) * one_minus_kernel(q, support, poissons_ratio)
     rho = REACH * np.sinh(4.0 * np.linspace(0.0, 1.0, knots)) / np.sinh(4.0)
     j0 = compiled("scipy.special._special_ufuncs", "scipy.special").j0
-    return PiecewiseCubic.spline(rho, -j0(rho[:, None] * q) @ density)
+    waves = j0(rho[:, None] * q)
+    return PiecewiseCubic.spline(rho, -waves @ density), PiecewiseCubic.spline(rho, waves @ (q**2 * density))
 
 
 def uniform_response(support: Support, poissons_ratio: float) -> float:
@@ -129,8 +142,7 @@ def band_limited_influence(offsets: int) -> FloatArray:
     Returns:
         Influence [cell sizes], shape (m + 1, m + 1).
     """
-    # Only thin layers ask, and the two take 0.2 s to import.
-    from scipy.fft import dctn  # noqa: PLC0415
+    # Only thin layers ask, and it takes 0.1 s to import.
     from scipy.special import itj0y0  # noqa: PLC0415
 
     # Half of the period: with it no image of the cut-off kernel reaches back to sqrt(2) m.
@@ -141,4 +153,5 @@ def band_limited_influence(offsets: int) -> FloatArray:
     k[0, 0] = 1.0
     symbol = 2.0 / k * itj0y0(k * cut_off)[0]
     symbol[0, 0] = 2.0 * cut_off
-    return np.asarray(dctn(symbol, type=1)[: offsets + 1, : offsets + 1] / (2 * half) ** 2)
+    cosines(symbol, 1, (0, 1))
+    return np.asarray(symbol[: offsets + 1, : offsets + 1] / (2 * half) ** 2)

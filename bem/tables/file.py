@@ -33,7 +33,7 @@ SCHEMA: Final = "contact-verification/flat-punch-table/3"
 # A foreign table that misses a limit by more, relative, is refused: it is of another kernel or normalisation.
 LIMIT_TOLERANCE: Final = 0.05
 ERRORS: Final = ("error", "pressure_error", "mean_error")
-NUMERICAL_LIBRARIES: Final = ("numpy", "scipy", "pyfftw")
+NUMERICAL_LIBRARIES: Final = ("numpy", "scipy")
 
 
 def write_table(path: str | Path, table: FlatPunchTable) -> None:

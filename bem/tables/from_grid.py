@@ -87,9 +87,12 @@ class FftTable(Record):
 @lru_cache(maxsize=32)
 def _build(settings: FftTable, layer: Tabulable, rows: int) -> FlatPunchTable:
     ratios = np.geomspace(SMALLEST_RATIO, LARGEST_RATIO, settings.ratios)[:rows]
-    fine, *coarse = (_on_grid(settings, times, layer, rows) for times in (1, 2, 4))
+    fine, half, quarter = (_on_grid(settings, times, layer, rows) for times in (1, 2, 4))
     shares = TABLES.half_share, TABLES.quarter_share
-    half, quarter = (_weighed(fine, *pair, settings.cells) for pair in zip(coarse, shares, (2, 4), strict=True))
+    half, quarter = (
+        _weighed(fine, _as_far(fine, *pair), share, settings.cells, times)
+        for pair, share, times in zip(((fine, half), (half, quarter)), shares, (1, 2), strict=True)
+    )
     row_share = float(np.clip(np.log(ratios[1] / ratios[0]) ** 2, TABLES.least_row_share, TABLES.largest_row_share))
     return dataclasses.replace(
         _with_errors(fine, half, settings.cells, row_share),
@@ -120,15 +123,26 @@ def _on_grid(settings: FftTable, times: int, layer: Tabulable, rows: int) -> Fla
     )
 
 
-def _weighed(fine: FlatPunchTable, coarse: FlatPunchTable, share: float, times: int, cells: int) -> FlatPunchTable:
-    """The table of `times` fewer cells with that part of its difference in k_bar which, times `share`, is an error.
+def _as_far(table: FlatPunchTable, finer: FlatPunchTable, coarser: FlatPunchTable) -> FlatPunchTable:
+    """The table off by what tells two others apart."""
+    return dataclasses.replace(
+        table,
+        stiffness=table.stiffness * (coarser.stiffness / finer.stiffness),
+        pressure=np.maximum(
+            table.pressure + coarser.pressure - finer.pressure, 0.0 if table.stack is None else -np.inf
+        ),
+    )
+
+
+def _weighed(fine: FlatPunchTable, coarse: FlatPunchTable, share: float, cells: int, times: int) -> FlatPunchTable:
+    """A table that is off by what `times` and twice as many fewer cells differ, in k_bar by the part that is an error.
 
     On layers many cells thick k_bar is off by what the discs' mean square distances are off, which is known of both:
     the error is far smaller than the difference.
     """
-    own, other = (measured_disc(n, False) for n in (cells, cells // times))
+    own, finer, coarser = (measured_disc(n, False) for n in (cells, cells // times, cells // (2 * times)))
     error = max(abs(own.moment_error), TABLES.least_moment / own.radius**2)
-    known = TABLES.moment_share / share * error / abs(other.moment_error - own.moment_error)
+    known = TABLES.moment_share / share * error / abs(coarser.moment_error - finer.moment_error)
     per_thickness = own.radius / fine.ratios
     thin = np.log(TABLES.thick_cells / per_thickness) / np.log(TABLES.thick_cells / TABLES.thin_cells)
     counted = min(known, 1.0) ** (1.0 - np.clip(thin, 0.0, 1.0))

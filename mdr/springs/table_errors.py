@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bem.grid.error_model import TABLES
-from contact import ContactRadii, IndentationDepths, Loading
+from contact import ContactRadii, IndentationDepths, Loading, NormalForces
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import SPRING_ROUNDING
@@ -71,7 +71,14 @@ def elastic_errors(
 ) -> dict[str, FloatArray]:
     """Absolute errors of an elastic contact's four quantities, zero for what is prescribed [m, m, N, N/m]."""
     changes = elastic_changes(system, loading, radius, depth, is_punch=is_punch)
-    return {name: size(values) for name, values in changes.items()}
+    errors = {name: size(values) for name, values in changes.items()}
+    # Whatever is prescribed, the others are read at a radius that is rounded.
+    rounding = depth * system.position_rounding(radius)
+    if not isinstance(loading, IndentationDepths):
+        errors["indentation_depth"] += rounding
+    if not isinstance(loading, NormalForces):
+        errors["normal_force"] += rounding * system.contact_stiffness(radius)
+    return errors
 
 
 def elastic_changes(

@@ -9,7 +9,7 @@ import bem
 
 
 def loaded_after(statement):
-    code = f"{statement}; import sys; print('pyfftw' in sys.modules, 'mdr' in sys.modules)"
+    code = f"{statement}; import sys; print('bem.grid.transforms' in sys.modules, 'mdr' in sys.modules)"
     return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.split()
 
 

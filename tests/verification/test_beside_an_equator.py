@@ -14,6 +14,7 @@ from contact import (
     ContactRadii,
     IndentationDepths,
     Layer,
+    Loading,
     Method,
     NormalForces,
     Scene,
@@ -51,6 +52,25 @@ def test_profiles_of_tables_keep_their_slope(left: float) -> None:
     table = build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100})
     scene = contact(left)
     assert within_stated(table, scene, Mdr().solve(scene))
+
+
+@pytest.mark.parametrize("left", [0.03, 0.01, 5e-3, 3e-3])
+@pytest.mark.parametrize("loading", [ContactRadii, IndentationDepths, NormalForces])
+def test_tables_whose_grids_agree_by_accident_state_enough(left: float, loading: type[Loading]) -> None:
+    """The difference to half as many cells passes zero there: depth and radius were 1.3 times beyond."""
+    table = build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100})
+    scene = contact(left, LAYER.replace(thickness=5.0))
+    truth = Mdr().solve(scene)
+    values = {IndentationDepths: truth.indentation_depth, NormalForces: truth.normal_force}
+    assert within_stated(table, scene.replace(loading=loading(values.get(loading, truth.contact_radius))), truth)
+
+
+def test_tables_round_positions_beside_an_equator_too() -> None:
+    """Under a given force the depth was 47 times beyond, 7e-11 of it stated: a rounded radius moves it by 4e-9."""
+    table = build("mdr_table", {"cells": 64, "ratios": 60, "radii": 100})
+    scene = contact(1e-9, Layer(thickness=100.0, youngs_modulus=1.0, poissons_ratio=0.45, support="unbonded"))
+    truth = Mdr().solve(scene)
+    assert within_stated(table, scene.replace(loading=NormalForces(truth.normal_force)), truth)
 
 
 @pytest.mark.parametrize("loading", [IndentationDepths, NormalForces])

@@ -29,7 +29,7 @@ class AdheringCells:
     Attributes:
         scene: An adhesive scene.
         points: Cells of the fine grid; the coarse one has half as many.
-        threads: Of FFTW.
+        threads: Of the transforms.
         settings: Of the method, for the answer.
         log: Stage log.
     """
