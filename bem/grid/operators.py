@@ -188,7 +188,7 @@ def _reciprocal(symbol: FloatArray) -> FloatArray:
 
 def _transform(cells: int, period: int, *, quarter: bool, threads: int) -> Transform:
     if not quarter:
-        return FullTransform(cells, period)
+        return FullTransform(cells, period, threads=threads)
     if cells % 2:
         raise InvalidInput(f"a mirror-symmetric grid needs an even number of cells, got {cells}")
     return QuarterTransform(cells // 2, period, threads=threads)

@@ -12,7 +12,7 @@ from threadpoolctl import threadpool_info  # type: ignore[import-untyped]
 
 from cases.results.records.run import Stamp
 
-_PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "h5py", "pydantic", "contact-verification")
+_PACKAGES = ("numpy", "scipy", "scikit-fem", "gmsh", "pyfftw", "h5py", "pydantic", "contact-verification")
 _SOURCE = Path(__file__).resolve().parent.parent
 
 

@@ -37,7 +37,7 @@ if not method.supports(scene):
 answer = method.solve(scene)
 print(json.dumps({
     "modules": sorted(m for m in sys.modules if m.split(".")[0] in ("bem", "mdr", "fem_reference")),
-    "foreign": sorted({m.split(".")[0] for m in sys.modules} & {"skfem", "gmsh", "matplotlib", "h5py"}),
+    "foreign": sorted({m.split(".")[0] for m in sys.modules} & {"pyfftw", "skfem", "gmsh", "matplotlib", "h5py"}),
     "stages": sorted(stage.name for stage in answer.stages),
 }))
 """
