@@ -156,7 +156,7 @@ def total_force(
         front: Its y, and the spring force there.
         bends: The y where spring forces bend, increasing, shape (bends,).
     """
-    last, load = int(np.flatnonzero(touching)[-1]), bed.density * forces
+    last, load = int(np.flatnonzero(touching)[-1]) if touching.any() else -1, bed.density * forces
     total = np.array([bed.core * float(forces[0]), 0.0])
     for one in bed.sections():
         if one.start > last:
@@ -237,7 +237,7 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     inside, of springs touched one after the other, bend within the way that it goes in a relaxation time. A front that
     recedes lies where the forces inside vanish, for the same reason turned around.
     """
-    if _advances(law, bed, state, speed):
+    if advances(law, bed, state, speed):
         y = touched_front(bed, state)
         return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
     # Nothing is in contact beyond where an undeformed surface would be.
@@ -245,7 +245,7 @@ def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, s
     return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
 
 
-def _advances(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> bool:
+def advances(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> bool:
     """Whether the indenter reaches springs outside the front."""
     outside = int(np.flatnonzero(state.touching)[-1]) + 1
     return outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside])
@@ -274,7 +274,7 @@ def carried(
     y, at_front = front(law, bed, state, forces, speed)
     force, doubt = total_force(bed, state.touching, forces, (y, at_front), bends).tolist()
     hidden = bends[(bends > y) & (bends < bed.y[int(np.flatnonzero(state.touching)[-1]) + 1 :][:1])]
-    return force, y, doubt, float(hidden[-1]) - y if hidden.size and _advances(law, bed, state, speed) else 0.0
+    return force, y, doubt, float(hidden[-1]) - y if hidden.size and advances(law, bed, state, speed) else 0.0
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:

@@ -32,6 +32,7 @@ from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.followed import FollowedHistory, states_at
 from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
+from mdr.history.newly_touched import Turn, carried_since
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
@@ -389,12 +390,15 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
     records: list[tuple[float, ...]] = []
-    bent, turns, bends = False, _turns(loading), np.empty(0)
+    bent, turns, bends, turn = False, _turns(loading), np.empty(0), None
     for i, (state, speed) in enumerate(states_at(law, bed, loading, substeps)):
-        bent |= _check_circle(law, state, speed, float(loading.time[i]))
-        records.append((state.depth, *carried(law, bed, state, speed, bends)))
+        time = float(loading.time[i])
+        bent |= _check_circle(law, state, speed, time)
+        held = carried_since(turn, law, bed, (time, state), bends) if turn else carried(law, bed, state, speed, bends)
+        records.append((state.depth, *held))
         if turns[i]:
-            bends = np.unique([*bends, records[-1][2]])
+            turn = Turn(time, state, records[-1][2])
+            bends = np.unique([*bends, turn.front])
     depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
