@@ -13,16 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from bem.polynomials.gauss_panels import PANEL_NODES, gauss_nodes
+from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
 from mdr.history.contact_edge import SpringBed, advances, carried, total_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance
 from mdr.springs.error_model import SPRING_ROUNDING
 
-# Panels, each a tenth as long as the one before it: the last is 1e-6 of the way, and what bends within it carries less
-# than a rounding. On a panel a rule of `PANEL_NODES` leaves 1e-10 of an exponential, however steep.
-_PANELS = 7
-_SHRINKING = 0.1
+# Panels, each a quarter as long as all beyond it: the last is 4e-6 of the way, and what bends within it carries less
+# than a rounding. On a panel so many nodes leave 1e-10 of an exponential, whose size falls with its steepness.
+_PANELS, _NODES = 10, 16
+_SHRINKING = 0.25
 # Springs that a cubic spline takes.
 _FEWEST = 4
 
@@ -113,7 +113,7 @@ def _speed(turn: Turn, now: tuple[float, BedState]) -> float:
 def _crowded(start: float, end: float) -> tuple[FloatArray, FloatArray]:
     """The start and Gauss nodes on panels that shrink towards the end, with their weights."""
     left = np.append(end - (end - start) * _SHRINKING ** np.arange(_PANELS), end)
-    nodes, weights = gauss_nodes(PANEL_NODES)
+    nodes, weights = gauss_nodes(_NODES)
     widths = np.diff(left)[:, None]
     places = (left[:-1, None] + widths * nodes).ravel()
     return np.append(start, places), np.append(0.0, (widths * weights).ravel())

@@ -174,13 +174,12 @@ def _errors(scene: Scene, table: SpringTable | None, found: _FoundHistory, sprin
         springs: Relative error of the springs.
     """
     by_springs, by_steps = (
-        [_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs]
-        for pairs in (found.by_springs, found.by_steps)
+        [_moved(scene, table, *pair) for pair in pairs] for pairs in (found.by_springs, found.by_steps)
     )
     known = SPRINGS_TO_MOTION * springs + _ROUNDING
     track = found.track
-    # Fronts are cubics' zeros, far better than the bound's second order: they need no safety factor.
-    hidden = _change(_radius(scene, table, track.y), _radius(scene, table, track.y + track.hidden))
+    largest = float(_radius(scene, table, track.y).max())
+    hidden = HISTORY_SAFETY * float(_hidden(scene, table, track).max()) / largest
     moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + hidden + known
     if found.error > LARGEST_HISTORY_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
@@ -292,6 +291,18 @@ def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> FloatArr
     """Without the errors of second and fourth order."""
     first, second = fine + (fine - middle) / 3.0, middle + (middle - coarse) / 3.0
     return first + (first - second) / 15.0
+
+
+def _moved(scene: Scene, table: SpringTable | None, fine: _Track, coarse: _Track) -> float:
+    """Largest difference of contact radii against the largest, beyond what either history says it does not know."""
+    one, other = (_radius(scene, table, track.y) for track in (fine, coarse))
+    unknown = _hidden(scene, table, fine) + _hidden(scene, table, coarse)
+    return float(np.maximum(np.abs(one - other) - unknown, 0.0).max() / one.max())
+
+
+def _hidden(scene: Scene, table: SpringTable | None, track: _Track) -> FloatArray:
+    """How far beyond its contact radius [m] a front may stand."""
+    return np.abs(_radius(scene, table, track.y + track.hidden) - _radius(scene, table, track.y))
 
 
 def _change(fine: FloatArray, coarse: FloatArray) -> float:
