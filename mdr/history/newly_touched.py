@@ -64,7 +64,7 @@ def carried_since(
     speed, state = _speed(turn, now), now[1]
     force, y, doubt, hidden = carried(law, bed, state, speed, bends)
     if y > 0.0 and law.weights.size and advances(law, bed, state, speed):
-        new = newly_touched(law, bed, turn, now, y, bends)
+        new = newly_touched(law, bed, turn, now, y=y, bends=bends)
         if new is not None:
             forces = law.force(state.surface, state.strains, speed)
             inner = state.touching & (bed.y < new.start)
@@ -74,7 +74,7 @@ def carried_since(
 
 
 def newly_touched(
-    law: SpringLaw, bed: SpringBed, turn: Turn, now: tuple[float, BedState], y: float, bends: FloatArray
+    law: SpringLaw, bed: SpringBed, turn: Turn, now: tuple[float, BedState], *, y: float, bends: FloatArray
 ) -> NewlyTouched | None:
     """The force beyond the older front; None where spring forces are smooth, or too few springs tell.
 
