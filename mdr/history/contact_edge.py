@@ -1,6 +1,6 @@
 """Where the front of a spring bed stands, and what the springs within it carry.
 
-The front lies between two springs. Its place is extrapolated from the four outermost springs in contact, the force
+The front lies between two springs. Its place is extrapolated from up to six springs on one side, the force
 integrated by the trapezoidal rule with end corrections and parabolas beyond the last spring and beside bends, which
 older fronts have left: fourth order in the spring distance.
 """
@@ -21,8 +21,7 @@ from mdr.springs.error_model import EPS, SPRING_ROUNDING
 
 # A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
-# Number of springs of one section from which the place of the front is extrapolated, by a parabola; with one more, by a
-# cubic.
+# Least number of springs of one section from which the place of the front is extrapolated.
 _NEEDED = 3
 
 # Most values that tell where a front stands; one more changes the place by roundings.

@@ -58,7 +58,8 @@ _LEVELS = (8, 4, 2, 1)
 # What remains by changes that shrink by r is taken so many times, with r at least the second. With the first as one
 # depths were covered in 20 of 23 histories of first order, r = 2 (plan "growing" of suite nightly, 2026-11-23).
 _MARGIN_OF_ORDER, _LEAST_SHRINKING = 1.5, 1.2
-# Orders between which the errors of the springs' number fall; kinks of old fronts take up to half an order.
+# Orders between which the errors of the springs' number fall; kinks of old fronts and edges that springs do not resolve
+# take up to one order.
 _ORDERS = np.array([1.0, 1.5, 1.75, 2.0])
 # A history that its springs do not resolve is followed again on so many times as many before it is refused: a layer
 # that flows carries its force near the front only, whose place they know to first order. All six histories that 641
