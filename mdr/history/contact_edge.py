@@ -1,6 +1,6 @@
 """Where the front of a spring bed stands, and what the springs within it carry.
 
-The front lies between two springs. Its place is extrapolated from the four outermost springs in contact, the force
+The front lies between two springs. Its place is extrapolated from up to six springs on one side, the force
 integrated by the trapezoidal rule with end corrections and parabolas beyond the last spring and beside bends, which
 older fronts have left: fourth order in the spring distance.
 """
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,15 +17,29 @@ from numpy.typing import NDArray
 from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
-from mdr.springs.error_model import SPRING_ROUNDING
+from mdr.springs.error_model import EPS, SPRING_ROUNDING
 
 # A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
-# Number of springs of one section from which the place of the front is extrapolated, by a parabola; with one more, by a
-# cubic.
+# Least number of springs of one section from which the place of the front is extrapolated.
 _NEEDED = 3
 
+# Most values that tell where a front stands; one more changes the place by roundings.
+_MOST_VALUES = 2 * _NEEDED
+
 _NONE = np.empty(0)
+
+
+class Place(NamedTuple):
+    """Where a front stands.
+
+    Attributes:
+        y: Its coordinate.
+        left: How far off that may be, for all that the springs around tell.
+    """
+
+    y: float
+    left: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -61,33 +76,34 @@ class SpringBed:
         return float(self.y[start + 1] - self.y[start])
 
 
-def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray) -> float:
-    """y of the outermost contact where the spring force falls to zero, seen from inside."""
+def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray) -> Place:
+    """The outermost contact where the spring force falls to zero, seen from inside."""
     last = int(np.flatnonzero(touching)[-1])
     if last + 1 == bed.y.size:
-        return float(bed.y[-1])
+        return Place(float(bed.y[-1]))
     start = bed.section(last).start
     if last - start < _NEEDED - 1 and start:
-        return _by_radius(bed, last, (start - 2, last), forces)
-    inner = forces[max(last - _NEEDED, start) : last + 1][::-1]
-    return float(bed.y[last] + way_to_zero(inner, bed.step(last)))
+        return Place(_by_radius(bed, last, (start - 2, last), forces))
+    way, left = way_to_zero(forces[start : last + 1][::-1], bed.step(last))
+    return Place(float(bed.y[last]) + way, left)
 
 
-def touched_front(bed: SpringBed, state: BedState) -> float:
-    """y of the outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
+def touched_front(bed: SpringBed, state: BedState) -> Place:
+    """The outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
     first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
-        return float(bed.y[-1])
+        return Place(float(bed.y[-1]))
     own, gaps = bed.section(first), state.surface + bed.profile - state.depth
     around = slice(max(min(first, own.stop - _NEEDED) - _NEEDED, own.start), own.stop)
-    around = slice(around.start, around.start + 2 * _NEEDED)
+    around = slice(around.start, around.start + _MOST_VALUES)
     # Where nothing has been pressed, the gap goes on inside the contact.
     if around.stop <= own.stop and first > own.start and not state.surface[first : around.stop].any():
         share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
-        return float(bed.y[around.start] + share * bed.step(first))
+        return Place(float(bed.y[around.start] + share * bed.step(first)))
     if own.stop - first >= _NEEDED or own.stop == bed.y.size:
-        return float(bed.y[first] - way_to_zero(gaps[first : min(first + _NEEDED + 1, own.stop)], bed.step(first)))
-    return _by_radius(bed, first - 1, (first, own.stop + 1), gaps)
+        way, left = way_to_zero(gaps[first : own.stop], bed.step(first))
+        return Place(float(bed.y[first]) - way, left)
+    return Place(_by_radius(bed, first - 1, (first, own.stop + 1), gaps))
 
 
 def _zero(values: FloatArray, low: int) -> float:
@@ -122,26 +138,50 @@ def _by_radius(bed: SpringBed, last: int, pair: tuple[int, int], values: FloatAr
     return float(bed.y[start] + (np.sqrt(max(way, 0.0)) if bed.radius[start] > 0.0 else way))  # see `SpringTable`
 
 
-def way_to_zero(values: FloatArray, step: float) -> float:
-    """How far before the first of up to four equidistant values their polynomial vanishes, at most one step."""
+def way_to_zero(values: FloatArray, step: float) -> tuple[float, float]:
+    """How far before the first of equidistant values their polynomial vanishes, at most one step, and what is left.
+
+    One value after the other is taken in as long as each changes the way by less than the one before.
+    """
     # Beyond a flat punch's rim the gap is infinite.
-    if not np.isfinite(values).all():
-        return step
-    if values.size < 3:
-        slope = (values[1] - values[0]) / step if values.size == 2 else values[0] / step
-        way = values[0] / slope if slope > 0.0 else step
-        return float(min(max(way, 0.0), step))
-    slope = (-1.5 * values[0] + 2.0 * values[1] - 0.5 * values[2]) / step
-    curvature = (values[0] - 2.0 * values[1] + values[2]) / step**2
-    root = slope + np.sqrt(max(slope**2 - 2.0 * curvature * values[0], 0.0))
-    way = 2.0 * values[0] / root if root > 0.0 else step
-    if values.size > _NEEDED:
-        # What a cubic through one value more adds to the parabola at its zero, over the slope there.
-        share = way / step
-        third = values[0] - 3.0 * values[1] + 3.0 * values[2] - values[3]
-        added = third * share * (share + 1.0) * (share + 2.0) / 6.0
-        way += added / (slope - curvature * way) if slope > curvature * way else 0.0
-    return float(min(max(way, 0.0), step))
+    if not np.isfinite(values[:_NEEDED]).all():
+        return step, 0.0
+    differences = _differences(values[:_MOST_VALUES].tolist())
+    way = _way(differences[:2], 0.5) if values.size > 1 else 1.0
+    change, left = 1.0, 0.0
+    for count in range(_NEEDED, len(differences) + 1):
+        following = _way(differences[:count], way)
+        before, change = change, abs(following - way)
+        if change >= before > 0.0:
+            left = change
+            break
+        way, left = following, change * min(change / max(before - change, EPS), 1.0)
+    return way * step, left * step
+
+
+def _differences(values: list[float]) -> list[float]:
+    """Of orders 0, 1, 2 .., from the first value backwards: as `_polynomial` takes them before that value."""
+    found = []
+    while values:
+        found.append(values[0])
+        values = [one - other for one, other in pairwise(values)]
+    return found
+
+
+def _way(differences: list[float], way: float) -> float:
+    """Steps, at most one, to where the polynomial of backward differences vanishes, by Newton's rule."""
+    for _ in range(MOST_STEPS):
+        value, slope, term, grown = 0.0, 0.0, 1.0, 0.0
+        for order, difference in enumerate(differences):
+            value, slope = value + term * difference, slope + grown * difference
+            term, grown = term * (way + order) / (order + 1), (grown * (way + order) + term) / (order + 1)
+        if slope >= 0.0:
+            return 1.0 if value > 0.0 else 0.0
+        following = min(max(way - value / slope, 0.0), 1.0)
+        if abs(following - way) <= EPS:
+            return following
+        way = following
+    return way
 
 
 def total_force(
@@ -156,7 +196,7 @@ def total_force(
         front: Its y, and the spring force there.
         bends: The y where spring forces bend, increasing, shape (bends,).
     """
-    last, load = int(np.flatnonzero(touching)[-1]), bed.density * forces
+    last, load = int(np.flatnonzero(touching)[-1]) if touching.any() else -1, bed.density * forces
     total = np.array([bed.core * float(forces[0]), 0.0])
     for one in bed.sections():
         if one.start > last:
@@ -230,22 +270,22 @@ def _beyond(load: FloatArray, step: float, way: float, edge: float) -> float:
     return float(load[-1] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
-def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[float, float]:
-    """Coordinate y of the front, and the spring force there [m], which only a bare dashpot leaves.
+def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[Place, float]:
+    """The front, and the spring force there [m], which only a bare dashpot leaves.
 
     A front that advances lies where the gap outside closes: nothing has happened there of late, while the forces just
     inside, of springs touched one after the other, bend within the way that it goes in a relaxation time. A front that
     recedes lies where the forces inside vanish, for the same reason turned around.
     """
-    if _advances(law, bed, state, speed):
-        y = touched_front(bed, state)
-        return y, _continued(bed, state.touching, forces, y) if law.viscosity > 0.0 else 0.0
+    if advances(law, bed, state, speed):
+        place = touched_front(bed, state)
+        return place, _continued(bed, state.touching, forces, place.y) if law.viscosity > 0.0 else 0.0
     # Nothing is in contact beyond where an undeformed surface would be.
-    w, y = state.depth - bed.profile, released_front(bed, state.touching, forces)
-    return (min(y, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else y), 0.0
+    w, place = state.depth - bed.profile, released_front(bed, state.touching, forces)
+    return (min(place, released_front(bed, w > 0.0, w)) if np.any(w > 0.0) else place), 0.0
 
 
-def _advances(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> bool:
+def advances(law: SpringLaw, bed: SpringBed, state: BedState, speed: float) -> bool:
     """Whether the indenter reaches springs outside the front."""
     outside = int(np.flatnonzero(state.touching)[-1]) + 1
     return outside == bed.y.size or law.outruns(speed, float(state.surface[outside]), state.strains[:, outside])
@@ -271,10 +311,12 @@ def carried(
     forces = law.force(state.surface, state.strains, speed)
     if bed.y.size < _FEW:
         return bed.core * float(forces[0]), 0.0, 0.0, 0.0
-    y, at_front = front(law, bed, state, forces, speed)
+    (y, left), at_front = front(law, bed, state, forces, speed)
     force, doubt = total_force(bed, state.touching, forces, (y, at_front), bends).tolist()
-    hidden = bends[(bends > y) & (bends < bed.y[int(np.flatnonzero(state.touching)[-1]) + 1 :][:1])]
-    return force, y, doubt, float(hidden[-1]) - y if hidden.size and _advances(law, bed, state, speed) else 0.0
+    if advances(law, bed, state, speed):
+        hidden = bends[(bends > y) & (bends < bed.y[int(np.flatnonzero(state.touching)[-1]) + 1 :][:1])] - y
+        left = max(left, float(hidden.max(initial=0.0)))
+    return force, y, doubt, left
 
 
 def _continued(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray, y: float) -> float:

@@ -103,7 +103,7 @@ def _springs(history: FollowedHistory, bed: SpringBed, step: int) -> tuple[Sprin
     if isinstance(history.scene.indenter, FlatPunch):
         one, two = (spring_forces(bed, [], float(v[0]), longest) for v in (forces, state.surface))
         return one, two, state.depth
-    y, at_front = front(history.law, bed, state, forces, speed)
+    (y, _), at_front = front(history.law, bed, state, forces, speed)
     pressed = spring_forces(bed, runs_to(bed, forces, y, at_front), at_front, longest)
     surface = value_at(bed, state.depth - bed.profile, y)
     moved = [*runs_to(bed, state.surface, y, surface), *runs_from(bed, state.surface, y, surface)]

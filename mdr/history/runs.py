@@ -61,7 +61,7 @@ def runs_from(bed: SpringBed, values: FloatArray, begin: float, at_begin: float)
     last = int(np.flatnonzero(values)[-1])
     if bed.y[last] <= begin:
         return []
-    end = bed.y[last] + way_to_zero(values[max(last - 2, bed.section(last).start) : last + 1][::-1], bed.step(last))
+    end = bed.y[last] + way_to_zero(values[bed.section(last).start : last + 1][::-1], bed.step(last))[0]
     runs: list[Run] = []
     for run in runs_to(bed, values, float(end), 0.0):
         keep = run.y > begin + (0.0 if runs else _APART * bed.step(bed.starts[run.section]))

@@ -32,6 +32,7 @@ from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried
 from mdr.history.followed import FollowedHistory, states_at
 from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
+from mdr.history.newly_touched import Turn, carried_since
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
@@ -57,8 +58,9 @@ _LEVELS = (8, 4, 2, 1)
 # What remains by changes that shrink by r is taken so many times, with r at least the second. With the first as one
 # depths were covered in 20 of 23 histories of first order, r = 2 (plan "growing" of suite nightly, 2026-11-23).
 _MARGIN_OF_ORDER, _LEAST_SHRINKING = 1.5, 1.2
-# Orders between which the errors of the springs' number fall; kinks of old fronts take up to half an order.
-_ORDERS = np.array([1.5, 1.75, 2.0])
+# Orders between which the errors of the springs' number fall; kinks of old fronts and edges that springs do not resolve
+# take up to one order.
+_ORDERS = np.array([1.0, 1.5, 1.75, 2.0])
 # A history that its springs do not resolve is followed again on so many times as many before it is refused: a layer
 # that flows carries its force near the front only, whose place they know to first order. All six histories that 641
 # springs had to refuse are then answered, with errors of 1e-4 to 1e-3 stated (`contact-verify campaign reloading
@@ -173,13 +175,12 @@ def _errors(scene: Scene, table: SpringTable | None, found: _FoundHistory, sprin
         springs: Relative error of the springs.
     """
     by_springs, by_steps = (
-        [_change(_radius(scene, table, one.y), _radius(scene, table, other.y)) for one, other in pairs]
-        for pairs in (found.by_springs, found.by_steps)
+        [_moved(scene, table, *pair) for pair in pairs] for pairs in (found.by_springs, found.by_steps)
     )
     known = SPRINGS_TO_MOTION * springs + _ROUNDING
     track = found.track
-    # Fronts are cubics' zeros, far better than the bound's second order: they need no safety factor.
-    hidden = _change(_radius(scene, table, track.y), _radius(scene, table, track.y + track.hidden))
+    largest = float(_radius(scene, table, track.y).max())
+    hidden = HISTORY_SAFETY * float(_hidden(scene, table, track).max()) / largest
     moved = _on_all_springs(by_springs) + found.left * sum(by_steps) + hidden + known
     if found.error > LARGEST_HISTORY_ERROR:
         raise NotConvergedError("the springs do not resolve this history", {"change with fewer": found.error})
@@ -293,6 +294,18 @@ def _limit(fine: FloatArray, middle: FloatArray, coarse: FloatArray) -> FloatArr
     return first + (first - second) / 15.0
 
 
+def _moved(scene: Scene, table: SpringTable | None, fine: _Track, coarse: _Track) -> float:
+    """Largest difference of contact radii against the largest, beyond what either history says it does not know."""
+    one, other = (_radius(scene, table, track.y) for track in (fine, coarse))
+    unknown = _hidden(scene, table, fine) + _hidden(scene, table, coarse)
+    return float(np.maximum(np.abs(one - other) - unknown, 0.0).max() / one.max())
+
+
+def _hidden(scene: Scene, table: SpringTable | None, track: _Track) -> FloatArray:
+    """How far beyond its contact radius [m] a front may stand."""
+    return np.abs(_radius(scene, table, track.y + track.hidden) - _radius(scene, table, track.y))
+
+
 def _change(fine: FloatArray, coarse: FloatArray) -> float:
     """Largest difference against the largest value."""
     return float(np.abs(fine - coarse).max() / max(float(np.abs(fine).max()), np.finfo(float).tiny))
@@ -389,12 +402,15 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
     records: list[tuple[float, ...]] = []
-    bent, turns, bends = False, _turns(loading), np.empty(0)
+    bent, turns, bends, turn = False, _turns(loading), np.empty(0), None
     for i, (state, speed) in enumerate(states_at(law, bed, loading, substeps)):
-        bent |= _check_circle(law, state, speed, float(loading.time[i]))
-        records.append((state.depth, *carried(law, bed, state, speed, bends)))
+        time = float(loading.time[i])
+        bent |= _check_circle(law, state, speed, time)
+        held = carried_since(turn, law, bed, (time, state), bends) if turn else carried(law, bed, state, speed, bends)
+        records.append((state.depth, *held))
         if turns[i]:
-            bends = np.unique([*bends, records[-1][2]])
+            turn = Turn(time, state, records[-1][2])
+            bends = np.unique([*bends, turn.front])
     depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
