@@ -179,9 +179,6 @@ def pull_off_errors(
     interpolated = _interpolated(extremum, pull_off.control, there, slopes)
     # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
     independent = [by_degree, extremum.shift_by_scatter * slopes, _scattered(branch, here[0], there[0])]
-    # Between many breakpoints the last terms hold what the meshes scatter, too; elsewhere that has been taken off.
-    if branch.piece_around(here[0]).is_rough:
-        independent, interpolated = [*independent, interpolated], np.zeros(4)
     far = np.array([branch.errors_far(here)[0, 0], branch.errors_far(there)[1, 0], 0.0, branch.errors_far(here)[1, 0]])
     depth, force, place, lost = np.linalg.norm(independent, axis=0) + interpolated + edge_error(branch, numbers) + far
     depth, force, lost = (
