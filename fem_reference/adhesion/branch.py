@@ -85,8 +85,10 @@ class BranchPiece:
         if not self.is_rough:
             return 1.0, 0.0
         place, punches = self._logarithmic(radius), self._punches
-        growth = chebval(place, chebder(punches)) * 2 / np.log(self.high / self.low)
-        depth, force = superposed(self.contacts[-1].indenter.profile, radius, chebval(place, punches), growth)
+        growth = np.asarray(chebval(place, chebder(punches)) * 2 / np.log(self.high / self.low), dtype=np.float64)
+        depth, force = superposed(
+            self.contacts[-1].indenter.profile, radius, np.asarray(chebval(place, punches), dtype=np.float64), growth
+        )
         return (slope / 2.0, depth) if name == "smooth_depth" else (1.0, force)
 
     def _logarithmic(self, radius: FloatArray) -> FloatArray:
