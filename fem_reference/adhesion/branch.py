@@ -5,18 +5,15 @@ The energy release rate ``G = k_N' (delta - delta_0)^2 / (4 pi a)`` equals the w
     delta(a) = delta_0(a) - dl(a),   dl(a) = sqrt(4 pi a dgamma / k_N'(a)),      F(a) = k_N delta + F_2.
 
 k_N, k_N', delta_0 and F_2 are solved at Chebyshev points and interpolated; between the kinks of the profile they are
-smooth, next to a flat end in the square root of a - b.  Where a profile has breakpoints between solved radii, what it
-does on a half-space is known at every radius, and only the rest is interpolated.  With ``phi^2 = k_N' / 2``, the edge
-value of the flat punch's density, and the half-space's depth g and half force V,
-
-    delta_0 = (g + smooth) / phi,   F_2 = smooth - 2 phi V.
+smooth, next to a flat end in the square root of a - b.  Where a profile has breakpoints between solved radii, only what
+the pressures of flat punches do not tell of ``k_N' delta_0`` and F_2 is interpolated, see `superposed`: nearly nothing.
 
 Units: SI for lengths, stresses by E*.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
@@ -27,7 +24,7 @@ from numpy.polynomial.chebyshev import chebder, chebfit, chebval
 
 from contact.records.validation import BoolArray, FloatArray
 from contact.scene.loading import Controlled
-from fem_reference.adhesion.half_space import half_space_parts
+from fem_reference.adhesion.superposed import punch_pressure, superposed
 from fem_reference.elastic.error_estimate import ContactWithErrors
 from fem_reference.error_model import FIXED_RADIUS
 
@@ -84,12 +81,30 @@ class BranchPiece:
         return np.asarray((value + known) / factor)
 
     def _known(self, name: str, radius: FloatArray, slope: FloatArray) -> tuple[FloatArray | float, FloatArray | float]:
-        """Factor on delta_0 or F_2, and its known part on a half-space, at radii [m] and slopes k_N'."""
+        """Factor on delta_0 or F_2, and its part that flat punches tell, at radii [m] and slopes k_N'."""
         if not self.is_rough:
             return 1.0, 0.0
-        depth, half_force = half_space_parts(self.contacts[-1].indenter.profile, radius)
-        edge = np.sqrt(slope / 2.0)
-        return (edge, depth) if name == "smooth_depth" else (1.0, -2.0 * edge * half_force)
+        place, punches = self._logarithmic(radius), self._punches
+        growth = np.asarray(chebval(place, chebder(punches)) * 2 / np.log(self.high / self.low), dtype=np.float64)
+        depth, force = superposed(
+            self.contacts[-1].indenter.profile, radius, np.asarray(chebval(place, punches), dtype=np.float64), growth
+        )
+        return (slope / 2.0, depth) if name == "smooth_depth" else (1.0, force)
+
+    def _logarithmic(self, radius: FloatArray) -> FloatArray:
+        """ln a of radii [m], from -1 to 1 within the piece."""
+        return np.asarray(2 * np.log(radius / self.low) / np.log(self.high / self.low) - 1)
+
+    @cached_property
+    def _punches(self) -> FloatArray:
+        """Chebyshev coefficients of the pressures of flat punches over ln a, shape (degree + 1, term).
+
+        They are smooth, and every radius has a mesh of its own: a polynomial of half the degree that could pass through
+        all of them hardly feels the errors of the meshes, even in its slope.  What it leaves is interpolated.
+        """
+        levels = (contact.levels[self.degree or contact.settings.order] for contact in self.contacts)
+        pressures = np.array([punch_pressure(level) for level in levels])
+        return np.asarray(chebfit(self._logarithmic(self.radii), pressures, (len(self.contacts) - 1) // 2))
 
     @property
     def radii(self) -> FloatArray:
@@ -130,12 +145,9 @@ class BranchPiece:
         """Errors of such numbers between the solved radii: their last terms, less what these owe to the meshes.
 
         Every radius has a mesh of its own, whose error differs from the next one's: that is no error of interpolation.
-        It is taken off each interpolant apart, since what is left may have any sign.  Between many breakpoints
-        coefficients fall too slowly to tell the two apart.
+        It is taken off each interpolant apart, since what is left may have any sign.
         """
-        if self.is_rough:
-            return self.last_terms(counts)
-        low, high = (replace(self, degree=k).last_coefficients for k in sorted(self.contacts[0].levels)[-2:])
+        low, high = (self.at_degrees[degree].last_coefficients for degree in sorted(self.at_degrees)[-2:])
         share = FIXED_RADIUS.safety * float(np.mean([contact.rate for contact in self.contacts]))
         left = np.abs(self.last_coefficients).sum(axis=1) - share * np.abs(high - low).sum(axis=1)
         return np.asarray(np.maximum(left, 0.0) @ np.abs(counts))
@@ -147,13 +159,17 @@ class BranchPiece:
         """
         stiffness, depth = self.evaluate("stiffness", radius), self.evaluate("smooth_depth", radius)
         slope = self.evaluate("stiffness_slope", radius)
-        edge = self._known("smooth_depth", radius, slope)[0] * np.ones_like(radius)
-        half_profile = self._known("profile_force", radius, slope)[1] / 2 * np.ones_like(radius)
-        none, by_slope = np.zeros_like(radius), (elongation - self.is_rough * depth) / 2
-        of_force = stiffness * (depth - elongation), stiffness * by_slope + half_profile, stiffness / edge, none + 1.0
-        return np.array([[none, by_slope, 1 / edge, none], of_force])
+        factor = self._known("smooth_depth", radius, slope)[0] * np.ones_like(radius)
+        none, by_slope = np.zeros_like(radius), elongation / 2 - self.is_rough * depth
+        of_force = stiffness * (depth - elongation), stiffness * by_slope, stiffness / factor, none + 1.0
+        return np.array([[none, by_slope, 1 / factor, none], of_force])
 
-    @property
+    @cached_property
+    def at_degrees(self) -> Mapping[int, BranchPiece]:
+        """The piece as elements of each degree that was solved have it."""
+        return {degree: replace(self, degree=degree) for degree in self.contacts[0].levels}
+
+    @cached_property
     def is_rough(self) -> bool:
         """Whether the profile has breakpoints between the ends."""
         indenter = self.contacts[-1].indenter
@@ -188,7 +204,7 @@ class InterpolatedBranch:
 
     def at_degree(self, degree: int) -> InterpolatedBranch:
         """The branch as elements of another degree have it."""
-        return replace(self, pieces=[replace(piece, degree=degree) for piece in self.pieces])
+        return replace(self, pieces=[piece.at_degrees[degree] for piece in self.pieces])
 
     def _evaluate(self, name: str, radius: FloatArray) -> FloatArray:
         if self.is_shifted:
@@ -197,7 +213,8 @@ class InterpolatedBranch:
         values = np.full_like(radius, np.nan)
         for piece in self.pieces:
             inside = (radius >= piece.low * (1 - 1e-14)) & (radius <= piece.high * (1 + 1e-14))
-            values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
+            if np.any(inside):
+                values[inside] = piece.evaluate(name, np.clip(radius[inside], piece.low, piece.high))
         return values
 
     def stiffness(self, radius: FloatArray) -> FloatArray:

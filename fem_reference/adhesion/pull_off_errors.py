@@ -177,13 +177,12 @@ def pull_off_errors(
     # What the slower rate of single radii would add to the place is in the scatter.
     by_degree[2] = degree_error(branch, numbers, "rate_at_load")[2]
     interpolated = _interpolated(extremum, pull_off.control, there, slopes)
-    # The degree moves all solved radii alike, the meshes each of them by itself: independent errors.
-    independent = [by_degree, extremum.shift_by_scatter * slopes, _scattered(branch, here[0], there[0])]
-    # Between many breakpoints the last terms hold what the meshes scatter, too; elsewhere that has been taken off.
-    if branch.piece_around(here[0]).is_rough:
-        independent, interpolated = [*independent, interpolated], np.zeros(4)
+    # What the degree changes may be small by accident, and what the solved radii scatter tells the same errors: the
+    # larger counts.  Errors of the place, and what is left between the solved radii, are independent of it.
+    here_and_there = np.maximum(by_degree, _scattered(branch, here[0], there[0]))
+    independent = [here_and_there, extremum.shift_by_scatter * slopes, interpolated]
     far = np.array([branch.errors_far(here)[0, 0], branch.errors_far(there)[1, 0], 0.0, branch.errors_far(here)[1, 0]])
-    depth, force, place, lost = np.linalg.norm(independent, axis=0) + interpolated + edge_error(branch, numbers) + far
+    depth, force, place, lost = np.linalg.norm(independent, axis=0) + edge_error(branch, numbers) + far
     depth, force, lost = (
         held_error(branch, radius, row) or error
         for radius, row, error in ((here[0], 0, depth), (there[0], 1, force), (here[0], 1, lost))

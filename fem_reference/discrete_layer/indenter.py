@@ -168,7 +168,7 @@ class ScaledIndenter:
 
     def slope(self, radius: FloatArray) -> FloatArray:
         """f' at r / a, at the contact edge the value from inside."""
-        return np.asarray(shape(self.profile, (1 - 1e-10) * self._inside(radius)).slope)
+        return np.asarray(shape(self.profile, (1 - 1e-15) * self._inside(radius)).slope)
 
     def _inside(self, radius: FloatArray) -> FloatArray:
         return np.minimum(radius * self.contact_radius, min(self.contact_radius, self.profile.max_radius))

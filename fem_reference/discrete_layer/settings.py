@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Self
 
+import numpy as np
+
 from contact import ElasticLayer, InvalidInput, Layer, Profile
 from fem_reference.discrete_layer.elements import ElementPair, taylor_hood
 from fem_reference.discrete_layer.grading import Grading
@@ -23,6 +25,13 @@ NARROW_GROWTH = 0.7
 NARROWEST = 1e-7
 # No cell is smaller than a thousand roundings of its radius: nodes nearer than these coincide.
 SMALLEST = 1e-13
+# An upright end makes the edge cell no smaller than this times the radius: with cells of 1e-13 one mesh in six was so
+# uneven that depths were 1e-4 to 2e-3 off, with 1e-11 one in twenty (nu = 0 to 1/2, h/a = 0.2 to 2, spheres 1e-5 to
+# 1e-9 before their equator, growths 0.35 to 0.55, 2026-11-26).
+SMALLEST_BEFORE_END = 1e-11
+# Before an upright end that is nearer than `NARROW` cells grow by at most this: at growths of 0.7 and one, seven of 40
+# depths were more than a tenth off, at 1/2 one in twenty is more than 1e-3 off (the same, 1e-10 before it, too).
+GROWTH_BEFORE_END = 0.5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -32,7 +41,7 @@ class Discretisation:
     Attributes:
         order: polynomial degree k of the displacement, 2, 3 or 4; the pressure has degree k - 1.
         edge_cell: cell size at the contact edge, relative to the smallest of contact radius, thickness and the
-            distance from the edge to the next kink.
+            distances from the edge to the next kink and to an upright end.
         growth: increase of cell size per distance from a graded point; also the largest cell per thickness.
         truncation: relative change of the stiffness allowed to the outer edge.
         half_space_thickness: thickness, in contact radii, of the layer that stands for a half-space.
@@ -78,10 +87,13 @@ class Discretisation:
         )
 
     def beside_kinks(self, layer: ElasticLayer, indenter: ScaledIndenter) -> Self:
-        """Settings whose cells grow slowly enough where the last kink lies close to the contact's edge."""
-        ring = 1.0 - max(indenter.kinks, default=0.0)
-        narrow = ring < NARROW * min(1.0, self.thickness(layer, indenter.contact_radius))
-        return replace(self, growth=min(self.growth, NARROW_GROWTH)) if narrow else self
+        """Settings whose cells grow slowly enough where a kink or an upright end lies close to the contact's edge."""
+        near = NARROW * min(1.0, self.thickness(layer, indenter.contact_radius))
+        limits = {
+            NARROW_GROWTH: 1.0 - max(indenter.kinks, default=0.0),
+            GROWTH_BEFORE_END: indenter.left_to_upright_end,
+        }
+        return replace(self, growth=min(self.growth, *(g for g, distance in limits.items() if distance < near), np.inf))
 
     def thickness(self, layer: ElasticLayer, contact_radius: float) -> float:
         """h / a of what touches the indenter, or its stand-in for a half-space."""
@@ -116,7 +128,8 @@ def graded_points(
     logarithmic, like its square, but the L2 error of the pressure like its root.
     """
     last_kink = max(indenter.kinks, default=0.0)
-    edge_cell = max(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), SMALLEST)
+    before_end = max(settings.edge_cell * indenter.left_to_upright_end, SMALLEST_BEFORE_END)
+    edge_cell = max(min(settings.edge_cell * min(1.0, thickness, 1.0 - last_kink), before_end), SMALLEST)
     cells = {r: 0.5 * settings.growth * min(1.0, thickness) for r in indenter.breakpoints}
     ends = (0.0, *sorted(indenter.kinks), 1.0)
     cells |= {

@@ -28,7 +28,7 @@ from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.mesh import LayerMesh
 from fem_reference.discrete_layer.outer_edge import UNBONDED_DECAY
 from fem_reference.discrete_layer.problem import LayerProblem, problem_of
-from fem_reference.discrete_layer.settings import Discretisation, contact_mesh, graded_points
+from fem_reference.discrete_layer.settings import NARROW, Discretisation, contact_mesh, graded_points
 from fem_reference.elastic.prescribed_radius import PrescribedContact, solve_prescribed_contact
 from fem_reference.error_model import AT_LOAD, FIXED_RADIUS
 
@@ -179,6 +179,8 @@ class ContactWithErrors:
             change = np.maximum(change, self.fastest_rate * self._change(*before))
         # The error of k_N' is seldom below that of k_N.
         change[1] = max(change[1], change[0])
+        if self.indenter.left_to_upright_end < NARROW:
+            change[2:] *= FIXED_RADIUS.before_end
         return dict(zip(QUANTITIES, FIXED_RADIUS.safety * self.rate * change, strict=True))
 
     def changes_of(self, numbers: Callable[[PrescribedContact], FloatArray]) -> FloatArray:

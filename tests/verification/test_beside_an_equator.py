@@ -99,11 +99,12 @@ def test_cells_that_do_not_resolve_an_upright_end_are_refused() -> None:
         Bem(points=128).solve(contact(1e-5, Layer.half_space(youngs_modulus=1.0, poissons_ratio=0.3)))
 
 
-@pytest.mark.parametrize("left", [1e-3, 1e-5])
-def test_finite_elements_read_the_slope_before_the_end(left: float) -> None:
-    """It was read farther from the edge than the equator is: at 1e-5 the depth was 1.5 times as far off as stated."""
+@pytest.mark.parametrize("fem", [Fem(), Fem(accuracy=1e-2)])
+@pytest.mark.parametrize("left", [1e-3, 1e-5, 1e-7, 1e-9])
+def test_finite_elements_resolve_what_is_left_before_the_end(left: float, fem: Fem) -> None:
+    """Cells at the edge were wider than what was left: 1e-9 before the end the depth was 14 % off, 13 % stated."""
     scene = contact(left, LAYER.replace(poissons_ratio=0.3, thickness=1.0))
-    assert within_stated(Fem(), scene, Mdr().solve(scene))
+    assert within_stated(fem, scene, Mdr().solve(scene))
 
 
 @pytest.mark.parametrize("loading", [IndentationDepths, NormalForces])
