@@ -233,7 +233,8 @@ class CollocationStep:
 
     def polynomial(self) -> FloatArray:
         """Powers of z in [-1, 1] of the change of state, shape (m, 11, lanes)."""
-        return np.asarray(CHANGE @ (self.size * self.slopes))
+        # BLAS sums products with eleven rows in another order for two lanes than for many, on some processors.
+        return np.asarray(np.einsum("ij,mjl->mil", CHANGE, self.size * self.slopes))
 
     def put(self, lanes: IntArray, other: CollocationStep) -> None:
         """Replace some lanes."""

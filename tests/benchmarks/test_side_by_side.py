@@ -1,6 +1,6 @@
 """Who is ahead at equal error: only methods of one kind that are at least as accurate are compared."""
 
-from benchmarks.side_by_side import Runner, rows
+from benchmarks.side_by_side import Runner, main, rows
 from cases.declare.methods import MethodUse
 from cases.library.referees import outside_referees as suite
 
@@ -38,3 +38,12 @@ def test_each_solver_of_others_has_four_settings_where_it_has_any():
     ladder = suite.CASE.work[0].ladder
     counts = {use.method: sum(one.method == use.method for one in ladder) for use in ladder}
     assert {name for name, count in counts.items() if count < 4} == {"nanite"}
+
+
+def test_rows_that_we_lose_are_printed_first(monkeypatch, capsys):
+    theirs = runner("tamaas", "64 points", 2e-3, 0.05), runner("tamaas", "128 points", 5e-4, 2.0)
+    monkeypatch.setattr("benchmarks.side_by_side.raced", lambda *asked: [*OURS, *theirs])
+    monkeypatch.setattr("sys.argv", ["side_by_side"])
+    main()
+    first, *_ = capsys.readouterr().out.splitlines()[2:]
+    assert "tamaas, 64 points" in first

@@ -347,17 +347,22 @@ def test_solve_loads_with_few_collections_of_garbage(hertz):
     subprocess.run([sys.executable, "-c", code, "solve", hertz], check=True, stdout=subprocess.DEVNULL)
 
 
-def test_help_loads_no_solver_and_comes_in_half_a_second():
-    code = (
+def processor_seconds(code):
+    """Of a process that runs the code; another job on the machine does not count."""
+    start = os.times()
+    subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.DEVNULL)
+    end = os.times()
+    return (end.children_user - start.children_user) + (end.children_system - start.children_system)
+
+
+def test_help_loads_no_solver_and_takes_hardly_longer_than_the_library_that_prints_it():
+    used = processor_seconds(
         "import sys; from reports.command_line import run; run(['--help']); "
         "heavy = {'numpy', 'scipy', 'matplotlib', 'skfem', 'gmsh', 'pydantic', 'h5py'} & set(sys.modules); "
         "sys.exit(f'loaded: {heavy}' if heavy else 0)"
     )
-    start = os.times()
-    subprocess.run([sys.executable, "-c", code], check=True, stdout=subprocess.DEVNULL)
-    end = os.times()
-    used = (end.children_user - start.children_user) + (end.children_system - start.children_system)
-    assert used < 0.5  # processor seconds: another job on the machine does not count
+    # 1.3 to 1.4 of it (2026-11-26); seconds depend on the machine.
+    assert used < 2.0 * processor_seconds("import typer.rich_utils")
 
 
 def test_commands_compute_on_one_thread_unless_told_otherwise():
