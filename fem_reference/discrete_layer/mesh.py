@@ -104,11 +104,9 @@ def layer_mesh(thickness: float, outer_radius: float, grading: Grading) -> Layer
         The mesh with named boundaries.
     """
 
-    def draw(model: Any) -> list[int]:
+    def draw(geo: Any) -> list[int]:
         """The section as gmsh's only surface."""
-        if grading.cuts_lines:
-            return [_draw_outline(model, grading.outline(thickness, outer_radius))]
-        return [_draw_section(model.geo, thickness, outer_radius, grading)]
+        return [_draw_section(geo, thickness, outer_radius, grading)]
 
     points, (triangles,) = _triangulated(draw, grading.size_expression())
     points[0] += grading.origin
@@ -126,10 +124,10 @@ def triangles_between(lines: Sequence[FloatArray], size_expression: str) -> tupl
         Points (2, n), and the triangles (3, m) of each region; neighbours share the points on their line.
     """
 
-    def draw(model: Any) -> list[int]:
+    def draw(geo: Any) -> list[int]:
         """One surface between two lines each."""
-        curves = [_draw_line(model.geo, line) for line in lines]
-        return [_draw_region(model.geo, above, below) for above, below in pairwise(curves)]
+        curves = [_draw_line(geo, line) for line in lines]
+        return [_draw_region(geo, above, below) for above, below in pairwise(curves)]
 
     return _triangulated(draw, size_expression)
 
@@ -139,7 +137,7 @@ def _triangulated(draw: Callable[[Any], list[int]], size_expression: str) -> tup
     gmsh = _gmsh()
     gmsh.model.add("layer")
     try:
-        surfaces = draw(gmsh.model)
+        surfaces = draw(gmsh.model.geo)
         gmsh.model.geo.synchronize()
         field = gmsh.model.mesh.field
         field.add("MathEval", 1)
@@ -165,7 +163,7 @@ def _draw_region(geo: Any, above: tuple[list[int], list[int]], below: tuple[list
 
 
 def _draw_section(geo: Any, thickness: float, outer_radius: float, grading: Grading) -> int:
-    """One rectangle whose top carries the graded radii as vertices; gmsh cuts its sides, the long ones in parts."""
+    """One rectangle whose top carries the graded radii as vertices; long sides are split, for gmsh's line meshing."""
     last = max([*(r for r, _ in grading.points), 0.0])
     ends = (r - grading.origin for r in (0.0, *_far_stations(last, outer_radius), outer_radius))
     x = _split_where_fine(sorted({*ends, *(start for start, _ in grading.shifted)}), dict(grading.shifted))
@@ -194,22 +192,6 @@ def _split_where_fine(x: list[float], cells: dict[float, float]) -> list[float]:
             if abs(away) > LONGEST_LINE * cells.get(end, np.inf):
                 stations.append(end + np.copysign(np.sqrt(cells[end] * abs(away)), away))
     return sorted(stations)
-
-
-def _draw_outline(model: Any, outline: FloatArray) -> int:
-    """The surface within a closed polygon (2, n): two curves that are meshed already, from first to middle point."""
-    count, middle = outline.shape[1], outline.shape[1] // 2
-    around = np.append(np.arange(count), 0)
-    coordinates = np.vstack([outline, np.zeros(count)]).T
-    for end, node in ((1, 0), (2, middle)):
-        model.addDiscreteEntity(0, end)
-        model.mesh.addNodes(0, end, [node + 1], coordinates[node])
-        model.mesh.addElementsByType(end, 15, [], [node + 1])
-    for curve, ends, nodes in ((1, [1, 2], around[: middle + 1]), (2, [2, 1], around[middle:])):
-        model.addDiscreteEntity(1, curve, ends)
-        model.mesh.addNodes(1, curve, nodes[1:-1] + 1, coordinates[nodes[1:-1]].ravel())
-        model.mesh.addElementsByType(curve, 1, [], np.column_stack([nodes[:-1], nodes[1:]]).ravel() + 1)
-    return int(model.geo.addPlaneSurface([model.geo.addCurveLoop([1, 2])]))
 
 
 def _mesh_arrays(gmsh_mesh: Any, surfaces: list[int]) -> tuple[FloatArray, list[IntArray]]:

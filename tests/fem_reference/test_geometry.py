@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contact import NotConvergedError
-from fem_reference.discrete_layer.grading import Grading, cell_ends
+from fem_reference.discrete_layer.grading import Grading
 from fem_reference.discrete_layer.mesh import layer_mesh, named_layer_mesh
 
 GRADING = Grading(points=((0.5, 1e-3), (1.0, 1e-5)), growth=0.5, max_cell=0.5)
@@ -47,42 +47,6 @@ def test_fingerprint_is_reproduced_and_tells_meshes_apart(mesh):
     assert again.fingerprint == mesh.fingerprint != other.fingerprint
 
 
-@pytest.mark.parametrize(
-    "grading",
-    [
-        Grading(points=((0.5, 1e-3), (1.0, 1e-3)), growth=0.5, max_cell=0.5),
-        Grading(points=((0.0, 1e-9), (0.9, 1e-9), (1.0, 1e-9)), growth=0.35, max_cell=0.7),
-    ],
-)
-def test_sizes_are_those_that_gmsh_reads(grading):
-    x, y = np.random.default_rng(3).uniform(0.0, 2.0, (2, 200))
-    words = {"Min": np.minimum, "Max": np.maximum, "Sqrt": np.sqrt, "x": x, "y": y}
-    read = eval(grading.size_expression().replace("^", "**"), words)
-    assert grading.cuts_lines
-    assert grading.size(x, y) == pytest.approx(read, rel=1e-12, abs=0.0)
-
-
-def test_lines_are_cut_as_gmsh_cuts_them_but_between_graded_points():
-    """Of its own gmsh 4.15 makes 5, 26 and 2 cells of axis, base and outer edge, 71 beside the contact, 88 in it."""
-    points = ((0.38520801, 1.92604e-8), (1.0, 6.14792e-8))
-    drawn = layer_mesh(1.54083205, 19.97517608, Grading(points=points, growth=0.5, max_cell=0.77)).mesh
-    cells = {name: len(facets) for name, facets in drawn.boundaries.items()}
-    top = np.unique(drawn.p[0, drawn.facets[:, drawn.boundaries["top"]]])
-    assert (cells["axis"], cells["base"], cells["outer"]) == (5, 26, 2)
-    assert np.sum(top > 1.0) in (70, 71)
-    assert np.sum((top > points[0][0]) & (top <= 1.0)) < 60
-    assert drawn.t.shape[1] < 860
-
-
-def test_cells_along_a_line_grow_by_no_more_than_the_limit():
-    ends = cell_ends(-1.0, 2.0, [0.5], lambda x: 1e-8 + 3.0 * np.abs(x - 0.5), 0.4)
-    cells = np.diff(ends)
-    assert ends[[0, -1]].tolist() == [-1.0, 2.0]
-    # A cell of mean size s next to one of size t lies (s + t) / 2 away.
-    assert np.max(np.abs(np.diff(cells)) / (cells[1:] + cells[:-1]) * 2) < 0.42
-    assert cells.min() < 2e-8
-
-
 def test_cells_grow_faster_near_graded_points():
     """Two thirds of the triangles that cells of one growth make (1,138); far away they are no larger."""
     fine = layer_mesh(1.0, 4.0, Grading(points=((0.0, 1e-7), (1.0, 1e-8)), growth=0.5, max_cell=0.5)).mesh
@@ -111,7 +75,7 @@ def test_cells_far_below_1e_8_of_the_radius_are_as_round_as_others(gap, cell):
     sides = corners - np.roll(corners, 1, axis=1)
     area = np.abs(sides[0, 0] * sides[1, 1] - sides[0, 1] * sides[1, 0]) / 2
     roundness = 4 * np.sqrt(3) * area / np.sum(sides**2, axis=(0, 1))
-    near = np.hypot(*corners.mean(axis=1)) < 2e-7
+    near = np.hypot(*corners.mean(axis=1)) < 1e-7
     assert near.sum() > 100
     assert roundness[near].min() > 0.25  # below 0.01 where gmsh's origin is the axis
 
