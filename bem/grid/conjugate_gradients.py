@@ -11,8 +11,7 @@ grid: the search direction is preconditioned by the inverse kernel, restricted t
 J. Comput. Phys. 257, 431), and callers start from a coarser grid's answer.
 
 With a prescribed force the depth is an unknown too: directions are kept free of net force, and the depth follows from
-the same projection. The displacement follows each step by that step's own, in single precision, for steps are small
-against the pressure. At the end it is computed afresh, and the iteration goes on where that tells more.
+the same projection. The displacement follows each step and is computed afresh only where the projection acts.
 
 Sums over cells mean the same on a whole grid and on a quadrant, whose cells each stand for four.
 """
@@ -20,17 +19,12 @@ Sums over cells mean the same on a whole grid and on a quadrant, whose cells eac
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Final
 
 import numpy as np
 
 from bem.grid.operators import Operator
 from contact import InvalidInput, NotConvergedError
 from contact.records.validation import BoolArray, FloatArray
-
-# Times a residual: what roundings may make of the displacements that are followed from there in single precision, 4e-7
-# of a field at most (32 to 512 cells, 2026-11-26).
-FOLLOWED: Final = 1e-6
 
 
 @dataclass(frozen=True)
@@ -80,21 +74,18 @@ def solve_on_contact(
     target = np.where(contact, displacement, 0.0)
     scale = float(np.max(np.abs(target))) or 1.0
     p = np.zeros(contact.shape) if start is None else np.where(contact, start, 0.0)
-    residual = goal = 0.0
+    r = _restricted(target - operator.displacement(p), contact)
+    v, rz = np.zeros(contact.shape), np.inf
     for iteration in range(max_iterations + 1):
-        if residual <= goal:
+        if (residual := float(np.max(np.abs(r))) / scale) <= tolerance:
             u = operator.displacement(p)
-            r = _restricted(target - u, contact)
-            if (residual := float(np.max(np.abs(r))) / scale) <= tolerance:
-                return GridSolution(p, u, scale, iteration, residual)
-            v, rz, goal = np.zeros(contact.shape), np.inf, max(tolerance, FOLLOWED * residual)
+            return GridSolution(p, u, scale, iteration, residual)
         z = _restricted(operator.precondition(r), contact)
         rz_before, rz = rz, float(np.vdot(r, z))
         v = z + rz / rz_before * v
-        q = _restricted(operator.rough_displacement(v), contact)
+        q = _restricted(operator.displacement(v), contact)
         step = rz / float(np.vdot(v, q))
         p, r = p + step * v, r - step * q
-        residual = float(np.max(np.abs(r))) / scale
     raise _not_converged(residual, tolerance, max_iterations)
 
 
@@ -125,18 +116,21 @@ def solve_contact(
     """
     if (depth is None) == (load is None) or (depth or load or 0.0) <= 0.0:
         raise InvalidInput(f"prescribe either a positive depth or a positive load, got {depth} and {load}")
-    p = _first_guess(operator, height, depth) if start is None else np.maximum(start, 0.0)
+    p = _first_guess(height, depth, load) if start is None else np.maximum(start, 0.0)
     if load is not None:
         p = p * (load / p.sum())
-    residual = goal = 0.0
+    u = operator.displacement(p)
+    if start is None and depth is not None:
+        # The penetration says where a pressure is, but it is a length: of its multiples, the one of least energy.
+        share = float(np.vdot(p, depth - height)) / (float(np.vdot(p, u)) or 1.0)
+        p, u = share * p, share * u
+    r_before = z_before = v = np.zeros(height.shape)
     for iteration in range(max_iterations + 1):
-        if residual <= goal:
-            u = operator.displacement(p)
-            delta, gap, residual = _violated(p, u, height, depth)
-            if residual <= tolerance:
-                return GridSolution(p, u, delta, iteration, residual)
-            r_before = z_before = v = np.zeros(height.shape)
-            goal = max(tolerance, FOLLOWED * residual)
+        delta = depth if depth is not None else _mean_depth(u + height, p)
+        gap = u + height - delta
+        residual = complementarity_residual(p, gap, delta)
+        if residual <= tolerance:
+            return GridSolution(p, u, delta, iteration, residual)
         contact = (p > 0.0) | (gap < 0.0)
         r = _restricted(-gap, contact)
         z = _restricted(operator.precondition(r), contact)
@@ -145,26 +139,16 @@ def solve_contact(
         v = z + _polak_ribiere(r, z, r_before, z_before) * _restricted(v, contact)
         if load is not None:
             v = _restricted(v - v.sum() / np.count_nonzero(contact), contact)
-        q = operator.rough_displacement(v)
+        q = operator.displacement(v)
         step = float(np.vdot(r, v)) / float(np.vdot(v, q))
         p, u = p + step * v, u + step * q
         if p.min() < 0.0:
-            pressed = np.maximum(p, 0.0)
+            p = np.maximum(p, 0.0)
             if load is not None:
-                pressed = pressed * (load / pressed.sum())
-            p, u = pressed, u + operator.rough_displacement(pressed - p)
+                p = p * (load / p.sum())
+            u = operator.displacement(p)
         r_before, z_before = r, z
-        delta, gap, residual = _violated(p, u, height, depth)
     raise _not_converged(residual, tolerance, max_iterations)
-
-
-def _violated(
-    pressure: FloatArray, displacement: FloatArray, height: FloatArray, depth: float | None
-) -> tuple[float, FloatArray, float]:
-    """Depth and gap [m], and how far complementarity is violated."""
-    delta = depth if depth is not None else _mean_depth(displacement + height, pressure)
-    gap = displacement + height - delta
-    return delta, gap, complementarity_residual(pressure, gap, delta)
 
 
 def complementarity_residual(pressure: FloatArray, gap: FloatArray, depth: float) -> float:
@@ -198,16 +182,11 @@ def _without_net_force(operator: Operator, z: FloatArray, contact: BoolArray) ->
     return np.asarray(z - z.sum() / uniform.sum() * uniform)
 
 
-def _first_guess(operator: Operator, height: FloatArray, depth: float | None) -> FloatArray:
-    """The penetration of the undeformed surface, which a pressure is proportional to, or uniform near the tip.
-
-    The penetration is a length; of its multiples, the pressure is the one of least energy.
-    """
+def _first_guess(height: FloatArray, depth: float | None, load: float | None) -> FloatArray:
+    """The penetration of the undeformed surface, which a pressure is proportional to, or uniform near the tip."""
     if depth is None:
         return np.where(height <= np.quantile(height, 0.05), 1.0, 0.0)
-    p = np.maximum(depth - height, 0.0)
-    share = float(np.vdot(p, depth - height)) / (float(np.vdot(p, operator.displacement(p))) or 1.0)
-    return share * p
+    return np.maximum(depth - height, 0.0)
 
 
 def _mean_depth(displacement_and_height: FloatArray, pressure: FloatArray) -> float:

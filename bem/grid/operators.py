@@ -19,7 +19,6 @@ from bem.grid.other_layers import other_layer_influence
 from bem.grid.transforms import (
     FullTransform,
     QuarterTransform,
-    RoughFilter,
     Transform,
     convolution_symbol,
     fast_period,
@@ -46,17 +45,13 @@ class Operator(Protocol):
         """u [m] by p [Pa], both of shape (m, m)."""
         ...
 
-    def rough_displacement(self, pressure: FloatArray) -> FloatArray:
-        """The same, right to some six digits in less time."""
-        ...
-
     def precondition(self, displacement: FloatArray) -> FloatArray:
         """A pressure [Pa] that nearly causes this displacement [m]: the inverse kernel, cyclic and unpadded."""
         ...
 
 
 class GridOperator:
-    """Two filters on one grid: the operator, and its approximate inverse without padding, in single precision.
+    """Two filters on one grid: the operator, and its approximate inverse without padding.
 
     Args:
         layer: The elastic layer or half-space.
@@ -80,13 +75,12 @@ class GridOperator:
 
         cyclic = transform(cells)
         symbol = layer_symbol(_wavenumbers(cyclic, cell_size), layer)
-        self._inverse = RoughFilter(cyclic, _reciprocal(symbol))
+        self._inverse, self._inverse_symbol = cyclic, _reciprocal(symbol)
         self._forward, self._symbol = cyclic, symbol
         if self.padded:
             self._forward = transform(fast_period(2 * cells))
             influence = self._influence(layer, self._forward.period // 2, cell_size)
             self._symbol = convolution_symbol(self._forward, influence * (cell_size / contact_modulus(layer)))
-        self._rough = RoughFilter(self._forward, self._symbol)
 
     padded: ClassVar[bool]
 
@@ -100,13 +94,9 @@ class GridOperator:
         """u [m] by p [Pa], both of shape (m, m)."""
         return self._forward.filter(pressure, self._symbol)
 
-    def rough_displacement(self, pressure: FloatArray) -> FloatArray:
-        """The same in single precision."""
-        return self._rough(pressure)
-
     def precondition(self, displacement: FloatArray) -> FloatArray:
         """A pressure [Pa] that nearly causes this displacement [m]."""
-        return self._inverse(displacement)
+        return self._inverse.filter(displacement, self._inverse_symbol)
 
 
 class PeriodicOperator(GridOperator):

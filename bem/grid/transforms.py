@@ -10,13 +10,14 @@ that is mirror symmetric about the corner of its first cell (cosine transforms):
 Both skip the row transforms of rows that are zero by padding, and of rows nobody reads on the way back.
 
 Transforms of whole grids are FFTW's. Cosine transforms are pocketfft's, which takes several rows at a time: two thirds
-of the time of FFTW's, which take one, and 0.6 of that in single precision (128 to 512 cells, 2026-11-26). Its compiled
-file is private to SciPy: where a release keeps it elsewhere, the public function answers the same digits.
+of the time of FFTW's, which take one (128 to 512 cells, 2026-11-26). Their compiled file is private to SciPy: where a
+release keeps it elsewhere, the public function answers the same digits. Steps in single precision, in 0.6 of that time,
+were tried: inputs a rounding away moved depths by 1e-9, and by 2e-5 where a cell more touched.
 """
 
 from __future__ import annotations
 
-from functools import cache, cached_property, lru_cache, partial
+from functools import cache, lru_cache, partial
 from typing import Any, Final, Literal, Protocol
 
 import numpy as np
@@ -96,6 +97,8 @@ class QuarterTransform:
     def __init__(self, cells: int, period: int, *, threads: int = 1) -> None:
         _checked_sizes(2 * cells, period)
         self.cells, self.period, self.threads = cells, period, threads
+        half = period // 2
+        self._plane = np.zeros((half, half + BESIDE_ROWS))[:, :half]
 
     @property
     def modes(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
@@ -104,9 +107,8 @@ class QuarterTransform:
         return numbers[:, None], numbers[None, :]
 
     def filter(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
-        """Filtered field, shape (cells, cells); `symbol` has the shape of the modes and says in which precision."""
-        n = self.cells
-        plane = self._single if symbol.dtype == np.float32 else self._double
+        """Filtered field, shape (cells, cells); `symbol` has the shape of the modes."""
+        n, plane = self.cells, self._plane
         occupied = plane[:n]
         plane[:n, :n], plane[:n, n:] = field, 0.0
         cosines(occupied, 2, (1,), self.threads)
@@ -115,34 +117,10 @@ class QuarterTransform:
         plane *= symbol
         cosines(plane, 3, (0,), self.threads)
         cosines(occupied, 3, (1,), self.threads)
-        return np.divide(plane[:n, :n], float(self.period**2), dtype=np.float64)
-
-    @cached_property
-    def _double(self) -> FloatArray:
-        half = self.period // 2
-        return np.zeros((half, half + BESIDE_ROWS))[:, :half]
-
-    @cached_property
-    def _single(self) -> npt.NDArray[np.float32]:
-        return self._double.astype(np.float32)
+        return np.asarray(plane[:n, :n] / float(self.period**2))
 
 
-class RoughFilter:
-    """A filter in single precision, of fields and symbols of any size; the answer is right to some six digits."""
-
-    def __init__(self, transform: Transform, symbol: FloatArray) -> None:
-        self._transform, self._unit = transform, float(symbol.max())
-        self._symbol: Any = (symbol / self._unit).astype(np.float32)
-
-    def __call__(self, field: FloatArray) -> FloatArray:
-        """Filtered field, shape (cells, cells)."""
-        size = max(float(field.max()), -float(field.min())) or 1.0
-        filtered = self._transform.filter(field / size, self._symbol)
-        filtered *= size * self._unit
-        return filtered
-
-
-def cosines(field: npt.NDArray[np.floating], kind: Literal[1, 2, 3], axes: tuple[int, ...], threads: int = 1) -> None:
+def cosines(field: FloatArray, kind: Literal[1, 2, 3], axes: tuple[int, ...], threads: int = 1) -> None:
     """Cosine transforms DCT-I, DCT-II or DCT-III along some axes, in place and without a factor."""
     pocketfft = _pocketfft()
     if pocketfft is None:
