@@ -35,7 +35,7 @@ def history(
     way_in, way_out = ([own for leg in way if (own := leg.of(0))] for way in (motion.way_in, motion.way_out))
     rows = samples(lanes, way_in, way_out)
     # The first sample is first touch and the last one the end itself, not the polynomials' rounded values there.
-    rows[0, 0], rows[:3, -1], rows[4, -1] = 0.0, motion.end[1:4, 0], motion.end[0, 0]
+    rows[[0, 4], 0], rows[:3, -1], rows[4, -1] = 0.0, motion.end[1:4, 0], motion.end[0, 0]
     rows[:2, -1] += motion.drift[0] * np.array([1.0, rows[2, -1]])
     t, delta, v, f, y, held, lost = rows[:, distinct(rows[0])]
     outcome = results(problem, motion, accuracy)
