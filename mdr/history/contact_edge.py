@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
-from mdr.springs.error_model import EPS, SPRING_ROUNDING
+from mdr.springs.error_model import EPS
 
 # A bed of fewer springs is a flat punch's, which has no flank.
 _FEW = 5
@@ -27,10 +27,14 @@ _NEEDED = 3
 # Most values that tell where a front stands; one more changes the place by roundings.
 _MOST_VALUES = 2 * _NEEDED
 
+# Fronts nearer to one another than this share of their y are one: what lies between carries nothing, and roundings part
+# a front from an old place to which it has come back by up to 3e-14 (scenes 69 and 539 of seed 6215, 2026-11-26).
+ONE_PLACE = 1e-9
+
 _NONE = np.empty(0)
 
 
-class Place(NamedTuple):
+class FrontPlace(NamedTuple):
     """Where a front stands.
 
     Attributes:
@@ -76,34 +80,39 @@ class SpringBed:
         return float(self.y[start + 1] - self.y[start])
 
 
-def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray) -> Place:
+def with_bend(bends: FloatArray, front: float) -> FloatArray:
+    """The places where spring forces bend and one more, increasing; a front that is back at one of them adds none."""
+    return bends if np.any(np.abs(bends - front) <= ONE_PLACE * abs(front)) else np.sort(np.append(bends, front))
+
+
+def released_front(bed: SpringBed, touching: NDArray[np.bool_], forces: FloatArray) -> FrontPlace:
     """The outermost contact where the spring force falls to zero, seen from inside."""
     last = int(np.flatnonzero(touching)[-1])
     if last + 1 == bed.y.size:
-        return Place(float(bed.y[-1]))
+        return FrontPlace(float(bed.y[-1]))
     start = bed.section(last).start
     if last - start < _NEEDED - 1 and start:
-        return Place(_by_radius(bed, last, (start - 2, last), forces))
+        return FrontPlace(_by_radius(bed, last, (start - 2, last), forces))
     way, left = way_to_zero(forces[start : last + 1][::-1], bed.step(last))
-    return Place(float(bed.y[last]) + way, left)
+    return FrontPlace(float(bed.y[last]) + way, left)
 
 
-def touched_front(bed: SpringBed, state: BedState) -> Place:
+def touched_front(bed: SpringBed, state: BedState) -> FrontPlace:
     """The outermost contact where the gap outside closes, seen from outside; a dashpot's force ends abruptly."""
     first = int(np.flatnonzero(state.touching)[-1]) + 1
     if first == bed.y.size:
-        return Place(float(bed.y[-1]))
+        return FrontPlace(float(bed.y[-1]))
     own, gaps = bed.section(first), state.surface + bed.profile - state.depth
     around = slice(max(min(first, own.stop - _NEEDED) - _NEEDED, own.start), own.stop)
     around = slice(around.start, around.start + _MOST_VALUES)
     # Where nothing has been pressed, the gap goes on inside the contact.
     if around.stop <= own.stop and first > own.start and not state.surface[first : around.stop].any():
         share = _zero(bed.profile[around] - state.depth, first - 1 - around.start)
-        return Place(float(bed.y[around.start] + share * bed.step(first)))
+        return FrontPlace(float(bed.y[around.start] + share * bed.step(first)))
     if own.stop - first >= _NEEDED or own.stop == bed.y.size:
         way, left = way_to_zero(gaps[first : own.stop], bed.step(first))
-        return Place(float(bed.y[first]) - way, left)
-    return Place(_by_radius(bed, first - 1, (first, own.stop + 1), gaps))
+        return FrontPlace(float(bed.y[first]) - way, left)
+    return FrontPlace(_by_radius(bed, first - 1, (first, own.stop + 1), gaps))
 
 
 def _zero(values: FloatArray, low: int) -> float:
@@ -207,7 +216,7 @@ def total_force(
         if one.stop > last and front[0] > end[0]:
             end = front[0], float(np.interp(front[0], bed.y[one], bed.density[one])) * front[1]
         # A front that is back at an old one, but for roundings, stands at it.
-        inside = bends[(bends > y[0]) & (bends < (1.0 - SPRING_ROUNDING) * end[0])].tolist()
+        inside = bends[(bends > y[0]) & (bends < (1.0 - ONE_PLACE) * end[0])].tolist()
         total += _bent_integral(y, values, bed.step(one.start), inside, end)
     return total
 
@@ -270,7 +279,9 @@ def _beyond(load: FloatArray, step: float, way: float, edge: float) -> float:
     return float(load[-1] * way + 0.5 * rise * way**2 - bend * way**3 / 6.0)
 
 
-def front(law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float) -> tuple[Place, float]:
+def front(
+    law: SpringLaw, bed: SpringBed, state: BedState, forces: FloatArray, speed: float
+) -> tuple[FrontPlace, float]:
     """The front, and the spring force there [m], which only a bare dashpot leaves.
 
     A front that advances lies where the gap outside closes: nothing has happened there of late, while the forces just

@@ -15,9 +15,8 @@ from scipy.interpolate import CubicSpline
 
 from bem.polynomials.gauss_panels import gauss_nodes
 from contact.records.validation import FloatArray
-from mdr.history.contact_edge import SpringBed, advances, carried, total_force
+from mdr.history.contact_edge import ONE_PLACE, SpringBed, advances, carried, total_force
 from mdr.history.springs_in_time import BedState, SpringLaw, advance
-from mdr.springs.error_model import SPRING_ROUNDING
 
 # Panels, each a quarter as long as all beyond it: the last is 4e-6 of the way, and what bends within it carries less
 # than a rounding. On a panel so many nodes leave 1e-10 of an exponential, whose size falls with its steepness.
@@ -88,11 +87,11 @@ def newly_touched(
     """
     time, state = now
     section = bed.section(int(np.searchsorted(bed.y, y)) - 1)
-    older = bends[bends < (1.0 - SPRING_ROUNDING) * y]
+    older = bends[bends < (1.0 - ONE_PLACE) * y]
     start = max(float(bed.y[section.start]), turn.front, *older)
-    if start >= (1.0 - SPRING_ROUNDING) * y:
+    if start >= (1.0 - ONE_PLACE) * y:
         return None
-    beyond = np.append(bends[bends > y], np.inf)[0]
+    beyond = np.append(bends[bends > (1.0 + ONE_PLACE) * y], np.inf)[0]
     own = np.flatnonzero((bed.y[section] > start) & (bed.y[section] < beyond)) + section.start
     if own.size < _FEWEST:
         return None

@@ -29,7 +29,7 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
-from mdr.history.contact_edge import SpringBed, carried
+from mdr.history.contact_edge import SpringBed, carried, with_bend
 from mdr.history.followed import FollowedHistory, states_at
 from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
 from mdr.history.newly_touched import Turn, carried_since
@@ -410,7 +410,7 @@ def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory
         records.append((state.depth, *held))
         if turns[i]:
             turn = Turn(time, state, records[-1][2])
-            bends = np.unique([*bends, turn.front])
+            bends = with_bend(bends, turn.front)
     depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from cases.measurements.campaigns.random_scenes import scene_of
+from cases.measurements.campaigns.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
 from mdr.history.contact_edge import SpringBed, total_force
@@ -87,3 +89,11 @@ def test_a_front_back_at_an_old_one_but_for_roundings():
         return float(total_force(bed, y < front, forces, (front, 0.0), np.array([0.5, bend]))[0])
 
     assert force(front * (1.0 - 1e-15)) == pytest.approx(force(front), rel=1e-14, abs=0.0)
+
+
+@pytest.mark.parametrize("number", [69, 539])
+def test_a_front_that_comes_back_to_an_old_place_bends_nothing_anew(number):
+    """Two bends but for roundings moved forces by 2e-11 and 8e-10 of the largest with the unit of time."""
+    scene = scene_of(6215, number, "reloading")
+    here, elsewhere = (Mdr().solve(one).normal_force for one in (scene, in_units(scene, Units(time=3.7))))
+    np.testing.assert_allclose(elsewhere, here, rtol=0.0, atol=1e-13 * here.max())
