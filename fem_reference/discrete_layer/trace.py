@@ -13,12 +13,6 @@ from contact.records.validation import FloatArray, IntArray
 
 
 @cache
-def _lagrange(degree: int) -> FloatArray:
-    """Coefficients (power, node) of the Lagrange polynomials on equispaced nodes of [0, 1]."""
-    return np.asarray(np.linalg.inv(np.vander(np.linspace(0, 1, degree + 1), increasing=True)))
-
-
-@cache
 def _gauss_rule(points: int) -> tuple[FloatArray, FloatArray]:
     """Gauss nodes and weights on [-1, 1]."""
     return np.polynomial.legendre.leggauss(points)
@@ -43,8 +37,11 @@ class TraceSpace:
 
     def basis(self, t: FloatArray) -> FloatArray:
         """The degree + 1 basis functions at local coordinates t in [0, 1], shape (..., node)."""
-        values = np.vander(t.ravel(), self.degree + 1, increasing=True) @ _lagrange(self.degree)
-        return np.asarray(values).reshape(*t.shape, self.degree + 1)
+        # Products of differences: each value is the same bits whatever else is asked for.
+        nodes = np.arange(self.degree + 1) / self.degree
+        others = [[m for m in range(self.degree + 1) if m != n] for n in range(self.degree + 1)]
+        ways = [np.prod((t[..., None] - nodes[own]) / (nodes[n] - nodes[own]), axis=-1) for n, own in enumerate(others)]
+        return np.stack(ways, axis=-1)
 
     def evaluate(self, values: FloatArray, radius: FloatArray) -> FloatArray:
         """Function with nodal ``values`` at radii within the trace; zero beyond it."""

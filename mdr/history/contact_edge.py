@@ -8,19 +8,21 @@ older fronts have left: fourth order in the spring distance.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BSpline, make_interp_spline
 
 from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.error_model import EPS
 
-# A bed of fewer springs is a flat punch's, which has no flank.
-_FEW = 5
+# Of polynomials between springs: their error is that of the front's, which six springs tell, or less.
+_DEGREE = 7
 # Least number of springs of one section from which the place of the front is extrapolated.
 _NEEDED = 3
 
@@ -65,6 +67,17 @@ class SpringBed:
     density: FloatArray
     core: float
     starts: tuple[int, ...] = (0,)
+
+    @property
+    def has_flank(self) -> bool:
+        """Whether there is more than a flat punch's end and its rim."""
+        return self.y.size > 2
+
+    @cached_property
+    def rows(self) -> dict[int, BSpline]:
+        """Profile and density at places between the springs of each section, given by the number of its first."""
+        values = np.stack([self.profile, self.density], axis=1)
+        return {own.start: make_interp_spline(self.y[own], values[own], _DEGREE) for own in self.sections()}
 
     def sections(self) -> list[slice]:
         """The springs of each section."""
@@ -157,7 +170,7 @@ def way_to_zero(values: FloatArray, step: float) -> tuple[float, float]:
         return step, 0.0
     differences = _differences(values[:_MOST_VALUES].tolist())
     way = _way(differences[:2], 0.5) if values.size > 1 else 1.0
-    change, left = 1.0, 0.0
+    change, left = 1.0, 1.0
     for count in range(_NEEDED, len(differences) + 1):
         following = _way(differences[:count], way)
         before, change = change, abs(following - way)
@@ -307,9 +320,6 @@ def carried(
 ) -> tuple[float, float, float, float]:
     """Force [N]; front coordinate, which is negative where nothing touches; how far no spring tells these two.
 
-    Outside an advancing front the surface bends where fronts have been: if no spring stands before that place, the
-    front may.
-
     Args:
         law: Of the springs.
         bed: The springs.
@@ -320,13 +330,10 @@ def carried(
     if not state.touching.any():
         return 0.0, -1.0, 0.0, 0.0
     forces = law.force(state.surface, state.strains, speed)
-    if bed.y.size < _FEW:
+    if not bed.has_flank:
         return bed.core * float(forces[0]), 0.0, 0.0, 0.0
     (y, left), at_front = front(law, bed, state, forces, speed)
     force, doubt = total_force(bed, state.touching, forces, (y, at_front), bends).tolist()
-    if advances(law, bed, state, speed):
-        hidden = bends[(bends > y) & (bends < bed.y[int(np.flatnonzero(state.touching)[-1]) + 1 :][:1])] - y
-        left = max(left, float(hidden.max(initial=0.0)))
     return force, y, doubt, left
 
 

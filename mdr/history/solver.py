@@ -32,7 +32,8 @@ from contact.scene.extent import radius_of_depth, radius_of_load
 from mdr.history.contact_edge import SpringBed, carried, with_bend
 from mdr.history.followed import FollowedHistory, states_at
 from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
-from mdr.history.newly_touched import Turn, carried_since
+from mdr.history.newly_touched import carried_since
+from mdr.history.own_springs import Turn
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
@@ -74,6 +75,8 @@ _FEWEST_GAPS = 16
 _SEARCHED = 64
 # Multiplies the way to the largest front, so that a few springs stay outside the contact; chosen.
 _MARGIN = 1.01
+# Speeds that differ by less than this share are one: a few roundings of instants.
+_SAME_SPEED = 1e-12
 # Relative rounding of a sum over as many springs.
 _ROUNDING = _GAPS * float(np.finfo(float).eps)
 # Share of the largest force below which what is held is no contact; chosen, far above the rounding of the sum.
@@ -402,15 +405,15 @@ def _first_radius(scene: Scene, loading: DepthHistory | ForceHistory, largest: f
 def _follow(law: SpringLaw, bed: SpringBed, loading: DepthHistory | ForceHistory, substeps: NDArray[np.intp]) -> _Track:
     """March through the history and record depth, force and front at the given instants."""
     records: list[tuple[float, ...]] = []
-    bent, turns, bends, turn = False, _turns(loading), np.empty(0), None
+    bent, turns, bends, past = False, _turns(loading), np.empty(0), list[Turn]()
     for i, (state, speed) in enumerate(states_at(law, bed, loading, substeps)):
         time = float(loading.time[i])
         bent |= _check_circle(law, state, speed, time)
-        held = carried_since(turn, law, bed, (time, state), bends) if turn else carried(law, bed, state, speed, bends)
+        held = carried_since(past, law, bed, (time, state), bends) if past else carried(law, bed, state, speed, bends)
         records.append((state.depth, *held))
         if turns[i]:
-            turn = Turn(time, state, records[-1][2])
-            bends = with_bend(bends, turn.front)
+            past.append(Turn(time, state, records[-1][2]))
+            bends = with_bend(bends, past[-1].front)
     depth, force, y, doubt, hidden = np.array(records).T
     # What is held by a rounding error is no contact and carries nothing; a prescribed force stays as it was given.
     own = force if isinstance(loading, DepthHistory) else loading.force
@@ -424,7 +427,7 @@ def _turns(loading: DepthHistory | ForceHistory) -> NDArray[np.bool_]:
     if isinstance(loading, ForceHistory):
         return np.full(loading.time.size, False)
     speeds = np.diff(loading.depth) / np.diff(loading.time)
-    return np.concatenate([[True], ~np.isclose(speeds[1:], speeds[:-1], atol=0.0), [True]])
+    return np.concatenate([[True], ~np.isclose(speeds[1:], speeds[:-1], rtol=_SAME_SPEED, atol=0.0), [True]])
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:

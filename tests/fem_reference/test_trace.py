@@ -27,6 +27,13 @@ def test_no_radii_have_no_values():
     assert TraceSpace(RADII, 4).evaluate(RADII, np.empty(0)).shape == (0,)
 
 
+def test_a_value_alone_is_that_in_a_list():
+    """Matrix products summed lists of other lengths in other orders."""
+    trace, values, radii = TraceSpace(RADII, 4), np.cos(7.0 * RADII), np.linspace(0.0, 1.0, 500)
+    alone = [trace.evaluate(values, radii[[n]])[0] for n in range(radii.size)]
+    np.testing.assert_array_equal(alone, trace.evaluate(values, radii))
+
+
 def test_coinciding_nodes_are_refused_by_name():
     """SuperLU's "Factor is exactly singular" had left the solver as a crash."""
     space = TraceSpace(np.array([0.0, 0.5, 1.0, 1.0, 1.0]), 2)
