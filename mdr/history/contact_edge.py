@@ -8,21 +8,18 @@ older fronts have left: fourth order in the spring distance.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import BSpline, make_interp_spline
 
 from bem.polynomials.root_steps import MOST_STEPS
 from contact.records.validation import FloatArray
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.error_model import EPS
+from mdr.springs.table import PROFILE, STIFFENING, SpringTable
 
-# Of polynomials between springs: their error is that of the front's, which six springs tell, or less.
-_DEGREE = 7
 # Least number of springs of one section from which the place of the front is extrapolated.
 _NEEDED = 3
 
@@ -59,6 +56,7 @@ class SpringBed:
         density: dk/dy, shape (n,), seen from inside the section.
         core: Stiffness k(b) within the flat end [N/m]; its springs all behave as the first one.
         starts: Number of the first spring of each section.
+        table: Where they are taken from; None for a flat punch.
     """
 
     y: FloatArray
@@ -67,17 +65,18 @@ class SpringBed:
     density: FloatArray
     core: float
     starts: tuple[int, ...] = (0,)
+    table: SpringTable | None = None
 
     @property
     def has_flank(self) -> bool:
         """Whether there is more than a flat punch's end and its rim."""
         return self.y.size > 2
 
-    @cached_property
-    def rows(self) -> dict[int, BSpline]:
-        """Profile and density at places between the springs of each section, given by the number of its first."""
-        values = np.stack([self.profile, self.density], axis=1)
-        return {own.start: make_interp_spline(self.y[own], values[own], _DEGREE) for own in self.sections()}
+    def between(self, section: slice, y: FloatArray) -> FloatArray:
+        """Profile and density at any places of a section, shape (2, n)."""
+        assert self.table is not None
+        rows = self.table.evaluate(y, section=self.starts.index(section.start))
+        return np.stack([np.maximum(rows[PROFILE], 0.0), rows[STIFFENING]])
 
     def sections(self) -> list[slice]:
         """The springs of each section."""

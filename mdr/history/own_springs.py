@@ -19,7 +19,7 @@ from mdr.history.contact_edge import FrontPlace, SpringBed, way_to_zero
 from mdr.history.springs_in_time import BedState, SpringLaw, advance, undeformed
 
 # What was let go longer ago than so many turns is taken to have become smooth; chosen.
-_MOST_TURNS = 30
+_MOST_TURNS = 12
 # Springs between the two of the bed beside the front, and beyond them as many as tell the place of a front.
 _WITHIN, _BEYOND = 16, 6
 # Springs that a cubic takes.
@@ -82,7 +82,7 @@ class OwnSprings:
 
     def at(self, y: FloatArray) -> Springs:
         """Springs at increasing places, shape (n,)."""
-        profile, density = self.bed.rows[self.section.start](y).T
+        profile, density = self.bed.between(self.section, y)
         (first, state), speed = self._at_start(y, profile), 0.0
         instants = [(turn.time, turn.state.depth) for turn in self.turns[first:]]
         for (time, before), (later, depth) in pairwise([*instants, self.now]):

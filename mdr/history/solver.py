@@ -29,10 +29,10 @@ from contact import (
 from contact.answer.solution import Setting
 from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth, radius_of_load
+from mdr.history.beside_front import carried_since
 from mdr.history.contact_edge import SpringBed, carried, with_bend
 from mdr.history.followed import FollowedHistory, states_at
 from mdr.history.growing import FollowedLater, growing_history, searched, with_closed_form, without_steps
-from mdr.history.newly_touched import carried_since
 from mdr.history.own_springs import Turn
 from mdr.history.springs_in_time import BedState, SpringLaw
 from mdr.springs.assembly import equivalent_system
@@ -370,6 +370,7 @@ def _bed_up_to(table: SpringTable, end: float, gaps: float, fewest: int, pointed
         density=rows[STIFFENING],
         core=0.0 if pointed else float(rows[STIFFNESS, 0]),
         starts=(0, *np.cumsum([y.size for y in places])[:-1].tolist()),
+        table=table,
     )
 
 

@@ -304,3 +304,12 @@ def test_peak_depth_is_of_the_energys_order_in_the_cells(effects):
 
     fine = peak_depth(60)
     assert [peak_depth(cells) for cells in (30, 40)] == pytest.approx([fine, fine], rel=1e-5, abs=0.0)
+
+
+def test_a_force_that_goes_back_to_zero_is_zero_in_the_end():
+    """Roundings of the ramp left 3e-17 of it; "no depth carries the prescribed force"."""
+    layer = Layer.incompressible(thickness=1e-3, shear_modulus=G1 + G_INF)
+    for peak_force in np.linspace(1.0, 2.0, 6):
+        loading = ForceHistory(time=[0.0, 1e-3, 2e-3], force=[0.0, peak_force, 0.0])
+        answer = QUICK.solve(Scene(layer=layer, indenter=BALL, loading=loading, effects=(SOLID,)))
+        assert answer.normal_force[-1] == answer.contact_radius[-1] == 0.0

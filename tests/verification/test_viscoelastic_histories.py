@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.integrate import quad
+from scipy.special import hyp1f1
 
 from cases.declare.methods import build
 from contact import (
@@ -15,6 +16,7 @@ from contact import (
     InvalidInput,
     KelvinVoigt,
     Paraboloid,
+    PowerLaw,
     PronySeries,
     Scene,
     StandardSolid,
@@ -71,6 +73,25 @@ def test_ramp_in_depth_is_lee_and_radok():
     radius = np.sqrt(CURVATURE * rate * time)
     np.testing.assert_allclose(answer.contact_radius, radius, atol=1e-6 * 1e-3)
     assert np.all(np.abs(answer.contact_radius - radius) <= answer.uncertainty("contact_radius"))
+
+
+@pytest.mark.parametrize("exponent", [1.02, 1.3, 1.5, 2.5])
+def test_ramps_of_tips_that_are_not_smooth(exponent):
+    """Trapezoids between springs and splines of their profile left 7e-8 at the tip where 1e-8 was stated."""
+    tip = PowerLaw(exponent=exponent, reference_radius=1.0, reference_height=1.0)
+    ramp = DepthHistory(time=[0.0, 0.4, 1.0], depth=[0.0, 4e-4, 1e-3])
+    answer = solve(
+        ramp,
+        model=PronySeries(long_term_shear_modulus=LONG_TERM, shear_moduli=[GLASSY_BRANCH], relaxation_times=[0.3]),
+        indenter=tip,
+    )
+    # F_e = C delta^p: Lee and Radok's integral of a ramp is Kummer's function.
+    p = 1.0 + 1.0 / exponent
+    elastic = solve(IndentationDepths([1e-3]), model=None, indenter=tip).normal_force[0]
+    faded = np.exp(-1.0 / 0.3) * hyp1f1(p, p + 1.0, 1.0 / 0.3)
+    expected = elastic * (LONG_TERM + GLASSY_BRANCH * faded) / TOTAL
+    assert answer.normal_force[-1] == pytest.approx(expected, rel=1e-13, abs=0.0)
+    assert answer.error_estimate["normal_force"][-1] < 1e-11
 
 
 def test_a_step_in_depth_relaxes():

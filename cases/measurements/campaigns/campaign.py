@@ -2,10 +2,10 @@
 
 The referee of elastic scenes is `referee` as far as it reaches; beyond a/h = 100, where it is costly, the method
 with half the discretisation length checks every eighth scene. Depth histories of viscoelastic layers are followed
-spring by spring; what the fast method says of forces in time, in closed form where it can, is stepped in time. For
-other loadings the refined method checks every scene, or another method does. Every solved scene is also solved in other
-units, where it must give the same answer, contacts by another of radius, depth and force, and relaxation written down
-in other ways.
+spring by spring, and by the refined method, which is closer and knows radii; what the fast method says of forces in
+time, in closed form where it can, is stepped in time. For other loadings the refined method checks every scene, or
+another method does. Every solved scene is also solved in other units, where it must give the same answer, contacts by
+another of radius, depth and force, and relaxation written down in other ways.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -136,7 +136,6 @@ def refereed(method: Method, answer: Solution, number: int, other: Method | None
             return
     if other is None and isinstance(answer, HistoryPath) and _is_followed_by_springs(scene):
         yield _against_springs(answer)
-        return
     if isinstance(answer, DetachmentPath):
         yield from _branch_checks(answer)
     in_steps = _is_stepped_by_springs(answer)

@@ -80,7 +80,7 @@ NIGHTLY_PLANS: Final = (
     CoveragePlan(method="bem", settings={"points": 128}, family="adhering_table", count=24, smallest=0.1, largest=5.0),
     *(
         CoveragePlan(
-            method="fem", settings={"accuracy": accuracy}, family="adhering_table", count=16, smallest=0.1, largest=5.0
+            method="fem", settings={"accuracy": accuracy}, family="adhering_table", count=24, smallest=0.1, largest=5.0
         )
         for accuracy in (1e-2, 1e-3)
     ),
