@@ -202,6 +202,7 @@ class Bem(Record):
                 tuple(step.fields for step in steps),
                 scene,
                 tuple(arrays["indentation_depth"].tolist()),
+                tuple(arrays["normal_force"].tolist()),
                 coarser=tuple(step.coarser for step in steps),
                 shared=tuple(max(step.errors["indentation_depth"], step.errors["normal_force"]) for step in steps),
             ),

@@ -105,7 +105,9 @@ class AdheringDiscs:
             stages=self.log.records,
             notes=("values are followed in their order, from out of contact",),
             error_estimate=errors,
-            fields=FieldSequence(fields, self.scene, tuple(values["indentation_depth"].tolist())),
+            fields=FieldSequence(
+                fields, self.scene, *(tuple(values[name].tolist()) for name in ("indentation_depth", "normal_force"))
+            ),
             contact_radius=values["contact_radius"],
             indentation_depth=values["indentation_depth"],
             normal_force=values["normal_force"],
