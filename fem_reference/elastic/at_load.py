@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contact import IndentationDepths, NotConvergedError, Scene, StageLog
-from fem_reference.discrete_layer.settings import narrowest_radius
+from fem_reference.discrete_layer.settings import NARROW, NARROWEST, narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
 from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
@@ -128,8 +128,8 @@ def radius_of_load(
 ) -> float:
     """Radius a at which a load ratio is one: Newton's method in logarithms.
 
-    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  The narrowest radius is
-    returned where even that carries more.
+    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  In narrow rings that power is
+    a half, whatever the layer: there steps may be long.  The narrowest radius is returned where even that carries more.
 
     Args:
         load_at: load ratio at a radius, and its power of a - flat.
@@ -141,7 +141,9 @@ def radius_of_load(
         NotConvergedError: the radius does not settle.
     """
     least = float(np.log(narrowest - flat)) if flat else -np.inf
-    x = max(float(np.log(max(start - flat, 1e-6 * start))), least)
+    narrow = least + float(np.log(NARROW / NARROWEST))
+    # A first radius that the search does not tell from the flat end's is any narrow one.
+    x = max(float(np.log(max(start - flat, narrowest - flat))), narrow - 5.0)
     for _ in range(16):
         ratio, growth = load_at(flat + float(np.exp(x)))
         y = float(np.log(ratio))
@@ -150,5 +152,5 @@ def radius_of_load(
         # A last step leaves about the square of this.
         if y**2 < LEFT_OVER:
             return flat + float(np.exp(max(x - y / growth, least)))
-        x = max(x - float(np.clip(y / growth, -1, 1)), least)
+        x = float(np.clip(x - y / growth, least if x < narrow else max(x - 1, least), max(x + 1, narrow)))
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})
