@@ -16,7 +16,7 @@ from contact import IndentationDepths, NotConvergedError, Scene, StageLog
 from fem_reference.discrete_layer.settings import NARROW, NARROWEST, narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
-from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
+from fem_reference.elastic.prescribed_radius import COARSE, COARSER, PrescribedContact, quick_solution
 
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
@@ -103,8 +103,10 @@ def found_load(scene: Scene, target: float, start: float, accuracy: float | None
     if accuracy is not None and accuracy >= AS_SEARCHED and not flat:
         return Load(scene=scene, target=target, by_depth=by_depth, radius=start, accuracy=accuracy)
 
+    settings = COARSER if accuracy is not None and PER_ACCURACY * accuracy >= 3e-4 else COARSE
+
     def load_at(radius: float) -> tuple[float, float]:
-        contact = quick_solution(scene, radius, log)
+        contact = quick_solution(scene, radius, log, settings)
         load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
