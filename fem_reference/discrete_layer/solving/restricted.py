@@ -100,7 +100,7 @@ class RestrictedSolver:
         place[self._free] = np.arange(len(self._free))
         all_loads = np.zeros((len(self._free), loads.shape[1]))
         all_loads[place[unknowns]] = loads
-        return self.checked.solve(all_loads)[place[unknowns]]
+        return np.asarray(self.checked.solve(all_loads)[place[unknowns]])
 
     def reactions(self, solution: FloatArray, unknowns: IntArray) -> FloatArray:
         """Nodal forces that act on the layer at prescribed unknowns, for a solution without loads inside triangles."""
