@@ -51,7 +51,7 @@ def simulate_depths(
             advance(step.instant, d0 + (d1 - d0) * INSTANT / count, None)
         active = None
         for n in range(1, count + 1):
-            now = d0 + (d1 - d0) * n / count
+            now = (1.0 - n / count) * d0 + n / count * d1
             state = advance(step.first if n == 1 else step, now, active)
             active = state.active
             _add(record, condensed, state, t0 + (t1 - t0) * n / count, now)
@@ -82,7 +82,8 @@ def simulate_forces(
         if step.dashpot > 0 and t0 == time[0] and f0 > 0:
             _, depth = advance(step.instant, float(f0), depth)
         for n in range(1, count + 1):
-            now = max(0.0, f0 + (f1 - f0) * n / count)
+            # The last is the force given, to the bit: a rounding beside zero would be no force that a depth carries.
+            now = (1.0 - n / count) * f0 + n / count * f1
             state, depth = advance(step.first if n == 1 else step, now, depth)
             _add(record, condensed, state, t0 + (t1 - t0) * n / count, depth)
     return record
