@@ -31,12 +31,14 @@ class Grading:
         strip: (radius, cell): the top from the axis to ``radius`` is meshed with cells of that one size.
         growth: increase of the cell size per distance.
         max_cell: largest cell size.
+        is_rough: whether lines are divided less precisely, for meshes on which a radius is searched.
     """
 
     points: tuple[tuple[float, float], ...] = ()
     strip: tuple[float, float] | None = None
     growth: float = 0.25
     max_cell: float = np.inf
+    is_rough: bool = False
 
     @property
     def origin(self) -> float:
@@ -57,18 +59,29 @@ class Grading:
         """Cell size as a function of gmsh's x = r - origin, y = z."""
         reaches = reaches_of(self.points, self.max_cell / self.growth)
         sizes = [
-            f"{cell:.17g}+{grown(f'Sqrt((x{-start:+.17g})^2+y^2)', self.growth, reach)}"
+            f"{cell:.17g}+{grown(distance(start), self.growth, reach)}"
             for (start, cell), reach in zip(self.shifted, reaches, strict=True)
         ]
         if self.strip is not None:
             radius, cell = self.strip[0] - self.origin, self.strip[1]
-            beyond = f"(0.5*(x{-radius:+.17g}+Abs(x{-radius:+.17g})))"
-            sizes.append(f"{cell:.17g}+{self.growth:.17g}*Sqrt({beyond}^2+y^2)")
+            sizes.append(f"{cell:.17g}+{self.growth:.17g}*{distance_beyond(radius)}")
         bounds = sizes if np.isinf(self.max_cell) else [f"{self.max_cell:.17g}", *sizes]
         expression = bounds[-1]
         for bound in reversed(bounds[:-1]):
             expression = f"Min({bound},{expression})"
         return expression
+
+
+def distance(start: float) -> str:
+    """Distance from (start, 0), gmsh's expression; products, because gmsh's squares are powers that cost more."""
+    x = f"(x{-start:+.17g})"
+    return f"Sqrt({x}*{x}+y*y)"
+
+
+def distance_beyond(start: float) -> str:
+    """Distance from the top up to ``start``, likewise."""
+    x = f"(x{-start:+.17g})"
+    return f"Sqrt(0.5*{x}*({x}+Abs{x})+y*y)"
 
 
 def reaches_of(points: tuple[tuple[float, float], ...], thickness: float) -> list[float]:
@@ -78,10 +91,10 @@ def reaches_of(points: tuple[tuple[float, float], ...], thickness: float) -> lis
     return [float(min(left, right, thickness)) for left, right in pairwise(gaps)]
 
 
-def grown(distance: str, growth: float, reach: float) -> str:
+def grown(away: str, growth: float, reach: float) -> str:
     """What cells grow by at a distance from a graded point of this reach, gmsh's expression of an expression."""
-    plain = f"{growth:.17g}*{distance}"
+    plain = f"{growth:.17g}*{away}"
     if growth >= NEARBY_GROWTH:
         return plain
-    nearby = f"{growth * reach**NEARBY_POWER:.17g}*{distance}^{1 - NEARBY_POWER:.17g}"
-    return f"Max({plain},Min({NEARBY_GROWTH:.17g}*{distance},{nearby}))"
+    nearby = f"{growth * reach**NEARBY_POWER:.17g}*{away}^{1 - NEARBY_POWER:.17g}"
+    return f"Max({plain},Min({NEARBY_GROWTH:.17g}*{away},{nearby}))"

@@ -104,8 +104,13 @@ class Discretisation:
         return self.outer_distance or outer_distance(layer.poissons_ratio, layer.support, self.truncation)
 
 
-def contact_mesh(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation) -> LayerMesh:
-    """The graded section, lengths by the contact radius, with vertices at the edge and at every kink and breakpoint."""
+def contact_mesh(
+    layer: ElasticLayer, indenter: ScaledIndenter, settings: Discretisation, *, is_rough: bool = False
+) -> LayerMesh:
+    """The graded section, lengths by the contact radius, with vertices at the edge and at every kink and breakpoint.
+
+    A rough one, see `Grading`, serves where only a radius is sought.
+    """
     if not isinstance(layer, Layer):
         from fem_reference.discrete_layer.several_layers.mesh import contact_parts_mesh  # noqa: PLC0415 - only they load it
 
@@ -115,6 +120,7 @@ def contact_mesh(layer: ElasticLayer, indenter: ScaledIndenter, settings: Discre
         points=graded_points(thickness, indenter, settings),
         growth=settings.growth,
         max_cell=settings.growth * thickness,
+        is_rough=is_rough,
     )
     return layer_mesh(thickness, 1 + thickness * settings.distance(layer), grading)
 

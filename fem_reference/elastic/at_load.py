@@ -8,15 +8,16 @@ load misses by little, else repeated.  At smooth contact dF/da = 0 at given dept
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from contact import IndentationDepths, NotConvergedError, Scene, StageLog
-from fem_reference.discrete_layer.settings import narrowest_radius
+from fem_reference.adaptive import settings_for
+from fem_reference.discrete_layer.settings import NARROW, NARROWEST, Discretisation, narrowest_radius
 from fem_reference.elastic.loaded_contact import LoadedContact
 from fem_reference.elastic.path import ContactSolver, FemEquilibrium
-from fem_reference.elastic.prescribed_radius import PrescribedContact, quick_solution
+from fem_reference.elastic.prescribed_radius import COARSE, COARSER, PrescribedContact, quick_solution
 
 # Relative load that is left to the first-order correction, whose own error is its square.
 LEFT_OVER = 1e-4
@@ -28,6 +29,9 @@ PER_FINE_ACCURACY = 100.0
 # From this accuracy on a full solution costs no more than a quick one and, without a flat end, the load of the searched
 # radius misses by 2e-4 to 2e-3 (paraboloid, cone and sphere, 2026-11-23), about its own error: no quick one is made.
 AS_SEARCHED = 1e-3
+# What the radius by quick solutions misses a depth and a force by, in the median (see `COARSE`): where less is left
+# over, one finer quick solution spares a full one.
+MISSED_DEPTH, MISSED_FORCE = 0.9e-5, 2.6e-5
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -68,7 +72,7 @@ class Load:
             exponent = grows_like(contact.answer, flat / radius, by_depth=self.by_depth)
             corrected = flat + (contact.answer.radius * radius - flat) * defect ** (-1 / exponent)
             # Each radius has a mesh of its own, and misses the load by what its mesh misses it by.
-            if abs(defect - 1) <= max(self._left_over, contact.error[name]):
+            if abs(defect - 1) <= max(self.left_over, contact.error[name]):
                 factor = corrected / radius
                 return LoadedContact(
                     contact=contact, load=scaled, by_depth=self.by_depth, radius_factor=factor
@@ -77,7 +81,7 @@ class Load:
         raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(defect - 1)})
 
     @property
-    def _left_over(self) -> float:
+    def left_over(self) -> float:
         """Relative load that the first-order correction may take."""
         if self.accuracy is None:
             return LEFT_OVER
@@ -103,13 +107,21 @@ def found_load(scene: Scene, target: float, start: float, accuracy: float | None
     if accuracy is not None and accuracy >= AS_SEARCHED and not flat:
         return Load(scene=scene, target=target, by_depth=by_depth, radius=start, accuracy=accuracy)
 
-    def load_at(radius: float) -> tuple[float, float]:
-        contact = quick_solution(scene, radius, log)
+    least, settings = narrowest_radius(scene.layer, scene.indenter), COARSE
+    if accuracy is not None and PER_ACCURACY * accuracy >= 3e-4:
+        settings = COARSER
+
+    def load_at(radius: float, settings: Discretisation) -> tuple[float, float]:
+        contact = quick_solution(scene, radius, log, settings)
         load = contact.smooth_depth * radius if by_depth else contact.smooth_force * radius**2
         return load / target, grows_like(contact, flat / radius, by_depth=by_depth)
 
-    radius = radius_of_load(load_at, start, flat, narrowest_radius(scene.layer, scene.indenter))
-    return Load(scene=scene, target=target, by_depth=by_depth, radius=radius, accuracy=accuracy)
+    radius = radius_of_load(lambda radius: load_at(radius, settings), start, flat, least)
+    load = Load(scene=scene, target=target, by_depth=by_depth, radius=radius, accuracy=accuracy)
+    if radius > least and load.left_over < (MISSED_DEPTH if by_depth else MISSED_FORCE):
+        ratio, growth = load_at(radius, settings_for(load.left_over))
+        return replace(load, radius=flat + (radius - flat) * ratio ** (-1 / growth))
+    return load
 
 
 def grows_like(contact: PrescribedContact, flat: float, *, by_depth: bool) -> float:
@@ -128,8 +140,8 @@ def radius_of_load(
 ) -> float:
     """Radius a at which a load ratio is one: Newton's method in logarithms.
 
-    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  The narrowest radius is
-    returned where even that carries more.
+    Near a flat end the load grows like a power of a - flat, elsewhere like a power of a.  In narrow rings that power is
+    a half, whatever the layer: there steps may be long.  The narrowest radius is returned where even that carries more.
 
     Args:
         load_at: load ratio at a radius, and its power of a - flat.
@@ -141,7 +153,9 @@ def radius_of_load(
         NotConvergedError: the radius does not settle.
     """
     least = float(np.log(narrowest - flat)) if flat else -np.inf
-    x = max(float(np.log(max(start - flat, 1e-6 * start))), least)
+    narrow = least + float(np.log(NARROW / NARROWEST))
+    # A first radius that the search does not tell from the flat end's is any narrow one.
+    x = max(float(np.log(max(start - flat, narrowest - flat))), narrow - 5.0)
     for _ in range(16):
         ratio, growth = load_at(flat + float(np.exp(x)))
         y = float(np.log(ratio))
@@ -150,5 +164,5 @@ def radius_of_load(
         # A last step leaves about the square of this.
         if y**2 < LEFT_OVER:
             return flat + float(np.exp(max(x - y / growth, least)))
-        x = max(x - float(np.clip(y / growth, -1, 1)), least)
+        x = float(np.clip(x - y / growth, least if x < narrow else max(x - 1, least), max(x + 1, narrow)))
     raise NotConvergedError("the contact radius does not settle", {"load_defect": abs(y)})

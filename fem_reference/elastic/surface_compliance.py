@@ -102,17 +102,17 @@ def condense(layer: ElasticLayer, mesh: LayerMesh, backend: str, log: StageLog) 
         solver = problem.solver(problem.supported_unknowns)
     log.count("factorisations", solver.checked.factorisations)
     with log.stage("condense"):
-        loads = strip_loads(problem)
-        solution = solver.solve_loaded(loads)
-        compliance = loads.T @ solution
-        vertices = strip_vertices(problem)
+        nodes = problem.top_nodes(1.0)
+        loads = _strip_moments(problem)
+        displacements = solver.response(2 * nodes + 1, loads)
+        compliance = loads.T @ displacements
         log.hold(compliance.nbytes)
     return SurfaceCompliance(
         layer_mesh=mesh,
-        pressure_space=TraceSpace(problem.positions[0, vertices], 1),
+        pressure_space=TraceSpace(problem.positions[0, nodes[::STRIDE]], 1),
         matrix=(compliance + compliance.T) / 2,
         resultants=loads.sum(axis=0),
-        vertex_displacements=solution[2 * vertices + 1],
+        vertex_displacements=displacements[::STRIDE],
         unknowns=problem.space.size,
     )
 
@@ -124,8 +124,12 @@ def strip_vertices(problem: LayerProblem) -> IntArray:
 
 def strip_loads(problem: LayerProblem) -> FloatArray:
     """Loads of the piecewise linear pressures on the strip of radius one, shape (size, n)."""
-    nodes = problem.top_nodes(1.0)
-    moments = TraceSpace(problem.positions[0, nodes], problem.pair.degree).hat_moments(STRIDE)
+    moments = _strip_moments(problem)
     loads = np.zeros((problem.space.size, moments.shape[1]))
-    loads[2 * nodes + 1] = moments
+    loads[2 * problem.top_nodes(1.0) + 1] = moments
     return loads
+
+
+def _strip_moments(problem: LayerProblem) -> FloatArray:
+    """The same of the nodes on the strip."""
+    return TraceSpace(problem.positions[0, problem.top_nodes(1.0)], problem.pair.degree).hat_moments(STRIDE)

@@ -13,7 +13,7 @@ from functools import cached_property
 import numpy as np
 
 from contact.records.validation import FloatArray
-from fem_reference.discrete_layer.grading import grown, reaches_of
+from fem_reference.discrete_layer.grading import distance, distance_beyond, grown, reaches_of
 from fem_reference.discrete_layer.several_layers.parts import LayerParts
 
 # Thickness drawn over distance from the edge and growth of cells.  Measured on three stacks (soft on stiff, a top of
@@ -122,15 +122,14 @@ class Drawing:
     @property
     def size_expression(self) -> str:
         """Cell size in gmsh's x and y."""
-        distances = [f"Sqrt((x{self.origin - r:+.17g})^2+y^2)" for r, _ in self.points]
+        distances = [distance(r - self.origin) for r, _ in self.points]
         reaches = reaches_of(self.points, self.body.parts[0].thickness)
         cells = [cell for _, cell in self.points]
         if self.strip:
-            beyond = f"(x{self.origin - self.strip:+.17g})"
-            distances.append(f"Sqrt((0.5*({beyond}+Abs{beyond}))^2+y^2)")
+            distances.append(distance_beyond(self.strip - self.origin))
             reaches, cells = [*reaches, 0.0], [*cells, cells[-1]]
         each = zip(cells, distances, reaches, strict=True)
-        sizes = [f"{cell:.17g}+{grown(distance, self.growth, reach)}" for cell, distance, reach in each]
+        sizes = [f"{cell:.17g}+{grown(away, self.growth, reach)}" for cell, away, reach in each]
         widest = self.growth * self.body.layer_thickness
         sizes.append(f"Max({widest:.17g},{FAR_GROWTH * self.growth:.17g}*{distances[-1]})")
         expression = sizes[-1]

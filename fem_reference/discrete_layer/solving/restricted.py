@@ -94,6 +94,14 @@ class RestrictedSolver:
         self._condensed.fill_in(solution, loads)
         return solution
 
+    def response(self, unknowns: IntArray, loads: FloatArray) -> FloatArray:
+        """What loads (n, m) of some unknowns move these by, shape (n, m); none is prescribed or inside a triangle."""
+        place = np.full(self._size, -1)
+        place[self._free] = np.arange(len(self._free))
+        all_loads = np.zeros((len(self._free), loads.shape[1]))
+        all_loads[place[unknowns]] = loads
+        return np.asarray(self.checked.solve(all_loads)[place[unknowns]])
+
     def reactions(self, solution: FloatArray, unknowns: IntArray) -> FloatArray:
         """Nodal forces that act on the layer at prescribed unknowns, for a solution without loads inside triangles."""
         return self._forces(solution)[unknowns]
