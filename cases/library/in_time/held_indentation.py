@@ -14,7 +14,7 @@ import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.library._claims import agreements, exact
-from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, HISTORY_ACCURACY, RECEDING_ACCURACY, studies
+from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, RECEDING_ACCURACY, studies
 from cases.library._methods import MDR
 from cases.library._reasons import reasons
 from cases.library.in_time.sphere_impact import (
@@ -99,7 +99,6 @@ def creep(scene: Scene) -> list[float]:
 
 ORDERS = (
     *studies(EASED_SCENES, RECEDING_ACCURACY, ("indentation_depth",), against=FINEST_MDR, nightly=True),
-    *studies((HALF_SPACE, RELAXING), HISTORY_ACCURACY, ("normal_force",), against=FINEST_MDR),
     *studies((ELASTIC,), CELLS_AND_STEPS, {"normal_force": 2.0}, against=FINEST_MDR, nightly=True),
 )
 
