@@ -102,6 +102,8 @@ class FieldSequence:
         from bem.layer_equation.inside.interior import ContactInterior  # noqa: PLC0415
 
         adhesion, layer, edge = self.scene.effect(Adhesion), self.scene.layer, 0.0
+        # The rim of a flat end holds the front: there the pressure tells what the edge bears.
+        held = known.radius <= self.scene.indenter.flat_radius
         if adhesion is not None:
             # Griffith: the energy that the singular edge releases is the work of adhesion.
             edge = -math.sqrt(2.0 * math.pi * known.radius * adhesion.work_of_adhesion / contact_modulus(layer))
@@ -112,7 +114,7 @@ class FieldSequence:
             contact_radius=known.radius,
             depth=pressed[0],
             force=pressed[1],
-            edge_value=None if isinstance(self.scene.indenter, FlatPunch) else edge,
+            edge_value=None if held or isinstance(self.scene.indenter, FlatPunch) else edge,
             halved=halved,
         )
         return ContactInterior(self.scene, density, unit, pressed[0] / unit, known)

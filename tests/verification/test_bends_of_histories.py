@@ -10,6 +10,7 @@ from cases.measurements.campaigns.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
 from mdr.history.contact_edge import SpringBed, total_force
+from mdr.history.solver import _turns
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)
@@ -97,3 +98,9 @@ def test_a_front_that_comes_back_to_an_old_place_bends_nothing_anew(number):
     scene = scene_of(6215, number, "reloading")
     here, elsewhere = (Mdr().solve(one).normal_force for one in (scene, in_units(scene, Units(time=3.7))))
     np.testing.assert_allclose(elsewhere, here, rtol=0.0, atol=1e-13 * here.max())
+
+
+def test_speeds_that_differ_by_a_few_millionths_are_two():
+    """They counted as one: springs of their own would then be followed through another depth than the bed's."""
+    loading = DepthHistory(time=[0.0, 1.0, 2.0], depth=[0.0, 1.0, 2.0 + 5e-6])
+    assert _turns(loading).tolist() == [True, True, True]
