@@ -4,7 +4,7 @@ import numpy as np
 
 from cases.results.records.figure import Figure, Panel, Series
 from contact import UNITS, HistoryPath, ImpactHistory, Solution
-from reports.words.numbers import prefix_for
+from contact.files.units import prefix_for
 from reports.words.quantity_names import SYMBOLS
 
 COLUMNS_DRAWN = {

@@ -5,11 +5,12 @@ from pathlib import Path
 from typing import Any
 
 from cases.declare.guarded_method import build_guarded
+from cases.declare.uncertain_inputs import read_inputs
 from cases.measurements.sweep import read_range, sweep
 from cases.measurements.uncertain_fit import fit_uncertain
 from cases.results.files import write_whole
 from contact import InvalidInput, load_scene
-from contact.files.scene_file import scene_notes
+from contact.files.scene_file import scene_notes, uses_units
 from mdr.curves import fit_curve, fit_map, read_curve, read_map
 from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table, sweep_table
 from reports.terminal.terminal import console, show_facts, show_table
@@ -37,7 +38,8 @@ def fit_file(
     parameters: Any = ("youngs_modulus", *also)
     terminal = console()
     if uncertain:
-        carried = fit_uncertain(scene, depth, force, uncertain, parameters=parameters, confidence=confidence)
+        inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
+        carried = fit_uncertain(scene, depth, force, inputs, parameters=parameters, confidence=confidence)
         found = carried.fit
         show_table(fit_table(found), on=terminal)
         show_table(shares_table(carried), on=terminal)
@@ -84,7 +86,9 @@ def sweep_file(
     """
     _check_outputs(outputs)
     scene = load_scene(scene_file)
-    found = sweep(scene, read_range(over, scene), build_guarded(method, {}), progress)
+    found = sweep(
+        scene, read_range(over, scene, with_units=uses_units(scene_file)), build_guarded(method, {}), progress
+    )
     if not found.answers:
         raise InvalidInput(f"over {over}: no value was answered; the first refusal: {found.refused[0][1]}")
     terminal = console()

@@ -5,6 +5,7 @@ from pathlib import Path
 
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
+from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
 from contact import (
     ContactPath,
     InvalidInput,
@@ -17,7 +18,7 @@ from contact import (
     load_scene,
 )
 from contact.answer.accuracy import shortfalls, told_where_less
-from contact.files.scene_file import scene_notes
+from contact.files.scene_file import scene_notes, uses_units
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
 from reports.words.numbers import duration, with_prefix
@@ -57,7 +58,8 @@ def solve(
         raise InvalidInput("--samples: of what? name the inputs with --uncertain")
     scene = load_scene(scene_file)
     if uncertain:
-        answer = _solve_uncertain(scene, uncertain, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
+        inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
+        answer = _solve_uncertain(scene, inputs, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
         _write_all(answer, outputs)
         return
     facts: list[tuple[str, str]] = []
@@ -96,7 +98,7 @@ def _write_all(solution: Solution, outputs: list[Path]) -> None:
         console().print(f"written: {path}")
 
 
-def _solve_uncertain(scene: Scene, uncertain: str, samples: int, method: Method) -> Solution:
+def _solve_uncertain(scene: Scene, uncertain: UncertainInputs, samples: int, method: Method) -> Solution:
     """Solve a scene with uncertain inputs, print what they make of the answer, and return the one at their middle."""
     from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
     from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above

@@ -17,9 +17,11 @@ from contact import (
     Solution,
     StageRecord,
 )
+from contact.answer.summary import scene_line
+from contact.files.units import prefix_for
 from reports.tables.table import Table
 from reports.words.method_names import display_name
-from reports.words.numbers import duration, measured, memory, prefix_for, scaled_unit, small
+from reports.words.numbers import duration, measured, memory, scaled_unit, small
 from reports.words.quantity_names import SYMBOLS
 
 BRACKETS = (
@@ -117,6 +119,7 @@ def solution_facts(solution: Solution) -> list[tuple[str, str]]:
     facts += [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
     facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
+    facts += [("scene", scene_line(solution.scene))]
     return facts + [("note", note) for note in solution.notes]
 
 
