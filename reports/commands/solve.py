@@ -186,10 +186,10 @@ def _write(solution: Solution, path: Path) -> None:
 
         _put(path, inside_svg(solution, _compared(solution)))
     else:
-        from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
+        from reports.charts.solution import between, solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
-        _put(path, figure_svg(solution_figure(solution)))
+        _put(path, figure_svg(solution_figure(solution, _between(solution, between(solution.scene)))))
 
 
 def _write_mesh(solution: Solution, path: Path) -> None:
@@ -200,6 +200,16 @@ def _write_mesh(solution: Solution, path: Path) -> None:
             f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
         )
     write(path)
+
+
+def _between(solution: Solution, finer: Scene | None) -> Solution | None:
+    """The answer by MDR with states between the prescribed ones; None for other methods, which take longer."""
+    if finer is None or solution.method != "mdr":
+        return None
+    try:
+        return build_guarded(solution.method, {}).solve(finer)
+    except (UnsupportedSceneError, NotConvergedError):
+        return None
 
 
 def _compared(solution: Solution) -> Solution | None:
