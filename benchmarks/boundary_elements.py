@@ -97,7 +97,9 @@ def table() -> None:
     radii = [0.6e-3, 1e-3, 2e-3, 5e-3]
     for support, nu in KERNELS:
         for name, indenter in PROFILES:
-            scene = Scene(layer=layer(support, nu), indenter=indenter, loading=ContactRadii(radii))
+            scene = Scene(
+                layer=layer(support, nu), indenter=indenter, loading=ContactRadii(radii), beyond_small_strains=True
+            )
             path, exact = Mdr(flat_punch=FftTable()).solve(scene), Mdr().solve(scene)
             for quantity in ("indentation_depth", "normal_force"):
                 error = np.abs(getattr(path, quantity) / getattr(exact, quantity) - 1.0)
@@ -111,7 +113,12 @@ def contact() -> None:
     """Direct contact on 128 to 512 cells against MDR."""
     for name, indenter in PROFILES:
         for ratio in (1.0, 2.0, 10.0):
-            scene = Scene(layer=layer("bonded", 0.5), indenter=indenter, loading=ContactRadii([ratio * 1e-3]))
+            scene = Scene(
+                layer=layer("bonded", 0.5),
+                indenter=indenter,
+                loading=ContactRadii([ratio * 1e-3]),
+                beyond_small_strains=True,
+            )
             exact, words = Mdr().solve(scene), []
             for points in (128, 256, 512):
                 path = Bem(points=points).solve(scene)
@@ -126,7 +133,9 @@ def iterations() -> None:
     """Conjugate gradient steps and error of the force at given depth, each grid from the one before."""
     for name, indenter in PROFILES:
         material, box, start = layer("bonded", 0.5), 2.3e-3, None
-        exact = Mdr().solve(Scene(layer=material, indenter=indenter, loading=ContactRadii([1e-3])))
+        exact = Mdr().solve(
+            Scene(layer=material, indenter=indenter, loading=ContactRadii([1e-3]), beyond_small_strains=True)
+        )
         words = []
         for cells in (64, 128, 256, 512, 1024):
             s = box / cells
@@ -153,6 +162,7 @@ def adhesion() -> None:
             indenter=ADHERING,
             loading=Detachment(control="force"),
             effects=(Adhesion(work_of_adhesion=0.1),),
+            beyond_small_strains=True,
         )
         exact = Mdr().solve(scene).pull_off_force
         for how, grids in (("discs", (128, 256, 512)), ("cells", (128, 256))):

@@ -81,7 +81,9 @@ def cheap_scene(seed: int, number: int) -> Scene:
     largest, slope = thickness * log_uniform(draw, *RATIO), log_uniform(draw, *SLOPE)
     round_one, sharp_one = Paraboloid(radius_of_curvature=largest / slope), Cone(slope=slope)
     radii = ContactRadii(largest * np.sort(draw.uniform(0.1, 1.0, draw.integers(1, 5))))
-    return Scene(layer=layer, indenter=round_one if draw.random() < 0.5 else sharp_one, loading=radii)
+    return Scene(
+        layer=layer, indenter=round_one if draw.random() < 0.5 else sharp_one, loading=radii, beyond_small_strains=True
+    )
 
 
 def _unjudged(_: object, number: int) -> tuple[Measurement, ...]:

@@ -29,7 +29,9 @@ PUBLISHED = {
 def reversals_at(poissons_ratio: float, method: Fem | None = None) -> tuple[Reversal, ...]:
     """Changes of stability on a bonded layer of unit thickness and contact modulus."""
     layer = Layer(thickness=1.0, youngs_modulus=1 - poissons_ratio**2, poissons_ratio=poissons_ratio)
-    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]))
+    scene = Scene(
+        layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]), beyond_small_strains=True
+    )
     solver = method or Fem(edge_cell=1e-8, truncation=1e-9)
     log = StageLog()
     return reversals(layer, lambda radius: solver.solve_contact(_of_radius(scene, radius), radius, log))

@@ -22,7 +22,7 @@ from contact.scene.loading import LOADINGS, Loading
 from contact.scene.profiles import PROFILES, Profile, Tabulated
 from contact.scene.scene import AnyScene, Scene
 
-PARTS: Final = ("layer", "indenter", "loading", "effects")
+PARTS: Final = ("beyond_small_strains", "layer", "indenter", "loading", "effects")
 # So many unknown tables and wrong parts are told at once; each part tells at most eight lines.
 _MOST_PROBLEMS: Final = 8
 
@@ -70,7 +70,8 @@ def scene_from_mapping(mapping: Mapping[str, Any], folder: Path | None = None) -
     if wrong:
         raise InvalidInput("\n".join(wrong[:_MOST_PROBLEMS]))
     refuse_mixed_units(tables)
-    return build(Scene, "scene", made)
+    flags = {name: mapping[name] for name in ("beyond_small_strains",) if name in mapping}
+    return build(Scene, "scene", made | flags)
 
 
 def _each(calls: Mapping[str, Callable[[], Any]], wrong: list[str]) -> dict[str, Any]:
@@ -96,7 +97,8 @@ def uses_units(path: str | Path) -> bool:
 
 def scene_to_mapping(scene: AnyScene) -> dict[str, Any]:
     """The scene as nested dictionaries of plain numbers, strings and lists; nothing is lost."""
-    return {
+    flags = {"beyond_small_strains": True} if scene.beyond_small_strains else {}
+    return flags | {
         "layer": layer_mapping(scene.layer),
         "indenter": named(scene.indenter),
         "loading": named(scene.loading),

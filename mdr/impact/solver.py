@@ -15,6 +15,7 @@ import numpy as np
 from bem.kernels.moduli import relaxation_of
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import ImpactHistory, InvalidInput, NotConvergedError, Scene, StageLog
+from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
 from mdr.impact.collocation import Integrate
 from mdr.impact.compiled.choice import integrator
@@ -131,7 +132,9 @@ def impact_batch(
             if progress is not None:
                 progress(len(order), len(scenes))
     answer = joined(found, np.argsort(order))
-    for scene, radius in zip(scenes, answer.peak_contact_radius.tolist(), strict=True):
+    peaks = zip(answer.peak_contact_radius.tolist(), answer.peak_depth.tolist(), strict=True)
+    for scene, (radius, depth) in zip(scenes, peaks, strict=True):
+        refuse_deep(scene, depth)
         refuse_touching_at(scene, flat_punch, radius)
         refuse_pulling_at(scene, flat_punch, radius)
     return answer

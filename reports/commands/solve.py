@@ -18,6 +18,7 @@ from contact import (
     load_scene,
 )
 from contact.answer.accuracy import shortfalls, told_where_less
+from contact.answer.small_strains import depth_note, depths_of
 from contact.files.scene_file import scene_notes, uses_units
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
@@ -71,9 +72,16 @@ def solve(
         _refuse_less(solution, accuracy, pressure_accuracy)
         solution = told_where_less(solution, accuracy, pressure_accuracy)
     terminal = console()
-    show_table(solution_table(solution), on=terminal)
+    _show_answer(solution)
     show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=terminal)
     _write_all(solution, outputs)
+
+
+def _show_answer(solution: Solution) -> None:
+    """The table, below a warning where the layer is pressed deeper than small strains allow."""
+    warning = depth_note(solution.scene, depths_of(solution))
+    show_facts([("warning", warning)] if warning else [], on=console())
+    show_table(solution_table(solution), on=console())
 
 
 def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
@@ -104,7 +112,7 @@ def _solve_uncertain(scene: Scene, uncertain: UncertainInputs, samples: int, met
     from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above
 
     found = propagate(scene, uncertain, method=method, samples=samples)
-    show_table(solution_table(found.answer), on=console())
+    _show_answer(found.answer)
     show_table(propagated_table(found), on=console())
     return found.answer
 
