@@ -21,6 +21,7 @@ from mdr.impact.collocation import Integrate
 from mdr.impact.compiled.choice import integrator
 from mdr.impact.flat_punch import flat_punch_history, flat_punch_results
 from mdr.impact.history import history
+from mdr.impact.merged_branches import with_merged_branches
 from mdr.impact.motion import Impacts, TableTooShort, impacts
 from mdr.impact.results import ImpactResults, joined, results
 from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, scaled, table_of
@@ -66,6 +67,10 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         InvalidInput: If it is pressed in beyond its rim, or compiled loops are asked for without numba.
         UnsupportedSceneError: If it would touch beside its largest circle of contact.
     """
+    return with_merged_branches(scene, lambda one: _solved(one, flat_punch, settings))
+
+
+def _solved(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
     known = {"accuracy": DEFAULT_ACCURACY, **settings}
     log, accuracy = StageLog(), float(known["accuracy"] or DEFAULT_ACCURACY)
     tolerance, integrate = step_tolerance(accuracy), integrator(compiled=bool(known.get("compiled")))
