@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from benchmarks.formulas.table import PublishedFormula
 from contact import Cone, ContactRadii, Layer, Paraboloid, Profile, Scene
 from contact.records.validation import FloatArray
+from docs.formulas.table import PublishedFormula
 from mdr import Mdr
 
 # a/h from far in the half-space to thin layers, with the ratios that tables show.

@@ -1,4 +1,4 @@
-"""Makes the coefficients of `compact`: ``python -m benchmarks.formulas.fit_compact`` writes ``compact.toml``."""
+"""Makes the coefficients of `compact`: ``python -m docs.formulas.fit_compact`` writes ``compact.toml``."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ FITS: dict[str, dict[str, Any]] = {
     "paraboloid, unbonded": {"degrees": [6], "scale": 1.0},
 }
 REWEIGHTED = 40
-HEAD = "# Coefficients of the compact fit, made by `python -m benchmarks.formulas.fit_compact`; do not edit.\n"
+HEAD = "# Coefficients of the compact fit, made by `python -m docs.formulas.fit_compact`; do not edit.\n"
 
 
 def exact(nu: float, support: str, ratios: FloatArray = RATIOS) -> dict[str, tuple[FloatArray, FloatArray]]:
