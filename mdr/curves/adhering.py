@@ -17,7 +17,7 @@ from contact.records.validation import BoolArray, FloatArray
 from mdr.adhesion.force_curve import adhesive_curve
 from mdr.curves.models import Model, curve_to, is_modulus, modulus_of
 from mdr.curves.result import correlated
-from mdr.curves.search import Values, least_squares, rough_depth
+from mdr.curves.search import Values, least_squares, rough_fit
 
 # First guesses of the modulus over one without adhesion, and of the root of the work over the scene's.
 _MODULI: Final = tuple(10.0 ** (k / 4) for k in range(-6, 9))
@@ -28,7 +28,7 @@ _STARTS: Final = 4
 _DIP: Final = 6.0
 # Share of the dip that the force at pull-off has: 5/9 under a paraboloid. Points above this share are not in contact.
 _ATTACHED: Final = 0.3
-# Residuals over the range of forces that are a misfit if they are not noise. At twice wrong ends pass, at half tilts fail.
+# Residuals over the range of forces that are a misfit if they are not noise. Twice passes wrong ends, half fails tilts.
 _MISFIT: Final = 0.02
 # Relative difference of values in which two ends of least squares are the same one.
 _SAME: Final = 1e-3
@@ -67,7 +67,7 @@ def _hypotheses(d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> Iter
     level = float(np.median(before)) if "baseline" in parameters else 0.0
     scatter = 1.48 * float(np.median(np.abs(np.diff(before)))) if before.size > 2 else 0.0
     dip = level - float(force[least])
-    if float(force[-1]) < level - 0.5 * dip and dip > _DIP * scatter:
+    if float(force[-1]) < level - 0.9 * dip and dip > _DIP * scatter:
         raise NotConvergedError("the withdrawal starts too close to pull-off for a modulus; press deeper before it")
     if dip > max(_DIP * scatter, 1e-9 * float(np.ptp(f))):
         apart = np.flatnonzero(force[: least + 1] > level - _ATTACHED * dip)
@@ -77,7 +77,7 @@ def _hypotheses(d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> Iter
         if apart.size > 3:
             return
     else:
-        yield d >= d.max() - 1.2 * rough_depth(d, f, parameters)
+        yield d >= d.max() - 1.2 * rough_fit(d, f, parameters)[0]
     yield np.ones(d.size, dtype=bool)
 
 

@@ -19,7 +19,7 @@ from mdr.curves.adhering import fit_adhesive
 from mdr.curves.formulas import formulas_for
 from mdr.curves.models import BACKGROUND, Model, check_parameters, curve_to, is_modulus, linearised, modulus_of
 from mdr.curves.result import CurveFit, FormulaFit, check_contact, stated
-from mdr.curves.search import FURTHEST, CurveShape, Values, best_point, least_squares, rough_depth
+from mdr.curves.search import FURTHEST, CurveShape, Values, best_point, least_squares, rough_fit
 
 DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # A fitted thickness stays within this factor of the scene's: beyond it the scene is another one.
@@ -89,8 +89,7 @@ def fit_elastic(scene: Scene, d: FloatArray, f: FloatArray, parameters: Sequence
     Raises:
         InvalidInput: If the indenter is shorter than the depth of indentation.
     """
-    check_contact(d, f, parameters)
-    rough, deepest = rough_depth(d, f, parameters), float(d.max())
+    rough, deepest = check_contact(d, f, parameters), float(d.max())
     reach, tip_ends = _reach(scene, 2.0 ** math.ceil(math.log2(4 * rough)))
     while True:
         model = Model(scene, d, parameters, reach)
@@ -190,7 +189,7 @@ def _by_formulas(found: CurveFit, parameters: Sequence[str]) -> tuple[FormulaFit
 
 def _modulus_by(shape: CurveShape, d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> float:
     """E [Pa] by least squares with the same parameters as the curve itself."""
-    start = best_point(shape, d, f, parameters, rough=rough_depth(d, f, parameters), reach=math.inf)
+    start = best_point(shape, d, f, parameters, rough=rough_fit(d, f, parameters)[0], reach=math.inf)
     start = {name: start[name] for name in parameters}
     bounds = {"contact_point": (float(d.max()) - FURTHEST * float(np.ptp(d)), float(d.max()))}
     values, _, _ = least_squares(lambda values: linearised(shape, d, values), start, f, bounds)

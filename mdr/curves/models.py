@@ -7,7 +7,7 @@ stack changes one sublayer, "base.youngs_modulus" its elastic base, and the rest
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import Any, Final
 
@@ -96,7 +96,7 @@ def with_values(scene: Scene, values: Values) -> Scene:
             if isinstance(layer, LayerStack | CoatedPair):
                 raise InvalidInput("thickness: only that of a single layer is fitted; a stack keeps its thicknesses")
             layer = layer.replace(thickness=value)
-    return scene.replace(layer=layer)
+    return scene if layer is scene.layer else scene.replace(layer=layer)
 
 
 def modulus_of(scene: Scene, name: str) -> float:
@@ -112,7 +112,7 @@ def linearised(shape: CurveShape, depth: FloatArray, values: Values) -> tuple[Fl
     """F = E phi + f0 + k (d - d0) [N], shape (n,), and its derivatives by each value in SI, shape (n, p)."""
     modulus, point, tilt = values["youngs_modulus"], values.get("contact_point", 0.0), values.get("tilt", 0.0)
     shifted = depth - point
-    phi, slope = shape.per_modulus(shifted), shape.per_modulus_slope(shifted)
+    phi, slope = shape.with_slope(shifted)
     columns = {
         "youngs_modulus": phi,
         "contact_point": -modulus * slope - tilt,
@@ -152,7 +152,7 @@ class Model:
         self.attached = attached
         adhesion = scene.effect(Adhesion)
         self.work = None if adhesion is None else adhesion.work_of_adhesion
-        self.family: tuple[str, Any] | None = None
+        self.family: tuple[str, Callable[[float], ForceCurve]] | None = None
         self.is_linear = self.work is None and "youngs_modulus" in parameters
 
     def curve(self, values: Values) -> ForceCurve:

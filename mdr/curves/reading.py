@@ -134,6 +134,7 @@ def _converted(
             raise InvalidInput(f"{file}: needs a column of depth or height and one of force or deflection; has {heads}")
         place, signal = table.columns
         found["depth"] = place
+    bending: FloatArray | None
     if found["force"] is None and found["deflection"] is not None:
         force, bending = _bent(signal, cantilever, file)
         notes.append("force and depth from the deflection, by the spring constant")
@@ -184,7 +185,7 @@ def _named(columns: Sequence[Column], names: Sequence[str]) -> Column | None:
 
 def _si(one: Column, unit: str, file: str | Path) -> FloatArray:
     factor = in_si(f"1 {one.unit}", unit, f"{file}, column {one.name!r}")
-    return one.values / round(1 / factor) if factor < 1 else one.values * factor
+    return np.asarray(one.values / round(1 / factor) if factor < 1 else one.values * factor)
 
 
 def _falls(depth: FloatArray, force: FloatArray) -> bool:

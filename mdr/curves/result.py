@@ -96,13 +96,13 @@ class CurveFit:
         return self.values[parameter] - half, self.values[parameter] + half
 
 
-def check_contact(depth: FloatArray, force: FloatArray, parameters: Sequence[str]) -> None:
-    """Refuse curves whose force does not rise above scatter and drift.
+def check_contact(depth: FloatArray, force: FloatArray, parameters: Sequence[str]) -> float:
+    """Rough depth of indentation [m]; curves whose force does not rise above scatter and drift are refused.
 
     Raises:
         InvalidInput: With the remedy.
     """
-    gain, residual = rough_fit(depth, force, parameters)
+    rough, gain, residual = rough_fit(depth, force, parameters)
     freedom = max(depth.size - len(parameters), 1)
     variance = float(residual @ residual) / freedom * correlated(residual[np.argsort(depth, kind="stable")])
     if not gain > _CONTACT**2 * variance or not gain > 1e-20 * float(force @ force):
@@ -110,6 +110,7 @@ def check_contact(depth: FloatArray, force: FloatArray, parameters: Sequence[str
             "no contact in the curve: the force does not rise above its scatter and a straight line as the depth "
             "grows; check columns and signs (pressing is positive), or fit without tilt (--with contact_point)"
         )
+    return rough
 
 
 def correlated(residual: FloatArray) -> float:

@@ -34,15 +34,15 @@ class CurveShape(Protocol):
     def per_modulus(self, depth: ArrayLike) -> FloatArray:
         """phi = F/E [m^2] at depths [m], zero where nothing touches."""
 
-    def per_modulus_slope(self, depth: ArrayLike) -> FloatArray:
-        """d(phi)/d(depth) [m]."""
+    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """phi [m^2] and d(phi)/d(depth) [m]."""
 
 
 def background(depth: FloatArray, parameters: Sequence[str]) -> FloatArray:
     """Columns of a constant and of a straight line where they are fitted, orthonormal, shape (n, 0 to 2)."""
     columns = [np.ones_like(depth)] if "baseline" in parameters else []
     columns += [depth - depth.mean()] if "tilt" in parameters else []
-    return np.linalg.qr(np.stack(columns, axis=1))[0] if columns else np.zeros((depth.size, 0))
+    return np.asarray(np.linalg.qr(np.stack(columns, axis=1))[0]) if columns else np.zeros((depth.size, 0))
 
 
 def _trials(depth: FloatArray, parameters: Sequence[str]) -> FloatArray:
@@ -60,21 +60,19 @@ def _powers(depth: FloatArray, reaches: FloatArray) -> Sequence[FloatArray]:
     return x, x * np.sqrt(x), x * x, x * x * x
 
 
-def rough_fit(depth: FloatArray, force: FloatArray, parameters: Sequence[str]) -> tuple[float, FloatArray]:
-    """Decrease of the sum of squares [N^2] by the best power of the depth, and the residual [N] with it."""
-    columns = background(depth, parameters)
-    powers = _powers(depth, _trials(depth, parameters))
-    gains = np.stack([_gains(phi, force, columns) for phi in powers])
-    power, trial = np.unravel_index(int(np.argmax(gains)), gains.shape)
-    matrix = np.column_stack([columns, powers[power][trial] / (powers[power][trial].max() or 1.0)])
-    return float(gains.max()), force - matrix @ np.linalg.lstsq(matrix, force, rcond=None)[0]
+def rough_fit(depth: FloatArray, force: FloatArray, parameters: Sequence[str]) -> tuple[float, float, FloatArray]:
+    """The best power of the depth, before any scene is solved.
 
-
-def rough_depth(depth: FloatArray, force: FloatArray, parameters: Sequence[str]) -> float:
-    """Depth of indentation [m] by the best of four powers of the depth, before any scene is solved."""
+    Returns:
+        Depth of indentation [m], decrease of the sum of squares [N^2] by the contact, and the residual [N], shape (n,).
+    """
     reaches, columns = _trials(depth, parameters), background(depth, parameters)
-    gains = np.stack([_gains(phi, force, columns) for phi in _powers(depth, reaches)])
-    return float(reaches[int(np.argmax(gains.max(axis=0)))])
+    powers = _powers(depth, reaches)
+    gains = np.stack([_gains(phi, force, columns) for phi in powers])
+    power, trial = divmod(int(np.argmax(gains)), gains.shape[1])
+    matrix = np.column_stack([columns, powers[power][trial] / (powers[power][trial].max() or 1.0)])
+    residual = force - matrix @ np.linalg.lstsq(matrix, force, rcond=None)[0]
+    return float(reaches[trial]), float(gains.max()), residual
 
 
 def _gains(phi: FloatArray, force: FloatArray, columns: FloatArray) -> FloatArray:
@@ -83,7 +81,7 @@ def _gains(phi: FloatArray, force: FloatArray, columns: FloatArray) -> FloatArra
     phi = phi - (phi @ columns) @ columns.T
     square = np.sum(phi * phi, axis=1)
     product = np.maximum(phi @ remaining, 0.0)
-    return np.divide(product**2, square, out=np.zeros_like(square), where=square > 0.0)
+    return np.asarray(np.divide(product**2, square, out=np.zeros_like(square), where=square > 0.0))
 
 
 def best_point(
@@ -188,5 +186,8 @@ def _free(
 
 
 def _moved(values: Values, step: FloatArray, bounds: Mapping[str, tuple[float, float]]) -> Values:
-    moved = {name: value + float(change) for (name, value), change in zip(values.items(), step, strict=True)}
-    return {name: float(np.clip(value, *bounds.get(name, (-np.inf, np.inf)))) for name, value in moved.items()}
+    moved = dict[str, float]()
+    for (name, value), change in zip(values.items(), step.tolist(), strict=True):
+        low, high = bounds.get(name, (-np.inf, np.inf))
+        moved[name] = min(max(value + change, low), high)
+    return moved
