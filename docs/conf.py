@@ -6,11 +6,10 @@ from docutils import nodes
 from latex2mathml.converter import convert
 
 from cases.declare.registry import load_cases
-from cases.gate.baseline import read_baselines
 from reports.pages.book import write_book, write_equations
 
 HERE = Path(__file__).parent
-write_book(load_cases().values(), read_baselines(HERE.parent / "baselines"), HERE / "book")
+write_book(load_cases().values(), HERE / "book")
 write_equations(HERE.parent, HERE / "generated" / "equations.md")
 
 project = "contact-verification"
@@ -34,7 +33,6 @@ html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "s
 html_show_sourcelink = False
 # Pages without neighbours of their own need no list of them.
 ALONE = (
-    "accuracy",
     "api",
     "contributing",
     "formulas",

@@ -81,10 +81,6 @@ def case_page(case: CaseView, run: RunResult) -> str:
 
 STUDY_COMMANDS = {
     "stability": "ladders",
-    "coverage": "coverage",
-    "error_maps": "maps",
-    "scaling": "scaling",
-    "requested_accuracy": "accuracy",
 }
 
 

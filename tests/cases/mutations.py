@@ -28,7 +28,6 @@ from bem.tables.table import FlatPunchTable, chebyshev_radii
 from cases.declare.task import Task
 from cases.gate.baseline import baseline_path, read_baselines
 from cases.gate.history import append_history, history_path, read_history
-from cases.measurements.evidence import records
 from cases.results.files import read_run, write_run
 from cases.results.records.run import Acceptance
 from cases.run.keys import content_key, key_parts
@@ -67,18 +66,6 @@ def stored_task(folder: Path) -> Stored:
     store, key = TaskStore(folder), content_key(parts)
     store.put(key, parts, dataclasses.replace(fast_run(SCENE), key=key))
     return Stored(folder / f"{key}.json", lambda: store.get(key))
-
-
-def stored_evidence(folder: Path) -> Stored:
-    measured = [
-        records.MeasuredSetting(
-            kind="elastic", band=band, method="mdr", settings={"nodes": 16}, bounds=(1e-9, 2e-8), seconds=0.01
-        )
-        for band in (1.0, 10.0)
-    ]
-    file = folder / "measured.json"
-    records.write(file, records.Evidence(machine="x", revision="0" * 40, seed=1, measurements=tuple(measured)))
-    return Stored(file, lambda: records.read(file))
 
 
 def stored_table(folder: Path) -> Stored:
@@ -144,7 +131,6 @@ def stored_solution(folder: Path) -> Stored:
 KINDS: dict[str, Callable[[Path], Stored]] = {
     "results": stored_results,
     "task": stored_task,
-    "evidence": stored_evidence,
     "table": stored_table,
     "baseline": stored_baseline,
     "h5": stored_solution,

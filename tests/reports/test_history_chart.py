@@ -1,12 +1,10 @@
 """The history of accepted numbers as a chart of the report, and what long studies say while they run."""
 
-import dataclasses
 import datetime
 import time
 
 import pytest
 
-from cases.measurements.advice.error_maps import map_case, plans_of
 from cases.results.records.run import Acceptance
 from reports.charts.history import accepted_steps, figures
 from reports.commands.studies import PARTIAL, _counted
@@ -75,14 +73,6 @@ def test_on_a_terminal_a_study_says_what_it_is_at(monkeypatch, capsys):
     shown = capsys.readouterr().out
     assert "[3 of 6]: FEM, Poisson's ratio 0.3" in shown
     assert "[1, 0 s] FEM: 1 %\n" in shown
-
-
-def test_studies_say_what_they_are_at_before_they_are_at_it():
-    lines = []
-    (plan,) = plans_of(["half-space"], [])
-    map_case([dataclasses.replace(plan, ratios=(0.1, 1.0), rows=("0", "0.5"))], lambda _: None, lines.append)
-    assert lines[0] == "1 of 2: Half-space (Hertz): force at given depth, Poisson's ratio 0"
-    assert lines[3] == "2 of 2: Half-space (Hertz): depth at given force, Poisson's ratio 0.5"
 
 
 def test_the_tolerance_history_has_a_row_a_case_of_each_run_and_names_what_was_loosened():

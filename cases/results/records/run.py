@@ -10,15 +10,15 @@ from pydantic.dataclasses import dataclass
 
 from cases.results.records.claim import Claim
 from cases.results.records.convergence import ConvergenceStudy
-from cases.results.records.cost import EffectEntry, ScalingFit, WorkPrecision
+from cases.results.records.cost import EffectEntry, WorkPrecision
 from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative
 from cases.results.records.figure import Figure
-from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
+from cases.results.records.reliability import Ladder
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status, worst
 
 # Files of another version are refused.
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -46,9 +46,6 @@ class CaseResult:
     work_precision: tuple[WorkPrecision, ...] = ()
     effects: tuple[EffectEntry, ...] = ()
     ladders: tuple[Ladder, ...] = ()
-    coverage: tuple[CoverageRecord, ...] = ()
-    maps: tuple[ErrorMap, ...] = ()
-    scaling: tuple[ScalingFit, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property
@@ -111,7 +108,7 @@ class RunResult:
     Its ``methods`` are those that were chosen; none if the cases were solved by their own.
     """
 
-    schema_version: Literal[1] = 1
+    schema_version: Literal[2] = 2
     suite: str
     methods: tuple[str, ...] = ()
     complete: bool

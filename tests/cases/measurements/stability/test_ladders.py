@@ -7,8 +7,8 @@ import dataclasses
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.invariants import LAWS, invariant_residuals
 from cases.measurements.ladders import ladders
+from cases.measurements.ladders.invariants import LAWS, invariant_residuals
 from cases.measurements.ladders.ladder_study import climbs, ladder_case, no_silent_failure
 from cases.measurements.ladders.ladder_table import LADDERS, contact_ratio, damped_punch, truncated
 from cases.measurements.ladders.ladders import LadderPlan, climb

@@ -14,10 +14,10 @@ from typing import Final
 
 import numpy as np
 
-from cases.measurements.campaigns.referee import direct_density
-from cases.measurements.campaigns.referee_profiles import equivalent_slope
 from contact import FlatPunch, Layer, Profile
 from contact.records.validation import FloatArray
+from tests.referees.profiles import equivalent_slope
+from tests.referees.second_opinion import direct_density
 
 # Gauss nodes of a panel as long as its distance from the singularity, where the error of n nodes is 5.8^(-2n).
 _NODES: Final = 16

@@ -5,9 +5,8 @@ from typing import Final
 
 import numpy as np
 
-from cases.measurements.campaigns.referee import CHEAP_RATIO, second_opinion
-from cases.measurements.campaigns.units import Units, in_units
-from contact import ContactPath, FlatPunch, ImpactHistory, Layer, Method, Scene, Solution
+from cases.measurements.ladders.units import Units, in_units
+from contact import ContactPath, FlatPunch, ImpactHistory, Layer, Method, Solution
 
 _POINTS: Final = 400
 # Largest a/h up to which methods on flat punches know pressures.
@@ -80,25 +79,9 @@ def restitution_is_below_one(method: Method, answer: Solution) -> float | None:
     return max(answer.coefficient_of_restitution - 1.0, -answer.coefficient_of_restitution, 0.0)
 
 
-def force_of_an_independent_answer(method: Method, answer: Solution) -> float | None:
-    """Distance of the force from the second opinion, beyond its own rounding."""
-    scene = answer.scene
-    if not isinstance(answer, ContactPath) or scene.effects or not _within_reach(answer, scene):
-        return None
-    opinion = second_opinion(answer)
-    expected = opinion.values["normal_force"]
-    largest = np.maximum(np.abs(expected), np.abs(answer.normal_force))
-    distance = np.abs(answer.normal_force - expected) / largest
-    return float(np.max(np.maximum(distance - opinion.uncertainty, 0.0)))
-
-
 def _pressure_is_known(answer: ContactPath) -> bool:
     reach = PRESSURE_REACH * answer.scene.layer.surface.thickness
     return answer.fields is not None and bool(answer.contact_radius[-1] <= reach)
-
-
-def _within_reach(answer: ContactPath, scene: Scene) -> bool:
-    return scene.layer.is_uniform and bool(answer.contact_radius.max() <= CHEAP_RATIO * scene.layer.thickness)
 
 
 def _distance(found: np.ndarray[tuple[int, ...], np.dtype[np.float64]], expected: object) -> float:
@@ -113,5 +96,4 @@ LAWS: Mapping[str, Callable[[Method, Solution], float | None]] = {
     "no tension": pressure_presses,
     "energy": energy_is_conserved,
     "restitution in (0, 1]": restitution_is_below_one,
-    "second opinion": force_of_an_independent_answer,
 }

@@ -10,7 +10,6 @@ import pytest
 from scipy.integrate import quad
 
 from bem.layer_equation.one_radius import half_space_load
-from cases.measurements.campaigns.referee import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
 from contact import (
     Adhesion,
     Cone,
@@ -31,6 +30,7 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr import Mdr
+from tests.referees.second_opinion import LARGEST_RATIO, QUANTITIES, adhesive_states, second_opinion
 
 # Relative; digits to which the tables print k_bar, solved elsewhere by radius-by-radius collocation
 STIFFNESS = {
