@@ -1,5 +1,6 @@
 """Sphinx settings of the documentation. `make docs` builds it with warnings as errors; nothing is downloaded."""
 
+import sys
 from pathlib import Path
 
 from docutils import nodes
@@ -9,6 +10,7 @@ from cases.declare.registry import load_cases
 from reports.pages.book import write_book, write_equations
 
 HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE.parent))  # scripts of the gallery import their common parts
 write_book(load_cases().values(), HERE / "book")
 write_equations(HERE.parent, HERE / "generated" / "equations.md")
 
@@ -46,11 +48,19 @@ ALONE = (
 html_sidebars = {page: [] for page in ALONE}
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
-exclude_patterns = ["tutorials", "generated", "start/sg_execution_times.rst", "sg_execution_times.rst"]
+exclude_patterns = [
+    "tutorials",
+    "gallery",
+    "figures/sg_execution_times.rst",
+    "generated",
+    "start/sg_execution_times.rst",
+    "sg_execution_times.rst",
+]
 sphinx_gallery_conf = {
-    "examples_dirs": "tutorials",
-    "gallery_dirs": "start",
+    "examples_dirs": ["tutorials", "gallery"],
+    "gallery_dirs": ["start", "figures"],
     "filename_pattern": r"\.py$",
+    "ignore_pattern": r"/_",
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_memory": False,

@@ -84,7 +84,12 @@ def _methods(
     asked = {"accuracy": accuracy, "pressure_accuracy": pressure_accuracy}
     for name in ORDER:
         settable = inspect.signature(load(name)).parameters
-        method = build(name, {key: value for key, value in asked.items() if key in settable and value is not None})
+        settings = {key: value for key, value in asked.items() if key in settable and value is not None}
+        try:
+            method = build(name, settings)
+        except InvalidInput:
+            # The method takes no such accuracy as a setting: its own may be fine enough, or too fine.
+            method = build(name, {})
         support = method.supports(scene)
         if isinstance(support, Unsupported):
             refusals.append(f"{name}: {support.reason}")

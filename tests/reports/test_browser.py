@@ -58,7 +58,7 @@ def test_no_label_of_a_figure_is_clipped(failed_page):
 
 def test_no_label_of_the_paper_s_figures_is_clipped(tmp_path):
     numbers = ("03", "04", "05", "07", "08", "09", "11", "12")
-    figures = tuple(importlib.import_module(f"cases.library._figures.figure_{number}").figure() for number in numbers)
+    figures = tuple(importlib.import_module(f"docs.gallery.figure_{number}").figure() for number in numbers)
     case = dataclasses.replace(passing_case(), figures=figures)
     seen = measure(write_report(dataclasses.replace(example_run(), cases=(case,)), tmp_path))
     assert seen["figures"] >= len(figures)

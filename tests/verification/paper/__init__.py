@@ -7,13 +7,13 @@
 
 from collections.abc import Iterator
 
-from cases.library._paper.statement import Statement
+from tests.verification.paper.statement import Statement
 
 
 def statements() -> Iterator[Statement]:
     """Every statement in the order of the paper."""
     # These imports load MDR, so they wait until the page is written.
-    from cases.library._paper import detachment, equations, flat_punch, impacts, profiles, slips  # noqa: PLC0415
+    from tests.verification.paper import detachment, equations, flat_punch, impacts, profiles, slips
 
     for section in (slips, flat_punch, profiles, detachment, impacts, equations):
         yield from section.statements()

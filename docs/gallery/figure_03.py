@@ -1,12 +1,15 @@
-"""Fig. 3: normalised contact stiffness of the flat punch over a/h."""
+"""
+Fig. 3: normalised contact stiffness of the flat punch over a/h
+===============================================================
+"""
 
 import numpy as np
 
-from cases.library._figures._parts import LARGEST_RATIO, UNBONDED, closed_form, layer, mdr_line, name_of, percent, punch
 from cases.library._hayes import TABLE
 from cases.results.records.figure import Figure, Panel, Series
 from contact import Layer
 from contact.records.validation import FloatArray
+from docs.gallery._parts import LARGEST_RATIO, UNBONDED, closed_form, layer, mdr_line, name_of, percent, punch, show
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
 RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 161)
@@ -66,3 +69,7 @@ def _caption() -> str:
         f"approximation below a/h = 0.1; there k is already higher by {half[0]} (bonded, nu = 0.5) and {half[1]} "
         f"(unbonded). It calls the thin layer good beyond 50; there it is off by {thin[0]} and {thin[1]}."
     )
+
+
+if __name__ == "__main__":
+    show(figure())

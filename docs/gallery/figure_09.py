@@ -1,12 +1,15 @@
-"""Fig. 9: force over depth while a flat punch detaches from a bonded incompressible layer."""
+"""
+Fig. 9: force over depth while a flat punch detaches from a bonded incompressible layer
+=======================================================================================
+"""
 
 import numpy as np
 
-from cases.library._figures._parts import layer, mdr_line
-from cases.library._figures.figure_04 import second_maximum
-from cases.library._figures.figure_08 import detached, reversals
 from cases.results.records.figure import Figure, Panel, Series
 from contact import Layer
+from docs.gallery._parts import layer, mdr_line, show
+from docs.gallery.figure_04 import second_maximum
+from docs.gallery.figure_08 import detached, reversals
 
 RATIOS = (0.1, 0.3, 0.46, 1.0, 2.0, 4.0)  # a*/h
 # The radius a* of the punch; it stays the same on thinner and thinner layers.
@@ -46,3 +49,7 @@ def _curves(ratio: float) -> list[Series]:
     if peeling[start + 1 :].any():
         found.append(mdr_line(name, depth[peeling], force[peeling], error, style="dotted"))
     return found
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -1,13 +1,16 @@
-"""Fig. 8: normalised elongation of the outermost spring before it lets go, Eq. (42)."""
+"""
+Fig. 8: normalised elongation of the outermost spring before it lets go, Eq. (42)
+=================================================================================
+"""
 
 import numpy as np
 
 from bem.layer_equation.protocol import FlatPunchSource
-from cases.library._figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch
-from cases.library._figures.figure_03 import thin_layer_stiffness
 from cases.results.records.figure import Figure, Panel, Series
 from contact import Adhesion, Detachment, DetachmentPath, FlatPunch, Layer, Scene
 from contact.records.validation import FloatArray
+from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, closed_form, layer, mdr_line, name_of, punch, show
+from docs.gallery.figure_03 import thin_layer_stiffness
 from mdr.adhesion.solver import solve_detachment
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.365), layer(0.4), layer(0.45), layer(0.5))
@@ -79,3 +82,7 @@ def _caption() -> str:
         "has its maximum at "
         f"{low_maximum:.3f} and its minimum at {low_minimum:.3f}, so that stability reverses twice."
     )
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 import numpy as np
 
 from bem.polynomials.gauss import legendre_rule
-from cases.library._figures._symbols import series
 from cases.library._layers import layer
 from cases.results.records.figure import Series
 from contact import TruncatedCone
 from contact.records.validation import FloatArray
+from docs.gallery._parts import series
 from mdr.closed_forms.truncated_cone import thin_cone_force, thin_cone_pressure, thin_cone_profile
 
 HALF_SPACE, THIN_LAYER = "half-space", "thin layer"

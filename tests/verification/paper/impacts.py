@@ -3,10 +3,14 @@
 from collections.abc import Iterator
 from functools import cache, partial
 
-from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of
-from cases.library._figures.figure_12 import elastic_half_space
-from cases.library._paper.flat_punch import stiffness
-from cases.library._paper.statement import (
+from cases.library.in_time.flat_punch_impact import restitution
+from cases.library.in_time.sphere_impact import scene_of, twice_the_radius_at_half_the_speed
+from contact import ImpactHistory, Layer
+from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
+from docs.gallery.figure_12 import elastic_half_space
+from mdr.impact.solver import solve_impact
+from tests.verification.paper.flat_punch import stiffness
+from tests.verification.paper.statement import (
     FORMULA,
     GOOD,
     SAME,
@@ -18,10 +22,6 @@ from cases.library._paper.statement import (
     reads,
     within,
 )
-from cases.library.in_time.flat_punch_impact import restitution
-from cases.library.in_time.sphere_impact import scene_of, twice_the_radius_at_half_the_speed
-from contact import ImpactHistory, Layer
-from mdr.impact.solver import solve_impact
 
 DAMPING = 0.3
 KINDS = {True: "elastic", False: "viscoelastic"}
@@ -71,7 +71,7 @@ def similar() -> Measured:
 
 def by_finite_elements() -> Measured:
     """Largest force on 2 mm by finite elements over that by MDR."""
-    from fem_reference import Fem  # noqa: PLC0415 - loaded where it is used
+    from fem_reference import Fem
 
     run = Fem().solve(scene_of(2e-3))
     if not isinstance(run, ImpactHistory):

@@ -1,10 +1,13 @@
-"""Fig. 11: restitution of a flat punch on a Kelvin-Voigt layer."""
+"""
+Fig. 11: restitution of a flat punch on a Kelvin-Voigt layer
+============================================================
+"""
 
 import numpy as np
 
-from cases.library._figures._parts import UNBONDED, closed_form, layer, mdr_line, name_of, punch
 from cases.results.records.figure import Figure, Panel, Series
 from contact.records.validation import FloatArray
+from docs.gallery._parts import UNBONDED, closed_form, layer, mdr_line, name_of, punch, show
 from mdr.closed_forms.flat_punch_restitution import kelvin_voigt_restitution
 
 LAYERS = (layer(0.5), UNBONDED)
@@ -57,3 +60,7 @@ def _caption() -> str:
         "Closed form with MDR's stiffness. The paper calls the half-space a good approximation for a/h <= 0.1; on a "
         f"bonded layer of that ratio the rebound is already slower by {shown}."
     )
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -1,14 +1,17 @@
-"""A cycle of depth with dry friction: force over depth, what friction makes of it, tangential tractions, heat."""
+"""
+A cycle of depth with dry friction: force over depth, what friction makes of it, tangential tractions, heat
+===========================================================================================================
+"""
 
 from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
-from cases.library._figures._symbols import series
 from cases.results.records.figure import Figure, Panel, Series
 from contact import DepthHistory, Friction, FrictionHistory, IndentationDepths, Scene
 from contact.records.validation import FloatArray
+from docs.gallery._parts import series, show
 from fem_reference import Fem
 from mdr import Mdr
 
@@ -122,3 +125,9 @@ def _told(scene: Scene) -> str:
     friction, layer = scene.effect(Friction), scene.layer
     assert friction is not None
     return f"{layer.support} layer, nu = {layer.poissons_ratio:g}, coefficient {friction.coefficient:g}".capitalize()
+
+
+if __name__ == "__main__":
+    from cases.library.friction.friction_paraboloid import CYCLE
+
+    show(figure(CYCLE.scene))

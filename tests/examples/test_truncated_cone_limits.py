@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from cases.library.elastic._truncated_cone_limits import pressure_limits, profile_limits
 from contact import ContactRadii, Layer, Scene, TruncatedCone
+from docs.gallery._truncated_cone_limits import pressure_limits, profile_limits
 from mdr import Mdr
 
 A = 1e-3

@@ -6,14 +6,14 @@ from functools import partial
 import numpy as np
 
 from bem.kernels.layer import compliance_kernel
-from cases.library._figures._parts import UNBONDED, layer, name_of, punch
-from cases.library._figures.figure_03 import thin_layer_stiffness
-from cases.library._figures.figure_04 import second_maximum
-from cases.library._figures.figure_05 import exponent
 from cases.library._hayes import COMMON as HAYES
 from cases.library._hayes import RATIOS as HAYES_RATIOS
-from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, above, deviation, reads, within
 from contact import Layer
+from docs.gallery._parts import UNBONDED, layer, name_of, punch
+from docs.gallery.figure_03 import thin_layer_stiffness
+from docs.gallery.figure_04 import second_maximum
+from docs.gallery.figure_05 import exponent
+from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, above, deviation, reads, within
 
 LAYERS = (UNBONDED, *(layer(nu) for nu in (0.0, 0.3, 0.4, 0.45, 0.5)))
 NEAREST = 1e-3

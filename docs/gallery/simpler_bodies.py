@@ -1,4 +1,7 @@
-"""Force over depth and pressure over radius with each simplification of a layered body beside the full answer."""
+"""
+Force over depth and pressure over radius with each simplification of a layered body beside the full answer
+===========================================================================================================
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -6,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from cases.library._figures._parts import mdr_line, percent
 from cases.results.records.figure import Figure, Panel
 from contact import (
     ContactPath,
@@ -21,6 +23,7 @@ from contact import (
     Scene,
     Sublayer,
 )
+from docs.gallery._parts import mdr_line, percent, show
 from mdr import Mdr
 
 # Depths over the total thickness, under a paraboloid of ten times that radius.
@@ -119,3 +122,7 @@ def _pressures(body: Simplification, paths: dict[str, ContactPath]) -> Panel:
             mdr_line(name, r, path.pressure(r, -1) / body.full.contact_modulus, path.error_estimate["pressure"][-1])
         )
     return Panel(title=body.title, x_label="$r/H$", y_label="$p/E^*$", series=tuple(lines))
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -5,10 +5,10 @@ from functools import cache, partial
 
 import numpy as np
 
-from cases.library._figures._parts import UNBONDED, layer, name_of
-from cases.library._figures.figure_08 import detached, elongation, reversals
-from cases.library._paper.statement import Measured, Statement, above, below, reads
 from contact import DetachmentPath, Layer
+from docs.gallery._parts import UNBONDED, layer, name_of
+from docs.gallery.figure_08 import detached, elongation, reversals
+from tests.verification.paper.statement import Measured, Statement, above, below, reads
 
 HALF_UNIT = 0.005
 RATIOS = (0.3, 1.0, 2.0, 4.0)

@@ -1,14 +1,17 @@
-"""Fig. 12: a sphere hits a layer of 1, 2 or 3 mm, viscoelastic (standard solid) or elastic."""
+"""
+Fig. 12: a sphere hits a layer of 1, 2 or 3 mm, viscoelastic (standard solid) or elastic
+========================================================================================
+"""
 
 from functools import cache
 from typing import Literal
 
 import numpy as np
 
-from cases.library._figures._parts import SOURCE, mdr_line
 from cases.library.in_time.sphere_impact import IMPACT_NUMBER, VELOCITY, scene_of
 from cases.results.records.figure import Figure, Panel, Series
 from contact import ImpactHistory, StandardSolid
+from docs.gallery._parts import SOURCE, mdr_line, show
 from mdr.impact.solver import solve_impact
 
 # Zero stands for the half-space. [m]
@@ -129,3 +132,7 @@ def _caption() -> str:
         f"F: the opposing trend: at chi_HS = {OTHER_NUMBER:g} it falls from {falling[0]:.3f} on the half-space "
         f"to {falling[1]:.3f} on 1 mm."
     )
+
+
+if __name__ == "__main__":
+    show(figure())

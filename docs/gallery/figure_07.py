@@ -1,12 +1,15 @@
-"""Fig. 7: MDR profile and pressure of a truncated cone, b/a = 0.5, for three layers."""
+"""
+Fig. 7: MDR profile and pressure of a truncated cone, b/a = 0.5, for three layers
+=================================================================================
+"""
 
 import numpy as np
 
-from cases.library._figures._parts import SOURCE, UNBONDED, layer, mdr_line, name_of
-from cases.library.elastic._truncated_cone_limits import pressure_limits, profile_limits
 from cases.results.records.figure import Figure, Panel
 from contact import ContactPath, ContactRadii, Layer, Profile, Scene, TruncatedCone
 from contact.records.validation import FloatArray
+from docs.gallery._parts import SOURCE, UNBONDED, layer, mdr_line, name_of, show
+from docs.gallery._truncated_cone_limits import pressure_limits, profile_limits
 from mdr import equivalent_system
 from mdr.elastic import solve_elastic
 
@@ -87,3 +90,7 @@ def _caption() -> str:
         "for high Poisson's ratios and a/h >= 2; "
         f"at a/h = 2 it is {two[0]:.3f} for nu = 0.5 but {two[1]:.3f} for nu = 0.45."
     )
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -2,10 +2,11 @@
 
 from functools import cache
 
+import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
-from cases.library._figures import (
+from docs.gallery import (
     figure_03,
     figure_04,
     figure_05,
@@ -14,9 +15,8 @@ from cases.library._figures import (
     figure_09,
     figure_11,
     figure_12,
-    paper_figure,
 )
-from cases.library._figures._parts import UNBONDED, layer
+from docs.gallery._parts import UNBONDED, layer, paper_figure, show
 
 NUMBERS = (3, 4, 5, 7, 8, 9, 11, 12)
 made = cache(paper_figure)
@@ -143,3 +143,12 @@ def test_captions_give_the_numbers_behind_loose_statements():
     assert figure_03.thin_layer_stiffness(layer(0.3), np.array(1.0)) == pytest.approx(
         0.5 * np.pi * 0.49 / 0.4, rel=1e-12, abs=0.0
     )
+
+
+def test_a_figure_is_drawn_with_every_panel_and_its_caption(capsys):
+    show(made(3))
+    drawn = plt.gcf()
+    assert len(drawn.axes) == len(made(3).panels)
+    assert len(drawn.axes[0].lines) == len(made(3).panels[0].series)
+    assert "thin-layer limits" in capsys.readouterr().out
+    plt.close(drawn)

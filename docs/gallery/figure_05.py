@@ -1,11 +1,14 @@
-"""Fig. 5: exponent m and factor kappa of the contact stiffness, Eqs. (33) and (34)."""
+"""
+Fig. 5: exponent m and factor kappa of the contact stiffness, Eqs. (33) and (34)
+================================================================================
+"""
 
 import numpy as np
 
-from cases.library._figures._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch
 from cases.results.records.figure import Figure, Panel
 from contact import Layer, Paraboloid
 from contact.records.validation import FloatArray
+from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch, show
 from mdr import equivalent_system
 
 LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
@@ -40,3 +43,7 @@ def figure() -> Figure:
         f"m = {float(exponent(layer(0.5), RATIOS)[0][-1]):.3f} at a/h = 100."
     )
     return Figure(name="fig_5", title="Fig. 5: exponent and factor of the stiffness", caption=caption, panels=panels)
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -1,14 +1,19 @@
-"""What the figures share: series with an error band, the layers they are drawn for, one source of flat-punch data."""
+"""The figures' common parts: series with an error band, layers, one source of flat-punch data, and the drawing.
 
+Curves are dense, each with its method and an error band. A caption says where the paper's statement is looser than the
+numbers. Ranges are those of the paper's text, since its axes are printed as pictures.
+"""
+
+import importlib
 from dataclasses import replace
 from typing import Literal
 
+import matplotlib.pyplot as plt
 import numpy as np
 from numpy.typing import ArrayLike
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSolution
-from cases.library._figures._symbols import series
 from cases.results.records.figure import Figure, Series
 from contact import Layer
 from contact.records.validation import FloatArray
@@ -18,6 +23,46 @@ SOURCE = IntegralEquation(nodes=16)
 MDR = "mdr"
 # The figures end at this a/h.
 LARGEST_RATIO = 100.0
+
+
+def series(
+    label: str,
+    method: str,
+    group: str,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    half_width: ArrayLike = (),
+    style: Literal["by method", "dotted", "symbols"] = "by method",
+) -> Series:
+    """A record of points from arrays."""
+    x, y, half_width = (tuple(np.asarray(values, dtype=np.float64).tolist()) for values in (x, y, half_width))
+    return Series(label=label, method=method, group=group, x=x, y=y, half_width=half_width, style=style)
+
+
+def paper_figure(number: int) -> Figure:
+    """The numbers of a figure of the paper."""
+    return with_errors(importlib.import_module(f"docs.gallery.figure_{number:02d}").figure())
+
+
+def show(figure: Figure) -> None:
+    """Draw a figure: one colour per group, solid lines by MDR, dashed by other methods, and print its caption."""
+    width = 4.5 * len(figure.panels)
+    drawn, axes = plt.subplots(1, len(figure.panels), figsize=(width, 4.0), layout="constrained", squeeze=False)
+    for panel, one in zip(figure.panels, axes[0], strict=True):
+        groups = list(dict.fromkeys(line.group for line in panel.series))
+        for line in panel.series:
+            colour = f"C{groups.index(line.group) % 10}"
+            usual = "solid" if line.method.startswith(MDR) else "dashed"
+            look = {"marker": "o", "linestyle": "none"} if line.style == "symbols" else {"linestyle": usual}
+            if line.style in ("solid", "dashed", "dotted"):
+                look = {"linestyle": line.style}
+            one.plot(line.x, line.y, color=colour, linewidth=1.2, markersize=3, label=line.label, **look)
+        one.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+        one.set(xscale=panel.x_scale, yscale=panel.y_scale, xlim=panel.x_range, ylim=panel.y_range)
+        one.legend(fontsize="xx-small")
+    drawn.suptitle(figure.title)
+    print(figure.caption)
 
 
 def layer(poissons_ratio: float, *, support: Literal["bonded", "unbonded"] = "bonded") -> Layer:

@@ -1,10 +1,13 @@
-"""Fig. 4: contact pressure under a flat punch on a bonded incompressible layer."""
+"""
+Fig. 4: contact pressure under a flat punch on a bonded incompressible layer
+============================================================================
+"""
 
 import numpy as np
 from scipy.optimize import brentq
 
-from cases.library._figures._parts import closed_form, layer, mdr_line, punch
 from cases.results.records.figure import Figure, Panel
+from docs.gallery._parts import closed_form, layer, mdr_line, punch, show
 
 RATIOS = (0.1, 0.5, 1.0, 2.0, 5.0, 10.0, 50.0)
 # Radii over that of the punch, denser at its edge.
@@ -45,3 +48,7 @@ def second_maximum(poissons_ratio: float = 0.5) -> float:
         return float(pressure[0] - pressure[1])
 
     return float(brentq(drop, 0.5, 3.0, xtol=1e-6))
+
+
+if __name__ == "__main__":
+    show(figure())

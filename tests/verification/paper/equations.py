@@ -7,10 +7,6 @@ import numpy as np
 from numpy.polynomial.chebyshev import Chebyshev
 from numpy.polynomial.legendre import leggauss
 
-from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of, punch
-from cases.library._figures.figure_07 import pressed
-from cases.library._paper.profiles import cone
-from cases.library._paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within
 from cases.library.elastic.coated_pair import pair
 from cases.library.in_time.sphere_impact import (
     LONG_TERM_MODULUS,
@@ -22,11 +18,15 @@ from cases.library.in_time.sphere_impact import (
 )
 from cases.library.in_time.sphere_impact import scene_of as impact_of
 from contact import CoatedPair, ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, PowerLaw, Profile, Scene
+from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of, punch
+from docs.gallery.figure_07 import pressed
 from mdr.closed_forms.asymptotic import thin_profile
 from mdr.closed_forms.truncated_cone import thin_cone_pressure
 from mdr.coated_pairs import mean_thickness_error
 from mdr.elastic import solve_elastic
 from mdr.impact.solver import solve_impact
+from tests.verification.paper.profiles import cone
+from tests.verification.paper.statement import FORMULA, GOOD, SAME, Measured, Statement, deviation, reads, within
 
 # Gauss nodes on the contact, and degree of the polynomial through g at these.
 NODES = 16

@@ -5,13 +5,13 @@ from functools import partial
 
 import numpy as np
 
-from cases.library._figures._parts import SOURCE, UNBONDED, layer, name_of
-from cases.library._figures.figure_07 import depth_over_height, pressed
-from cases.library._paper.statement import GOOD, Measured, Statement, deviation, within
 from cases.library.elastic.coated_pair import RATIOS, one_body_on_its_plane, symmetric
 from contact import Layer, Paraboloid, TruncatedCone
+from docs.gallery._parts import SOURCE, UNBONDED, layer, name_of
+from docs.gallery.figure_07 import depth_over_height, pressed
 from mdr.closed_forms.truncated_cone import thin_cone_force
 from mdr.elastic import solve_elastic
+from tests.verification.paper.statement import GOOD, Measured, Statement, deviation, within
 
 FLAT = 0.5
 

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.polynomial.legendre import leggauss
 
-from cases.library._paper.statement import FORMULA, Measured, Statement, StatementVerdict, within
+from tests.verification.paper.statement import FORMULA, Measured, Statement, StatementVerdict, within
 
 # Gauss points on the contact; the integrands are smooth after the substitution.
 POINTS = 60
