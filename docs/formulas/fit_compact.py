@@ -33,7 +33,12 @@ def exact(nu: float, support: str, ratios: FloatArray = RATIOS) -> dict[str, tup
         poissons_ratio=nu,
         support="bonded" if support == "bonded" else "unbonded",
     )
-    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=ContactRadii(values=ratios))
+    scene = Scene(
+        layer=layer,
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=ContactRadii(values=ratios),
+        beyond_small_strains=True,
+    )
     path = Mdr().solve(scene)
     hertz = 4 / 3 * path.indentation_depth**1.5
     return {

@@ -62,7 +62,7 @@ def random_scene(rng: np.random.Generator) -> AnyScene:
         (TruncatedCone(flat_radius=flat, slope=0.1), 0.15 * (a - flat)),
         (TruncatedParaboloid(flat_radius=flat, radius_of_curvature=10.0), 0.1 * (a**2 - flat**2)),
     )[int(rng.integers(5))]
-    return Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
+    return Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]), beyond_small_strains=True)
 
 
 def unilateral(scene: AnyScene, depth: float, cells: int = STRIP_CELLS) -> FoundContact | None:
