@@ -251,7 +251,7 @@ def gate(
 ) -> int:
     """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
 
-    The regression claims join the others in the report, together with the history of accepted changes.
+    The regression claims join the others in the report.
     """
     from reports.commands.gate import run_gate  # noqa: PLC0415
 
@@ -265,7 +265,7 @@ def accept(
         typer.Argument(metavar="[CASE]...", help="Cases whose numbers become the baseline; all of RUN."),
     ] = None,
     *,
-    reason: Annotated[str, typer.Option(help="Why these numbers are right; the report shows it.")],
+    reason: Annotated[str, typer.Option(help="Why these numbers are right; it is kept beside them.")],
     run: Annotated[Path, typer.Option(help="Folder of the finished run they come from.")] = Path("build/verification"),
     baseline: Baselines = Path("baselines"),
     write: Annotated[bool, typer.Option("--write", help="Write; without it only show what would change.")] = False,
@@ -367,10 +367,7 @@ def report(
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
     single_file: Annotated[bool, typer.Option("--single-file", help="All cases on one page.")] = False,
 ) -> int:
-    """Build the pages of a run again without computing; with two runs, compare the second with the first.
-
-    A run that was changed after it was written is refused by its seal.
-    """
+    """Build the pages of a run again without computing; with two runs, compare the second with the first."""
     from reports.commands.report import compare_runs, rebuild  # noqa: PLC0415
 
     return rebuild(run, single_file=single_file) if other is None else compare_runs(run, other)

@@ -3,7 +3,6 @@
 ========================  ==========================================================
 `charts.agreement`        differences of two methods, with uncertainty, against the tolerance
 `charts.convergence`      error under refinement, formal slope, GCI bars
-`charts.history`          how far accepted numbers moved, run after run
 `charts.ladder`           digits left as a parameter gets hard
 `charts.solution`         one answer: force over depth, or its history
 `charts.three_answers`    the front page: differences, costs and ladders of all cases

@@ -8,7 +8,6 @@ from cases.declare.registry import load_cases
 from cases.declare.selection import nightly_only
 from cases.gate.baseline import Baseline, read_baselines
 from cases.gate.gate import gate
-from cases.gate.history import read_history
 from cases.gate.ladders import read_ladders
 from cases.results.files import read_run, require_run, write_run
 from cases.results.records.scene_run import SceneRun
@@ -44,7 +43,7 @@ def run_gate(directory: Path, baselines: Path, *, methods: Collection[str], stri
         return (case, row.scene, row.method) not in unwatched and (not methods or row.method in methods)
 
     with locked(directory):
-        result = gate(read_run(directory), accepted, read_history(baselines), ladders, watched)
+        result = gate(read_run(directory), accepted, ladders, watched)
         write_run(result, directory)
         write_pages(result, directory)
     show_verdict(result, directory, quiet=quiet)

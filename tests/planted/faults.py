@@ -757,15 +757,6 @@ BASELINES = [
         Test("cases.gate.test_accept:test_loosening_is_refused_without_the_flag_and_visible_after_it", (TEMPORARY,)),
     ),
     Fault(
-        "files edited by hand accepted",
-        "baselines",
-        set_to("cases.results.sealed:digest_of", lambda text: "0"),
-        Test(
-            "cases.gate.test_baseline:test_a_file_edited_by_hand_is_refused",
-            (baseline_file, "1.5\n", "1.6\n", "changed after it was written"),
-        ),
-    ),
-    Fault(
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(

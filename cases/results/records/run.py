@@ -1,4 +1,4 @@
-"""A whole run: its cases with all their records, where it was made, and what was accepted.
+"""A whole run: its cases with all their records, and where it was made.
 
 A non-finite number cannot be stored: what could not be computed is ``None`` beside a status that says why.
 """
@@ -11,7 +11,7 @@ from pydantic.dataclasses import dataclass
 from cases.results.records.claim import Claim
 from cases.results.records.convergence import ConvergenceStudy
 from cases.results.records.cost import EffectEntry, WorkPrecision
-from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative
+from cases.results.records.field_types import RECORD, Mapping, NotNegative
 from cases.results.records.figure import Figure
 from cases.results.records.reliability import Ladder
 from cases.results.records.scene_run import SceneRun
@@ -52,22 +52,6 @@ class CaseResult:
     def status(self) -> Status:
         """The status that decides for this case, of solutions that broke down and of claims."""
         return worst([claim.status for claim in self.claims] + [run.status for run in self.runs])
-
-
-@dataclass(frozen=True, kw_only=True, config=RECORD)
-class Acceptance:
-    """An entry of the baseline history: who accepted which change, and why; tolerances are relative."""
-
-    date: str
-    case: str
-    method: str
-    quantity: str
-    old: Finite | None
-    new: Finite | None
-    old_tolerance: NotNegative | None
-    new_tolerance: NotNegative | None
-    reason: str
-    revision: str
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -114,7 +98,6 @@ class RunResult:
     complete: bool
     stamp: Stamp
     cases: tuple[CaseResult, ...]
-    acceptances: tuple[Acceptance, ...] = ()
 
     def case(self, name: str) -> CaseResult:
         """Return the case called ``name``.

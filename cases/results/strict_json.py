@@ -1,6 +1,5 @@
-"""JSON files that only this program writes: one canonical text under a digest, and one reader that refuses the rest."""
+"""JSON files of this program: one text with sorted keys and every digit, and a reader that refuses damaged files."""
 
-import hashlib
 import json
 import math
 from collections.abc import Mapping
@@ -9,7 +8,6 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from cases.results.canonical import indented, key_text
 from contact import InvalidInput
 from contact.records.record import shown
 
@@ -21,64 +19,34 @@ MAX_BYTES = 500_000_000
 MAX_DIGITS = 40
 
 
-def sealed_text(content: Mapping[str, Any], covered: str = "") -> str:
-    """Return the canonical text of ``content`` with its digest.
-
-    Args:
-        content: plain values; an entry "digest" is added.
-        covered: name of the entry that the digest is computed from; empty for the whole content.
-    """
-    entries = {name: indented(value, 1) for name, value in content.items()}
-    return _of_entries({**entries, "digest": f'"{_seal(entries, covered)}"'})
+def json_text(content: Mapping[str, Any]) -> str:
+    """Return ``content`` as JSON with sorted keys; a number that is not finite raises ValueError."""
+    return json.dumps(content, sort_keys=True, indent=1, allow_nan=False) + "\n"
 
 
-def digest_of(text: str) -> str:
-    """Return the digest that tells whether a text was changed: half of a SHA-256, 32 hexadecimal digits."""
-    return hashlib.sha256(text.encode()).hexdigest()[:32]
-
-
-def _seal(entries: Mapping[str, str], covered: str) -> str:
-    """Return the digest of the entry that it covers, or of them all."""
-    # A line ends between values only: within words its end is written as a backslash and a letter.
-    return digest_of(entries[covered].replace("\n ", "\n") + "\n" if covered else _of_entries(entries))
-
-
-def _of_entries(entries: Mapping[str, str]) -> str:
-    """Return the canonical text of an object from those of its entries."""
-    lines = (f" {key_text(name)}{entries[name]}" for name in sorted(entries))
-    return "{\n" + ",\n".join(lines) + "\n}\n" if entries else "{}\n"
-
-
-def read_sealed(path: Path, *, remedy: str, covered: str = "") -> dict[str, Any]:
-    """Return the content of a file that was written with `sealed_text`.
+def read_json(path: Path, *, remedy: str) -> dict[str, Any]:
+    """Return the object in a file.
 
     Args:
         path: the file.
         remedy: what a user does about a file that is refused.
-        covered: as it was written.
 
     Raises:
-        InvalidInput: in one line, if the file cannot be read or one byte of it differs from what was written.
+        InvalidInput: in one line, if the file cannot be read or holds no JSON object of finite numbers.
     """
-    return unsealed(_bytes_of(path, remedy), place=str(path), remedy=remedy, covered=covered)
+    return json_object(_bytes_of(path, remedy), place=str(path), remedy=remedy)
 
 
-def unsealed(data: bytes, *, place: str, remedy: str, covered: str = "") -> dict[str, Any]:
-    """Return the content of ``data``, the bytes of a sealed text; arguments and errors as of `read_sealed`."""
+def json_object(data: bytes, *, place: str, remedy: str) -> dict[str, Any]:
+    """Return the object in ``data``; arguments and errors as of `read_json`."""
     try:
         tree = parsed(data)
-        entries = {name: indented(value, 1) for name, value in tree.items()} if isinstance(tree, dict) else {}
     except (ValueError, RecursionError) as error:
         raise InvalidInput(f"{place} is not readable: {_words(error)}; {remedy}") from None
-    if not isinstance(tree, dict) or "digest" not in tree:
-        raise InvalidInput(f"{place} has no seal: an older version or something else wrote it; {remedy}")
-    whole = _of_entries(entries).encode() == data
-    del entries["digest"]
-    digest = tree.pop("digest")
-    if covered and tree.keys() != {covered}:
-        raise InvalidInput(f"{place} has other entries than {covered!r} and its digest; {remedy}")
-    if not whole or digest != _seal(entries, covered):
-        raise InvalidInput(f"{place} was changed after it was written: its seal does not fit; {remedy}")
+    if not isinstance(tree, dict):
+        raise InvalidInput(f"{place} holds no JSON object; {remedy}")
+    # Files of older versions hold a digest over their other entries.
+    tree.pop("digest", None)
     return tree
 
 
