@@ -180,6 +180,7 @@ class Case:
             method=use.label,
             problem=scene.scene,
             solver=use.build(),
+            settings=use.settings,
             sampling=scene.sampling,
         )
 

@@ -26,6 +26,7 @@ from cases.run.lock import locked
 from cases.run.many.window import Window
 from cases.run.progress import Progress, ProgressEvent, silent
 from cases.run.solve_task import solve, without_numbers
+from cases.run.specification import specification
 from cases.run.stamp import stamp
 from cases.run.store import TaskStore
 from contact import InvalidInput
@@ -179,7 +180,9 @@ def _reused(run: _Run, planned: _Planned) -> bool:
     if row is None or row.status in (Status.TIMEOUT, Status.INVALID):
         return False
     # Another case may have stored the same scene and settings under names of its own.
-    run.finish(planned, replace(row, scene=planned.task.scene, method=planned.task.method), reused=True)
+    task = planned.task
+    own = replace(row, scene=task.scene, method=task.method, specification=specification(task))
+    run.finish(planned, own, reused=True)
     return True
 
 

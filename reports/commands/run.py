@@ -75,7 +75,7 @@ def run(
     with locked(options.out):
         result = _carried_out(cases, options, studied, quiet=quiet)
         write_pages(result, options.out)
-    show_verdict(result, options.out, quiet=quiet)
+    show_verdict(result, page_of(options.out), quiet=quiet)
     if not result.complete:
         return ExitCode.INTERRUPTED
     return exit_code(result.statuses, strict=strict)
@@ -103,7 +103,7 @@ def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, q
         return studies.join(result, options.out) if studied and result.complete else result
 
 
-def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
+def show_verdict(result: RunResult, page: Path, *, quiet: bool) -> None:
     """Matrix and worst rows (unless quiet), the verdict, where the report lies, annotations for GitHub."""
     terminal = console()
     rows = outcomes(result)
@@ -118,7 +118,7 @@ def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
         terminal.print(sentence)
     words, tone = headline(result, rows)
     terminal.print(words, style=STYLES[tone])
-    terminal.print(f"report: {page_of(out)}")
+    terminal.print(f"report: {page}")
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in annotation_lines(result):
             terminal.print(line, soft_wrap=True)

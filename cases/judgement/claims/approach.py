@@ -43,7 +43,8 @@ class Approach(PerMethod):
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge the sequence once for each method."""
         scenes = self.scenes_of(case)[-2:]
-        for label in self.labels(case, scenes[-1]):
+        first, last = (self.labels(case, scene) for scene in (scenes[0], scenes[-1]))
+        for label in (label for label in last if label in first):
             runs = [answers.of(case.task(scene, case.use(scene, label))) for scene in scenes]
             judged = first_missing(*runs) or self._judged(scenes, runs, self.accuracies.get(label, 0.0))
             yield self.record(judged, scenes[-1].name, (label,), expected=self.formal_order)
