@@ -92,9 +92,8 @@ def _block(case: str, claims: Sequence[Claim]) -> ClaimBlock:
 
 
 def _within(claim: Claim) -> str:
-    """What stands beside the verdict: a wide tolerance, and a method's own claim that has widened it."""
-    wide = f"within {100 * claim.tolerance:.2g} %" if is_wide(claim) else ""
-    return ", ".join(part for part in (wide, claim.relaxed) if part)
+    """What stands beside the verdict: a wide tolerance."""
+    return f"within {100 * claim.tolerance:.2g} %" if is_wide(claim) else ""
 
 
 def _row(case: str, name: str, same: Sequence[Claim]) -> ClaimRow:

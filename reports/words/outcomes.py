@@ -192,7 +192,7 @@ def claim_outcome(case: str, claim: Claim) -> CheckOutcome:
         observed=observed_text(claim),
         tolerance=f"{small(claim.tolerance)}{_unit(claim.unit)}",
         origin=f"{claim.origin}: {claim.source}",
-        message=worded("; ".join(part for part in (claim.message, claim.identity, claim.relaxed) if part)),
+        message=worded("; ".join(part for part in (claim.message, claim.identity) if part)),
         because=claim.because,
         identity=claim.identity,
     )

@@ -53,7 +53,6 @@ class DeclaredClaim(ABC):
         reason: why it should hold, and where its numbers come from.
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
-        relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
         identities: of methods for which it holds by construction, by label: why; such checks are not counted.
         nightly: whether it takes too long for the suite "ci".
     """
@@ -66,7 +65,6 @@ class DeclaredClaim(ABC):
     reason: Reason
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
-    relaxed: Mapping[str, str] = field(default_factory=dict)
     identities: Mapping[str, str] = field(default_factory=dict)
     nightly: bool = False
 
@@ -153,7 +151,6 @@ class DeclaredClaim(ABC):
             shared_inputs=shared,
             message=message,
             identity=identity,
-            relaxed="; ".join(self.relaxed[label] for label in methods if label in self.relaxed),
         )
 
     def _origin(self, shared: tuple[str, ...]) -> Origin:

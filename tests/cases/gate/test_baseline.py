@@ -6,9 +6,9 @@ import pytest
 
 from cases.gate.baseline import baseline_path, read_baselines
 from cases.gate.history import append_history, history_path, read_history, write_history
-from cases.run.specification import specification_hash
 from cases.gate.write_permission import SOURCE
 from cases.results.sealed import sealed_text
+from cases.run.specification import specification_hash
 from contact import InvalidInput
 from tests.cases.example_run import acceptance
 from tests.cases.gate.example_baselines import CASE, accepted
