@@ -164,7 +164,8 @@ def _planned(task: Task) -> _Planned:
 def _judged(run: _Run, case: Case, answers: Answers, *, complete: bool) -> CaseResult:
     whole = run.options.timing and not run.options.only_costs
     result = case_result(case, answers, complete=complete and whole)
-    run.tell("judged", case.name, result.status)
+    skipped = whole and not result.status.is_failure and result.unjudged(run.options.methods)
+    run.tell("judged", case.name, Status.SKIP if skipped else result.status)
     return result
 
 

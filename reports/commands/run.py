@@ -68,7 +68,10 @@ def run(
         cases = [beside(case, methods, REFEREE) for case in _chosen(methods, names, options.suite)]
     else:
         solvers = tuple(methods)
-        cases = [only_methods(case, methods) for case in _chosen(methods, names, options.suite)]
+        chosen = _chosen(methods, names, options.suite)
+        # Of a suite those cases run that have one of the methods.
+        solved = [case for case in chosen if not methods or any(use.label in methods for use in case.methods)]
+        cases = [only_methods(case, methods) for case in ((not names and solved) or chosen)]
     cases = [with_settings(case, asked) for case in cases]
     options = dataclasses.replace(options, methods=tuple(dict.fromkeys(solvers)), executor=by_name(executor))
     studied = options.suite in USUAL_SUITES and not names and not solvers
@@ -78,7 +81,8 @@ def run(
     show_verdict(result, page_of(options.out), quiet=quiet)
     if not result.complete:
         return ExitCode.INTERRUPTED
-    return exit_code(result.statuses, strict=strict)
+    code = exit_code(result.statuses, strict=strict)
+    return ExitCode.NOTHING_RAN if result.unjudged and code is not ExitCode.GATE_FAILED else code
 
 
 def _chosen(methods: list[str], names: list[str], suite: str) -> tuple[Case, ...]:
