@@ -11,6 +11,7 @@ from cases.gate.gate import gate
 from cases.gate.history import read_history
 from cases.gate.ladders import read_ladders
 from cases.results.files import read_run, require_run, write_verdicts
+from cases.results.records.claim import Kind
 from cases.results.records.run import RunResult
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import ExitCode, exit_code
@@ -60,7 +61,11 @@ def _gated(run: RunResult, baselines: Path, methods: Collection[str]) -> RunResu
 
 
 def _of_methods(baseline: Baseline, methods: Collection[str]) -> Baseline:
-    """The baseline without claims that need other methods than these; the whole of it if none is named."""
+    """The baseline without claims that need other methods than these; the whole of it if none is named.
+
+    An order may be measured against the answer of another method, which an accepted claim does not name.
+    """
     if not methods or baseline.claims is None:
         return baseline
-    return replace(baseline, claims=tuple(claim for claim in baseline.claims if set(claim.methods) <= set(methods)))
+    own = (claim for claim in baseline.claims if set(claim.methods) <= set(methods) and claim.kind is not Kind.ORDER)
+    return replace(baseline, claims=tuple(own))

@@ -29,6 +29,7 @@ FAMILIES = {
     "three_zone_cartilage",
     "graded_layer",
     "friction_paraboloid",
+    "round_and_worn_tips",
 }
 
 
