@@ -1,8 +1,8 @@
 """Tips as they are made and worn: the exact sphere, a cone with a spherical apex, and a paraboloid worn flat.
 
 On the half-space Sneddon's integrals give depth and force at a contact radius a, for any profile of slope f':
-g = a int f'(a sin t) dt and F = 2 E* a^2 int f'(a sin t) sin(t)^2 dt, t from 0 to pi/2. There the tips are steep. On the
-layer the methods are compared with one another. Each writes its own heights or slopes of a profile.
+g = a int f'(a sin t) dt and F = 2 E* a^2 int f'(a sin t) sin(t)^2 dt, t from 0 to pi/2. There the tips are steep.
+On the layer the methods are compared with one another. Each writes its own heights or slopes of a profile.
 """
 
 import math
