@@ -38,9 +38,9 @@ def test_an_interrupt_keeps_the_run_and_says_that_it_is_incomplete(tmp_path, mon
 
 
 def test_studies_join_a_finished_run(tmp_path, monkeypatch):
-    monkeypatch.setattr(studies, "QUICK", (lambda: example_run().cases[0],))
+    monkeypatch.setattr(studies, "QUICK", (lambda: dataclasses.replace(example_run().cases[0], name="a study"),))
     run = studies.SuiteStudies("ci", serial, 1).join(example_run(), tmp_path)
-    assert [case.name for case in run.cases[len(example_run().cases) :]] == [example_run().cases[0].name]
+    assert [case.name for case in run.cases[len(example_run().cases) :]] == ["a study"]
     assert read_run(tmp_path) == run
 
 
