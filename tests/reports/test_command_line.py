@@ -372,11 +372,11 @@ def test_the_report_of_a_run_without_cases_is_exit_code_5(library, tmp_path, cap
 
 
 @pytest.mark.usefixtures("library")
-def test_the_report_of_a_changed_run_is_refused_in_one_line(tmp_path, capsys):
+def test_the_report_of_a_damaged_run_is_refused_in_one_line(tmp_path, capsys):
     assert run_here(tmp_path) == 0
     results = tmp_path / "out" / "results.json"
     text = results.read_text(encoding="utf-8")
-    results.write_text(re.sub(r'"observed": (\S+),', '"observed": 1e6,', text), encoding="utf-8")
+    results.write_text(re.sub(r'"observed": (\S+),', '"observed": NaN,', text), encoding="utf-8")
     for command in (["report"], ["gate"]):
         capsys.readouterr()
         assert run([*command, str(tmp_path / "out")]) == 4

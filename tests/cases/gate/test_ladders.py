@@ -26,7 +26,7 @@ def ladder(*digits, method="mdr"):
 def claims(walked, folder):
     case = dataclasses.replace(passing_case(), ladders=walked, claims=())
     run = dataclasses.replace(example_run(), cases=(case,))
-    gated = gate(run, (), (), read_ladders(folder))
+    gated = gate(run, (), read_ladders(folder))
     return [c for c in gated.cases[0].claims if c.kind is Kind.REGRESSION and c.name == "accepted rungs and digits"]
 
 
