@@ -1,0 +1,128 @@
+"""However many packages bring a method: each is compared with the case's own methods once, and none that was not chosen
+appears.
+"""
+
+from collections import Counter
+from importlib.metadata import EntryPoint
+
+import pytest
+
+from cases.declare import methods
+from cases.declare.foreign_methods import with_registered
+from cases.declare.registry import load_cases
+from cases.declare.selection import in_suite, only_methods
+from cases.judgement.claims.agreement import Agreement
+from cases.judgement.claims.declared import PerMethod
+from cases.judgement.claims.field_agreement import FieldAgreement
+
+NAMES = ("stranger_a", "stranger_b", "stranger_c", "stranger_d")
+LIBRARY = sorted(load_cases())
+COMPARISONS = (Agreement, FieldAgreement)
+
+
+@pytest.fixture
+def install(monkeypatch):
+    """Let so many packages be installed; one of them claims 5 %."""
+    from tests.cases.fake_method import FakeHertz
+
+    modest = type("ModestHertz", (FakeHertz,), {"claimed_accuracy": 0.05})
+    monkeypatch.setattr("tests.cases.fake_method.ModestHertz", modest, raising=False)
+
+    def install(count):
+        classes = ("ModestHertz", "FakeHertz", "FakeHertz", "FakeHertz")
+        entries = [
+            EntryPoint(name=name, value=f"tests.cases.fake_method:{found}", group=methods.ENTRY_POINT_GROUP)
+            for name, found in zip(NAMES[:count], classes, strict=False)
+        ]
+        monkeypatch.setattr(methods, "entry_points", lambda group: entries)
+
+    install(0)
+    return install
+
+
+def comparisons(case):
+    """Agreements by what is compared, with whom, and where; with their tolerances."""
+    found = [
+        ((claim.quantity, getattr(claim, "norm", ""), frozenset((claim.fast, claim.reference)), scene.name), claim)
+        for claim in case.claims
+        if isinstance(claim, COMPARISONS)
+        for scene in claim.scenes_of(case)
+    ]
+    assert len(found) == len({place for place, _ in found}), Counter(place for place, _ in found).most_common(3)
+    return dict(found)
+
+
+@pytest.mark.parametrize("count", range(5))
+def test_claims_grow_by_the_same_number_with_each_package(install, count):
+    library = load_cases().values()
+    own = sum(len(case.claims) for case in library)
+    install(1)
+    first = sum(len(with_registered(case).claims) for case in library)
+    install(count)
+    assert sum(len(with_registered(case).claims) for case in library) - own == count * (first - own)
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_packages_never_meet_in_a_claim_and_each_pair_is_compared_once(install, name):
+    case = load_cases()[name]
+    install(4)
+    joined = with_registered(case)
+    for claim in joined.claims:
+        if isinstance(claim, COMPARISONS):
+            assert sum(stranger in repr((claim.name, claim.fast, claim.reference)) for stranger in NAMES) <= 1
+    assert {claim.name for claim in case.claims} <= {claim.name for claim in joined.claims}
+    comparisons(joined)
+
+
+@pytest.mark.parametrize("name", LIBRARY)
+def test_a_pair_meets_the_tightest_tolerance_that_applies(install, name):
+    case = load_cases()[name]
+    install(2)
+    joined = comparisons(with_registered(case))
+    own = comparisons(case)
+    for place, claim in joined.items():
+        for stranger in set(NAMES) & place[2]:
+            asked = min(c.tolerance for p, c in own.items() if compares(p, place, *(place[2] - {stranger})))
+            assert claim.tolerance == asked
+
+
+def compares(one, place, other):
+    """Whether the agreement is about the same quantity and scene as that of ``place``, with the method ``other``."""
+    return (one[0], one[1], one[3]) == (place[0], place[1], place[3]) and other in one[2]
+
+
+@pytest.mark.parametrize("suite", ["", "ci"])
+@pytest.mark.parametrize("name", LIBRARY)
+def test_a_chosen_method_is_asked_the_same_whatever_else_is_installed(install, name, suite):
+    """The modest package, installed as well, changes nothing for the chosen one."""
+    case = load_cases()[name]
+    chosen = ["mdr", "stranger_b"]
+    install(4)
+    among_four = only_methods(in_suite(with_registered(case), suite), chosen)
+    assert {task.method for task in among_four.tasks() if task.method in NAMES} <= {"stranger_b"}
+    alone = only_methods(in_suite(with_registered(case, chosen), suite), chosen)
+    assert [stranger for stranger in NAMES if stranger in repr(alone)] == ["stranger_b"]
+    assert asked_of(among_four) == asked_of(alone)
+
+
+def asked_of(case):
+    """Claims with what they ask of the methods that are left."""
+    labels = [use.label for use in case.methods]
+    return {
+        (
+            claim.name,
+            claim.scenes,
+            label,
+            claim.tolerance_of(label) if isinstance(claim, PerMethod) else claim.tolerance,
+        )
+        for claim in case.claims
+        for label in labels
+    }
+
+
+def test_the_library_itself_is_that_of_this_project(install):
+    install(4)
+    for case in load_cases().values():
+        assert not set(NAMES) & {use.label for use in case.methods}
+        assert not [stranger for stranger in NAMES if stranger in repr([claim.name for claim in case.claims])]
+        assert with_registered(case, ["mdr"]) is case
