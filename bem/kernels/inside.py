@@ -31,6 +31,7 @@ class Transfer(NamedTuple):
     shear: FloatArray
     normal: FloatArray
 
+
 EPS: Final = float(np.finfo(float).eps)
 # Roundings of a depth within which it lies at an interface: one for each of some thicknesses, and two of the unit.
 ROUNDINGS: Final = 32.0

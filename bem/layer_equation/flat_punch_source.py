@@ -87,7 +87,7 @@ class IntegralEquation(Record):
         return _solution(self, layer.support, nu, rung)
 
     def refined(self) -> Self:
-        """Panels half as wide, with more nodes: panels towards the axis and those of graded layers keep their widths."""
+        """Panels half as wide with more nodes, since panels towards the axis and of graded layers keep their widths."""
         return self.replace(panel_width=self.panel_width / 2, nodes=min(self.nodes + MORE_NODES, MOST_NODES))
 
 

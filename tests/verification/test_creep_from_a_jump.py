@@ -85,7 +85,7 @@ def for_every_history(test):
 
 @for_every_history
 def test_depth_under_a_force(profile, name, ramp):
-    force = np.where(TIMES >= ramp, FORCE, FORCE * TIMES)
+    force = np.where(ramp <= TIMES, FORCE, FORCE * TIMES)
     answer = solved(profile, name, ForceHistory(time=TIMES, force=force))
     if ramp:
         risen = [FORCE * quad(lambda s, t=t: creep(name, t - s), 0.0, min(t, ramp), epsabs=0.0)[0] for t in TIMES]
@@ -96,7 +96,7 @@ def test_depth_under_a_force(profile, name, ramp):
 
 @for_every_history
 def test_force_under_a_depth(profile, name, ramp):
-    depth = np.where(TIMES >= ramp, DEPTH, DEPTH * TIMES)
+    depth = np.where(ramp <= TIMES, DEPTH, DEPTH * TIMES)
     answer = solved(profile, name, DepthHistory(time=TIMES, depth=depth))
     if not ramp:
         exact = relaxation(name, TIMES) * unit_force(profile, DEPTH)

@@ -34,13 +34,13 @@ FINEST_PIECE: Final = -12
 # thickness on, which leaves itself times 1e-5 of a depth.
 GROWTH: Final = 1.5
 FIRST_STEP: Final = 6e-8
-# Edges on each piece, and nodes on each of a profile's, beyond the nodes of a panel: 12 left 5e-12 of k_bar at the end of an octave, and 2e-9 of a
-# depth was stated (constant moduli, a/h = 1, 2026-11-23).
+# Edges on each piece, and nodes on each of a profile's, beyond the nodes of a panel: without them 5e-12 of k_bar is
+# left at the end of an octave.
 MORE_ON_PIECE: Final = 4
 # Nodes by which the coarser panels fall short with which the edges of `CHECKED` are compared.
 FEWER: Final = 3
-# Further nodes of a panel where a density's slope is asked for, as pressures do. From 0.005 a to 0.999 a pressures are up to
-# 3e-10 off with 16, and 1.5e-8 with 12 (E = 100^z, a paraboloid at a = H against the direct equation, 2026-11-22).
+# Further nodes of a panel where a density's slope is asked for, as pressures do: with 12 in all pressures are up to
+# 1.5e-8 off, with 16 3e-10.
 MORE_FOR_DENSITY: Final = 4
 # Edges that are solved with more nodes besides the last: errors grow by powers up to a/h = 2, beyond which panels in
 # the middle are split, fall there, and grow again.

@@ -59,9 +59,9 @@ def _(indenter: Sphere, excess: FloatArray, room: FloatArray) -> FloatArray:
 
 @profile_slope.register
 def _(indenter: Spheroconical, excess: FloatArray, room: FloatArray) -> FloatArray:
-    """The sphere's slope up to b; beyond, with c = sqrt(R^2 - b^2) and q = sqrt(t^2 - b^2), by t of
+    """The sphere's slope up to b, and beyond it the cone's.
 
-    ln[(R + t)/(c + q)] + t/(R + t) + slope arctan(q/b) + (b^2 - c q)/(c (c + q)).
+    ln[(R + t)/(c + q)] + t/(R + t) + slope arctan(q/b) + (b^2 - c q)/(c (c + q)), c^2 = R^2 - b^2, q^2 = t^2 - b^2.
     """
     R, b, t = indenter.radius, indenter.tangent_radius, excess
     c, q = R / math.hypot(1.0, indenter.slope), np.sqrt(np.maximum(t - b, 0.0) * (t + b))
