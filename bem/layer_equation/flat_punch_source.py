@@ -37,6 +37,9 @@ ANY_RUNGS: Final = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 # The same on a graded layer.
 GRADED_RUNGS: Final = (1.0, 2.0, 4.0, 8.0, 16.0)
 
+# Wavenumbers at which sup chi is looked for, times the longest length and times the first thickness: twice as many
+# change it by less than 1 %.
+LONGEST_WAVE, SHORTEST_WAVE, SAMPLED_WAVES = 1e-4, 10.0, 200
 # Nodes of a panel by default, and the most.
 USUAL_NODES: Final = 24
 MOST_NODES: Final = 64
@@ -119,7 +122,9 @@ def _any_solution(settings: IntegralEquation, surface: SurfaceKernel, ratio: flo
 
     kernel, width = FredholmKernel.of_surface(surface), ANY_WIDTH * settings.panel_width
     factor = GradedFactor.of_any(kernel, int(np.ceil(ratio / width)), width, int(settings.nodes))
-    return AnyLayerSolution(kernel, factor)
+    waves = np.geomspace(LONGEST_WAVE / surface.longest, SHORTEST_WAVE, SAMPLED_WAVES)
+    largest = float(np.max(1.0 - surface.one_minus_chi(waves), initial=1.0))
+    return AnyLayerSolution(kernel, factor, largest)
 
 
 @lru_cache(maxsize=32)
