@@ -769,8 +769,8 @@ BASELINES = [
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(
-            "benchmarks.race.race:is_slower",
-            lambda f: lambda measured, d: f(dataclasses.replace(measured, lower=measured.lower / 1.5), d),
+            "benchmarks.race:slowdown",
+            lambda f: lambda base, head: dataclasses.replace(f(base, head), lower=f(base, head).lower / 1.5),
         ),
         Test(
             "benchmarks.test_race:test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_60_races"
