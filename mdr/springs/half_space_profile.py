@@ -91,11 +91,12 @@ def rounding_beside_end(indenter: Profile, largest: float, radius: FloatArray) -
 
     The largest radius is where the grid ends, with all its digits.
     """
+    end = indenter.radius if isinstance(indenter, Spheroconical) else indenter.max_radius / 2
     is_steep = isinstance(indenter, Spheroconical)
     inside = (radius > indenter.flat_radius) & (is_steep | (radius != largest))
     if not (np.any(inside) and (is_steep or is_endless(indenter, indenter.max_radius))):
         return np.zeros_like(radius)
-    edge = np.where(inside, radius, indenter.radius if is_steep else indenter.max_radius / 2)
+    edge = np.where(inside, radius, end)
     slope = profile_slope(indenter, edge, indenter.max_radius - edge)
     share = 0.0 if slope is None else POSITION_ROUNDINGS * EPS * edge * slope / half_space_profile(indenter, edge)
     return np.where(inside, share, 0.0)
