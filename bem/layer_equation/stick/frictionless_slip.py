@@ -185,7 +185,9 @@ def slip_tables(rung: float, longest: float) -> SlipTables:
     angle, _ = gauss_nodes(count)
     radius = np.sin(math.pi / 2.0 * angle)
     t, height, of_edge = _towards_edge(radius)
-    to_legendre: FloatArray = np.asarray(np.linalg.inv(legendre.legvander(2.0 * angle - 1.0, count - 1)), dtype=np.float64)
+    to_legendre: FloatArray = np.asarray(
+        np.linalg.inv(legendre.legvander(2.0 * angle - 1.0, count - 1)), dtype=np.float64
+    )
     return SlipTables(
         transforms=transforms,
         even=even,
