@@ -95,9 +95,9 @@ def test_a_ramp_on_a_kelvin_voigt_half_space_follows_its_closed_form(ramp, tau):
 
 def test_the_last_instant_of_every_segment_is_the_given_one():
     """One rounding beyond it a force that jumps there would be compared with that of the other side."""
-    time = np.array([0.1, 0.7, 1.1, 2.3, 4.1, 4.7])
+    time = np.array([0.1, 1.16, 1.95, 2.96, 3.59])
     answer = Fem(growth=1.0).solve(
-        scene(SOLID, FlatPunch(radius=1e-3), DepthHistory(time=time, depth=1e-6 * np.array([0, 1, 3, 2, 1, 1.5])))
+        scene(SOLID, FlatPunch(radius=1e-3), DepthHistory(time=time, depth=1e-6 * np.array([0, 1, 3, 2, 1])))
     )
     assert set(time) <= set(answer.time)
 
@@ -111,7 +111,7 @@ def test_a_force_far_below_the_stresses_of_its_layer_has_a_depth():
     assert coverage(answer, most=12).worst <= 1.0
 
 
-@pytest.mark.parametrize("number", (0, 5, 7, 8, 9))
+@pytest.mark.parametrize("number", [0, 5, 7, 8, 9])
 def test_random_histories_are_within_their_stated_errors(number):
     assert coverage(Fem().solve(random_history(number)), most=20).worst <= 1.0
 
