@@ -27,6 +27,7 @@ from contact import (
 )
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
+from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import in_range
@@ -71,6 +72,7 @@ class Mdr(Record):
     @overload
     def solve(self, scene: Scene) -> Solution: ...
     @one_thread
+    @within_small_strains
     @without_contact
     def solve(self, scene: Scene) -> Solution:
         """The answer to the scene: a contact path, a detachment path, an impact or a history.

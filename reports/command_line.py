@@ -248,7 +248,7 @@ def gate(
 ) -> int:
     """Compare a run with the accepted numbers: values, counters, nothing missing, nothing extra; then its claims.
 
-    The regression claims join the others in the report, together with the history of accepted changes.
+    results.json, summary.md and junit.xml then hold these checks too; `contact-verify report` draws pages with them.
     """
     from reports.commands.gate import run_gate  # noqa: PLC0415
 

@@ -13,12 +13,12 @@ from pydantic.dataclasses import dataclass
 from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.files import write_whole
 from cases.results.records.claim import Kind
-from cases.results.records.field_types import Finite, Mapping, NotNegative, Positive, Vector
+from cases.results.records.field_types import Finite, NotNegative, Positive, Vector
 from cases.results.sealed import read_sealed, sealed_text, validated
 from contact import InvalidInput
 
 # Files of another version are refused.
-BASELINE_VERSION = 1
+BASELINE_VERSION = 2
 REMEDY = "restore it from the repository, or accept the case anew"
 _ENTRY = "baseline"
 
@@ -31,8 +31,7 @@ class AcceptedQuantity:
 
     Attributes:
         scene: name of the scene within its case.
-        settings: numerical settings of the method.
-        specification: hash of scene and settings; other than this means another problem, not another answer.
+        specification: hash of the scene and of the settings asked for; another hash means another problem.
         quantity: its name.
         unit: SI unit.
         scale: size that differences are relative to where the value is smaller, same unit.
@@ -44,7 +43,6 @@ class AcceptedQuantity:
     """
 
     scene: str
-    settings: Mapping
     specification: str
     quantity: str
     unit: str
@@ -74,7 +72,7 @@ class AcceptedCounters:
 
     Attributes:
         scene: name of the scene within its case.
-        specification: hash of scene and settings.
+        specification: hash of the scene and of the settings asked for.
         counters: by name.
         curves: relative uncertainty that the method states of a field or history, by its name; None where the case was
             accepted before these were watched.

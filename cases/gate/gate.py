@@ -91,9 +91,9 @@ def _regression_claims(case: CaseResult, baselines: list[Baseline]) -> Iterator[
         rows = {run.scene: run for run in case.runs if run.method == method}
         records = accepted[method].records if method in accepted else ()
         counters = accepted[method].counters if method in accepted else ()
-        for check in value_checks(case, rows, {record.place: record for record in records}):
+        for check in value_checks(rows, {record.place: record for record in records}):
             yield check.claim(case.name, method)
         for check in count_checks(rows, {record.scene: record for record in counters}):
             yield check.claim(case.name, method)
-        for check in uncertainty_checks(case, rows, records, counters):
+        for check in uncertainty_checks(rows, records, counters):
             yield check.claim(case.name, method)

@@ -106,13 +106,6 @@ def nightly_coverage() -> CaseResult:
     return coverage_case((*QUICK_PLANS, *NIGHTLY_PLANS))
 
 
-def quick_maps() -> CaseResult:
-    """Where closed forms are good, and where friction does not matter."""
-    from cases.measurements.advice.error_maps import FORMULAS, FRICTION, USUAL_RATIOS, map_case  # noqa: PLC0415
-
-    return map_case((*(replace(plan, ratios=USUAL_RATIOS) for plan in FORMULAS), *FRICTION))
-
-
 def code_verification() -> CaseResult:
     """Orders, stability and locking of the finite elements."""
     from cases.library._code_verification.finite_elements import finite_element_case  # noqa: PLC0415
@@ -120,5 +113,5 @@ def code_verification() -> CaseResult:
     return finite_element_case()
 
 
-QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, quick_ladders, quick_maps)
-NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, nightly_coverage, all_ladders, quick_maps)
+QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, quick_ladders)
+NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, nightly_coverage, all_ladders)

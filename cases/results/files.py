@@ -54,9 +54,14 @@ def json_schema() -> dict[str, Any]:
 
 def write_run(run: RunResult, directory: Path) -> None:
     """Write ``results.json`` and ``results.h5`` into ``directory``; each file is whole or absent, never torn."""
+    write_verdicts(run, directory)
+    write_tree(directory / "results.h5", arrays(run))
+
+
+def write_verdicts(run: RunResult, directory: Path) -> None:
+    """Write ``results.json`` alone: of a run whose arrays are stored and whose claims have changed."""
     directory.mkdir(parents=True, exist_ok=True)
     write_whole(directory / _NAME, to_json(run))
-    write_tree(directory / "results.h5", arrays(run))
 
 
 def read_run(directory: Path) -> RunResult:

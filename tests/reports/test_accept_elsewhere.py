@@ -31,7 +31,6 @@ def users(tmp_path, library, monkeypatch):
     entry = EntryPoint(name="mine", value="tests.cases.fake_method:FakeHertz", group=methods.ENTRY_POINT_GROUP)
     monkeypatch.setattr(methods, "entry_points", lambda group: [entry])
     monkeypatch.setattr(spread, "process_pool", executors.serial)
-    monkeypatch.setattr(gate_command, "write_pages", lambda *_: None)
     monkeypatch.delenv("CI", raising=False)
     installed = tmp_path / ".venv" / "site-packages" / "cases"
     installed.mkdir(parents=True)

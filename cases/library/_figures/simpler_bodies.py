@@ -53,7 +53,7 @@ class Simplification:
         """The full answer and the other one."""
         for name, layer in (("full", self.full), (self.taken_as, self.simpler)):
             scene: Scene[IndentationDepths, Any] = Scene(
-                layer=layer, indenter=INDENTER, loading=IndentationDepths(DEPTHS)
+                layer=layer, indenter=INDENTER, loading=IndentationDepths(DEPTHS), beyond_small_strains=True
             )
             yield name, Mdr().solve(scene)
 

@@ -87,6 +87,7 @@ def walk(label: str, what: str, ratios: tuple[float, ...]) -> CaseScene:
         layer=LAYERS[label],
         indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE),
         loading=ContactRadii(values=THICKNESS * np.array(ratios)),
+        beyond_small_strains=True,
     )
     return CaseScene(name=f"{label}, {what}", parameters={"layer": label}, scene=scene, methods=(MDR,))
 

@@ -73,7 +73,7 @@ def cone_scene(label: str, ratio: float) -> CaseScene:
     return CaseScene(
         name=scene_name(label, ratio),
         parameters={"layer": label, "a_over_h": ratio, "b_over_a": FLAT_FRACTION},
-        scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii([a])),
+        scene=Scene(layer=layer(label), indenter=cone, loading=ContactRadii([a]), beyond_small_strains=True),
         sampling=Sampling(ring_edges=edges(a, RINGS)),
         nightly=() if ratio in QUICK_RATIOS.get(label, ()) else ("fem", "mdr_table"),
     )

@@ -275,4 +275,4 @@ def _indenter(layer: Layer) -> Paraboloid:
 
 
 def _scene(layer: Layer, loading: Loading) -> Scene:
-    return Scene(layer=layer, indenter=_indenter(layer), loading=loading)
+    return Scene(layer=layer, indenter=_indenter(layer), loading=loading, beyond_small_strains=True)

@@ -119,7 +119,7 @@ def random_body(draw: Draw) -> Scene:
         indenter = FlatPunch(radius=a) if flat > 1.0 else TruncatedCone(flat_radius=flat * a, slope=slope)
     is_punch = isinstance(indenter, FlatPunch)
     loading = IndentationDepths([slope * a]) if is_punch else ContactRadii([a])
-    return Scene(layer=layer, indenter=indenter, loading=loading)
+    return Scene(layer=layer, indenter=indenter, loading=loading, beyond_small_strains=True)
 
 
 def _uniform(draw: Draw) -> ElasticLayer:

@@ -220,7 +220,7 @@ def random_contact(draw: Draw) -> Scene:
     unit, stress = (log_uniform(draw, *UNITS[name]) for name in ("length", "stress"))
     layer, a = _layer(draw, unit, stress), unit * log_uniform(draw, *_RATIO)
     indenter, a = (_sphere, _truncated, _other)[draw.integers(3)](draw, a)
-    return Scene(layer=layer, indenter=indenter, loading=_loading(draw, layer, indenter, a))
+    return Scene(layer=layer, indenter=indenter, loading=_loading(draw, layer, indenter, a), beyond_small_strains=True)
 
 
 def beside_ends(draw: Draw, ratio: tuple[float, float]) -> Scene:
@@ -243,7 +243,7 @@ def stack_contact(draw: Draw, ratio: tuple[float, float]) -> Scene:
         FlatPunch(radius=a),
         PowerLaw(exponent=log_uniform(draw, 1.2, 6.0), reference_radius=a, reference_height=slope * a),
     )[draw.integers(5)]
-    return Scene(layer=layer, indenter=indenter, loading=_loading(draw, layer, indenter, a))
+    return Scene(layer=layer, indenter=indenter, loading=_loading(draw, layer, indenter, a), beyond_small_strains=True)
 
 
 def _stack(draw: Draw) -> LayerStack:

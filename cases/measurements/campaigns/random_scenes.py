@@ -185,7 +185,7 @@ def _elastic(draw: Draw, ratio: tuple[float, float]) -> Scene:
         loading = IndentationDepths([depth])
         if draw.random() < 1 / 3:
             loading = ContactRadii(values=draw.uniform(0.02, 0.9, 1) * indenter.max_radius)
-    return Scene(layer=layer, indenter=indenter, loading=loading)
+    return Scene(layer=layer, indenter=indenter, loading=loading, beyond_small_strains=True)
 
 
 def _static_loading(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Loading:
@@ -209,9 +209,14 @@ def _many_loads(draw: Draw, ratio: tuple[float, float]) -> Scene:
     largest = _typical_depth(indenter, a) * float(draw.uniform(0.3, 1.0))
     shares = np.geomspace(log_uniform(draw, 1e-2, 0.5), 1.0, int(draw.integers(20, 41)))
     if draw.random() < 0.5:
-        return Scene(layer=layer, indenter=indenter, loading=IndentationDepths(values=largest * shares))
+        return Scene(
+            layer=layer,
+            indenter=indenter,
+            loading=IndentationDepths(values=largest * shares),
+            beyond_small_strains=True,
+        )
     forces = 2.0 * layer.contact_modulus * min(a, 1e3) * largest * shares
-    return Scene(layer=layer, indenter=indenter, loading=NormalForces(values=forces))
+    return Scene(layer=layer, indenter=indenter, loading=NormalForces(values=forces), beyond_small_strains=True)
 
 
 def _adhesive(draw: Draw, ratio: tuple[float, float]) -> Scene:
@@ -234,6 +239,7 @@ def _detached(draw: Draw, layer: Layer, indenter: Profile, a: float) -> Scene:
         indenter=indenter,
         loading=Detachment(control=control),
         effects=(Adhesion(work_of_adhesion=float(work)),),
+        beyond_small_strains=True,
     )
 
 
@@ -267,7 +273,13 @@ def _impact(draw: Draw, ratio: tuple[float, float]) -> Scene:
     layer, indenter, depth, effects, a = _moving_stage(draw, ratio)
     velocity = depth
     mass = layer.contact_modulus * a * log_uniform(draw, 1e-2, 1.0)
-    return Scene(layer=layer, indenter=indenter, loading=Impact(mass=mass, velocity=velocity), effects=effects)
+    return Scene(
+        layer=layer,
+        indenter=indenter,
+        loading=Impact(mass=mass, velocity=velocity),
+        effects=effects,
+        beyond_small_strains=True,
+    )
 
 
 def _history(draw: Draw, ratio: tuple[float, float]) -> Scene:
@@ -276,7 +288,7 @@ def _history(draw: Draw, ratio: tuple[float, float]) -> Scene:
     time = np.concatenate([[0.0], np.cumsum(draw.uniform(0.1, 1.0, 3))])
     top = 0.5 * depth
     loading = DepthHistory(time=time, depth=np.array([0.0, top, top * draw.uniform(0.5, 1.0), 0.0]))
-    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects, beyond_small_strains=True)
 
 
 def _creep(draw: Draw, ratio: tuple[float, float]) -> Scene:
@@ -286,7 +298,7 @@ def _creep(draw: Draw, ratio: tuple[float, float]) -> Scene:
     top = layer.contact_modulus * min(a, 1e3) * depth * float(draw.uniform(0.05, 0.5))
     begin, rest, end = draw.choice([0.0, 1.0]), draw.uniform(0.5, 1.0), draw.choice([0.0, draw.uniform(0.2, 1.0)])
     loading = ForceHistory(time=time, force=top * np.array([begin, 1.0, rest, end]))
-    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects)
+    return Scene(layer=layer, indenter=indenter, loading=loading, effects=effects, beyond_small_strains=True)
 
 
 def _spectrum(draw: Draw, shear_modulus: float) -> Effect:
@@ -313,7 +325,13 @@ def _growing(draw: Draw, ratio: tuple[float, float]) -> Scene:
     top = layer.contact_modulus * min(a, 1e3) * _typical_depth(indenter, a) * log_uniform(draw, 1e-2, 0.3)
     time = np.concatenate([[0.0], np.cumsum(np.exp(draw.uniform(np.log(1e-2), np.log(10.0), force.size - 1)))])
     loading = ForceHistory(time=time, force=top * force / force.max())
-    return Scene(layer=layer, indenter=indenter, loading=loading, effects=(_spectrum(draw, layer.shear_modulus),))
+    return Scene(
+        layer=layer,
+        indenter=indenter,
+        loading=loading,
+        effects=(_spectrum(draw, layer.shear_modulus),),
+        beyond_small_strains=True,
+    )
 
 
 def _reloading(draw: Draw, ratio: tuple[float, float]) -> Scene:
@@ -328,7 +346,13 @@ def _reloading(draw: Draw, ratio: tuple[float, float]) -> Scene:
     loading = DepthHistory(
         time=np.concatenate([[0.0], np.cumsum(durations)]), depth=0.5 * _typical_depth(indenter, a) * np.array(depths)
     )
-    return Scene(layer=layer, indenter=indenter, loading=loading, effects=(_spectrum(draw, layer.shear_modulus),))
+    return Scene(
+        layer=layer,
+        indenter=indenter,
+        loading=loading,
+        effects=(_spectrum(draw, layer.shear_modulus),),
+        beyond_small_strains=True,
+    )
 
 
 _MAKERS: dict[Family, Callable[[Draw, tuple[float, float]], Scene]] = {

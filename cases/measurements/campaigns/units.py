@@ -71,6 +71,7 @@ def with_numbers(scene: Scene, change: Callable[[Record, str, Any], Any]) -> Sce
         indenter=_changed(scene.indenter, change),
         loading=_changed(scene.loading, change),
         effects=tuple(_changed(effect, change) for effect in scene.effects),
+        beyond_small_strains=True,
     )
 
 

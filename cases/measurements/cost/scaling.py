@@ -77,7 +77,12 @@ class ScalingPlan:
 
 def _at_radii(values: FloatArray) -> Scene:
     layer = Layer(thickness=1.0, youngs_modulus=3.0, poissons_ratio=0.45, support="bonded")
-    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii(values=values))
+    return Scene(
+        layer=layer,
+        indenter=Paraboloid(radius_of_curvature=1e3),
+        loading=ContactRadii(values=values),
+        beyond_small_strains=True,
+    )
 
 
 def _at_ratio(ratio: float) -> Scene:

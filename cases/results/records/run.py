@@ -3,12 +3,13 @@
 A non-finite number cannot be stored: what could not be computed is ``None`` beside a status that says why.
 """
 
+from collections.abc import Iterable
 from dataclasses import field
 from typing import Literal
 
 from pydantic.dataclasses import dataclass
 
-from cases.results.records.claim import Claim
+from cases.results.records.claim import Claim, Kind
 from cases.results.records.convergence import ConvergenceStudy
 from cases.results.records.cost import EffectEntry, ScalingFit, WorkPrecision
 from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative
@@ -53,8 +54,16 @@ class CaseResult:
 
     @property
     def status(self) -> Status:
-        """The status that decides for this case, of solutions that broke down and of claims."""
-        return worst([claim.status for claim in self.claims] + [run.status for run in self.runs])
+        """The status that decides for this case, of claims and of solutions that broke down; SKIP if there is none."""
+        broken = [run.status for run in self.runs if run.status.is_failure]
+        measured = [Status.PASS] if self.work_precision and not self.claims else []
+        return worst([claim.status for claim in self.claims] + broken + measured)
+
+    def unjudged(self, methods: Iterable[str]) -> tuple[str, ...]:
+        """Return those of ``methods`` about which no claim was judged; numbers accepted earlier are no claim."""
+        claims = (claim for claim in self.claims if claim.kind is not Kind.REGRESSION)
+        judged = {method for claim in claims if claim.status is not Status.SKIP for method in claim.methods}
+        return tuple(method for method in methods if method not in judged)
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -126,6 +135,14 @@ class RunResult:
             KeyError: if the run has none of that name.
         """
         return {case.name: case for case in self.cases}[name]
+
+    @property
+    def unjudged(self) -> tuple[str, ...]:
+        """The chosen methods about which no claim was judged in any case."""
+        left = self.methods
+        for case in self.cases:
+            left = case.unjudged(left)
+        return left
 
     @property
     def statuses(self) -> tuple[Status, ...]:

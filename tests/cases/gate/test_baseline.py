@@ -6,9 +6,9 @@ import pytest
 
 from cases.gate.baseline import baseline_path, read_baselines
 from cases.gate.history import append_history, history_path, read_history, write_history
-from cases.gate.specification import specification_hash
 from cases.gate.write_permission import SOURCE
 from cases.results.sealed import sealed_text
+from cases.run.specification import specification_hash
 from contact import InvalidInput
 from tests.cases.example_run import acceptance
 from tests.cases.gate.example_baselines import CASE, accepted
@@ -55,8 +55,8 @@ def test_a_wide_tolerance_is_refused_even_with_a_right_digest(file):
 
 
 def test_another_version_is_refused_by_number(file):
-    with pytest.raises(InvalidInput, match="version 2"):
-        read_baselines(resealed(file, version=2))
+    with pytest.raises(InvalidInput, match="version 3"):
+        read_baselines(resealed(file, version=3))
 
 
 def test_a_file_in_the_wrong_place_is_refused(file):

@@ -87,9 +87,9 @@ def random_inside(draw: Draw) -> tuple[Scene, InsideReferee]:
     indenter = _indenter(draw, a, min(layer.thickness, 1e3 * a))
     if isinstance(indenter, FlatPunch):
         depth = 0.01 * a
-        pressed = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]))
+        pressed = Scene(layer=layer, indenter=indenter, loading=IndentationDepths([depth]), beyond_small_strains=True)
         return pressed, InsideReferee(layer, indenter, a, depth=depth)
-    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]))
+    scene = Scene(layer=layer, indenter=indenter, loading=ContactRadii([a]), beyond_small_strains=True)
     if draw.random() < 0.15:
         tough = 1e-5 * a
         edge = -math.sqrt(2.0 * math.pi * a * tough)

@@ -8,9 +8,9 @@ from functools import cache
 
 import numpy as np
 
-from benchmarks.formulas.table import PublishedFormula
 from contact import Cone, ContactRadii, Layer, Paraboloid, Profile, Scene
 from contact.records.validation import FloatArray
+from docs.formulas.table import PublishedFormula
 from mdr import Mdr
 
 # a/h from far in the half-space to thin layers, with the ratios that tables show.
@@ -43,7 +43,9 @@ def reference(shape: str, support: str, nu: float) -> Reference:
         poissons_ratio=nu,
         support="bonded" if support == "bonded" else "unbonded",
     )
-    path = Mdr().solve(Scene(layer=layer, indenter=indenter, loading=ContactRadii(values=RATIOS)))
+    path = Mdr().solve(
+        Scene(layer=layer, indenter=indenter, loading=ContactRadii(values=RATIOS), beyond_small_strains=True)
+    )
     depth = path.indentation_depth
     if shape == "flat punch":
         # The force of a punch grows with its depth alone: every depth is fitted alike.

@@ -14,8 +14,9 @@ from typing import Literal
 
 import numpy as np
 
-from contact import Layer
+from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
 from contact.records.validation import FloatArray
+from fem_reference import Fem
 from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
 from fem_reference.adhesion.branch_errors import degree_error, edge_error
 from fem_reference.adhesion.detachment import slope_root
@@ -91,3 +92,16 @@ def stable_ranges(found: Iterable[Reversal]) -> list[tuple[float, float]]:
         elif ranges:
             ranges[-1] = (ranges[-1][0], reversal.ratio)
     return ranges
+
+
+def reversals_at(poissons_ratio: float, method: Fem | None = None) -> tuple[Reversal, ...]:
+    """Changes of stability on a bonded layer of unit thickness and contact modulus."""
+    layer = Layer(thickness=1.0, youngs_modulus=1 - poissons_ratio**2, poissons_ratio=poissons_ratio)
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]))
+    solver = method or Fem(edge_cell=1e-8, truncation=1e-9)
+    log = StageLog()
+    return reversals(layer, lambda radius: solver.solve_contact(_of_radius(scene, radius), radius, log))
+
+
+def _of_radius(scene: Scene, radius: float) -> Scene:
+    return scene.replace(indenter=FlatPunch(radius=radius))

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from benchmarks.formulas import cone, paraboloid, punch
-from benchmarks.formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
-from benchmarks.formulas.fit_compact import exact
-from benchmarks.formulas.page import PLACE, page
-from benchmarks.formulas.table import FORMULAS
 from cases.referees import process
 from contact import Cone, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
+from docs.formulas import cone, paraboloid, punch
+from docs.formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
+from docs.formulas.fit_compact import exact
+from docs.formulas.page import PLACE, page
+from docs.formulas.table import FORMULAS
 from mdr.closed_forms.compact import paraboloid_factor, punch_factor
 from mdr.curves import formulas_for
 

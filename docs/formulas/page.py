@@ -1,16 +1,16 @@
-"""The page of formulas, `docs/formulas.md`: ``python -m benchmarks.formulas.page`` writes it anew."""
+"""The page of formulas, `docs/formulas.md`: ``python -m docs.formulas.page`` writes it anew."""
 
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
 
-from benchmarks.formulas import audit, cone, paraboloid, punch
-from benchmarks.formulas.audit import RATIOS, SHOWN, reference
-from benchmarks.formulas.table import FORMULAS, PublishedFormula
 from contact.records.validation import FloatArray
+from docs.formulas import audit, cone, paraboloid, punch
+from docs.formulas.audit import RATIOS, SHOWN, reference
+from docs.formulas.table import FORMULAS, PublishedFormula
 
-PLACE = Path(__file__).parents[2] / "docs" / "formulas.md"
+PLACE = Path(__file__).parents[1] / "formulas.md"
 SHARES = (0.01, 0.05, 0.2)
 # Errors beyond this are no use to anybody and are shown as such.
 USELESS = 10.0
@@ -19,7 +19,7 @@ AT = [int(np.argmin(np.abs(RATIOS - ratio))) for ratio in SHOWN]
 
 HEAD = """# Formulas in circulation, and how right they are
 
-Written by `python -m benchmarks.formulas.page`; the formulas are plain functions in `benchmarks/formulas/`.
+Written by `python -m docs.formulas.page`; the formulas are plain functions in `docs/formulas/`.
 Right is MDR on the integral equation, which agrees with the same equation in extended precision to 1e-9 and with
 finite elements to 3e-6; the model is linear, frictionless and axisymmetric, as the formulas assume. Variables:
 x = sqrt(R delta)/h for a paraboloid, delta tan(alpha)/h for a cone of half angle alpha, t = a/h for a flat punch.

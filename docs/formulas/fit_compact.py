@@ -1,4 +1,4 @@
-"""Makes the coefficients of `compact`: ``python -m benchmarks.formulas.fit_compact`` writes ``compact.toml``."""
+"""Makes the coefficients of `compact`: ``python -m docs.formulas.fit_compact`` writes ``compact.toml``."""
 
 from typing import Any
 
@@ -22,7 +22,7 @@ FITS: dict[str, dict[str, Any]] = {
     "paraboloid, unbonded": {"degrees": [6], "scale": 1.0},
 }
 REWEIGHTED = 40
-HEAD = "# Coefficients of the compact fit, made by `python -m benchmarks.formulas.fit_compact`; do not edit.\n"
+HEAD = "# Coefficients of the compact fit, made by `python -m docs.formulas.fit_compact`; do not edit.\n"
 
 
 def exact(nu: float, support: str, ratios: FloatArray = RATIOS) -> dict[str, tuple[FloatArray, FloatArray]]:
@@ -33,7 +33,12 @@ def exact(nu: float, support: str, ratios: FloatArray = RATIOS) -> dict[str, tup
         poissons_ratio=nu,
         support="bonded" if support == "bonded" else "unbonded",
     )
-    scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=ContactRadii(values=ratios))
+    scene = Scene(
+        layer=layer,
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=ContactRadii(values=ratios),
+        beyond_small_strains=True,
+    )
     path = Mdr().solve(scene)
     hertz = 4 / 3 * path.indentation_depth**1.5
     return {

@@ -96,4 +96,4 @@ def scene(layer: ElasticLayer, kind: str, radius: float) -> Scene[Any, Any]:
         "truncated cone": TruncatedCone(flat_radius=radius / 2, slope=0.1),
     }[kind]
     loading = IndentationDepths([0.01 * radius]) if kind == "flat punch" else ContactRadii([radius])
-    return Scene(layer=layer, indenter=indenter, loading=loading)
+    return Scene(layer=layer, indenter=indenter, loading=loading, beyond_small_strains=True)

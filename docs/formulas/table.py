@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Literal, TypeAlias
 
-from benchmarks.formulas import cone, paraboloid, punch
 from contact.records.validation import FloatArray
+from docs.formulas import cone, paraboloid, punch
 
 Factor: TypeAlias = Callable[[FloatArray, float], FloatArray]
 ANY_NU = (0.0, 0.3, 0.45, 0.49, 0.5)
