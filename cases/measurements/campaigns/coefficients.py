@@ -74,28 +74,6 @@ GROUPS: Final = (
     ),
     Group(place="bem.grid.error_model:TABLES", methods=("mdr_table",), families=("elastic",)),
     Group(
-        place="bem.grid.error_model:DIRECT",
-        methods=("bem",),
-        families=("elastic",),
-        quantities={
-            "kink_difference": _PRESSURE,
-            "pressure_exponent": _PRESSURE,
-            "exponent_growth": _STIFFNESS,
-            "largest_exponent": _STIFFNESS,
-        },
-    ),
-    Group(
-        place="bem.grid.error_model:DISCS",
-        methods=("bem",),
-        families=("adhesive",),
-        quantities={
-            "radius_floors": ("pull_off_contact_radius",),
-            "pressure_difference": _PRESSURE,
-            "kink_difference": _PRESSURE,
-        },
-    ),
-    Group(place="bem.grid.error_model:CELLS", methods=("bem",)),
-    Group(
         place="fem_reference.error_model:FIXED_RADIUS",
         methods=("fem",),
         families=("elastic", "adhesive"),

@@ -7,12 +7,10 @@ from importlib import import_module
 import pytest
 
 from cases.declare.methods import BUILT_IN
-from cases.measurements.campaigns.coefficients import GROUPS, coefficients, values_of
+from cases.measurements.campaigns.coefficients import GROUPS, values_of
 from cases.measurements.campaigns.coverage import PLANS
 from cases.results.records.reliability import CoverageRecord
 from contact import UNITS
-from reports.tables.coefficient_table import error_coefficients
-from tests.cases.example_run import passing_case
 
 MODULES = ("bem.grid", "bem.layer_equation", "mdr.springs", "fem_reference")
 NO_COEFFICIENT = {"EPS", "FloatArray"}
@@ -61,21 +59,3 @@ def record(family, quantity, covered, sharpness):
         sharpness=sharpness,
         percentiles=(10.0 * sharpness,) * 51,
     )
-
-
-def test_a_coefficient_stands_beside_the_worst_of_what_it_shapes():
-    records = (
-        record("elastic", "normal_force", 0.98, 3.0),
-        record("elastic", "contact_stiffness", 0.96, 7.0),
-        record("adhesive", "pull_off_force", 0.9, 2.0),
-    )
-    achieved = {c.name: [r.quantity for r in c.achieved] for c in coefficients(records)}
-    assert achieved["bem.grid.DIRECT.second_order"] == ["normal_force", "contact_stiffness"]
-    assert achieved["bem.grid.DIRECT.exponent_growth"] == ["contact_stiffness"]
-    assert achieved["bem.grid.DIRECT.kink_difference"] == achieved["bem.grid.CELLS.lag"] == []
-    assert achieved["bem.grid.DISCS.difference"] == ["pull_off_force"]
-    assert not any(name.startswith(("mdr", "fem")) for name in achieved)
-    table = error_coefficients(dataclasses.replace(passing_case(), coverage=records))
-    rows = {row[0]: row for row in table.rows}
-    assert rows["bem.grid.DIRECT.second_order"][1:] == ("all quantities", "0.05", "2", "96.0 %", "7", "70")
-    assert rows["bem.grid.DIRECT.kink_difference"][1:] == ("pressure", "4", "0", "", "", "")
