@@ -46,6 +46,7 @@ from contact.answer.accuracy import FIELDS
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import Circle, refuse_touching
 from contact.answer.one_thread import one_thread
+from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -148,6 +149,7 @@ class Bem(Record):
     @overload
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath: ...
     @one_thread
+    @within_small_strains
     @without_contact
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria of the scene.

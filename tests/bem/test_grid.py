@@ -9,7 +9,6 @@ from bem import Bem
 from bem.grid.discs import disc_of, punch
 from bem.grid.influence import kernel_of, layer_influence, point_response
 from bem.grid.operators import HALF_SPACE, grid_operator, pressed
-from cases.measurements.campaigns.random_scenes import scene_of
 from contact import (
     Adhesion,
     ContactRadii,
@@ -31,6 +30,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from mdr import Mdr
+from tests.drawn_scenes import scene_of
 
 # k_bar of flat punches at a/h = 0.2 and 1: the integral equation solved to 1e-12.
 PRINTED = {
