@@ -13,7 +13,7 @@ class TableCoefficients:
     # change over a/h: conjugate gradients stop at 1e-8 of the displacement, and on 64 and 128 cells q was off by half
     # of this at most, a tenth in the median (a/h = 1e-3 to 8, nu = 0.3 and 1/2, bonded and unbonded, against 1e-14,
     # 2026-11-22).
-    pressure_floor: float = 4e-8
+    pressure_floor: float = 4e-7
     # Added to the errors of k_bar, which is stationary at the solution: the influence of cells is computed to that.
     stiffness_floor: float = 1e-9
     # Share of the difference to the table of half as many cells that counts as error. Second order makes it 1/3, and

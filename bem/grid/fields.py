@@ -28,7 +28,7 @@ NEARBY: Final = 1.5
 BESIDE_KINKS: Final = 8.0
 # Radii r/a at which fields of two grids are compared.
 INSIDE: Final = np.sqrt((np.arange(64) + 0.5) / 64)
-OUTSIDE: Final = np.array([1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 2.5])
+OUTSIDE: Final = np.array([1.01, 1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 2.5])
 
 
 @dataclass(frozen=True, eq=False)
