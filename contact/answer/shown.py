@@ -14,7 +14,8 @@ from contact.answer.summary import quantity_cells, scene_line
 from contact.files.units import prefix_for
 from contact.records.extras import missing_extra
 from contact.records.validation import FloatArray
-from contact.scene.scene import AnyScene
+from contact.scene.loading import ForceHistory
+from contact.scene.scene import Scene
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -77,7 +78,7 @@ class Shown:
     if TYPE_CHECKING:
 
         @property
-        def scene(self) -> AnyScene:
+        def scene(self) -> Scene:
             """The problem that was solved."""
 
         @property
@@ -97,11 +98,11 @@ class Shown:
 
         def __len__(self) -> int: ...
 
-    def plot(self, y: str = "normal_force", x: str | None = None, axes: Axes | None = None) -> Axes:
+    def plot(self, y: str | None = None, x: str | None = None, axes: Axes | None = None) -> Axes:
         """Draws one array of the answer over another, with units, and the stated error as a band.
 
         Args:
-            y: Name of the array on the vertical axis.
+            y: Name of the array on the vertical axis; by default the force, or the depth where the force is prescribed.
             x: Name of the array on the horizontal axis; by default the time, or the depth where there is no time.
             axes: Where to draw; by default on new axes.
 
@@ -112,6 +113,7 @@ class Shown:
             ImportError: If matplotlib is not installed.
             ValueError: If the answer has no such array.
         """
+        y = y or ("indentation_depth" if isinstance(self.scene.loading, ForceHistory) else "normal_force")
         x = x or ("time" if "time" in self.ARRAYS else "indentation_depth")
         for name in (x, y):
             if name not in self.ARRAYS:
@@ -122,7 +124,8 @@ class Shown:
         stated = self.stated_error(y)
         if stated is not None:
             band = stated * self.factor(y)
-            axes.fill_between(x_values, y_values - band, y_values + band, alpha=0.25, linewidth=0, label="stated error")
+            axes.fill_between(x_values, y_values - band, y_values + band, alpha=0.25, linewidth=0)
+            axes.collections[-1].set_label(f"stated error, at most {np.max(stated):.1g} {UNITS[y]}")
         self._draw(axes, (x, y), x_values, y_values)
         axes.set(xlabel=self.label(x), ylabel=self.label(y))
         axes.legend()
@@ -176,7 +179,7 @@ class Shown:
         scalars = {name: getattr(self, name) for name in self.SCALARS}
         units = {name: UNITS[name] for name in (*self.ARRAYS, *self.SCALARS)}
         frame.attrs = {"method": self.method, "scene": scene_line(self.scene), "units": units, **scalars}
-        return frame  # type: ignore[no-any-return]  # pandas is imported when asked for
+        return frame
 
     def to_xarray(self) -> xr.Dataset:
         """The arrays along `step` and the scalars, each with its unit in `attrs`.
@@ -190,7 +193,7 @@ class Shown:
             unit = UNITS.get(str(name).removesuffix("_uncertainty"))
             arrays[name].attrs = {"units": unit} if unit else {}
         arrays.attrs = {"method": self.method, "scene": scene_line(self.scene)}
-        return arrays  # type: ignore[no-any-return]  # xarray is imported when asked for
+        return arrays
 
     def _repr_html_(self) -> str:
         """First and last values with units and stated errors, and the curve where matplotlib is installed."""

@@ -52,12 +52,14 @@ def _no_windows():
 
 @each_answer
 def test_an_answer_draws_its_force_with_units_error_and_legend(answer):
-    axes = answer.plot()
+    axes = answer.plot("normal_force")
     labels = axes.get_legend_handles_labels()[1]
     assert re.search(r" F \[.?N\]$", axes.get_ylabel())
     assert re.search(r" (δ|t) \[.?[ms]\]$", axes.get_xlabel())
     assert any(label.startswith("mdr") for label in labels)
-    assert ("stated error" in labels) == ("normal_force" in answer.error_estimate)
+    assert any(re.fullmatch("stated error, at most .* N", label) for label in labels) == (
+        "normal_force" in answer.error_estimate
+    )
     points = axes.lines[0].get_xydata()
     assert np.nanmax(points[:, 1]) * answer.normal_force.max() > 0
 
@@ -69,6 +71,10 @@ def test_values_on_the_axes_are_those_of_the_answer_in_the_unit_of_the_label():
     x, y = axes.lines[0].get_data()
     np.testing.assert_allclose(x, 1e6 * answer.normal_force)
     np.testing.assert_allclose(y, 1e6 * answer.contact_radius)
+
+
+def test_where_the_force_is_prescribed_the_depth_is_drawn():
+    assert ANSWERS[HistoryPath].plot().get_ylabel() == "indentation depth δ [µm]"
 
 
 def test_a_second_answer_is_drawn_on_the_axes_of_the_first_and_a_wrong_array_is_named():
