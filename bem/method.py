@@ -39,6 +39,7 @@ from contact.answer.accuracy import FIELDS
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
+from contact.answer.small_strains import within_small_strains
 from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray
@@ -127,6 +128,7 @@ class Bem(Record):
     @overload
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath: ...
     @one_thread
+    @within_small_strains
     @without_contact
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath:
         """The equilibria of the scene.

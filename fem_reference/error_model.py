@@ -1,7 +1,6 @@
 """Every coefficient that shapes a stated error of the finite elements, in the order in which the errors are built up.
 
-Coverage and sharpness of the results are measured by ``python -m benchmarks.fem_error_bars`` and
-``contact-verify coverage``, and asserted by ``tests/verification/test_fem_error_bars.py``.
+``tests/verification/test_fem_error_bars.py`` asserts that the stated errors cover the true ones.
 """
 
 from __future__ import annotations
@@ -14,15 +13,13 @@ from types import MappingProxyType
 class FixedRadiusCoefficients:
     """They shape the stated errors of stiffness, depth, force and pressure of a contact of given radius.
 
-    Measured: ``benchmarks.fem_error_bars`` (220 random contacts, seed 5) and coverage at accuracy 1e-2 and 1e-4 (80
-    random scenes each, seed 1); at least 95 in 100 are covered, less than ten times overestimated in the median.
+    At least 95 in 100 errors of random contacts are covered, less than ten times overestimated in the median.
     """
 
     # Safety factor on the error by interpolation, because the rate at which it falls is itself extrapolated.
     safety: float = 3.0
     # The error of degree 4 over that of degree 3 is typically this times growth^2, and a faster fall of a measured
-    # change is taken for an accident.  Measured on 120 contacts of ``benchmarks.fem_error_bars`` (seed 5, 2026-11-22):
-    # 0.12 in the median, above 0.076 in 95 of 100 numbers.
+    # change is taken for an accident: 0.12 in the median, above 0.076 in 95 of 100 numbers of random contacts.
     fastest_rate: float = 0.1
     # The error of degree 3 over that of degree 2, which two degrees alone cannot show, is below this times growth^3 in
     # 95 of 100 numbers (same contacts).
@@ -120,8 +117,7 @@ class BranchCoefficients:
 class HistoryCoefficients:
     """They shape the stated errors of impacts and histories.
 
-    Measured: 190 random and designed impacts (CHANGELOG), ``benchmarks.fem_error_bars`` (60 impacts, seed 7); all peaks
-    are covered and their median overestimate is about five.
+    All peaks of random and designed impacts are covered; their median overestimate is about five.
     """
 
     # Half the cells change smooth profiles at least as much as the answer errs; errors of truncated profiles reach 1.3

@@ -37,6 +37,7 @@ from contact import (
 from contact.answer.accuracy import told_where_less
 from contact.answer.no_contact import without_contact
 from contact.answer.one_thread import one_thread
+from contact.answer.small_strains import within_small_strains
 from fem_reference.adaptive import meshes_that_fit, settings_for, solve_history_to_accuracy, solve_to_accuracy
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.discrete_layer.material import contact_modulus
@@ -147,6 +148,7 @@ class Fem:
     @overload
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath: ...
     @one_thread
+    @within_small_strains
     @without_contact
     def solve(self, scene: Scene) -> ContactPath | DetachmentPath | ImpactHistory | HistoryPath:
         """The answer with its error estimates.

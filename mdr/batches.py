@@ -13,8 +13,18 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from bem.layer_equation.protocol import FlatPunchSource
-from contact import ContactRadii, Detachment, IndentationDepths, InvalidInput, NormalForces, NotConvergedError, Scene
+from contact import (
+    ContactRadii,
+    Detachment,
+    IndentationDepths,
+    InvalidInput,
+    NormalForces,
+    NotConvergedError,
+    Scene,
+    UnsupportedSceneError,
+)
 from contact.answer.one_thread import one_thread
+from contact.answer.small_strains import refuse_deep
 from contact.records.validation import FloatArray
 from mdr.elastic import solve_elastic
 from mdr.springs.many_layers.equilibria import equilibria_on_layers, takes_part
@@ -107,6 +117,7 @@ def pull_offs(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress:
             if progress is not None:
                 progress(done, len(scenes))
     _refuse_unknown(found)
+    _refuse_deep(scenes, found[1])
     return PullOffs(contact_radius=found[0], depth=found[1], force=found[2])
 
 
@@ -133,6 +144,7 @@ def equilibria(scenes: Sequence[Scene], flat_punch: FlatPunchSource, *, progress
         if progress is not None:
             progress(done, len(scenes))
     _refuse_unknown(found)
+    _refuse_deep(scenes, found[1])
     return Equilibria(
         contact_radius=found[0], indentation_depth=found[1], normal_force=found[2], contact_stiffness=found[3]
     )
@@ -143,6 +155,14 @@ def _refuse_unknown(found: FloatArray) -> None:
     unknown = np.flatnonzero(~np.isfinite(found).all(axis=0))
     if unknown.size:
         raise NotConvergedError(f"scenes[{unknown[0]}]: no finite answer, nor of {unknown.size - 1} others")
+
+
+def _refuse_deep(scenes: Sequence[Scene], depths: FloatArray) -> None:
+    for number, (scene, depth) in enumerate(zip(scenes, depths.tolist(), strict=True)):
+        try:
+            refuse_deep(scene, depth)
+        except UnsupportedSceneError as error:
+            raise UnsupportedSceneError(f"scenes[{number}]: {error}") from None
 
 
 def _refuse(number: int, scene: Scene) -> None:

@@ -20,7 +20,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from bem.grid.transforms import cosines
+from bem.grid.transforms import cosine_plan
 from bem.kernels.layer import one_minus_kernel, zero_mode
 from bem.polynomials.cubics import PiecewiseCubic
 from bem.polynomials.gauss import legendre_rule
@@ -153,5 +153,5 @@ def band_limited_influence(offsets: int) -> FloatArray:
     k[0, 0] = 1.0
     symbol = 2.0 / k * itj0y0(k * cut_off)[0]
     symbol[0, 0] = 2.0 * cut_off
-    cosines(symbol, 1, (0, 1))
+    cosine_plan(symbol, 1, (0, 1)).execute()
     return np.asarray(symbol[: offsets + 1, : offsets + 1] / (2 * half) ** 2)

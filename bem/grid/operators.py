@@ -18,10 +18,10 @@ from bem.grid.influence import band_limited_influence, layer_influence
 from bem.grid.other_layers import other_layer_influence
 from bem.grid.transforms import (
     FullTransform,
-    QuarterTransform,
     Transform,
     convolution_symbol,
     fast_period,
+    quarter_transform,
 )
 from bem.kernels.moduli import contact_modulus
 from bem.kernels.of_layer import surface_kernel
@@ -181,4 +181,4 @@ def _transform(cells: int, period: int, *, quarter: bool, threads: int) -> Trans
         return FullTransform(cells, period, threads=threads)
     if cells % 2:
         raise InvalidInput(f"a mirror-symmetric grid needs an even number of cells, got {cells}")
-    return QuarterTransform(cells // 2, period, threads=threads)
+    return quarter_transform(cells // 2, period, threads)

@@ -1,4 +1,4 @@
-"""Spectral filters on square grids: the only file that knows the libraries of transforms, FFTW and pocketfft.
+"""Spectral filters on square grids: the only file that knows the library of transforms, FFTW.
 
 Convention, stated once. A field of `cells` x `cells` values is extended by zeros to a lattice of even period
 `period` in both directions. The forward transform carries no factor, the inverse carries 1/period^2, and mode j of a
@@ -9,15 +9,13 @@ lattice with spacing s has the angular wavenumber 2 pi j / (period s). A filter 
 that is mirror symmetric about the corner of its first cell (cosine transforms): a quarter of the work and memory.
 Both skip the row transforms of rows that are zero by padding, and of rows nobody reads on the way back.
 
-Transforms of whole grids are FFTW's. Cosine transforms are pocketfft's, which takes several rows at a time: two thirds
-of the time of FFTW's, which take one (128 to 512 cells, 2026-11-26). Their compiled file is private to SciPy: where a
-release keeps it elsewhere, the public function answers the same digits. Steps in single precision, in 0.6 of that time,
-were tried: inputs a rounding away moved depths by 1e-9, and by 2e-5 where a cell more touched.
+All plans are made with FFTW_ESTIMATE, which measures no time: results repeat bit by bit. Each thread keeps its plans.
 """
 
 from __future__ import annotations
 
-from functools import cache, lru_cache, partial
+from functools import lru_cache, partial
+from threading import get_ident
 from typing import Any, Final, Literal, Protocol
 
 import numpy as np
@@ -27,10 +25,8 @@ from contact import InvalidInput
 from contact.answer.compiled_files import compiled
 from contact.records.validation import FloatArray
 
-# The compiled file behind `scipy.fft.dct`.
-POCKETFFT: Final = "scipy.fft._pocketfft.pypocketfft"
-# Unused numbers after each row of a plane, one line of cache. Rows of a power of two numbers would all begin at one
-# place of the cache: column transforms then took 3.8 times as long (256 x 256 cells, 2026-11-22).
+# Unused numbers after each row, one cache line: without them all rows of a power of two numbers begin at the same place
+# of the cache, and column transforms take 1.5 to 3.3 times as long; 4 or 16 numbers do as well.
 BESIDE_ROWS: Final = 8
 
 
@@ -55,13 +51,10 @@ class FullTransform:
 
     def __init__(self, cells: int, period: int, *, threads: int = 1) -> None:
         self.cells, self.period = _checked_sizes(cells, period)
-        # The whole package brings dask, where that is installed, and interfaces that nobody asks for.
-        pyfftw = compiled("pyfftw.pyfftw", "pyfftw")
-        self._strip = pyfftw.zeros_aligned((cells, period), dtype="float64")
-        self._plane = pyfftw.zeros_aligned((period, period // 2 + 1), dtype="complex128")
+        self._strip = _fftw().zeros_aligned((cells, period), dtype="float64")
+        self._plane = _fftw().zeros_aligned((period, period // 2 + 1), dtype="complex128")
         occupied = self._plane[:cells]
-        # With FFTW_ESTIMATE no plan depends on a timing, so that results repeat bit by bit.
-        plan = partial(pyfftw.FFTW, flags=("FFTW_ESTIMATE",), threads=threads)
+        plan = partial(_fftw().FFTW, flags=("FFTW_ESTIMATE",), threads=threads)
         self._rows = plan(self._strip, occupied, axes=(1,), direction="FFTW_FORWARD")
         self._columns = plan(self._plane, self._plane, axes=(0,), direction="FFTW_FORWARD")
         self._columns_back = plan(self._plane, self._plane, axes=(0,), direction="FFTW_BACKWARD")
@@ -96,9 +89,14 @@ class QuarterTransform:
 
     def __init__(self, cells: int, period: int, *, threads: int = 1) -> None:
         _checked_sizes(2 * cells, period)
-        self.cells, self.period, self.threads = cells, period, threads
+        self.cells, self.period = cells, period
         half = period // 2
-        self._plane = np.zeros((half, half + BESIDE_ROWS))[:, :half]
+        self._plane = _fftw().zeros_aligned((half, half + BESIDE_ROWS))[:, :half]
+        occupied = self._plane[:cells]
+        self._rows = cosine_plan(occupied, 2, (1,), threads)
+        self._columns = cosine_plan(self._plane, 2, (0,), threads)
+        self._columns_back = cosine_plan(self._plane, 3, (0,), threads)
+        self._rows_back = cosine_plan(occupied, 3, (1,), threads)
 
     @property
     def modes(self) -> tuple[npt.NDArray[np.intp], npt.NDArray[np.intp]]:
@@ -109,35 +107,36 @@ class QuarterTransform:
     def filter(self, field: FloatArray, symbol: FloatArray) -> FloatArray:
         """Filtered field, shape (cells, cells); `symbol` has the shape of the modes."""
         n, plane = self.cells, self._plane
-        occupied = plane[:n]
         plane[:n, :n], plane[:n, n:] = field, 0.0
-        cosines(occupied, 2, (1,), self.threads)
+        self._rows.execute()
         plane[n:] = 0.0
-        cosines(plane, 2, (0,), self.threads)
+        self._columns.execute()
         plane *= symbol
-        cosines(plane, 3, (0,), self.threads)
-        cosines(occupied, 3, (1,), self.threads)
+        self._columns_back.execute()
+        self._rows_back.execute()
         return np.asarray(plane[:n, :n] / float(self.period**2))
 
 
-def cosines(field: FloatArray, kind: Literal[1, 2, 3], axes: tuple[int, ...], threads: int = 1) -> None:
-    """Cosine transforms DCT-I, DCT-II or DCT-III along some axes, in place and without a factor."""
-    pocketfft = _pocketfft()
-    if pocketfft is None:
-        # No more than a release of SciPy that keeps its transforms in another file asks for this.
-        from scipy.fft import dctn  # noqa: PLC0415
-
-        field[...] = dctn(field, kind, axes=axes, workers=threads)
-    else:
-        pocketfft.dct(field, kind, axes, 0, field, threads)
+def cosine_plan(field: FloatArray, kind: Literal[1, 2, 3], axes: tuple[int, ...], threads: int = 1) -> Any:
+    """FFTW's plan of DCT-I, DCT-II or DCT-III along some axes, in place and without a factor."""
+    direction = {1: "FFTW_REDFT00", 2: "FFTW_REDFT10", 3: "FFTW_REDFT01"}[kind]
+    kinds = (direction,) * len(axes)
+    return _fftw().FFTW(field, field, axes=axes, direction=kinds, flags=("FFTW_ESTIMATE",), threads=threads)
 
 
-@cache
-def _pocketfft() -> Any:
-    try:
-        return compiled(POCKETFFT, POCKETFFT)
-    except ImportError:
-        return None
+def quarter_transform(cells: int, period: int, threads: int = 1) -> QuarterTransform:
+    """A `QuarterTransform` with its plans, made once per thread: it has a plane to work in."""
+    return _kept(cells, period, threads, get_ident())
+
+
+@lru_cache(maxsize=16)
+def _kept(cells: int, period: int, threads: int, _: int) -> QuarterTransform:
+    return QuarterTransform(cells, period, threads=threads)
+
+
+def _fftw() -> Any:
+    """FFTW's compiled interface: the whole package imports dask where that is installed."""
+    return compiled("pyfftw.pyfftw", "pyfftw")
 
 
 def convolution_symbol(transform: Transform, quadrant: FloatArray) -> FloatArray:
@@ -150,7 +149,7 @@ def convolution_symbol(transform: Transform, quadrant: FloatArray) -> FloatArray
     if quadrant.shape != (half + 1, half + 1):
         raise InvalidInput(f"the kernel quadrant must have shape {(half + 1, half + 1)}, got {quadrant.shape}")
     work = quadrant.copy()
-    cosines(work, 1, (0, 1))
+    cosine_plan(work, 1, (0, 1)).execute()
     columns, rows = transform.modes
     return np.asarray(work[columns, rows])
 

@@ -42,6 +42,7 @@ from contact.answer.inside import KnownContact
 from contact.answer.no_contact import without_contact
 from contact.answer.one_circle import no_single_circle, refuse_touching_path
 from contact.answer.one_thread import one_thread
+from contact.answer.small_strains import within_small_strains
 from contact.records.record import Record, record
 from contact.records.validation import FloatArray, positive
 from contact.scene.extent import radius_of_depth, radius_of_load
@@ -100,6 +101,7 @@ class IntegralEquationMethod(Record):
         return self.replace(panel_width=self.panel_width / 2)
 
     @one_thread
+    @within_small_strains
     @without_contact
     def solve(self, scene: Scene) -> ContactPath:
         """Equilibria under prescribed radii, depths or forces, each radius solved by itself.

@@ -22,6 +22,7 @@ from contact import (
     Unsupported,
     UnsupportedSceneError,
 )
+from contact.answer.small_strains import with_depth_note
 from contact.records.record import shown
 
 # Relative difference of a prescribed quantity beyond which an answer is one to another question.
@@ -72,7 +73,8 @@ class GuardedMethod:
         fault = _blamed(self.name, "its answer", lambda: "".join(_faults(answer, scene)[:1]))
         if fault:
             raise BrokenMethodError(f"method {self.name!r} gives no answer: {fault}; tell the authors of its package")
-        return answer
+        noted: Solution = with_depth_note(answer)
+        return noted
 
     def refined(self) -> Self:
         """A copy with half the discretisation length."""

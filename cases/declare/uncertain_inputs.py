@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from contact import InvalidInput, Scene
+from contact.files.units import in_si, unit_of
 from contact.records.record import shown
 from contact.records.validation import FloatArray
 
@@ -86,8 +87,13 @@ class UncertainInputs:
         return scene
 
 
-def read_inputs(text: str) -> UncertainInputs:
+def read_inputs(text: str, scene: Scene | None = None, *, with_units: bool = False) -> UncertainInputs:
     """Read "thickness=3%, poissons_ratio=0.48..0.5, thickness~youngs_modulus=0.8" (the last is a correlation).
+
+    Args:
+        text: Inputs, separated by commas; ends of ranges may have units, as in "thickness=4um..6um".
+        scene: Whose numbers are uncertain; without it, ends of ranges are in SI.
+        with_units: Whether the scene was written with units; ends of ranges need theirs then.
 
     Raises:
         InvalidInput: for what is no such text; nothing is guessed.
@@ -101,23 +107,48 @@ def read_inputs(text: str) -> UncertainInputs:
             first, _, second = (piece.strip() for piece in name.partition("~"))
             pairs[first, second] = _number(part, value, -1.0, 1.0)
         else:
-            inputs.append(_input(part, name, value))
+            inputs.append(_input(part, name, value, scene, with_units))
     names = [one.name for one in inputs]
     if not inputs or len(set(names)) < len(names):
         raise InvalidInput(f"uncertain {shown(text)}: name at least one input, each once; {EXAMPLE}")
     return UncertainInputs(inputs=tuple(inputs), correlation=_correlation(names, pairs))
 
 
-def _input(part: str, name: str, value: str) -> UncertainInput:
+def _input(part: str, name: str, value: str, scene: Scene | None, with_units: bool) -> UncertainInput:
     if value.endswith("%"):
         return UncertainInput(name=name, deviation=_number(part, value[:-1], 0.0, 100.0) / 100)
     low, dots, high = value.partition("..")
     if not dots:
         raise InvalidInput(f"uncertain {shown(part)}: give a percentage or a range a..b; {EXAMPLE}")
+    if scene is not None:
+        place, field = place_of(scene, name)
+        unit = unit_of(type(part_of(scene, place)), field)
+        low, high = range_ends(f"uncertain {name}", (low, high), unit, with_units)
     ends = [_number(part, end, -math.inf, math.inf) for end in (low, high)]
     if not ends[0] < ends[1]:
         raise InvalidInput(f"uncertain {shown(part)}: the range must increase; {EXAMPLE}")
     return UncertainInput(name=name, deviation=(ends[1] - ends[0]) / WIDTH_OVER_DEVIATION, low=ends[0], high=ends[1])
+
+
+def range_ends(place: str, ends: tuple[str, str], unit: str | None, with_units: bool) -> tuple[str, str]:
+    """Ends of a range in SI, as texts; an end that is no quantity is returned as it came.
+
+    Args:
+        place: For messages.
+        ends: As written, with or without a unit.
+        unit: SI unit of the number; None for a pure one.
+        with_units: Whether the scene was written with units.
+
+    Raises:
+        InvalidInput: If an end other than zero has no unit, but the other end or the scene has, or if a unit is wrong.
+    """
+    if unit is None:
+        return ends
+    low, high = (str(in_si(end, unit, place)) for end in ends)
+    bare = [end for end, number in zip(ends, (low, high), strict=True) if end == number and end.strip("+-0.")]
+    if bare and (with_units or (low, high) != ends):
+        raise InvalidInput(f"{place} = {bare[0]}: no unit, but the scene or the other end has; write {bare[0]}{unit}")
+    return low, high
 
 
 def _number(part: str, text: str, low: float, high: float) -> float:
@@ -139,6 +170,11 @@ def _correlation(names: list[str], pairs: Mapping[tuple[str, str], float]) -> Fl
     if np.linalg.eigvalsh(matrix)[0] < -1e-12:
         raise InvalidInput("uncertain: these correlations contradict each other; make them smaller")
     return matrix
+
+
+def part_of(scene: Scene, part: str) -> Any:
+    """The record of a part of the scene that `place_of` names."""
+    return scene.effects[int(part.removeprefix("effects"))] if part.startswith("effects") else getattr(scene, part)
 
 
 def _changed(scene: Scene, one: UncertainInput, change: Callable[[Any], Any]) -> Scene:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from cases.declare.quantities import single_numbers
-from cases.declare.uncertain_inputs import place_of
+from cases.declare.uncertain_inputs import part_of, place_of, range_ends
 from cases.results.csv_table import csv_text
 from contact import UNITS, ContactError, InvalidInput, Method, Scene, Solution
 from contact.files.units import unit_of
@@ -78,8 +78,8 @@ class Sweep:
         return pd.DataFrame(self.columns)
 
 
-def read_range(text: str, scene: Scene) -> Swept:
-    """Read "thickness=1um..10um:20".
+def read_range(text: str, scene: Scene, *, with_units: bool = False) -> Swept:
+    """Read "thickness=1um..10um:20"; with `with_units` the ends need units, as they stand beside others that have.
 
     Raises:
         InvalidInput: For what is no such text, or no single number of the scene.
@@ -89,10 +89,11 @@ def read_range(text: str, scene: Scene) -> Swept:
         raise InvalidInput(f"over {shown(text)}: {_EXAMPLE}")
     name, start, stop, count, log = found.groups()
     part, field = place_of(scene, name, "over")
-    record = _part(scene, part)
+    record = part_of(scene, part)
     if isinstance(getattr(record, field), np.ndarray):
         raise InvalidInput(f"over {shown(name)}: it is a list of numbers; vary a single one")
     unit = unit_of(type(record), field)
+    start, stop = range_ends(f"over {name}", (start, stop), unit, with_units)
     span = {"start": _end(start), "stop": _end(stop), "count": int(count), "spacing": "log" if log else "linear"}
     return Swept(name=name, values=vector(span, unit, f"over {name}"), unit=unit or "")
 
@@ -130,13 +131,9 @@ def _end(text: str) -> object:
         return text
 
 
-def _part(scene: Scene, part: str) -> Any:
-    return scene.effects[int(part.removeprefix("effects"))] if part.startswith("effects") else getattr(scene, part)
-
-
 def _changed(scene: Scene, name: str, value: float) -> Scene:
     part, field = place_of(scene, name, "over")
-    record = _part(scene, part).replace(**{field: value})
+    record = part_of(scene, part).replace(**{field: value})
     if not part.startswith("effects"):
         return scene.replace(**{part: record})
     number = int(part.removeprefix("effects"))

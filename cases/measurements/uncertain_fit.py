@@ -54,7 +54,7 @@ def fit_uncertain(
         InvalidInput: for what is no uncertain input of this scene, or is fitted; and as `fit_curve` does.
         NotConvergedError: if a fit does not converge.
     """
-    inputs = read_inputs(uncertain) if isinstance(uncertain, str) else uncertain
+    inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
     fitted = {"youngs_modulus", *parameters} & {one.name.rpartition(".")[2] for one in inputs.inputs}
     if fitted:
         raise InvalidInput(f"uncertain {', '.join(sorted(fitted))}: the fit finds it; name what is held")

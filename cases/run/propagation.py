@@ -95,7 +95,7 @@ def propagate(
     """
     if samples and samples < FEWEST_SAMPLES:
         raise InvalidInput(f"samples = {samples}: take at least {FEWEST_SAMPLES}, or none for differences")
-    inputs = read_inputs(uncertain) if isinstance(uncertain, str) else uncertain
+    inputs = read_inputs(uncertain, scene) if isinstance(uncertain, str) else uncertain
     solver = method or _mdr()
 
     place = inputs.drawn if samples else inputs.moved

@@ -6,12 +6,15 @@ import dataclasses
 
 import numpy as np
 
+from contact.files.units import prefix_for, unit_of
 from contact.records.record import Record, shown
 from contact.records.validation import FloatArray
 from contact.scene.scene import Scene
 
 # Characters of the longest name of a quantity, "coefficient_of_restitution", so that values stand below each other.
 _NAME_WIDTH = 26
+# A line shows so many sublayers of a stack.
+_MOST_RECORDS = 3
 
 
 def scene_line(scene: Scene) -> str:
@@ -41,12 +44,22 @@ def _ends(values: FloatArray, form: str) -> str:
 def _call(item: Record) -> str:
     fields = dataclasses.fields(item)  # type: ignore[arg-type]  # every record is a dataclass
     parts = ((field.name, getattr(item, field.name)) for field in fields)
-    return (
-        f"{type(item).__name__}({', '.join(f'{name}={_value(value)}' for name, value in parts if value is not None)})"
-    )
+    shown_fields = (f"{name}={_value(value, unit_of(type(item), name))}" for name, value in parts if value is not None)
+    return f"{type(item).__name__}({', '.join(shown_fields)})"
 
 
-def _value(value: object) -> str:
-    if isinstance(value, np.ndarray):
-        return f"[{_ends(value, '{:g}')}]" + (f" ({value.size} values)" if value.size > 2 else "")
-    return f"{value:g}" if isinstance(value, float) else shown(value)
+def _value(value: object, unit: str | None) -> str:
+    """A field's value: numbers with their unit and a prefix, at most three records of a list."""
+    if isinstance(value, Record):
+        return _call(value)
+    if isinstance(value, tuple) and all(isinstance(entry, Record) for entry in value):
+        more = f", {len(value) - _MOST_RECORDS} more" if len(value) > _MOST_RECORDS else ""
+        return f"({', '.join(_value(entry, None) for entry in value[:_MOST_RECORDS])}{more})"
+    if not isinstance(value, np.ndarray | float):
+        return shown(value)
+    numbers = np.atleast_1d(np.asarray(value, dtype=np.float64))
+    factor, prefix = prefix_for(numbers.tolist()) if unit else (1.0, "")
+    text = _ends(numbers / factor, "{:.6g}")
+    text = f"[{text}]" if isinstance(value, np.ndarray) else text
+    count = f" ({numbers.size} values)" if numbers.size > 2 else ""
+    return f"{text} {prefix}{unit}{count}" if unit else f"{text}{count}"

@@ -94,7 +94,8 @@ def build(cls: type[R], place: str, fields: Mapping[str, Any]) -> R:
 
 def _in_si(cls: type[Record], field: str, value: object, place: str) -> Any:
     """A field's value with units, ranges and columns turned into numbers in SI."""
-    unit = unit_of(cls, field) if "poissons_ratio" not in place else None
+    pure = field == "values" and "poissons_ratio" in place
+    unit = None if pure else unit_of(cls, field)
     known = value if unit is None else in_si(value, unit, place)
     return vector(known, unit, place)
 

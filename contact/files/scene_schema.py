@@ -24,7 +24,9 @@ DRAFT = "http://json-schema.org/draft-07/schema#"
 
 def scene_schema() -> dict[str, Any]:
     """Return the schema of what `load_scene` reads; what depends on several entries only `load_scene` checks."""
-    parts = {
+    text = "Whether depths from the thickness of the layer on are solved all the same"
+    parts: dict[str, Any] = {
+        "beyond_small_strains": {"type": "boolean", "description": text},
         "layer": {"type": "object", "oneOf": [_layer(), _stack(), _graded()]},
         "indenter": {"type": "object", "oneOf": [*(_tagged(cls) for cls in PROFILES), *_shorthands()]},
         "loading": _one_of(LOADINGS),

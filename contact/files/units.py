@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Iterable
 from decimal import Decimal
 from typing import TYPE_CHECKING, Any, Final
 
@@ -134,3 +135,15 @@ def _registry() -> UnitRegistry[Decimal]:
     import pint  # noqa: PLC0415  # see `factor_of`
 
     return pint.UnitRegistry(non_int_type=Decimal)
+
+
+PREFIXES: Final = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
+
+
+def prefix_for(values: Iterable[float]) -> tuple[float, str]:
+    """The common prefix (factor, letter) that brings the largest magnitude into [1, 1000)."""
+    largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
+    if largest == 0.0:
+        return 1.0, ""
+    fitting = (entry for entry in PREFIXES if largest >= 0.9995 * entry[0])
+    return next(fitting, PREFIXES[-1])

@@ -18,7 +18,7 @@ from contact.records.errors import InvalidInput, printable
 from contact.records.record import shown
 from contact.records.validation import LARGEST, MAX_ENTRIES, FloatArray
 
-_RANGE: Final = frozenset({"start", "stop", "count", "spacing"})
+RANGE: Final = frozenset({"start", "stop", "count", "spacing"})
 _COLUMN: Final = frozenset({"file", "column", "unit"})
 # Tables of a scene file stand at most so deep below its top.
 _DEEPEST: Final = 4
@@ -48,7 +48,7 @@ def vector(value: object, unit: str | None, place: str) -> Any:
     """
     if isinstance(value, Column):
         return in_si_units(value, unit, place)
-    if isinstance(value, Mapping) and value and value.keys() <= _RANGE:
+    if isinstance(value, Mapping) and value and value.keys() <= RANGE:
         return _range(value, unit, place)
     if unit is None or isinstance(value, str | bytes) or not isinstance(value, Sequence):
         return value

@@ -39,6 +39,8 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
         loading: What is prescribed.
         effects: What is modelled beyond elastic frictionless contact; each kind at most once. Friction with a
             coefficient of zero is none, and is left out.
+        beyond_small_strains: Whether depths from the thickness of the layer on are solved by the same linear equations;
+            otherwise methods refuse them.
     """
 
     if TYPE_CHECKING:
@@ -48,6 +50,7 @@ class Scene(Record, Generic[LoadingT_co, LayerT_co]):
     indenter: Profile
     loading: LoadingT_co
     effects: tuple[Effect, ...] = ()
+    beyond_small_strains: bool = False
 
     def effect(self, kind: type[E]) -> E | None:
         """The listed effect of this kind, or None."""

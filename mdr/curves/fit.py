@@ -14,6 +14,7 @@ from typing import Final, Literal, TypeAlias
 import numpy as np
 
 from contact import Adhesion, IndentationDepths, InvalidInput, NotConvergedError, Scene
+from contact.answer.small_strains import depth_note
 from contact.records.validation import FloatArray
 from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
@@ -137,7 +138,7 @@ def fit_curve(
 
 
 def _elastic(scene: Scene, deepest: float) -> Scene:
-    return scene.replace(loading=IndentationDepths([deepest]), effects=())
+    return scene.replace(loading=IndentationDepths([deepest]), effects=(), beyond_small_strains=True)
 
 
 def _checked(
@@ -355,6 +356,6 @@ def _warnings(
         if name in ("youngs_modulus", "thickness", "work_of_adhesion") and quantile * errors[name] > abs(found[name])
     ]
     pressed = float(model.depth.max()) - found.get("contact_point", 0.0)
-    if pressed > 0.1 * min(found.get("thickness", model.scene.layer.thickness), np.inf):
-        told.append("pressed beyond a tenth of the thickness: strains may be too large for linear elasticity")
-    return tuple(told)
+    layer = model.scene.layer.replace(thickness=found["thickness"]) if "thickness" in found else model.scene.layer
+    note = depth_note(model.scene.replace(layer=layer), pressed)
+    return (*told, note) if note else tuple(told)

@@ -118,7 +118,7 @@ class ForceCurve:
 def _solved(method: Mdr, scene: Scene, deepest: float) -> ContactPath:
     depths = deepest * np.logspace(-_DECADES, 0.0, _DEPTHS)
     depths[-1] = deepest
-    return method.solve(scene.replace(loading=IndentationDepths(depths)))
+    return method.solve(scene.replace(loading=IndentationDepths(depths), beyond_small_strains=True))
 
 
 def _cubic(

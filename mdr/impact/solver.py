@@ -15,11 +15,13 @@ import numpy as np
 from bem.kernels.moduli import relaxation_of
 from bem.layer_equation.protocol import FlatPunchSource
 from contact import ImpactHistory, InvalidInput, NotConvergedError, Scene, StageLog
+from contact.answer.small_strains import refuse_deep
 from contact.answer.solution import Setting
 from mdr.impact.collocation import Integrate
 from mdr.impact.compiled.choice import integrator
 from mdr.impact.flat_punch import flat_punch_history, flat_punch_results
 from mdr.impact.history import history
+from mdr.impact.merged_branches import with_merged_branches
 from mdr.impact.motion import Impacts, TableTooShort, impacts
 from mdr.impact.results import ImpactResults, joined, results
 from mdr.impact.units import SOFTEST, ScaledImpacts, is_flat, scaled, table_of
@@ -65,6 +67,10 @@ def solve_impact(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[st
         InvalidInput: If it is pressed in beyond its rim, or compiled loops are asked for without numba.
         UnsupportedSceneError: If it would touch beside its largest circle of contact.
     """
+    return with_merged_branches(scene, lambda one: _solved(one, flat_punch, settings))
+
+
+def _solved(scene: Scene, flat_punch: FlatPunchSource, settings: Mapping[str, Setting]) -> ImpactHistory:
     known = {"accuracy": DEFAULT_ACCURACY, **settings}
     log, accuracy = StageLog(), float(known["accuracy"] or DEFAULT_ACCURACY)
     tolerance, integrate = step_tolerance(accuracy), integrator(compiled=bool(known.get("compiled")))
@@ -131,7 +137,9 @@ def impact_batch(
             if progress is not None:
                 progress(len(order), len(scenes))
     answer = joined(found, np.argsort(order))
-    for scene, radius in zip(scenes, answer.peak_contact_radius.tolist(), strict=True):
+    peaks = zip(answer.peak_contact_radius.tolist(), answer.peak_depth.tolist(), strict=True)
+    for scene, (radius, depth) in zip(scenes, peaks, strict=True):
+        refuse_deep(scene, depth)
         refuse_touching_at(scene, flat_punch, radius)
         refuse_pulling_at(scene, flat_punch, radius)
     return answer

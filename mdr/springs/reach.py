@@ -41,7 +41,7 @@ FIRST_RATIO = 10.0
 # a fifth.
 TRIAL_RADII = np.geomspace(1e-12, 1e12, 289)
 # A radius that was sketched is tried with so much more beyond the flat end, for what the sketch errs beside rims: of
-# 350 first trials one needed more than 2 % (`benchmarks.stacked_scenes`, seeds 5 and 11, 2026-11-22).
+# 350 first trials one needed more than 2 % (`tests.stacked_scenes`, seeds 5 and 11, 2026-11-22).
 BEYOND = 1.05
 # Growth of the radius up to which depth or force are sketched; chosen.
 SKETCHED = 1.5

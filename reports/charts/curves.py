@@ -6,9 +6,10 @@ import numpy as np
 
 from cases.measurements.sweep import Sweep
 from cases.results.records.figure import Figure, Panel, Series
+from contact.files.units import prefix_for
 from contact.records.validation import BoolArray, FloatArray
 from mdr.curves import CurveFit, MapFit
-from reports.words.numbers import prefix_for, with_prefix
+from reports.words.numbers import with_prefix
 
 # Moduli at depths below this share of the largest are not drawn: forces there are lost in the scatter.
 _LEAST_SHARE = 0.05

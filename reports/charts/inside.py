@@ -21,10 +21,11 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from contact import ContactPath, InvalidInput, LayerStack, Solution
 from contact.answer.inside import InsideFields
 from contact.files.layer_table import kind_of
+from contact.files.units import prefix_for
 from contact.records.validation import FloatArray
 from reports.figures.style import BLACK, GREY, figure_style, svg_text
 from reports.words.method_names import display_name
-from reports.words.numbers import prefix_for, with_prefix
+from reports.words.numbers import with_prefix
 
 # Points along r and z of the half-section.
 POINTS = (200, 100)

@@ -1,12 +1,33 @@
 """One answer as a figure: force over depth with its uncertainty, or the histories of an impact."""
 
+from typing import Literal
+
 import numpy as np
 
 from cases.results.records.figure import Figure, Panel, Series
-from contact import UNITS, HistoryPath, ImpactHistory, Solution
-from reports.words.numbers import prefix_for
+from contact import (
+    UNITS,
+    ContactRadii,
+    DepthHistory,
+    DetachmentPath,
+    ForceHistory,
+    FrictionHistory,
+    HistoryPath,
+    ImpactHistory,
+    IndentationDepths,
+    NormalForces,
+    Scene,
+    Solution,
+)
+from contact.files.units import prefix_for
 from reports.words.quantity_names import SYMBOLS
 
+# A line has about so many points: half as many show corners in a printed figure.
+_POINTS = 240
+# Points on each part of a history, at least; half as many show corners.
+_FEWEST = 8
+# Histories of more instants are drawn as symbols: solving between them would take longer than the answer.
+_MOST_INSTANTS = 2000
 COLUMNS_DRAWN = {
     "force over depth": ("indentation_depth", "normal_force"),
     "contact radius over depth": ("indentation_depth", "contact_radius"),
@@ -18,28 +39,80 @@ HISTORIES_DRAWN = {
 }
 
 
-def solution_figure(solution: Solution) -> Figure:
-    """The figure of an answer, in units with fitting prefixes; bands where the method states an uncertainty."""
-    drawn = HISTORIES_DRAWN if isinstance(solution, HistoryPath | ImpactHistory) else COLUMNS_DRAWN
-    panels = tuple(_panel(solution, title, x, y) for title, (x, y) in drawn.items())
-    return Figure(name="solution", title="Answer", caption="Band: uncertainty the method states.", panels=panels)
+def solution_figure(solution: Solution, curve: Solution | None = None) -> Figure:
+    """The figure of an answer, in units with fitting prefixes; bands where the method states an uncertainty.
+
+    Args:
+        solution: Answer whose states are drawn: symbols at prescribed ones, a line through steps that the method chose
+            itself, as in an impact.
+        curve: The same scene with states between the prescribed ones, drawn as a line; None where there is none.
+    """
+    drawn = HISTORIES_DRAWN if _in_time(solution) else COLUMNS_DRAWN
+    panels = tuple(_panel(solution, curve, title, x, y) for title, (x, y) in drawn.items())
+    caption = "Band: uncertainty the method states. Symbols: what the scene prescribes."
+    return Figure(name="solution", title="Answer", caption=caption, panels=panels)
 
 
-def _panel(solution: Solution, title: str, x: str, y: str) -> Panel:
-    x_factor, x_prefix = prefix_for(getattr(solution, x))
-    y_factor, y_prefix = prefix_for(getattr(solution, y))
-    stated = y in solution.error_estimate
-    half_width = np.broadcast_to(solution.uncertainty(y), len(solution)) / y_factor if stated else np.empty(0)
-    series = Series(
-        label=solution.method,
-        method=solution.method,
-        group="",
-        x=tuple((getattr(solution, x) / x_factor).tolist()),
-        y=tuple((getattr(solution, y) / y_factor).tolist()),
-        half_width=tuple(half_width.tolist()),
-        style="solid",
+def between(scene: Scene) -> Scene | None:
+    """The scene with further states between the prescribed ones; None where an answer would depend on them.
+
+    Instants lie closer behind each prescribed one, where relaxation is fastest.
+    """
+    loading = scene.loading
+    match loading:
+        case DepthHistory(time=time) | ForceHistory(time=time) if time.size <= _MOST_INSTANTS:
+            parts = np.linspace(0.0, 1.0, max(_FEWEST, _POINTS // time.size), endpoint=False) ** 3
+            finer = np.append((time[:-1, None] + np.diff(time)[:, None] * parts).ravel(), time[-1])
+            finer = np.unique(finer)
+            name = "depth" if isinstance(loading, DepthHistory) else "force"
+            values = np.interp(finer, time, getattr(loading, name))
+            return scene.replace(loading=loading.replace(time=finer, **{name: values}))
+        case IndentationDepths(values=values) | NormalForces(values=values) | ContactRadii(values=values):
+            if scene.effects or values.size == 1 or np.ptp(values) == 0.0:
+                return None
+            finer = np.union1d(values, np.linspace(values.min(), values.max(), _POINTS))
+            return scene.replace(loading=loading.replace(values=finer))
+    return None
+
+
+def _in_time(solution: Solution) -> bool:
+    return isinstance(solution, HistoryPath | FrictionHistory | ImpactHistory)
+
+
+def _panel(solution: Solution, curve: Solution | None, title: str, x: str, y: str) -> Panel:
+    prefixes = [prefix_for(getattr(solution, name)) for name in (x, y)]
+    prescribed = getattr(solution.scene.loading, "time", None)
+    chosen = isinstance(solution, ImpactHistory | DetachmentPath) or (
+        prescribed is not None and len(solution) > prescribed.size
     )
-    return Panel(title=title, x_label=_label(x, x_prefix), y_label=_label(y, y_prefix), series=(series,))
+    factors = prefixes[0][0], prefixes[1][0]
+    series = [] if curve is None else [_series(curve, curve.method, (x, y), factors, "solid")]
+    name = solution.method if curve is None else "prescribed states"
+    series.append(_series(solution, name, (x, y), factors, "solid" if chosen else "symbols"))
+    return Panel(
+        title=title, x_label=_label(x, prefixes[0][1]), y_label=_label(y, prefixes[1][1]), series=tuple(series)
+    )
+
+
+def _series(
+    solution: Solution,
+    name: str,
+    axes: tuple[str, str],
+    factors: tuple[float, float],
+    style: Literal["solid", "symbols"],
+) -> Series:
+    x, y = (getattr(solution, axis) / factor for axis, factor in zip(axes, factors, strict=True))
+    stated = axes[1] in solution.error_estimate
+    half_width = np.broadcast_to(solution.uncertainty(axes[1]), len(solution)) / factors[1] if stated else np.empty(0)
+    return Series(
+        label=name,
+        method=name,
+        group="",
+        x=tuple(x.tolist()),
+        y=tuple(y.tolist()),
+        half_width=tuple(half_width.tolist()),
+        style=style,
+    )
 
 
 def _label(name: str, prefix: str) -> str:

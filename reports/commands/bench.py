@@ -4,12 +4,16 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from cases.declare.guarded_method import build_guarded
+from cases.declare.uncertain_inputs import read_inputs
 from cases.measurements.sweep import read_range, sweep
 from cases.measurements.uncertain_fit import fit_uncertain
 from cases.results.files import write_whole
 from contact import InvalidInput, load_scene
-from contact.files.scene_file import scene_notes
+from contact.answer.small_strains import depth_note, depth_share, depths_of
+from contact.files.scene_file import scene_notes, uses_units
 from mdr.curves import fit_curve, fit_map, read_curve, read_map
 from reports.tables.curve_tables import fit_csv, fit_table, formula_table, map_csv, map_facts, shares_table, sweep_table
 from reports.terminal.terminal import console, show_facts, show_table
@@ -37,7 +41,8 @@ def fit_file(
     parameters: Any = ("youngs_modulus", *also)
     terminal = console()
     if uncertain:
-        carried = fit_uncertain(scene, depth, force, uncertain, parameters=parameters, confidence=confidence)
+        inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
+        carried = fit_uncertain(scene, depth, force, inputs, parameters=parameters, confidence=confidence)
         found = carried.fit
         show_table(fit_table(found), on=terminal)
         show_table(shares_table(carried), on=terminal)
@@ -70,7 +75,8 @@ def fit_map_file(
         raise InvalidInput(f"--with {', '.join(also)}: curves of a map are fitted with contact_point, and baseline")
     scene, (depth, force) = load_scene(scene_file), read_map(file)
     found = fit_map(scene, depth, force, baseline="baseline" in also, confidence=confidence, progress=progress)
-    show_facts(map_facts(found), on=console())
+    note = depth_note(scene, np.max(depth) - np.nanmin(found.contact_point))
+    show_facts([("warning", note)] * bool(note) + map_facts(found), on=console())
     _write_outputs(outputs, lambda: map_csv(found), "map_figure", found)
 
 
@@ -84,10 +90,15 @@ def sweep_file(
     """
     _check_outputs(outputs)
     scene = load_scene(scene_file)
-    found = sweep(scene, read_range(over, scene), build_guarded(method, {}), progress)
+    found = sweep(
+        scene, read_range(over, scene, with_units=uses_units(scene_file)), build_guarded(method, {}), progress
+    )
     if not found.answers:
         raise InvalidInput(f"over {over}: no value was answered; the first refusal: {found.refused[0][1]}")
     terminal = console()
+    pressed = [(answer.scene, depths_of(answer)) for _, answer in found.answers]
+    note = depth_note(*max(pressed, key=lambda one: depth_share(*one)))
+    show_facts([("warning", f"at its deepest, {note}")] * bool(note), on=terminal)
     show_table(sweep_table(found), on=terminal)
     show_facts([("refused", f"{value:g}: {reason}") for value, reason in found.refused], on=terminal)
     _write_outputs(outputs, found.to_csv, "sweep_figure", found)

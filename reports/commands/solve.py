@@ -5,6 +5,7 @@ from pathlib import Path
 
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import load
+from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
 from contact import (
     ContactPath,
     InvalidInput,
@@ -17,10 +18,11 @@ from contact import (
     load_scene,
 )
 from contact.answer.accuracy import shortfalls, told_where_less
-from contact.files.scene_file import scene_notes
+from contact.answer.small_strains import depth_note, depths_of
+from contact.files.scene_file import scene_notes, uses_units
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
-from reports.words.numbers import duration, with_prefix
+from reports.words.numbers import with_prefix
 
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG", ".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
 MESHES = (".vtu", ".xdmf")
@@ -36,42 +38,50 @@ def solve(
     accuracy: float | None,
     outputs: list[Path],
     pressure_accuracy: float | None = None,
-    within: float | None = None,
-    evidence: Path | None = None,
     uncertain: str = "",
     samples: int = 0,
 ) -> None:
     """Solve the scene of a TOML file, print the answer and write it to `outputs`, whose endings choose the format.
 
-    With an accuracy and no method, both method and settings come from measured evidence.
+    With an accuracy and no method, methods are tried from cheap to fine.
 
     Raises:
         InvalidInput: for a wrong scene, method or ending; before anything is solved.
     """
     for path in outputs:
         _check_ending(path)
-    if (within is not None or evidence is not None) and (accuracy is None or method):
-        raise InvalidInput("--within and --evidence choose a method for an --accuracy; give one, and no --method")
     _check_accuracies(accuracy, pressure_accuracy)
     if samples and not uncertain:
         raise InvalidInput("--samples: of what? name the inputs with --uncertain")
     scene = load_scene(scene_file)
     if uncertain:
-        answer = _solve_uncertain(scene, uncertain, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
+        inputs = read_inputs(uncertain, scene, with_units=uses_units(scene_file))
+        answer = _solve_uncertain(scene, inputs, samples, _solver(method or "mdr", accuracy, pressure_accuracy))
         _write_all(answer, outputs)
         return
     facts: list[tuple[str, str]] = []
     if accuracy is not None and not method:
-        solution, facts = _by_evidence(scene, accuracy, pressure_accuracy, within, evidence)
+        from cases.measurements.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - only where it is asked for
+
+        found = solve_to_accuracy(scene, accuracy=accuracy, pressure_accuracy=pressure_accuracy)
+        solution: Solution = found.answer
+        facts = [("achieved", f"stated error {found.stated_error:.1e}, asked for {accuracy:g}, by {found.method}")]
     else:
         solution = _solver(method or "mdr", accuracy, pressure_accuracy).solve(scene)
-    if accuracy is not None:
-        _refuse_less(solution, accuracy, pressure_accuracy)
-        solution = told_where_less(solution, accuracy, pressure_accuracy)
+        if accuracy is not None:
+            _refuse_less(solution, accuracy, pressure_accuracy)
+            solution = told_where_less(solution, accuracy, pressure_accuracy)
     terminal = console()
-    show_table(solution_table(solution), on=terminal)
+    _show_answer(solution)
     show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=terminal)
     _write_all(solution, outputs)
+
+
+def _show_answer(solution: Solution) -> None:
+    """The table, below a warning where the layer is pressed deeper than small strains allow."""
+    warning = depth_note(solution.scene, depths_of(solution))
+    show_facts([("warning", warning)] if warning else [], on=console())
+    show_table(solution_table(solution), on=console())
 
 
 def _notes(scene_file: Path, solution: Solution) -> list[tuple[str, str]]:
@@ -96,37 +106,15 @@ def _write_all(solution: Solution, outputs: list[Path]) -> None:
         console().print(f"written: {path}")
 
 
-def _solve_uncertain(scene: Scene, uncertain: str, samples: int, method: Method) -> Solution:
+def _solve_uncertain(scene: Scene, uncertain: UncertainInputs, samples: int, method: Method) -> Solution:
     """Solve a scene with uncertain inputs, print what they make of the answer, and return the one at their middle."""
     from cases.run.propagation import propagate  # noqa: PLC0415 - only where it is asked for
     from reports.tables.uncertain_tables import propagated_table  # noqa: PLC0415 - as above
 
     found = propagate(scene, uncertain, method=method, samples=samples)
-    show_table(solution_table(found.answer), on=console())
+    _show_answer(found.answer)
     show_table(propagated_table(found), on=console())
     return found.answer
-
-
-def _by_evidence(
-    scene: Scene, accuracy: float, pressure_accuracy: float | None, within: float | None, file: Path | None
-) -> tuple[Solution, list[tuple[str, str]]]:
-    """The answer with measured settings, and what was expected of them."""
-    from cases.measurements.evidence import solve as solve_by_evidence  # noqa: PLC0415 - only where it is asked for
-    from cases.measurements.evidence.records import read  # noqa: PLC0415 - as above
-
-    measured = None if file is None else read(file)
-    found = solve_by_evidence(
-        scene, accuracy=accuracy, pressure_accuracy=pressure_accuracy, within=within, evidence=measured
-    )
-    choice = found.choice
-    settings = ", ".join(f"{name} = {value}" for name, value in choice.settings.items())
-    expected = f"error {choice.expected_error:.1e} in {duration(choice.expected_seconds)}"
-    reached = f"reached in {choice.reached} of {choice.evidence.scenes} measured scenes"
-    return found.answer, [
-        ("chosen", f"{choice.method} ({settings}), {reached}"),
-        ("expected", expected),
-        ("achieved", f"stated error {found.stated_error:.1e} in {duration(found.seconds)} of processor time"),
-    ]
 
 
 def _check_accuracies(accuracy: float | None, pressure_accuracy: float | None) -> None:
@@ -184,10 +172,10 @@ def _write(solution: Solution, path: Path) -> None:
 
         _put(path, inside_svg(solution, _compared(solution)))
     else:
-        from reports.charts.solution import solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
+        from reports.charts.solution import between, solution_figure  # noqa: PLC0415 - Matplotlib only where it is asked for
         from reports.figures.renderer import figure_svg  # noqa: PLC0415 - as above
 
-        _put(path, figure_svg(solution_figure(solution)))
+        _put(path, figure_svg(solution_figure(solution, _between(solution, between(solution.scene)))))
 
 
 def _write_mesh(solution: Solution, path: Path) -> None:
@@ -198,6 +186,16 @@ def _write_mesh(solution: Solution, path: Path) -> None:
             f"--write {path}: {solution.method} has no mesh of this scene; add --method fem, or take .csv"
         )
     write(path)
+
+
+def _between(solution: Solution, finer: Scene | None) -> Solution | None:
+    """The answer by MDR with states between the prescribed ones; None for other methods, which take longer."""
+    if finer is None or solution.method != "mdr":
+        return None
+    try:
+        return build_guarded(solution.method, {}).solve(finer)
+    except (UnsupportedSceneError, NotConvergedError):
+        return None
 
 
 def _compared(solution: Solution) -> Solution | None:

@@ -17,9 +17,12 @@ from contact import (
     Solution,
     StageRecord,
 )
+from contact.answer.small_strains import depth_note, depths_of
+from contact.answer.summary import scene_line
+from contact.files.units import prefix_for
 from reports.tables.table import Table
 from reports.words.method_names import display_name
-from reports.words.numbers import duration, measured, memory, prefix_for, scaled_unit, small
+from reports.words.numbers import duration, measured, memory, scaled_unit, small
 from reports.words.quantity_names import SYMBOLS
 
 BRACKETS = (
@@ -110,14 +113,16 @@ def _prescribed(solution: Solution) -> tuple[str, ...]:
 
 
 def solution_facts(solution: Solution) -> list[tuple[str, str]]:
-    """What is said once of an answer: critical values, cost, own error estimate, notes."""
+    """What is said once of an answer: critical values, cost, own error estimate, notes but that on the depth."""
     facts = _critical_values(solution)
     worst = {name: float(np.max(error)) for name, error in solution.error_estimate.items() if np.size(error)}
     estimates = ", ".join(f"{name.replace('_', ' ')} {small(error)}" for name, error in worst.items())
     facts += [("relative error estimate", estimates)] if estimates else []
     facts += [("cost", f"{duration(solution.cost.wall_seconds)}, {solution.cost.unknowns} unknowns")]
     facts += [("stages", ", ".join(map(_stage, solution.stages)))] if solution.stages else []
-    return facts + [("note", note) for note in solution.notes]
+    facts += [("scene", scene_line(solution.scene))]
+    above = depth_note(solution.scene, depths_of(solution))
+    return facts + [("note", note) for note in solution.notes if note != above]
 
 
 def _critical_values(solution: Solution) -> list[tuple[str, str]]:

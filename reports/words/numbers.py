@@ -6,8 +6,9 @@ The notation is that of CODATA: `1.480210(21)` means 1.480210 with an uncertaint
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
 from typing import TYPE_CHECKING
+
+from contact.files.units import prefix_for
 
 if TYPE_CHECKING:
     from cases.results.records.scene_run import Quantity
@@ -20,7 +21,6 @@ LARGEST_PLAIN, SMALLEST_PLAIN = 1e5, 1e-3
 
 # A double carries so many significant digits.
 DOUBLE_DIGITS = 16
-PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
 def measured(value: float, uncertainty: float) -> str:
@@ -104,15 +104,6 @@ def last_value(quantity: Quantity) -> str:
     factor, unit = scaled_unit(value, quantity.unit)
     uncertainty = quantity.uncertainty[-1] if quantity.uncertainty else math.inf
     return f"{measured(value / factor, uncertainty / factor)} {unit}".strip()
-
-
-def prefix_for(values: Iterable[float]) -> tuple[float, str]:
-    """The common prefix (factor, letter) that brings the largest magnitude into [1, 1000)."""
-    largest = max((abs(v) for v in values if math.isfinite(v)), default=0.0)
-    if largest == 0.0:
-        return 1.0, ""
-    fitting = (entry for entry in PREFIXES if largest >= 0.9995 * entry[0])
-    return next(fitting, PREFIXES[-1])
 
 
 def _three_digits(value: float) -> str:

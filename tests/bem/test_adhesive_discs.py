@@ -10,7 +10,6 @@ from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.one_radius import half_space_load
 from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from bem.method import Bem
-from cases.measurements.campaigns.referee import direct_density
 from contact import (
     Adhesion,
     Cone,
@@ -31,6 +30,7 @@ from contact import (
 )
 from mdr import Mdr
 from mdr.springs.assembly import equivalent_system
+from tests.referees.second_opinion import direct_density
 
 WORK = 0.1
 HALF_SPACE = Layer.half_space(youngs_modulus=0.75e6, poissons_ratio=0.5)  # E* = 1 MPa

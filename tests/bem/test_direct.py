@@ -5,7 +5,6 @@ from bem.grid.contact_edge import StepExcess, excess_on_half_space, slope
 from bem.grid.transforms import QuarterTransform
 from bem.layer_equation.profiles.half_space_moment import half_space_depth
 from bem.method import Bem
-from cases.measurements.campaigns.random_scenes import random_scene
 from contact import (
     Adhesion,
     Cone,
@@ -28,6 +27,7 @@ from contact import (
     UnsupportedSceneError,
 )
 from mdr import Mdr
+from tests.drawn_scenes import random_scene
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3e6, poissons_ratio=0.5)  # E* = 4 MPa
 LAYER = Layer(thickness=1e-3, youngs_modulus=0.75e6, poissons_ratio=0.5, support="bonded")  # E* = 1 MPa

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from bem import Bem
-from benchmarks.stacked_scenes import random_stack, scene
 from contact import IndentationDepths
 from mdr import Mdr
+from tests.stacked_scenes import random_stack, scene
 
 
 @pytest.mark.parametrize("prescribed", ["radius", "depth"])

@@ -7,9 +7,9 @@ from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.protocol import FlatPunchSolution, FlatPunchSource
 from bem.tables.from_grid import FftTable
 from bem.tables.table import FlatPunchTable, chebyshev_radii
-from cases.measurements.campaigns.random_scenes import scene_of
 from contact import InvalidInput, Layer
 from mdr import Mdr
+from tests.drawn_scenes import scene_of
 
 KERNELS = [("bonded", 0.3), ("bonded", 0.5), ("unbonded", 0.0)]
 

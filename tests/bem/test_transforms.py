@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from bem.grid.transforms import FullTransform, QuarterTransform, convolution_symbol, fast_period
+from bem.grid.transforms import FullTransform, QuarterTransform, convolution_symbol, fast_period, quarter_transform
 from contact import InvalidInput
 
 RANDOM = np.random.default_rng(20231113)
@@ -67,9 +67,5 @@ def test_kernel_of_another_period_is_refused():
         convolution_symbol(FullTransform(8, 16), np.ones((8, 8)))
 
 
-def test_scipys_own_cosine_transforms_are_the_same_digit_for_digit(monkeypatch):
-    field, transform = RANDOM.random((15, 15)), QuarterTransform(15, 60)
-    filters = RANDOM.random((30, 30))
-    compiled_alone = transform.filter(field, filters)
-    monkeypatch.setattr("bem.grid.transforms._pocketfft", lambda: None)
-    np.testing.assert_array_equal(transform.filter(field, filters), compiled_alone)
+def test_plans_of_one_size_are_made_once():
+    assert quarter_transform(15, 60) is quarter_transform(15, 60)

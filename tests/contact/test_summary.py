@@ -25,7 +25,7 @@ def path_of(count, **changes):
 def test_every_answer_shows_method_scene_quantities_units_and_what_is_next(solution):
     lines = repr(solution).splitlines()
     assert lines[0] == f"{type(solution).__name__} by test, 3 states"
-    assert lines[1].startswith("  scene: Layer(thickness=0.001, ")
+    assert lines[1].startswith("  scene: Layer(thickness=1 mm, ")
     assert "  note: a note" in lines
     assert lines[-1].startswith("  next: ")
     for name in (*solution.ARRAYS, *solution.SCALARS):
@@ -42,7 +42,7 @@ def test_what_is_next_exists(solution):
 
 def test_a_long_path_is_as_short_as_a_short_one():
     assert len(repr(path_of(100_000))) < MOST_CHARACTERS
-    assert "ContactRadii(values=[0.001 ... 0.002] (100000 values))" in repr(path_of(100_000))
+    assert "ContactRadii(values=[1 ... 2] mm (100000 values))" in repr(path_of(100_000))
 
 
 def test_stated_errors_stand_beside_the_values_and_missing_ones_are_named():

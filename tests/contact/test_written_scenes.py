@@ -32,7 +32,7 @@ from contact.scene.profiles import PROFILES
 
 LAYER = {"thickness": "5 um", "youngs_modulus": "5 kPa", "poissons_ratio": 0.5}
 TIP = {"kind": "sphere", "radius": "10 um"}
-PRESS = {"kind": "indentation_depths", "values": ["100 nm", 2e-7]}
+PRESS = {"kind": "indentation_depths", "values": ["100 nm", "200 nm"]}
 PURE_NUMBERS = {"poissons_ratio", "slope", "exponent", "coefficient", "support", "control", "interface"}
 
 
@@ -221,7 +221,8 @@ def test_pint_is_loaded_only_where_a_unit_is_met():
         "import sys; from contact import scene_from_mapping as s; "
         "m = {'layer': {'half_space': True, 'youngs_modulus': 1.0, 'poissons_ratio': 0.3}, "
         "'indenter': {'kind': 'cone', 'slope': 0.1}, 'loading': {'kind': 'contact_radii', 'values': [1.0]}}; "
-        "s(m); assert 'pint' not in sys.modules; m['loading']['values'] = ['1 m']; s(m); assert 'pint' in sys.modules"
+        "s(m); assert 'pint' not in sys.modules; "
+        "m['loading']['values'], m['layer']['youngs_modulus'] = ['1 m'], '1 Pa'; s(m); assert 'pint' in sys.modules"
     )
     subprocess.run([sys.executable, "-c", code], check=True)
 
@@ -233,7 +234,8 @@ def test_the_shorthands_follow_the_schema():
 
     written = tomllib.loads(
         '[layer]\nthickness = "5 um"\nyoungs_modulus = "5 kPa"\npoissons_ratio = 0.5\n[indenter]\nkind = "pyramid"\n'
-        'half_angle = "35 deg"\n[loading]\nkind = "indentation_depths"\nvalues = {start = 0, stop = 1e-6, count = 5}\n'
+        'half_angle = "35 deg"\n[loading]\nkind = "indentation_depths"\n'
+        'values = {start = 0, stop = "1 um", count = 5}\n'
     )
     jsonschema.validate(written, scene_schema())
     with pytest.raises(jsonschema.ValidationError):

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks.stacked_scenes import random_stack
 from contact import (
     ContactRadii,
     ElasticBase,
@@ -35,6 +34,7 @@ from fem_reference.discrete_layer.settings import Discretisation, contact_mesh
 from fem_reference.discrete_layer.several_layers.parts import graded_lines, parts_of
 from fem_reference.elastic.patch_test import patch_defect
 from fem_reference.elastic.prescribed_radius import solve_prescribed_contact
+from tests.stacked_scenes import random_stack
 
 SETTINGS = Discretisation(growth=0.8, edge_cell=1e-4)
 PARABOLOID = Paraboloid(radius_of_curvature=10.0)

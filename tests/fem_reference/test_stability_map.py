@@ -3,8 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.fem_stability_map import reversals_at
-from benchmarks.stability_map import Reversal, stable_ranges
+from tests.fem_reference.stability_map import Reversal, reversals_at, stable_ranges
 
 
 def reversal(kind, ratio):

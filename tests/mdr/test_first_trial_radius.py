@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from benchmarks.stacked_scenes import random_stack
 from contact import Cone, ContactRadii, IndentationDepths, NormalForces, Paraboloid, Scene, TruncatedCone
 from mdr import Mdr
 from mdr.springs import reach
+from tests.stacked_scenes import random_stack
 
 RNG = np.random.default_rng(5)
 STACKS = [(random_stack(RNG), float(np.exp(RNG.uniform(np.log(0.1), np.log(3.0))))) for _ in range(6)]

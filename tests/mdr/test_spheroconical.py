@@ -47,7 +47,7 @@ def test_finite_elements_agree():
 
 def test_a_file_gives_it_by_its_half_angle():
     mapping = {
-        "layer": {"half_space": True, "youngs_modulus": 1.0, "poissons_ratio": 0.5},
+        "layer": {"half_space": True, "youngs_modulus": "1 Pa", "poissons_ratio": 0.5},
         "indenter": {"kind": "spheroconical", "radius": "20 nm", "half_angle": "45 deg"},
         "loading": {"kind": "indentation_depths", "values": ["100 nm"]},
     }

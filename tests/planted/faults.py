@@ -13,6 +13,7 @@ import numpy as np
 
 from cases.judgement.rules.judgement import Judgement
 from cases.results.status import Status
+from contact import Sphere, Spheroconical, TruncatedParaboloid
 from mdr.impact import collocation_step
 from tests.planted.guards import TEMPORARY, Claims, Test
 from tests.planted.planting import override, set_to, swap
@@ -24,7 +25,7 @@ class Fault:
 
     Attributes:
         name: what is wrong, in words.
-        area: kernels, mdr, transforms, weak forms, time stepping, comparators or baselines.
+        area: kernels, mdr, transforms, weak forms, time stepping, comparators, baselines or profiles.
         plant: switches it on with a monkeypatch.
         guard: what must catch it.
         status: how the guard must end.
@@ -719,14 +720,14 @@ BASELINES = [
         "baselines",
         swap("cases.judgement.rules.regression:permitted_count_change", lambda f: lambda name, b: f("iterations", b)),
         Test(
-            "cases.gate.test_gate:test_unknowns_repeat_exactly_and_other_counters_nearly",
-            (accepted_folder, 21001, 3, Status.DIFF),
+            "cases.gate.test_gate:test_unknowns_within_2_percent_and_other_counters_within_a_fifth_or_three",
+            (accepted_folder, 21421, 3, Status.DIFF),
         ),
     ),
     Fault(
         "settings left out of the specification",
         "baselines",
-        swap("cases.gate.specification:specification_hash", lambda f: lambda scene, settings: f(scene, {})),
+        swap("cases.run.specification:specification_hash", lambda f: lambda scene, settings: f(scene, {})),
         Test(
             "cases.gate.test_baseline:test_another_scene_or_setting_has_another_specification",
             ('{"a": 0.1}', lambda: {"n": 4}),
@@ -757,20 +758,11 @@ BASELINES = [
         Test("cases.gate.test_accept:test_loosening_is_refused_without_the_flag_and_visible_after_it", (TEMPORARY,)),
     ),
     Fault(
-        "files edited by hand accepted",
-        "baselines",
-        set_to("cases.results.sealed:digest_of", lambda text: "0"),
-        Test(
-            "cases.gate.test_baseline:test_a_file_edited_by_hand_is_refused",
-            (baseline_file, "1.5\n", "1.6\n", "changed after it was written"),
-        ),
-    ),
-    Fault(
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(
-            "benchmarks.race.race:is_slower",
-            lambda f: lambda measured, d: f(dataclasses.replace(measured, lower=measured.lower / 1.5), d),
+            "benchmarks.race:slowdown",
+            lambda f: lambda base, head: dataclasses.replace(f(base, head), lower=f(base, head).lower / 1.5),
         ),
         Test(
             "benchmarks.test_race:test_identical_code_passes_and_a_slowdown_of_one_and_a_half_fails_in_59_of_60_races"
@@ -778,4 +770,41 @@ BASELINES = [
     ),
 ]
 
-FAULTS = (*KERNELS, *MDR, *TRANSFORMS, *WEAK_FORMS, *TIME_STEPPING, *COMPARATORS, *BASELINES)
+# -- profiles --------------------------------------------------------------------------------------------------------
+
+
+def one_percent(kind, name):
+    """Profiles of a kind are answered with one of their radii 1 % larger."""
+
+    def wrong(solve):
+        def solved(self, scene):
+            tip = scene.indenter
+            larger = tip.replace(**{name: 1.01 * getattr(tip, name)}) if isinstance(tip, kind) else tip
+            return solve(self, scene.replace(indenter=larger))
+
+        return solved
+
+    return wrong
+
+
+TIPS = {
+    "sphere": (Sphere, "radius"),
+    "spheroconical": (Spheroconical, "radius"),
+    "worn paraboloid": (TruncatedParaboloid, "radius_of_curvature"),
+}
+PROFILES = [
+    Fault(
+        f"{tip} 1 % too blunt for {method}, {body}",
+        "profiles",
+        override(place, "solve", one_percent(*what)),
+        Claims("round_and_worn_tips", claims, (f"{tip}, {body}",), methods),
+    )
+    for tip, what in TIPS.items()
+    for method, place in {"mdr": "mdr:Mdr", "fem": "fem_reference:Fem"}.items()
+    for claims, body, methods in (
+        (("depth of a tip", "force on a tip"), "half-space", (method,)),
+        (("normal force: MDR and fem",), "bonded nu=0.5", ("mdr", "fem")),
+    )
+]
+
+FAULTS = (*KERNELS, *MDR, *TRANSFORMS, *WEAK_FORMS, *TIME_STEPPING, *COMPARATORS, *BASELINES, *PROFILES)

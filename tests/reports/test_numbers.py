@@ -7,7 +7,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from reports.words.numbers import NOT_FINITE, duration, measured, memory, prefix_for, small, with_prefix
+from contact.files.units import prefix_for
+from reports.words.numbers import NOT_FINITE, duration, measured, memory, small, with_prefix
 
 
 @pytest.mark.parametrize(

@@ -7,10 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from benchmarks.fem_error_bars import contacts, impacts
-from cases.measurements.campaigns.coverage import CoveragePlan, records_of
-from cases.measurements.campaigns.random_scenes import random_scene
-from cases.measurements.campaigns.referee import adhesive_states, second_opinion
 from contact import (
     Adhesion,
     Cone,
@@ -37,47 +33,10 @@ from fem_reference.adhesion.branch import solve_branch
 from fem_reference.adhesion.equilibria import adhesive_equilibrium, work_of_adhesion
 from fem_reference.adhesion.pull_off_errors import pull_off_errors
 from mdr import Mdr
+from tests.drawn_scenes import random_scene
+from tests.referees.second_opinion import adhesive_states, second_opinion
 
 LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
-
-
-def every(ratios):
-    return np.concatenate(list(ratios.values()))
-
-
-@pytest.mark.slow
-def test_error_bars_cover_95_in_100_and_overestimate_less_than_tenfold():
-    ratios = contacts(220, seed=5)
-    for name, stated_over_true in ratios.items():
-        assert np.mean(np.array(stated_over_true) >= 1) >= 0.95, name
-        assert np.median(stated_over_true) < 10, name
-
-
-@pytest.mark.slow
-def test_error_bars_of_impacts_cover_95_in_100():
-    ratios = impacts(40, seed=7)
-    for name, stated_over_true in ratios.items():
-        assert np.mean(np.array(stated_over_true) >= 1) >= 0.95, name
-    assert np.median(every(ratios)) < 10
-
-
-def test_error_bars_of_a_few():
-    ratios = every(contacts(5, seed=11))
-    assert ratios.min() >= 1
-    assert np.median(ratios) < 20
-
-
-def test_error_bars_of_an_impact():
-    assert every(impacts(1, seed=7)).min() >= 1
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
-def test_requested_accuracies_of_random_scenes_are_covered(accuracy):
-    plan = CoveragePlan(method="fem", settings={"accuracy": accuracy}, family="elastic", count=80, only_radii=True)
-    for record in records_of(plan, seed=1):
-        assert record.covered >= 0.95, record.quantity
-        assert record.sharpness is None or record.sharpness < 10, record.quantity
 
 
 @pytest.mark.parametrize("stream", [[2, 13], [3, 23], [6, 0], [6, 7]])

@@ -4,15 +4,38 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.interpolate import CubicSpline
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from benchmarks.fem_impacts import largest_difference, with_poissons_ratio
+from contact import ImpactHistory, Layer, Scene
 from fem_reference import Fem
 from mdr.impact.solver import solve_impact
 from tests.mdr.viscoelastic_scenes import figure_12
 
 # Restitution from a separate Fredholm solution and explicit integration over springs, five digits.
 RESTITUTION = {np.inf: 0.45457, 3e-3: 0.52344, 2e-3: 0.55924, 1e-3: 0.64341}
+
+
+def largest_difference(name: str, history: ImpactHistory, exact: ImpactHistory, until: float = 1.0) -> float:
+    """Of a channel at the samples of ``history``, by the largest value of the exact one.
+
+    Args:
+        name: channel.
+        history: what is judged.
+        exact: smooth, so that splines between its samples add nothing.
+        until: part of the contact time that is compared.
+    """
+    time, first = np.unique(exact.time, return_index=True)
+    common = history.time <= until * exact.time[-1]
+    truth = CubicSpline(time, getattr(exact, name)[first])(history.time[common])
+    return float(np.abs(getattr(history, name)[common] - truth).max() / np.abs(truth).max())
+
+
+def with_poissons_ratio(scene: Scene, poissons_ratio: float) -> Scene:
+    """The same shear modulus with a finite bulk modulus."""
+    young = 2 * (1 + poissons_ratio) * scene.layer.shear_modulus
+    layer = Layer(thickness=scene.layer.thickness, youngs_modulus=young, poissons_ratio=poissons_ratio)
+    return scene.replace(layer=layer)
 
 
 @pytest.mark.parametrize(

@@ -7,9 +7,6 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from benchmarks.fem_on_stacks import KINDS, QUANTITIES, answer, differences
-from benchmarks.lift_off import FORCE_AGREEMENT, judge, random_scene
-from benchmarks.stacked_scenes import GRADED, random_stack, scene
 from contact import (
     Adhesion,
     ContactPath,
@@ -25,12 +22,38 @@ from contact import (
     Paraboloid,
     Scene,
     Sublayer,
+    UnsupportedSceneError,
 )
 from fem_reference import Fem
 from mdr import Mdr
+from tests.stacked_scenes import GRADED, random_stack, scene
+from tests.verification.lift_off import FORCE_AGREEMENT, judge, random_scene
 
 PARABOLOID = Paraboloid(radius_of_curvature=1.0)
 QUICK = Fem(growth=0.7, edge_cell=1e-6)
+KINDS = ("flat punch", "paraboloid", "truncated cone")
+QUANTITIES = ("indentation_depth", "normal_force", "contact_stiffness")
+
+
+def answer(method: Fem | Mdr, problem: Scene) -> ContactPath | str:
+    """The path, or the first words of a refusal."""
+    try:
+        path: ContactPath = method.solve(problem)
+    except UnsupportedSceneError as refusal:
+        return str(refusal)
+    return path
+
+
+def differences(ours: ContactPath, other: ContactPath) -> dict[str, tuple[float, float]]:
+    """Relative difference and stated error of each number, the latter without rounding of the other method."""
+    return {
+        name: (
+            float(abs(getattr(ours, name) / getattr(other, name) - 1)[0]),
+            float(ours.error_estimate[name][0] + other.error_estimate[name][0]),
+        )
+        for name in QUANTITIES
+        if ours.error_estimate[name][0]
+    }
 
 
 def stack(*layers, interfaces=None, support="bonded"):

@@ -36,16 +36,20 @@ def pair(
     first_radius: float, second_radius: float, thicknesses: tuple[float, float], radius: float, support: str = "bonded"
 ) -> Scene:
     """Return the scene equivalent to a coated pair at contact radius ``radius``."""
-    return CoatedPair(
-        first_radius=first_radius,
-        second_radius=second_radius,
-        first_thickness=thicknesses[0],
-        second_thickness=thicknesses[1],
-        youngs_modulus=YOUNGS_MODULUS,
-        poissons_ratio=POISSONS_RATIO,
-        support="unbonded" if support == "unbonded" else "bonded",
-        loading=ContactRadii([radius]),
-    ).scene()
+    return (
+        CoatedPair(
+            first_radius=first_radius,
+            second_radius=second_radius,
+            first_thickness=thicknesses[0],
+            second_thickness=thicknesses[1],
+            youngs_modulus=YOUNGS_MODULUS,
+            poissons_ratio=POISSONS_RATIO,
+            support="unbonded" if support == "unbonded" else "bonded",
+            loading=ContactRadii([radius]),
+        )
+        .scene()
+        .replace(beyond_small_strains=True)
+    )
 
 
 def symmetric(support: str, ratio: float) -> CaseScene:

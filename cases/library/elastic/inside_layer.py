@@ -61,7 +61,9 @@ def pressed(kind: str, label: str, ratio: float) -> CaseScene:
     return CaseScene(
         name=name,
         parameters={"profile": kind, "layer": label, "a_over_h": ratio},
-        scene=Scene(layer=layer(label), indenter=profile, loading=ContactRadii(values=np.array([a]))),
+        scene=Scene(
+            layer=layer(label), indenter=profile, loading=ContactRadii(values=np.array([a])), beyond_small_strains=True
+        ),
         sampling=Sampling(inside=POINTS),
         nightly=() if name in QUICK else ("mdr", "fem") if name in SLOW else ("fem",),
     )
@@ -97,6 +99,7 @@ def on_ladder(nu: float, ratio: float) -> CaseScene:
             layer=own,
             indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE),
             loading=ContactRadii(values=np.array([a])),
+            beyond_small_strains=True,
         ),
         sampling=Sampling(inside=BELOW_CONTACT, laws=False),
         methods=(MDR, MESH, EQUATION),

@@ -93,7 +93,12 @@ def scene(label: str, ratio: float, loading: Loading, how: str = "") -> CaseScen
     return CaseScene(
         name=scene_name(label, ratio) + how,
         parameters={"layer": label, "a_over_h": ratio},
-        scene=Scene(layer=layer(label), indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), loading=loading),
+        scene=Scene(
+            layer=layer(label),
+            indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE),
+            loading=loading,
+            beyond_small_strains=True,
+        ),
         sampling=Sampling(ring_edges=edges(ratio * THICKNESS, (0.0, 0.4, 0.8, 1.0)) if not how else ()),
         nightly=searched if how else prescribed,
     )

@@ -59,7 +59,9 @@ def cone(label: str, ratio: float) -> CaseScene:
 
 
 def _scene(name: str, label: str, ratio: float, indenter: Profile) -> CaseScene:
-    scene = Scene(layer=layer(label), indenter=indenter, loading=ContactRadii([ratio * THICKNESS]))
+    scene = Scene(
+        layer=layer(label), indenter=indenter, loading=ContactRadii([ratio * THICKNESS]), beyond_small_strains=True
+    )
     far, slow = ratio > CHECKED_RATIO, label != QUICK_LABEL
     under_cone = isinstance(indenter, TruncatedCone)
     # What takes long: finite elements on their way to other limits, and what no limit is claimed of.

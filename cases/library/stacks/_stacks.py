@@ -88,9 +88,19 @@ def pressed(
     scene: AnyScene
     match indenter:
         case "paraboloid":
-            scene = Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE), loading=loading)
+            scene = Scene(
+                layer=layer,
+                indenter=Paraboloid(radius_of_curvature=RADIUS_OF_CURVATURE),
+                loading=loading,
+                beyond_small_strains=True,
+            )
         case "truncated cone":
-            scene = Scene(layer=layer, indenter=TruncatedCone(flat_radius=a / 2, slope=SLOPE), loading=loading)
+            scene = Scene(
+                layer=layer,
+                indenter=TruncatedCone(flat_radius=a / 2, slope=SLOPE),
+                loading=loading,
+                beyond_small_strains=True,
+            )
         case _:
             depth = IndentationDepths(values=np.array([DEPTH]))
             scene = Scene(layer=layer, indenter=FlatPunch(radius=a), loading=depth)

@@ -2,7 +2,7 @@
 
 Each is told against the accuracy wanted by what it moves while it is small. Measured with punches, cones, paraboloids,
 truncated ones and r^6: a half-space in place of a layer moves depth or force by 0.4 to 1.2 times a/h, adhesion by at
-most 2 times dl/delta, a dashpot by at most 6.5 times tau/T, and a branch that relaxes slowly by less than T/tau.
+most 2 times dl/delta, and a dashpot by at most 6.5 times tau/T.
 """
 
 import math
@@ -68,7 +68,7 @@ def validity_lines(scene: Scene, answer: Solution) -> list[str]:
     """How far the theory of an answer reaches, in sentences; none for other layers than a plain one, or no contact."""
     if not isinstance(scene.layer, Layer) or not _largest(answer, "contact_radius"):
         return []
-    found = [_depth_share(scene, answer), _tip_share(scene, answer)]
+    found = [_tip_share(scene, answer)]
     try:
         found += numbers(scene, answer, _USUAL_ACCURACY)
     except (UnsupportedSceneError, NotConvergedError) as error:
@@ -103,12 +103,6 @@ def _strain(scene: Scene, answer: Solution) -> Number:
     strain = depth / min(radius, scene.layer.thickness)
     meaning = "typical strain; linear elasticity is an approximation beyond about 0.1, whatever the digits"
     return Number(name="delta/min(a, h)", value=strain, meaning=meaning)
-
-
-def _depth_share(scene: Scene, answer: Solution) -> Number | None:
-    share = _largest(answer, "indentation_depth") / scene.layer.thickness
-    meaning = "depth over thickness; small strains are assumed, and about 0.1 is the usual limit of an indentation test"
-    return Number(name="delta/h", value=share, meaning=meaning) if share else None
 
 
 def _tip_share(scene: Scene, answer: Solution) -> Number | None:
@@ -176,30 +170,14 @@ def _duration(answer: Solution) -> float:
 
 
 def _relaxation(scene: Scene, duration: float, accuracy: float) -> list[Number]:
+    """Whether a dashpot counts; branches are judged by `advise`, which solves without them."""
     model = scene.effect(Viscoelasticity)
-    if model is None:
+    if model is None or not model.relaxation.viscosity:
         return []
-    law = model.relaxation
-    found = [
-        Number(name="tau/T", value=float(time) / duration, meaning=_of_branch(float(time) / duration, accuracy))
-        for time in law.times
-    ]
-    if law.viscosity > 0.0:
-        share = law.viscosity / law.instantaneous_modulus / duration
-        verdict = "may be left out" if _DASHPOT_MOVES * share <= accuracy else "may count"
-        meaning = (
-            f"the dashpot {verdict} at {accuracy:g}: it moves a quantity by at most 6.5 times this while it is small"
-        )
-        found.append(Number(name="tau/T", value=share, meaning=meaning))
-    return found
-
-
-def _of_branch(share: float, accuracy: float) -> str:
-    if 1.0 / share <= accuracy:
-        return f"too slow to count at {accuracy:g}: it keeps its modulus and may be left out"
-    if share <= accuracy:
-        return f"too fast to count at {accuracy:g}: it carries nothing, and the layer is softer by its modulus"
-    return f"relaxes meanwhile, which may count at {accuracy:g}"
+    share = model.relaxation.viscosity / model.relaxation.instantaneous_modulus / duration
+    verdict = "may be left out" if _DASHPOT_MOVES * share <= accuracy else "may count"
+    meaning = f"the dashpot {verdict} at {accuracy:g}: it moves a quantity by at most 6.5 times this while it is small"
+    return [Number(name="tau/T", value=share, meaning=meaning)]
 
 
 def _inertia(scene: Scene, answer: ImpactHistory) -> Number:

@@ -32,12 +32,11 @@ FEM: Final = (
     ),
     *_each("fem", "accuracy", (1e-2, 1e-4, 1e-6), "accuracy {:g}"),
 )
-# Solvers of others, each refined by its own grid or mesh; the closed forms of nanite have nothing to refine.
+# Solvers of others, each refined by its own grid or mesh.
 OTHERS: Final = (
     *_each("calculix", "cells", (4, 6, 8, 16), "{} cells"),
     *_each("contact_mechanics", "points", (32, 64, 128, 256), "{} points"),
     *_each("tamaas", "points", (32, 64, 128, 256), "{} points"),
-    MethodUse(label="closed form", method="nanite"),
 )
 FEM_BESIDE_OTHERS: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), "accuracy {:g}")
 FEM_DETACHING: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4), "accuracy {:g}")

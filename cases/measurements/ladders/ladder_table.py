@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from cases.measurements.campaigns.units import Units, in_units
 from cases.measurements.ladders.ladders import LadderPlan
+from cases.measurements.ladders.units import Units, in_units
 from contact import (
     Adhesion,
     Cone,
@@ -53,7 +53,12 @@ def nearly_incompressible(gap: float) -> Scene:
 
 
 def _under_paraboloid(layer: ElasticLayer, ratio: float) -> Scene[Any, Any]:
-    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1e3), loading=ContactRadii([ratio]))
+    return Scene(
+        layer=layer,
+        indenter=Paraboloid(radius_of_curvature=1e3),
+        loading=ContactRadii([ratio]),
+        beyond_small_strains=True,
+    )
 
 
 def contact_ratio(ratio: float, *, nu: float, support: Support) -> Scene:
@@ -90,7 +95,12 @@ def reversing_punch(nu: float) -> Scene:
 def punch_on_layer(thickness: float) -> Scene:
     """A flat punch of unit radius on an incompressible bonded layer."""
     loading = IndentationDepths([0.01])
-    return Scene(layer=_layer(0.5, thickness=thickness), indenter=FlatPunch(radius=1.0), loading=loading)
+    return Scene(
+        layer=_layer(0.5, thickness=thickness),
+        indenter=FlatPunch(radius=1.0),
+        loading=loading,
+        beyond_small_strains=True,
+    )
 
 
 def damped_punch(damping: float) -> Scene:
@@ -111,7 +121,13 @@ def _standard_solid(thickness: float, long_term_share: float, time: float, veloc
         long_term_shear_modulus=layer.shear_modulus - maxwell, maxwell_shear_modulus=maxwell, viscosity=maxwell * time
     )
     loading = Impact(mass=0.05, velocity=velocity)
-    return Scene(layer=layer, indenter=Paraboloid(radius_of_curvature=1.0), loading=loading, effects=(effect,))
+    return Scene(
+        layer=layer,
+        indenter=Paraboloid(radius_of_curvature=1.0),
+        loading=loading,
+        effects=(effect,),
+        beyond_small_strains=True,
+    )
 
 
 def relaxation_time(time: float) -> Scene:

@@ -1,0 +1,107 @@
+"""Where a flat punch detaches stably from a layer: the stability map over a/h and Poisson's ratio.
+
+Under displacement control the depth at which detachment proceeds is -dl(a), `InterpolatedBranch.elongation`.  A
+shrinking contact is stable where dl falls with a, hence between a maximum of dl (its smaller end) and a minimum (its
+larger end).
+A punch outside of every such range jumps off at once; one inside peels stably until a/h has come down to the maximum.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from contact import FlatPunch, IndentationDepths, Layer, Scene, StageLog
+from contact.records.validation import FloatArray
+from fem_reference import Fem
+from fem_reference.adhesion.branch import InterpolatedBranch, solve_branch
+from fem_reference.adhesion.branch_errors import degree_error, edge_error
+from fem_reference.adhesion.detachment import slope_root
+from fem_reference.adhesion.equilibria import branch_samples
+from fem_reference.adhesion.pull_off_errors import Extremum
+from fem_reference.elastic.error_estimate import ContactWithErrors
+
+# a/h at the ends of the branch's pieces: below the first the layer is a half-space, beyond the last a row of
+# independent springs.
+RATIOS = (0.1, 0.5, 2.4, 12.0)
+# Chebyshev points of a piece.
+NODES = 13
+
+
+@dataclass(frozen=True, kw_only=True)
+class Reversal:
+    """A contact radius at which stability under displacement control changes.
+
+    Attributes:
+        kind: "maximum" of the elongation, where stable peeling ends in a jump, or "minimum", beyond which it begins.
+        ratio: a / h.
+        elongation: dl / sqrt(2 pi dgamma h / E*), Eq. (42).
+        ratio_error: relative error of ``ratio``; an extremum is flat, so this is far above that of the elongation.
+        elongation_error: relative error of ``elongation``.
+    """
+
+    kind: Literal["maximum", "minimum"]
+    ratio: float
+    elongation: float
+    ratio_error: float
+    elongation_error: float
+
+
+def reversals(layer: Layer, solve: Callable[[float], ContactWithErrors]) -> tuple[Reversal, ...]:
+    """All changes of stability for 0.1 < a/h < 12, in the order of increasing a/h.
+
+    Args:
+        layer: a layer of finite thickness.
+        solve: a flat punch of given radius [m] on it.
+    """
+    h = layer.thickness
+    branch = solve_branch([ratio * h for ratio in RATIOS], (), h / (2 * np.pi), solve, NODES)
+    radius = branch_samples(branch)
+    slope = branch.slope(branch.elongation, radius)
+    turns = np.flatnonzero(np.sign(slope[1:]) != np.sign(slope[:-1]))
+    places = [slope_root(branch, branch.elongation, radius[i], radius[i + 1]) for i in turns]
+    return tuple(_reversal(branch, a, h, is_maximum=bool(slope[i] > 0)) for a, i in zip(places, turns, strict=True))
+
+
+def _reversal(branch: InterpolatedBranch, radius: float, thickness: float, *, is_maximum: bool) -> Reversal:
+    here, extremum = np.array([radius]), Extremum(branch, InterpolatedBranch.elongation, radius)
+
+    def numbers(other: InterpolatedBranch) -> FloatArray:
+        return np.array([other.elongation(here)[0], extremum.shift(other)])
+
+    height, between = numbers(branch)[0], branch.errors_between(here)[0, 0]
+    error, place = degree_error(branch, numbers) + edge_error(branch, numbers)
+    return Reversal(
+        kind="maximum" if is_maximum else "minimum",
+        ratio=radius / thickness,
+        elongation=float(height / thickness),
+        ratio_error=float(place + extremum.shift_between(between)),
+        elongation_error=float((error + between + branch.errors_far(here)[0, 0]) / height),
+    )
+
+
+def stable_ranges(found: Iterable[Reversal]) -> list[tuple[float, float]]:
+    """Intervals of a/h in which a punch peels stably; the last one has no upper end if no minimum closes it."""
+    ranges: list[tuple[float, float]] = []
+    for reversal in found:
+        if reversal.kind == "maximum":
+            ranges.append((reversal.ratio, np.inf))
+        elif ranges:
+            ranges[-1] = (ranges[-1][0], reversal.ratio)
+    return ranges
+
+
+def reversals_at(poissons_ratio: float, method: Fem | None = None) -> tuple[Reversal, ...]:
+    """Changes of stability on a bonded layer of unit thickness and contact modulus."""
+    layer = Layer(thickness=1.0, youngs_modulus=1 - poissons_ratio**2, poissons_ratio=poissons_ratio)
+    scene = Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]))
+    solver = method or Fem(edge_cell=1e-8, truncation=1e-9)
+    log = StageLog()
+    return reversals(layer, lambda radius: solver.solve_contact(_of_radius(scene, radius), radius, log))
+
+
+def _of_radius(scene: Scene, radius: float) -> Scene:
+    return scene.replace(indenter=FlatPunch(radius=radius))

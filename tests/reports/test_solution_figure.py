@@ -1,0 +1,48 @@
+"""The picture of one answer shows what the scene does between the prescribed states, or symbols only."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contact import DepthHistory, IndentationDepths, load_scene
+from fem_reference import Fem
+from mdr import Mdr
+from reports.charts.solution import between, solution_figure
+from reports.command_line import run
+
+TASKS = Path("examples/tasks")
+RELAXATION = load_scene(TASKS / "relaxation.toml")
+
+
+def longest_line(svg):
+    """Number of corners of the curve with most of them."""
+    return max(path.count("L") for path in re.findall(r'<path d="([^"]*)" clip-path', svg))
+
+
+@pytest.mark.parametrize("task", ["relaxation", "creep", "afm_pyramid", "worn_tip"])
+def test_a_written_picture_follows_the_answer_between_prescribed_states(task, tmp_path, capsys):
+    file = tmp_path / "answer.svg"
+    assert run(["solve", str(TASKS / f"{task}.toml"), "--write", str(file)]) == 0
+    assert longest_line(file.read_text()) > 4
+    assert "prescribed states" in file.read_text()
+
+
+def test_the_line_of_a_relaxation_is_the_answer_at_instants_that_were_not_asked_for():
+    curve, symbols = solution_figure(Mdr().solve(RELAXATION), Mdr().solve(between(RELAXATION))).panels[0].series
+    asked = RELAXATION.replace(loading=DepthHistory(time=[0.0, 0.1, 3.0, 10.0], depth=[0.0, 5e-5, 5e-5, 5e-5]))
+    force = 1e6 * Mdr().solve(asked).normal_force[2]
+    assert force == pytest.approx(318, rel=1e-2)
+    assert np.interp(3.0, curve.x, curve.y) == pytest.approx(force, rel=1e-3)
+    assert symbols.x == (0.0, 0.1, 10.0)
+    assert symbols.style == "symbols"
+
+
+def test_prescribed_states_alone_are_symbols_and_steps_of_a_method_a_line():
+    two = load_scene(TASKS / "afm_pyramid.toml")
+    assert solution_figure(Mdr().solve(two)).panels[0].series[0].style == "symbols"
+    assert between(two.replace(loading=IndentationDepths([1e-7]))) is None
+    (steps,) = solution_figure(Fem(order=2, edge_cell=1e-4).solve(RELAXATION)).panels[0].series
+    assert steps.style == "solid"
+    assert len(steps.x) > 3
