@@ -56,8 +56,10 @@ class Around:
         draw: Random numbers.
         ratio: a/h.
         slope: Of the indenter at a.
-        wish: What is not left to chance: "incompressible", "jump", "measured" or "pulls" (bool), "control" (its name),
-            "smallest" and "largest" values of a loading over the typical one.
+        wish: What is not left to chance: "incompressible", "half_space", "slides", "rigid" (base of a graded layer),
+            "many" (loads), "pulls", "jump", "grows" (histories), "sticks", "measured" or "flows", each true or false,
+            "control" (its name), "sublayers" (range of their number), "smallest" and "largest" values of a loading
+            over the typical one.
         layer: Once it is drawn.
         indenter: Once it is drawn.
     """
@@ -84,7 +86,8 @@ class Around:
     def chance(self, share: float, wish: str = "") -> bool:
         """What is wished, or true in this share of the draws."""
         drawn = bool(self.draw.random() < share)
-        return self.wish.get(wish, drawn)
+        wished = self.wish.get(wish)
+        return drawn if wished is None else wished
 
     @property
     def depth(self) -> float:
@@ -149,7 +152,8 @@ def _graded(s: Around) -> dict[str, Any]:
     if s.chance(0.25) and s.wish.get("incompressible") is None:
         depths = _depths(s)
         ratio = TabulatedDepth(depths=depths, values=_tidied(s.draw.uniform(0.0, 0.5, len(depths))))
-    return {"thickness": s.h, "poissons_ratio": ratio}
+    support = {"support": "bonded"} if s.wish.get("rigid") else {}
+    return {"thickness": s.h, "poissons_ratio": ratio, **support}
 
 
 def _faces(s: Around) -> dict[str, Any]:
@@ -233,6 +237,8 @@ def _history(s: Around, name: str, typical: float) -> dict[str, Any]:
     time = _tidied(s.duration * np.append(0.0, np.cumsum(steps)) / steps.sum())
     start = [1.0] if s.chance(0.5, "jump") else [0.0, 1.0]
     later = [s.draw.choice([1.0, s.uniform(0.2, 1.0), 0.0], p=[0.3, 0.6, 0.1]) for _ in time]
+    if s.wish.get("grows"):
+        later = [1.0 + 0.2 * n for n in range(len(time))]
     values = typical * s.wish.get("largest", s.uniform(0.1, 1.0)) * np.array([*start, *later])[: len(time)]
     return {"time": time, name: _tidied(values)}
 
@@ -460,4 +466,6 @@ def drawn_scene(
         s.indenter = INDENTERS[chosen["indenter"]].drawn(s)
     s.wish = {**s.wish, "pulls": chosen["effect"] == "Adhesion" and s.chance(0.3)}
     drawn = LOADINGS[chosen["loading"]].drawn(s)
-    return Scene(layer=s.layer, indenter=s.indenter, loading=drawn, effects=tuple(kind.drawn(s) for kind in effects))
+    effects = tuple(kind.drawn(s) for kind in effects)
+    # Methods are compared on the linear problem, however deep the contact is.
+    return Scene(layer=s.layer, indenter=s.indenter, loading=drawn, effects=effects, beyond_small_strains=True)

@@ -24,7 +24,8 @@ def test_every_kind_has_its_file():
 
 @pytest.mark.parametrize(("kind", "entry"), list(_entries()))
 def test_frozen_answer_is_within_both_stated_errors(kind, entry):
-    found = numbers_of(KINDS[kind], scene_from_mapping(entry["scene"]), entry)
+    scene = scene_from_mapping(entry["scene"]).replace(beyond_small_strains=True)
+    found = numbers_of(KINDS[kind], scene, entry)
     wrong = [line for name, was in entry["numbers"].items() for line in _different(name, was, found)]
     assert not wrong, "\n".join(wrong)
 
