@@ -16,8 +16,7 @@ AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
 
 # The fastest first. The direct equation costs tens of MDR's time, finite elements hundreds.
 ORDER: Final = ("mdr", "integral_equation", "fem")
-# Refinements of a method before the next one is tried: with one, some scenes go to a method ten times slower; the
-# fourth never helped where the third did not.
+# Refinements of a method before the next, slower one is tried.
 REFINEMENTS: Final = 2
 
 
