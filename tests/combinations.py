@@ -45,7 +45,7 @@ _NODES, _FEWER, _PANELS = 8, 6, 26
 # Floor of the closed forms' errors: interpolation between many loads. A tenth of it is missed by tabulated tips.
 _CLOSED = 1e-8
 # Longest processor time of one answer [s]; the next draw is tried then.
-_LONGEST = 7
+_LONGEST = 15
 
 
 class Combination(NamedTuple):

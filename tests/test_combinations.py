@@ -9,7 +9,6 @@ from tests.combinations import BY_NAME, PAGE, compared, covering, others, outcom
 KNOWN = {
     "30.2": "finite elements under full stick on a soft elastic base state 1.15 times too small an error of the depth",
     "47.0": "finite elements at a flat edge on a thin adhering layer state a fifth of the error of a pull-off",
-    "110.0": "finite elements: a depth that is present at the first instant",
 }
 
 
