@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from contact.answer.friction import FrictionHistory, FrictionPath
 from contact.answer.method import Method, Supported, Unsupported, other_layer, refuse_other_layers
+from contact.answer.shown import UNITS
 from contact.answer.solution import (
-    UNITS,
     ContactPath,
     CriticalPoint,
     DetachmentPath,

@@ -124,6 +124,7 @@ class Case:
         work: what accuracy costs.
         ablations: what each effect, and the finite thickness, costs and moves.
         figures: drawn from the finished answers.
+        restricted: whether only some of its methods are left; then nothing may be left to claim.
     """
 
     name: str
@@ -138,13 +139,14 @@ class Case:
     work: tuple[WorkOfCase, ...] = ()
     ablations: tuple[StudyOfCase, ...] = ()
     figures: tuple[Callable[["Case", Answers], Iterator[Figure]], ...] = field(default=())
+    restricted: bool = False
 
     def __post_init__(self) -> None:
         """Refuse what would silently check less than it says."""
         if not self.name.replace("_", "").isalnum():
             raise InvalidInput(f"case name {self.name!r}: use letters, digits and underscores")
         _refuse_empty(self.name, question=self.question, title=self.title, text=self.text)
-        _refuse_empty(self.name, scenes=self.scenes, methods=self.methods, claims=self.claims)
+        _refuse_empty(self.name, scenes=self.scenes, methods=self.methods, claims=self.claims or self.restricted)
         _refuse_duplicates(f"case {self.name}: scenes", [s.name for s in self.scenes])
         _refuse_duplicates(f"case {self.name}: claims", [c.name for c in self.claims])
         _refuse_duplicates(f"case {self.name}: methods", [m.label for m in self.methods])
@@ -180,6 +182,7 @@ class Case:
             method=use.label,
             problem=scene.scene,
             solver=use.build(),
+            settings=use.settings,
             sampling=scene.sampling,
         )
 

@@ -4,15 +4,20 @@ They come from the case's own agreements alone, so that two packages never meet 
 that applies to a pair on a scene decides: against MDR, what MDR itself has to meet against its best referee.
 """
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import TypeAlias
+from typing import Final, TypeAlias
 
 from cases.declare.case import Case
 from cases.judgement.claims.agreement import Agreement
 from cases.judgement.claims.field_agreement import FieldAgreement
 
 Comparison: TypeAlias = Agreement | FieldAgreement
+
+# A method is held to ten times the accuracy that it claims: with half of it errors of a few digits beyond would fail,
+# with twice as much a claim would mean less.
+HELD_TO: Final = 10.0
 
 
 def foreign_agreements(case: Case, name: str, accuracy: float) -> Iterator[Comparison]:
@@ -42,7 +47,6 @@ def agreements_between(
         accuracies: relative, that methods claim for themselves, by label.
         everywhere: on every scene where the case compares any methods; otherwise where it compares ``second``.
     """
-    accuracy = max((accuracies.get(label, 0.0), label) for label in (first, second))
     for words, by_scene in _by_quantity(case).items():
         groups = _by_tolerance(by_scene if everywhere else _naming(by_scene, second), first, second)
         for tolerance, (claim, scenes) in groups.items():
@@ -53,15 +57,15 @@ def agreements_between(
                 scenes=tuple(scenes),
                 fast=first,
                 reference=second,
-                tolerance=max(tolerance, accuracy[0]),
-                relaxed=relaxed(accuracy[1], tolerance, accuracy[0]),
+                tolerance=min(tolerance, _held_to(claim, (first, second), accuracies)),
             )
             yield new if isinstance(new, Agreement) else _refining(new)
 
 
-def relaxed(name: str, asked: float, claimed: float) -> dict[str, str]:
-    """What is said beside the verdict where a method's own claim widens the tolerance."""
-    return {name: f"{name} claims {claimed:.2g}, others meet {asked:.2g}"} if claimed > asked else {}
+def _held_to(claim: Comparison, labels: tuple[str, str], accuracies: Mapping[str, float]) -> float:
+    """Ten times the larger accuracy that the pair claims; infinite where one is not the fast method and claims none."""
+    claimed = [accuracies.get(label, 0.0) for label in labels if label != claim.fast]
+    return HELD_TO * max(claimed) if claimed and all(claimed) else math.inf
 
 
 def _by_quantity(case: Case) -> dict[str, dict[str, list[Comparison]]]:

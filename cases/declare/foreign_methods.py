@@ -1,8 +1,8 @@
 """Methods of installed packages join every case when they are chosen: each claim that can be put to them is.
 
-Such a method follows ``contact.Method`` and may say how accurate it means to be (``claimed_accuracy``, relative, a
-class attribute, at most 10 %); no claim then asks more of it, and every verdict that this relaxes says so.  Where it
-says nothing, a claim asks what it asks of its least exact method.
+Such a method follows ``contact.Method``.  A claim asks of it what it asks of its least exact method.  A method may say
+how accurate it is (``claimed_accuracy``, relative, a class attribute, at most 10 %): closed forms and the fast method
+are then compared within ten times this where the claim asks less.
 """
 
 from collections.abc import Collection, Mapping
@@ -12,10 +12,10 @@ from typing import Any, Final
 
 from cases.declare.case import Case, ClaimOfCase
 from cases.declare.foreign.restated import with_restated
-from cases.declare.foreign_agreements import foreign_agreements, relaxed
+from cases.declare.foreign_agreements import HELD_TO, foreign_agreements
 from cases.declare.methods import REFEREES, MethodUse, load, registered
-from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.declared import PerMethod
+from cases.judgement.claims.exact import Exact
 from cases.judgement.claims.own_laws import Residual
 from contact import InvalidInput
 from contact.records.record import shown
@@ -93,18 +93,10 @@ def _extended(case: Case, claim: ClaimOfCase, accuracies: Mapping[str, float]) -
     if not isinstance(claim, PerMethod):
         return claim
     methods = (*claim.methods, *accuracies) if claim.methods else ()
-    if isinstance(claim, Approach):
-        words = {
-            name: f"{name} claims {own:.2g}; a rate is known beyond that only"
-            for name, own in accuracies.items()
-            if own
-        }
-        return replace(claim, methods=methods, accuracies=accuracies, relaxed={**claim.relaxed, **words})
     asked = max([claim.tolerance, *claim.tolerances.values()])
-    said = {name: words for label, own in accuracies.items() for name, words in relaxed(label, asked, own).items()}
+    held = {name: HELD_TO * own if own and isinstance(claim, Exact) else asked for name, own in accuracies.items()}
     return replace(
         claim,
         methods=methods,
-        tolerances={**claim.tolerances, **{name: max(asked, own) for name, own in accuracies.items()}},
-        relaxed={**claim.relaxed, **said},
+        tolerances={**claim.tolerances, **{name: min(asked, own) for name, own in held.items()}},
     )

@@ -33,7 +33,7 @@ def only_methods(case: Case, wanted: Collection[str]) -> Case:
     """Return the case with the methods asked for (all if none is), without timings and figures of others.
 
     Raises:
-        InvalidInput: if the case has none of the methods, or no claim is left.
+        InvalidInput: if the case has none of the methods.
     """
     if not wanted:
         return case
@@ -56,7 +56,7 @@ def only(case: Case, keep: Keep) -> Case:
     scenes = tuple(replace(scene, methods=left, nightly=()) for scene in case.scenes if (left := uses[scene.name]))
     claims = tuple(left for claim in case.claims for left in claim.left(case, solvers))
     ablations = tuple(study.left(solvers) for study in case.ablations)
-    return replace(case, scenes=scenes, claims=claims, ablations=ablations)
+    return replace(case, scenes=scenes, claims=claims, ablations=ablations, restricted=True)
 
 
 def only_scenes(case: Case, scenes: Collection[str], methods: Collection[str]) -> Case:

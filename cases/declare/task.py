@@ -1,6 +1,8 @@
 """The unit of work: one method on one scene, and what is kept of its answer."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 from cases.judgement.rules.norms import RingQuadrature, ring_quadrature
 from cases.results.records.scene_run import SceneRun
@@ -44,6 +46,7 @@ class Task:
         method: label of the method in the case.
         problem: the scene that is solved.
         solver: the method with its settings.
+        settings: those that the case asks for; the method has defaults for the others.
         sampling: what is kept.
         timed: whether the solve is repeated for its time, alone on the machine.
         forgetful: whether it is a first solution: imports are done before, caches are empty.
@@ -55,6 +58,7 @@ class Task:
     method: str
     problem: Scene
     solver: Method
+    settings: Mapping[str, Any] = field(default_factory=dict)
     sampling: Sampling = field(default_factory=Sampling)
     timed: bool = False
     forgetful: bool = False

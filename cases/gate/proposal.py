@@ -7,7 +7,6 @@ from cases.gate.baseline import AcceptedCounters, AcceptedQuantity, Baseline
 from cases.gate.checks.claims import claims_of
 from cases.gate.checks.counts import counters_of
 from cases.gate.checks.uncertainties import curve_uncertainties
-from cases.gate.specification import specification
 from cases.gate.spread import Spreads
 from cases.judgement.rules.tolerance import permitted_difference, relative_tolerance
 from cases.results.records.run import CaseResult
@@ -143,10 +142,9 @@ class _Evidence:
     def counters(self, method: str) -> Iterator[AcceptedCounters]:
         """One record for each scene the method solved."""
         for run in self._solved(method):
-            specified = specification(self.case, run)
             yield AcceptedCounters(
                 scene=run.scene,
-                specification=specified,
+                specification=run.specification,
                 counters=counters_of(run),
                 curves=curve_uncertainties(run),
             )
@@ -161,8 +159,7 @@ class _Evidence:
             spread = old.spread
         record = AcceptedQuantity(
             scene=run.scene,
-            settings=run.settings,
-            specification=specification(self.case, run),
+            specification=run.specification,
             quantity=quantity.name,
             unit=quantity.unit,
             scale=quantity.scale,

@@ -44,7 +44,7 @@ class ExitCode(IntEnum):
     INTERNAL_ERROR = 3
     USAGE = 4
     NOTHING_RAN = 5
-    # Only under ``strict``: nothing failed, but a verdict stays open (MARGINAL, INCONCLUSIVE).
+    # Only under ``strict``: nothing failed, but a verdict stays open (INCONCLUSIVE).
     UNDECIDED = 6
 
 

@@ -52,10 +52,13 @@ def process_pool(jobs: int) -> Executor:
 def fresh_processes(jobs: int) -> Executor:
     """Return ``jobs`` processes that solve one task each: peak memory is the task's own.
 
-    They are forked from a server that has imported what every task needs and has solved nothing.
+    Where the system can fork, they come from a server that has imported what every task needs and solved nothing.
     """
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(["cases.run.solve_task"])
+    # Windows cannot fork: there a fresh process imports everything itself.
+    forks = "forkserver" in multiprocessing.get_all_start_methods()
+    context = multiprocessing.get_context("forkserver" if forks else "spawn")
+    if forks:
+        context.set_forkserver_preload(["cases.run.solve_task"])
     return ProcessPoolExecutor(jobs, mp_context=context, initializer=_follow_parent, max_tasks_per_child=1)
 
 

@@ -23,11 +23,12 @@ from cases.results.status import Status
 from cases.run.executors import ClusterLost, ExecutorFactory, ahead, closing, fresh_processes, process_pool, serial
 from cases.run.keys import content_key, key_parts
 from cases.run.lock import locked
-from cases.run.many.window import Window
 from cases.run.progress import Progress, ProgressEvent, silent
 from cases.run.solve_task import solve, without_numbers
+from cases.run.specification import specification
 from cases.run.stamp import stamp
 from cases.run.store import TaskStore
+from cases.run.window import Window
 from contact import InvalidInput
 
 # Seconds that one solution by a method of an installed package may take unless told otherwise: nobody here knows
@@ -163,7 +164,8 @@ def _planned(task: Task) -> _Planned:
 def _judged(run: _Run, case: Case, answers: Answers, *, complete: bool) -> CaseResult:
     whole = run.options.timing and not run.options.only_costs
     result = case_result(case, answers, complete=complete and whole)
-    run.tell("judged", case.name, result.status)
+    skipped = whole and not result.status.is_failure and result.unjudged(run.options.methods)
+    run.tell("judged", case.name, Status.SKIP if skipped else result.status)
     return result
 
 
@@ -179,7 +181,9 @@ def _reused(run: _Run, planned: _Planned) -> bool:
     if row is None or row.status in (Status.TIMEOUT, Status.INVALID):
         return False
     # Another case may have stored the same scene and settings under names of its own.
-    run.finish(planned, replace(row, scene=planned.task.scene, method=planned.task.method), reused=True)
+    task = planned.task
+    own = replace(row, scene=task.scene, method=task.method, specification=specification(task))
+    run.finish(planned, own, reused=True)
     return True
 
 

@@ -16,6 +16,7 @@ from cases.results.status import Status
 from cases.run.empty_caches import forget
 from cases.run.inside.points import fields_at
 from cases.run.recording import cost_record, curves, quantities, stage_records
+from cases.run.specification import specification
 from cases.run.time_limit import TimeLimitReached, time_limited
 from cases.run.timing import timed_warm
 from contact import ContactPath, NotConvergedError, Solution, UnsupportedSceneError
@@ -67,6 +68,7 @@ def _solved(task: Task, key: str, *, estimates: bool) -> SceneRun:
         scene=task.scene,
         method=task.method,
         settings=_settings(solution),
+        specification=specification(task),
         status=Status.PASS,
         reason="",
         quantities=quantities(solution, task.sampling),

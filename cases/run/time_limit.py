@@ -1,9 +1,9 @@
 """A time limit on whatever runs inside a ``with`` statement, in a process of its own or in a worker's thread."""
 
+import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
 from ctypes import c_ulong, py_object, pythonapi
-from signal import ITIMER_REAL, SIGALRM, setitimer, signal
 from threading import Lock, Timer, current_thread, get_ident, main_thread
 from types import FrameType
 
@@ -17,7 +17,7 @@ def time_limited(seconds: float) -> Iterator[None]:
     """Raise ``TimeLimitReached`` after so many seconds, between two instructions of Python."""
     if seconds <= 0:
         yield
-    elif current_thread() is main_thread():
+    elif current_thread() is main_thread() and hasattr(signal, "SIGALRM"):
         with _signal(seconds):
             yield
     else:
@@ -27,14 +27,14 @@ def time_limited(seconds: float) -> Iterator[None]:
 
 @contextmanager
 def _signal(seconds: float) -> Iterator[None]:
-    """In the main thread of a process; ends a wait, too."""
-    previous = signal(SIGALRM, _ring)
-    setitimer(ITIMER_REAL, seconds)
+    """In the main thread of a process, where the system has alarms (Windows has none); ends a wait, too."""
+    previous = signal.signal(signal.SIGALRM, _ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
     try:
         yield
     finally:
-        setitimer(ITIMER_REAL, 0.0)
-        signal(SIGALRM, previous)
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, previous)
 
 
 def _ring(number: int, frame: FrameType | None) -> None:
@@ -43,7 +43,7 @@ def _ring(number: int, frame: FrameType | None) -> None:
 
 @contextmanager
 def _timer(seconds: float) -> Iterator[None]:
-    """In any other thread, such as those in which a cluster's workers solve; signals reach the main thread only."""
+    """In any thread, such as those in which a cluster's workers solve; signals reach the main thread only."""
     thread, lock, running = get_ident(), Lock(), True
 
     def ring() -> None:

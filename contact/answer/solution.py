@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from contact.answer.inside import Inside, InteriorFields, KnownContact
 from contact.answer.one_thread import one_thread
+from contact.answer.shown import UNITS, Shown
 from contact.answer.stages import Cost, StageRecord
 from contact.answer.summary import quantity_line, scene_line
 from contact.records.errors import InvalidInput, NotConvergedError
@@ -19,30 +20,6 @@ from contact.scene.effects import Adhesion
 from contact.scene.scene import Scene
 
 Setting: TypeAlias = bool | int | float | str | None
-
-UNITS: Mapping[str, str] = {
-    "time": "s",
-    "contact_radius": "m",
-    "indentation_depth": "m",
-    "velocity": "m/s",
-    "normal_force": "N",
-    "contact_stiffness": "N/m",
-    "pressure": "Pa",
-    "surface_displacement": "m",
-    "kinetic_energy": "J",
-    "stored_energy": "J",
-    "dissipated_energy": "J",
-    "coefficient_of_restitution": "1",
-    "contact_time": "s",
-    "stick_radius": "m",
-    "peak_force": "N",
-    "peak_depth": "m",
-    "peak_contact_radius": "m",
-    "pull_off_force": "N",
-    "pull_off_depth": "m",
-    "pull_off_contact_radius": "m",
-    "force_at_loss": "N",
-}
 
 
 class Fields(Protocol):
@@ -71,7 +48,7 @@ class InstantFields(Protocol):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Solution:
+class Solution(Shown):
     """What every answer carries.
 
     Attributes:
@@ -84,8 +61,6 @@ class Solution:
         notes: What a reader should know before relying on the numbers.
     """
 
-    ARRAYS: ClassVar[tuple[str, ...]] = ()
-    SCALARS: ClassVar[tuple[str, ...]] = ()
     OFFERS: ClassVar[tuple[str, ...]] = ()
     """What else the answer has to show, as `repr` lists it."""
     ASKED: ClassVar[tuple[str, ...]] = ()
@@ -117,7 +92,16 @@ class Solution:
 
     def __repr__(self) -> str:
         """A few lines: method, scene, first and last values with units and stated errors, what to look at next."""
-        offers = (*self.OFFERS, "uncertainty(quantity)", "error_estimate", "settings", "stages", "cost")
+        offers = (
+            "plot()",
+            "to_dataframe()",
+            *self.OFFERS,
+            "uncertainty(quantity)",
+            "error_estimate",
+            "settings",
+            "stages",
+            "cost",
+        )
         lines = [f"{type(self).__name__} by {self.method}, {len(self)} {'state' if len(self) == 1 else 'states'}"]
         lines += [f"  scene: {scene_line(self.scene)}"]
         lines += [f"  {self._line(name)}" for name in self._quantities()]
@@ -327,6 +311,7 @@ class DetachmentPath(Solution):
         "pull_off_contact_radius",
         "force_at_loss",
     )
+    CURVE_ALONE: ClassVar[bool] = True
     OFFERS: ClassVar[tuple[str, ...]] = ("critical_points", "stable_displacement_control", "stable_force_control")
     ASKED: ClassVar[tuple[str, ...]] = (*ARRAYS, *SCALARS)
 
@@ -412,6 +397,7 @@ class ImpactHistory(Solution):
         "dissipated_energy",
     )
     SCALARS: ClassVar[tuple[str, ...]] = ("peak_force", "peak_depth", "peak_contact_radius")
+    CURVE_ALONE: ClassVar[bool] = True
     OFFERS: ClassVar[tuple[str, ...]] = ("energy_residual",)
     ASKED: ClassVar[tuple[str, ...]] = ("coefficient_of_restitution", "peak_force", "peak_depth")
 

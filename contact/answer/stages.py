@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
-import resource
 import sys
 import time
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+
+try:
+    import resource
+except ImportError:
+    # Windows has no such module.
+    resource = None  # type: ignore[assignment]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -117,13 +122,17 @@ class StageLog:
 
 
 def processor_seconds() -> float:
-    """Processor time of this process and of those that it started and that have ended [s]."""
+    """Processor time of this process and, except on Windows, of those that it started and that have ended [s]."""
+    if resource is None:
+        return time.process_time()
     children = resource.getrusage(resource.RUSAGE_CHILDREN)
     return time.process_time() + children.ru_utime + children.ru_stime
 
 
 def peak_memory_bytes() -> int:
-    """High-water mark of this program's resident memory, and that of the largest process that it started."""
+    """High-water mark of this program's resident memory, plus that of the largest process it started; 0 on Windows."""
+    if resource is None:
+        return 0
     return _own_peak() + _in_bytes(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)
 
 

@@ -31,9 +31,14 @@ def quantity_line(name: str, values: FloatArray, unit: str, uncertainty: FloatAr
         unit: Of the values; "" or "1" for a number without one.
         uncertainty: In the same unit, shape (n,) or (1,); None if the method states none.
     """
-    numbers = _ends(values, "{:.7g}") + (f" {unit}" if unit not in ("", "1") else "")
-    errors = "no error stated" if uncertainty is None else f"+- {_ends(uncertainty, '{:.1g}')}"
+    numbers, errors = quantity_cells(values, unit, uncertainty)
     return f"{name:<{_NAME_WIDTH}} {numbers:<36} {errors}"
+
+
+def quantity_cells(values: FloatArray, unit: str, uncertainty: FloatArray | None) -> tuple[str, str]:
+    """First and last value with their unit, and first and last stated error, of arrays as in `quantity_line`."""
+    numbers = _ends(values, "{:.7g}") + (f" {unit}" if unit not in ("", "1") else "")
+    return numbers, "no error stated" if uncertainty is None else f"+- {_ends(uncertainty, '{:.1g}')}"
 
 
 def _ends(values: FloatArray, form: str) -> str:

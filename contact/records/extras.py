@@ -15,6 +15,8 @@ EXTRA_OF: Final[Mapping[str, str]] = {
     "matplotlib": "report",
     "jinja2": "report",
     "markupsafe": "report",
+    "pandas": "tables",
+    "xarray": "tables",
     "afmformats": "fit",
     "distributed": "cluster",
     "dask": "cluster",

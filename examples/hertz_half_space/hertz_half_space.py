@@ -35,7 +35,7 @@ class HertzHalfSpace:
     """
 
     name: ClassVar[str] = "hertz_half_space"
-    claimed_accuracy: ClassVar[float] = 1e-9  # relative; no claim asks more than this
+    claimed_accuracy: ClassVar[float] = 1e-9  # relative; held to ten times this
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
         """Whether there is a closed form for the scene, and if not, why not."""

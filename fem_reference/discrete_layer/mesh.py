@@ -8,11 +8,11 @@ gmsh appears in this module only.
 from __future__ import annotations
 
 import hashlib
+import signal
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import pairwise
-from signal import SIGPIPE, getsignal, signal
 from threading import current_thread, main_thread
 from typing import Any
 
@@ -75,12 +75,13 @@ def _gmsh() -> Any:
         import gmsh  # noqa: PLC0415 - a missing system library shall give one clear message, at first use
     except OSError as reason:
         raise ImportError(MISSING_LIBRARIES.format(reason=reason)) from reason
-    handler = getsignal(SIGPIPE)
-    gmsh.initialize([], interruptible=False)
     # gmsh lets a broken pipe end the process: a pool would die with any of its workers.  Only the main thread may set
-    # signals.
-    if current_thread() is main_thread():
-        signal(SIGPIPE, handler)
+    # signals, and Windows has no such signal.
+    pipe = getattr(signal, "SIGPIPE", None) if current_thread() is main_thread() else None
+    handler = pipe and signal.getsignal(pipe)
+    gmsh.initialize([], interruptible=False)
+    if pipe:
+        signal.signal(pipe, handler)
     for option, value in {
         "General.Terminal": 0,
         "General.NumThreads": 1,

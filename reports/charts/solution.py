@@ -6,10 +6,8 @@ import numpy as np
 
 from cases.results.records.figure import Figure, Panel, Series
 from contact import (
-    UNITS,
     ContactRadii,
     DepthHistory,
-    DetachmentPath,
     ForceHistory,
     FrictionHistory,
     HistoryPath,
@@ -19,8 +17,6 @@ from contact import (
     Scene,
     Solution,
 )
-from contact.files.units import prefix_for
-from reports.words.quantity_names import SYMBOLS
 
 # A line has about so many points: half as many show corners in a printed figure.
 _POINTS = 240
@@ -80,30 +76,22 @@ def _in_time(solution: Solution) -> bool:
 
 
 def _panel(solution: Solution, curve: Solution | None, title: str, x: str, y: str) -> Panel:
-    prefixes = [prefix_for(getattr(solution, name)) for name in (x, y)]
     prescribed = getattr(solution.scene.loading, "time", None)
-    chosen = isinstance(solution, ImpactHistory | DetachmentPath) or (
-        prescribed is not None and len(solution) > prescribed.size
-    )
-    factors = prefixes[0][0], prefixes[1][0]
-    series = [] if curve is None else [_series(curve, curve.method, (x, y), factors, "solid")]
+    chosen = solution.CURVE_ALONE or (prescribed is not None and len(solution) > prescribed.size)
+    series = [] if curve is None else [_series(curve, curve.method, (x, y), solution, "solid")]
     name = solution.method if curve is None else "prescribed states"
-    series.append(_series(solution, name, (x, y), factors, "solid" if chosen else "symbols"))
-    return Panel(
-        title=title, x_label=_label(x, prefixes[0][1]), y_label=_label(y, prefixes[1][1]), series=tuple(series)
-    )
+    series.append(_series(solution, name, (x, y), solution, "solid" if chosen else "symbols"))
+    x_label, y_label = (solution.label(axis) for axis in (x, y))
+    return Panel(title=title, x_label=x_label, y_label=y_label, series=tuple(series))
 
 
 def _series(
-    solution: Solution,
-    name: str,
-    axes: tuple[str, str],
-    factors: tuple[float, float],
-    style: Literal["solid", "symbols"],
+    drawn: Solution, name: str, axes: tuple[str, str], answer: Solution, style: Literal["solid", "symbols"]
 ) -> Series:
-    x, y = (getattr(solution, axis) / factor for axis, factor in zip(axes, factors, strict=True))
-    stated = axes[1] in solution.error_estimate
-    half_width = np.broadcast_to(solution.uncertainty(axes[1]), len(solution)) / factors[1] if stated else np.empty(0)
+    """A line or symbols of the states `drawn`, in the units of the axes of `answer`."""
+    x, y = (getattr(drawn, axis) * answer.factor(axis) for axis in axes)
+    stated = drawn.stated_error(axes[1])
+    half_width = np.empty(0) if stated is None else stated * answer.factor(axes[1])
     return Series(
         label=name,
         method=name,
@@ -113,7 +101,3 @@ def _series(
         half_width=tuple(half_width.tolist()),
         style=style,
     )
-
-
-def _label(name: str, prefix: str) -> str:
-    return f"{name.replace('_', ' ')} {SYMBOLS[name].replace('k_N', '$k_N$')} [{prefix}{UNITS[name]}]"

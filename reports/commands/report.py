@@ -47,6 +47,11 @@ def write_pages(run: RunResult, directory: Path, *, single_file: bool = False) -
         console(stderr=True).print(f"no pages: {missing_extra(error)}, then contact-verify report {directory}")
     else:
         write_report(run, directory, jobs=DRAWERS, single_file=single_file)
+    write_summaries(run, directory)
+
+
+def write_summaries(run: RunResult, directory: Path) -> None:
+    """Write summary.md and junit.xml."""
     write_whole(directory / "summary.md", summary_text(run))
     write_whole(directory / "junit.xml", junit_text(run))
 

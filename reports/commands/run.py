@@ -68,17 +68,21 @@ def run(
         cases = [beside(case, methods, REFEREE) for case in _chosen(methods, names, options.suite)]
     else:
         solvers = tuple(methods)
-        cases = [only_methods(case, methods) for case in _chosen(methods, names, options.suite)]
+        chosen = _chosen(methods, names, options.suite)
+        # Of a suite those cases run that have one of the methods.
+        solved = [case for case in chosen if not methods or any(use.label in methods for use in case.methods)]
+        cases = [only_methods(case, methods) for case in ((not names and solved) or chosen)]
     cases = [with_settings(case, asked) for case in cases]
     options = dataclasses.replace(options, methods=tuple(dict.fromkeys(solvers)), executor=by_name(executor))
     studied = options.suite in USUAL_SUITES and not names and not solvers
     with locked(options.out):
         result = _carried_out(cases, options, studied, quiet=quiet)
         write_pages(result, options.out)
-    show_verdict(result, options.out, quiet=quiet)
+    show_verdict(result, page_of(options.out), quiet=quiet)
     if not result.complete:
         return ExitCode.INTERRUPTED
-    return exit_code(result.statuses, strict=strict)
+    code = exit_code(result.statuses, strict=strict)
+    return ExitCode.NOTHING_RAN if result.unjudged and code is not ExitCode.GATE_FAILED else code
 
 
 def _chosen(methods: list[str], names: list[str], suite: str) -> tuple[Case, ...]:
@@ -103,7 +107,7 @@ def _carried_out(cases: Sequence[Case], options: RunOptions, studied: bool, *, q
         return studies.join(result, options.out) if studied and result.complete else result
 
 
-def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
+def show_verdict(result: RunResult, page: Path, *, quiet: bool) -> None:
     """Matrix and worst rows (unless quiet), the verdict, where the report lies, annotations for GitHub."""
     terminal = console()
     rows = outcomes(result)
@@ -118,7 +122,7 @@ def show_verdict(result: RunResult, out: Path, *, quiet: bool) -> None:
         terminal.print(sentence)
     words, tone = headline(result, rows)
     terminal.print(words, style=STYLES[tone])
-    terminal.print(f"report: {page_of(out)}")
+    terminal.print(f"report: {page}")
     if os.environ.get("GITHUB_ACTIONS") == "true":
         for line in annotation_lines(result):
             terminal.print(line, soft_wrap=True)

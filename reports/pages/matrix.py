@@ -32,14 +32,17 @@ class Matrix:
 def run_matrix(run: RunResult) -> Matrix:
     """One row a case, one column a kind of claim and one for the solutions; each cell is the worst check in it."""
     kinds = [kind for kind in Kind if any(claim.kind is kind for case in run.cases for claim in case.claims)]
-    rows = ((case.name, _kind_cells(case, kinds)) for case in run.cases)
+    rows = ((case.name, _kind_cells(case, kinds, run.methods)) for case in run.cases)
     return Matrix(columns=(*(str(kind) for kind in kinds), "solutions"), rows=tuple(rows))
 
 
-def _kind_cells(case: CaseResult, kinds: Sequence[Kind]) -> tuple[Cell | None, ...]:
+def _kind_cells(case: CaseResult, kinds: Sequence[Kind], methods: Sequence[str]) -> tuple[Cell | None, ...]:
     rows = case_outcomes(case)
     parts = [[row for row in rows if row.what.startswith(f"{kind}:")] for kind in kinds]
-    parts.append([row for row in rows if row.what == "solution"])
+    solved = [row for row in rows if row.what == "solution"]
+    # A chosen method that was skipped everywhere is not hidden behind the solutions of others.
+    silent = case.unjudged(methods)
+    parts.append([row for row in solved if row.status is Status.SKIP and row.methods[0] in silent] or solved)
     return tuple(cell_of(part) if part else None for part in parts)
 
 

@@ -17,13 +17,13 @@ from contact import (
     Solution,
     StageRecord,
 )
+from contact.answer.shown import SYMBOLS
 from contact.answer.small_strains import depth_note, depths_of
 from contact.answer.summary import scene_line
 from contact.files.units import prefix_for
 from reports.tables.table import Table
 from reports.words.method_names import display_name
 from reports.words.numbers import duration, measured, memory, scaled_unit, small
-from reports.words.quantity_names import SYMBOLS
 
 BRACKETS = (
     "Digits in brackets: uncertainty of the last digits, as the method itself estimates it; (?) where it gives none. "

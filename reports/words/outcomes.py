@@ -159,14 +159,23 @@ def headline(run: RunResult, rows: Iterable[CheckOutcome]) -> tuple[str, str]:
     checks = sum(tally.values()) - tally["skip"]
     if checks == 0:
         found = _measured(run)
-        return (f"MEASURED: {found} case{'s'[: found != 1]}, no claims", "good") if found else ("Nothing ran", "bad")
+        measured = f"MEASURED: {found} case{'s'[: found != 1]}, no claims"
+        return (measured, "good") if found else ("; ".join(["Nothing ran", *_unjudged(run)]), "bad")
     if tally["bad"]:
         return f"FAILED: {tally['bad']} of {checks} checks", "bad"
     if not run.complete:
         return f"INCOMPLETE: {checks} checks so far, none failed", "warn"
-    if tally["warn"]:
-        return f"PASSED: {checks} checks, {tally['warn']} to look at", "warn"
-    return f"PASSED: all {checks} checks", "good"
+    if run.unjudged:
+        return "; ".join([*_unjudged(run), f"{checks} checks of other methods hold"]), "bad"
+    words = f"{checks} checks, {tally['warn']} to look at" if tally["warn"] else f"all {checks} checks"
+    return f"PASSED: {words}", "warn" if tally["warn"] else "good"
+
+
+def _unjudged(run: RunResult) -> list[str]:
+    """A sentence for each chosen method about which no claim was judged, with the reason of its first skip."""
+    rows = [row for case in run.cases for row in case.runs if row.status is Status.SKIP]
+    reasons = {method: next((row.reason for row in rows if row.method == method), "") for method in run.unjudged}
+    return [f"no claim about {method} was judged{': ' if why else ''}{worded(why)}" for method, why in reasons.items()]
 
 
 def nothing_ran(run: RunResult) -> bool:
@@ -175,7 +184,7 @@ def nothing_ran(run: RunResult) -> bool:
 
 
 def _measured(run: RunResult) -> int:
-    return sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
+    return sum(bool(case.work_precision) for case in run.cases)
 
 
 def claim_outcome(case: str, claim: Claim) -> CheckOutcome:
@@ -192,7 +201,7 @@ def claim_outcome(case: str, claim: Claim) -> CheckOutcome:
         observed=observed_text(claim),
         tolerance=f"{small(claim.tolerance)}{_unit(claim.unit)}",
         origin=f"{claim.origin}: {claim.source}",
-        message=worded("; ".join(part for part in (claim.message, claim.identity, claim.relaxed) if part)),
+        message=worded("; ".join(part for part in (claim.message, claim.identity) if part)),
         because=claim.because,
         identity=claim.identity,
     )

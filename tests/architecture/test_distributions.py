@@ -66,6 +66,17 @@ def test_the_wheel_holds_the_packages_with_their_data_and_nothing_else(wheel):
 
 
 @pytest.mark.slow
+def test_an_editable_install_is_one_path_that_type_checkers_follow(tmp_path):
+    source = tmp_path / "source"
+    shutil.copytree(ROOT, source, ignore=shutil.ignore_patterns(".git", "baselines", "build", "results*"))
+    code = f"from setuptools import build_meta as b; b.build_editable({str(tmp_path)!r})"
+    subprocess.run([sys.executable, "-c", code], cwd=source, capture_output=True, text=True, check=True)
+    with zipfile.ZipFile(next(tmp_path.glob("*.whl"))) as archive:
+        (path,) = [name for name in archive.namelist() if name.endswith(".pth")]
+        assert archive.read(path).decode().strip() == str(source)
+
+
+@pytest.mark.slow
 def test_the_metadata_of_the_wheel_are_complete(wheel):
     place = next(name for name in wheel.namelist() if name.endswith(".dist-info/METADATA"))
     said = email.message_from_bytes(wheel.read(place))

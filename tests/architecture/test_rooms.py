@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import graphlib
-from collections import Counter
 from functools import cache
 from pathlib import Path
 
@@ -17,7 +16,6 @@ FILES = {
     for package in PACKAGES
     for file in (ROOT / package).rglob("*.py")
 }
-LARGEST_FOLDER = 13
 # Arrows between the rooms of one package. The room of a module is the folder directly below the package.
 MOST_ARROWS = {"contact": 15, "bem": 15, "mdr": 15, "fem_reference": 15, "reports": 15, "cases": 21}
 
@@ -57,11 +55,6 @@ def imports():
 
 def room(module):
     return ".".join(module.split(".")[:2])
-
-
-def test_no_folder_holds_more_than_a_reader_surveys():
-    folders = Counter(str(file.parent.relative_to(ROOT)) for file in FILES.values() if file.name != "__init__.py")
-    assert {folder: count for folder, count in folders.items() if count > LARGEST_FOLDER} == {}
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -31,6 +31,20 @@ def test_the_typed_inputs_are_accepted_at_run_time():
     assert names["MEASURED"].radii.tolist() == [0.0, 1.0, 2.0]
 
 
+def test_an_answer_to_a_scene_from_a_file_passes_a_users_strict_type_check(tmp_path):
+    script = tmp_path / "user.py"
+    script.write_text(
+        "from cases import solve\n"
+        "from contact import load_scene\n"
+        "from mdr import Mdr\n"
+        "\n"
+        'for answer in (solve(load_scene("a.toml"), accuracy=1e-4).answer, Mdr().solve(load_scene("a.toml"))):\n'
+        '    print(answer.uncertainty("normal_force"), answer.plot().get_xlabel(), answer.to_dataframe().shape)\n',
+        encoding="utf-8",
+    )
+    assert "Success" in mypy(tmp_path, script)
+
+
 @pytest.mark.slow
 def test_examples_and_answers_pass_a_users_strict_type_check(tmp_path):
     examples = [tmp_path / f"example_{i}.py" for i in range(len(blocks("python")))]

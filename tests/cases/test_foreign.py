@@ -7,10 +7,8 @@ import numpy as np
 import pytest
 
 from cases.declare import methods
-from cases.declare.foreign_methods import LARGEST_CLAIM, claimed_accuracy, with_foreign_methods, with_registered
+from cases.declare.foreign_methods import LARGEST_CLAIM, claimed_accuracy, with_registered
 from cases.declare.guarded_method import BrokenMethodError, GuardedMethod, build_guarded
-from cases.judgement.judge import case_result
-from cases.results.status import Status
 from contact import (
     Cone,
     ContactRadii,
@@ -24,8 +22,6 @@ from contact import (
 )
 from mdr import Mdr
 from reports.command_line import INTERNAL_ERROR, run
-from reports.pages.claim_blocks import claim_blocks
-from reports.words.outcomes import claim_outcome
 from tests.cases.fake_case import fake_case
 from tests.cases.fake_method import FakeHertz
 
@@ -101,39 +97,6 @@ def test_the_largest_claim_and_none_at_all_are_taken(register, monkeypatch):
     assert claimed_accuracy("stranger") == 0.0
     monkeypatch.setattr(Stranger, "claimed_accuracy", LARGEST_CLAIM, raising=False)
     assert claimed_accuracy("stranger") == LARGEST_CLAIM
-
-
-def judged(claimed):
-    """The claims about a newcomer that is the fake method "fast" under another label, judged."""
-    from cases.declare.task import Answers
-    from cases.run.runner import RunOptions, plan  # noqa: F401 - imported here to keep the module's imports short
-    from cases.run.solve_task import solve
-
-    case = fake_case()
-    fast = next(use for use in case.methods if use.label == "fast")
-    case = with_foreign_methods(case, {"newcomer": claimed})
-    uses = tuple(
-        replace(fast, label="newcomer", method=fast.method or fast.label) if u.label == "newcomer" else u
-        for u in case.methods
-    )
-    case = replace(case, methods=uses)
-    answers = Answers({p.task.identity: solve(p.task, p.key) for p in plan([case], timing=False)})
-    return case_result(case, answers, complete=True)
-
-
-def test_every_verdict_that_a_claim_of_accuracy_relaxes_says_so():
-    strict, lenient = judged(0.0), judged(1e-3)
-    assert not any(claim.relaxed for claim in strict.claims)
-    usual = {(claim.name, claim.scene, claim.methods): claim.tolerance for claim in strict.claims}
-    wider = [claim for claim in lenient.claims if claim.tolerance > usual[claim.name, claim.scene, claim.methods]]
-    assert len(wider) > 2
-    assert wider == [claim for claim in lenient.claims if claim.relaxed]
-    for claim in wider:
-        assert "newcomer claims 0.001, others meet" in claim.relaxed
-        assert claim.relaxed in claim_outcome("case", claim).message
-    rows = [row for block in claim_blocks(lenient) for row in block.rows if "newcomer claims" in row.within]
-    assert len(rows) == len({(claim.name, claim.methods) for claim in wider})
-    assert any(claim.status is Status.PASS for claim in wider)
 
 
 def test_it_is_asked_first_whether_it_supports_the_scene(register, monkeypatch):

@@ -42,12 +42,15 @@ def test_it_is_compared_with_both_methods_of_the_case():
     assert compared == {("fast", "slow"), ("newcomer", "fast"), ("newcomer", "slow")}
 
 
-def test_no_claim_asks_more_than_it_claims_and_nobody_else_gains():
-    case = with_foreign_methods(fake_case(), {"newcomer": 1e-3})
-    (exact,) = claims_of(case, Exact)
-    assert (exact.tolerance_of("newcomer"), exact.tolerance_of("fast")) == (1e-3, 1e-10)
-    assert {claim.tolerance for claim in claims_of(case, Agreement) if claim.fast == "newcomer"} == {1e-3}
-    assert {claim.tolerance for claim in claims_of(case, Agreement) if claim.fast == "fast"} == {1e-5}
+@pytest.mark.parametrize(("claimed", "exact", "fast"), [(1e-3, 1e-10, 1e-5), (1e-12, 1e-11, 1e-11), (0.0, 1e-10, 1e-5)])
+def test_a_claimed_accuracy_tightens_and_never_loosens(claimed, exact, fast):
+    case = with_foreign_methods(fake_case(), {"newcomer": claimed})
+    (closed_form,) = claims_of(case, Exact)
+    assert closed_form.tolerance_of("newcomer") == pytest.approx(exact, rel=1e-12, abs=0.0)
+    assert closed_form.tolerance_of("fast") == 1e-10
+    tolerances = {(claim.fast, claim.reference): claim.tolerance for claim in claims_of(case, Agreement)}
+    assert tolerances["newcomer", "fast"] == pytest.approx(fast, rel=1e-12, abs=0.0)
+    assert tolerances["newcomer", "slow"] == tolerances["fast", "slow"] == 1e-5
 
 
 def test_without_a_claimed_accuracy_it_meets_the_widest_tolerance_of_the_others():

@@ -12,7 +12,7 @@ import pytest
 
 from cases.results.files import read_run
 from cases.run.executors import serial
-from cases.run.lock import LOCK_NAME, locked
+from cases.run.lock import OWNER_NAME, locked
 from cases.run.runner import RunOptions, run_cases
 from contact import InvalidInput
 from tests.cases.fake_case import fake_case
@@ -63,9 +63,9 @@ def test_the_lock_is_free_when_its_owner_has_ended_or_was_killed(tmp_path):
     with other_process(tmp_path) as owner:
         os.kill(owner.pid, signal.SIGKILL)
         owner.wait()
-        assert str(owner.pid) in (tmp_path / LOCK_NAME).read_text(encoding="utf-8")
+        assert str(owner.pid) in (tmp_path / OWNER_NAME).read_text(encoding="utf-8")
         with locked(tmp_path):
-            assert str(os.getpid()) in (tmp_path / LOCK_NAME).read_text(encoding="utf-8")
+            assert str(os.getpid()) in (tmp_path / OWNER_NAME).read_text(encoding="utf-8")
 
 
 def test_parts_of_one_command_lock_again_and_another_thread_does_not(tmp_path):

@@ -13,6 +13,7 @@ import numpy as np
 
 from cases.judgement.rules.judgement import Judgement
 from cases.results.status import Status
+from contact import Sphere, Spheroconical, TruncatedParaboloid
 from mdr.impact import collocation_step
 from tests.planted.guards import TEMPORARY, Claims, Test
 from tests.planted.planting import override, set_to, swap
@@ -24,7 +25,7 @@ class Fault:
 
     Attributes:
         name: what is wrong, in words.
-        area: kernels, mdr, transforms, weak forms, time stepping, comparators or baselines.
+        area: kernels, mdr, transforms, weak forms, time stepping, comparators, baselines or profiles.
         plant: switches it on with a monkeypatch.
         guard: what must catch it.
         status: how the guard must end.
@@ -99,8 +100,8 @@ KERNELS = [
         "kernels",
         swap("bem.kernels.layer:zero_mode", lambda _: lambda support, nu: 0.0),
         Test(
-            "bem.test_operators:test_uniform_pressure_compresses_a_layer_by_its_finite_mean_mode",
-            ("unbonded", 0.3, 1.0),
+            "bem.test_grid:test_a_uniform_pressure_compresses_a_layer_by_its_finite_mean_mode",
+            ("unbonded", 0.3, 0.5),
         ),
     ),
     Fault(
@@ -225,20 +226,16 @@ def _mdr_layer(name):
 # -- transforms and the boundary elements ----------------------------------------------------------------------------
 
 
-def one_mode_off(modes):
-    """Wavenumbers counted from one."""
-
-    def wrong(self):
-        columns, rows = modes.__get__(self)() if callable(modes) else modes
-        return columns + 1, rows + 1
-
-    return property(wrong)
-
-
 def half_space():
-    from tests.bem import test_operators
+    from bem.grid.operators import HALF_SPACE
 
-    return test_operators.HALF_SPACE
+    return HALF_SPACE
+
+
+def bonded():
+    from tests.bem import test_grid
+
+    return test_grid.layer()
 
 
 TRANSFORMS = [
@@ -246,41 +243,33 @@ TRANSFORMS = [
         "inverse transform without its factor in one direction",
         "transforms",
         override(
-            "bem.grid.transforms:FullTransform",
-            "filter",
-            lambda f: lambda self, field, s: f(self, field, s) * self.period,
+            "bem.grid.transforms:CosineFilter", "__call__", lambda f: lambda self, p, s: f(self, p, s) * self.period
         ),
-        Test("bem.test_operators:test_sinusoidal_load_has_its_closed_form", ("bonded", 0.3)),
+        Test("bem.test_grid:test_a_sinusoidal_load_has_its_closed_form", (bonded,)),
     ),
     Fault(
         "no zero padding: the convolution is circular",
         "transforms",
-        swap("bem.grid.transforms:fast_period", lambda f: lambda least: f(least // 2)),
-        Test("bem.test_operators:test_free_space_operator_is_the_direct_sum", (half_space,)),
-    ),
-    Fault(
-        "modes of the cosine transform counted from one",
-        "transforms",
-        override("bem.grid.transforms:QuarterTransform", "modes", one_mode_off),
-        Test("bem.test_operators:test_quarter_grid_gives_the_quadrant"),
+        swap("bem.grid.operators:fast_period", lambda f: lambda least: f(least // 2)),
+        Test("bem.test_grid:test_free_space_is_the_sum_over_all_cells", (half_space,)),
     ),
     Fault(
         "Love's solution without 1/pi",
         "transforms",
         swap("bem.grid.influence:rectangle_influence", lambda f: lambda offsets: np.pi * f(offsets)),
-        Test("bem.test_influence:test_cell_under_its_own_pressure_sinks_by_the_closed_form"),
+        Test("bem.test_grid:test_a_cell_under_its_own_pressure_sinks_by_the_closed_form"),
     ),
     Fault(
         "layer correction with the wrong sign",
         "transforms",
-        swap("bem.grid.influence:_cell_average", lambda f: lambda *a: -f(*a)),
-        Test("bem.test_influence:test_layer_far_field_decays_exponentially", (2.0,)),
+        swap("bem.grid.influence:_cell_means", lambda f: lambda *a: -f(*a)),
+        Test("bem.test_grid:test_printed_stiffness_is_met_on_a_grid_of_256", ("bonded", 0.3)),
     ),
     Fault(
         "complementarity never violated, whatever the pressure",
         "transforms",
-        swap("bem.grid.conjugate_gradients:complementarity_residual", lambda _: lambda *a, **k: 0.0),
-        Test("bem.test_conjugate_gradients:test_the_residual_sees_each_violation"),
+        override("bem.grid.fields:ContactFields", "refuse_pulling", lambda _: lambda *a: None),
+        Test("bem.test_grid:test_a_dent_in_which_cells_would_pull_is_refused_with_its_place"),
     ),
 ]
 
@@ -719,14 +708,14 @@ BASELINES = [
         "baselines",
         swap("cases.judgement.rules.regression:permitted_count_change", lambda f: lambda name, b: f("iterations", b)),
         Test(
-            "cases.gate.test_gate:test_unknowns_repeat_exactly_and_other_counters_nearly",
-            (accepted_folder, 21001, 3, Status.DIFF),
+            "cases.gate.test_gate:test_unknowns_within_2_percent_and_other_counters_within_a_fifth_or_three",
+            (accepted_folder, 21421, 3, Status.DIFF),
         ),
     ),
     Fault(
         "settings left out of the specification",
         "baselines",
-        swap("cases.gate.specification:specification_hash", lambda f: lambda scene, settings: f(scene, {})),
+        swap("cases.run.specification:specification_hash", lambda f: lambda scene, settings: f(scene, {})),
         Test(
             "cases.gate.test_baseline:test_another_scene_or_setting_has_another_specification",
             ('{"a": 0.1}', lambda: {"n": 4}),
@@ -757,15 +746,6 @@ BASELINES = [
         Test("cases.gate.test_accept:test_loosening_is_refused_without_the_flag_and_visible_after_it", (TEMPORARY,)),
     ),
     Fault(
-        "files edited by hand accepted",
-        "baselines",
-        set_to("cases.results.sealed:digest_of", lambda text: "0"),
-        Test(
-            "cases.gate.test_baseline:test_a_file_edited_by_hand_is_refused",
-            (baseline_file, "1.5\n", "1.6\n", "changed after it was written"),
-        ),
-    ),
-    Fault(
         "slower code passes while its interval touches the limit",
         "baselines",
         swap(
@@ -778,4 +758,41 @@ BASELINES = [
     ),
 ]
 
-FAULTS = (*KERNELS, *MDR, *TRANSFORMS, *WEAK_FORMS, *TIME_STEPPING, *COMPARATORS, *BASELINES)
+# -- profiles --------------------------------------------------------------------------------------------------------
+
+
+def one_percent(kind, name):
+    """Profiles of a kind are answered with one of their radii 1 % larger."""
+
+    def wrong(solve):
+        def solved(self, scene):
+            tip = scene.indenter
+            larger = tip.replace(**{name: 1.01 * getattr(tip, name)}) if isinstance(tip, kind) else tip
+            return solve(self, scene.replace(indenter=larger))
+
+        return solved
+
+    return wrong
+
+
+TIPS = {
+    "sphere": (Sphere, "radius"),
+    "spheroconical": (Spheroconical, "radius"),
+    "worn paraboloid": (TruncatedParaboloid, "radius_of_curvature"),
+}
+PROFILES = [
+    Fault(
+        f"{tip} 1 % too blunt for {method}, {body}",
+        "profiles",
+        override(place, "solve", one_percent(*what)),
+        Claims("round_and_worn_tips", claims, (f"{tip}, {body}",), methods),
+    )
+    for tip, what in TIPS.items()
+    for method, place in {"mdr": "mdr:Mdr", "fem": "fem_reference:Fem"}.items()
+    for claims, body, methods in (
+        (("depth of a tip", "force on a tip"), "half-space", (method,)),
+        (("normal force: MDR and fem",), "bonded nu=0.5", ("mdr", "fem")),
+    )
+]
+
+FAULTS = (*KERNELS, *MDR, *TRANSFORMS, *WEAK_FORMS, *TIME_STEPPING, *COMPARATORS, *BASELINES, *PROFILES)

@@ -8,7 +8,7 @@ from cases.results.status import Status
 from tests.planted.faults import FAULTS
 from tests.planted.planting import forget_computed
 
-AREAS = {"kernels", "mdr", "transforms", "weak forms", "time stepping", "comparators", "baselines"}
+AREAS = {"kernels", "mdr", "transforms", "weak forms", "time stepping", "comparators", "baselines", "profiles"}
 
 
 @pytest.fixture(autouse=True)

@@ -45,7 +45,7 @@ def test_claims_of_one_reason_share_a_block():
     assert [[row.name for row in block.rows] for block in blocks] == [[claim.name, "another"], ["third"]]
 
 
-@pytest.mark.parametrize(("tolerance", "within"), [(1e-2, ""), (5e-2, "within 5 %")])
+@pytest.mark.parametrize(("tolerance", "within"), [(1e-2, ""), (5e-2, "within 5 %"), (3.0, "")])
 def test_a_wide_tolerance_stands_beside_the_verdict(tolerance, within):
     claim = dataclasses.replace(passing_case().claims[0], kind=Kind.AGREEMENT)
     wide = dataclasses.replace(claim, tolerance=tolerance)

@@ -30,6 +30,7 @@ def case():
 def test_every_claim_of_the_page_passes(case):
     assert [(claim.name, claim.scene, claim.message) for claim in case.claims if claim.status is not Status.PASS] == []
     assert {claim.kind for claim in case.claims} == {Kind.ORDER, Kind.INVARIANT}
+    assert max(claim.fraction for claim in case.claims) <= 1.0
 
 
 def test_every_pair_has_both_orders_and_mixed_ones_at_both_ratios_of_poisson(case):

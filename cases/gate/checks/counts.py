@@ -8,7 +8,7 @@ from cases.judgement.rules.regression import judge_counter, permitted_count_chan
 from cases.results.records.scene_run import SceneRun
 
 UNKNOWNS = "unknowns"
-FROM_COUNTS = "unknowns repeat exactly; other counters within max(2, 10 %)"
+FROM_COUNTS = "unknowns within 2 %; other counters within max(3, 20 %)"
 
 
 def counters_of(run: SceneRun) -> dict[str, int]:

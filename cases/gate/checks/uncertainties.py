@@ -4,10 +4,8 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from cases.gate.baseline import AcceptedCounters, AcceptedQuantity
 from cases.gate.checks.check import BaselineCheck
-from cases.gate.specification import specification
 from cases.judgement.rules.judgement import Judgement, decided, nothing_compared, worst_judgement
 from cases.judgement.rules.tolerance import SMALLEST_RELATIVE, permitted_difference
-from cases.results.records.run import CaseResult
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
@@ -20,7 +18,6 @@ Judged = tuple[str, Judgement]
 
 
 def uncertainty_checks(
-    case: CaseResult,
     rows: Mapping[str, SceneRun],
     records: Iterable[AcceptedQuantity],
     counters: Iterable[AcceptedCounters],
@@ -28,18 +25,17 @@ def uncertainty_checks(
     """Yield one check for each scene of one method, of the uncertainty that moved most.
 
     Args:
-        case: the case as run.
         rows: solutions of the method by scene.
         records: accepted quantities.
         counters: what was accepted of each scene, the uncertainties of its curves among it.
     """
     judged: dict[str, list[Judged]] = {}
     for record in records:
-        if quantity := _comparable(case, rows.get(record.scene), record):
+        if quantity := _comparable(rows.get(record.scene), record):
             judged.setdefault(record.scene, []).append((record.quantity, _of_quantity(quantity, record)))
     for scene in counters:
         row = rows.get(scene.scene)
-        if row is not None and scene.curves is not None and _answers(case, row, scene.specification):
+        if row is not None and scene.curves is not None and _answers(row, scene.specification):
             judged.setdefault(scene.scene, []).extend(_of_curves(row, scene.curves))
     for name, entries in judged.items():
         yield _check(name, entries)
@@ -50,12 +46,12 @@ def curve_uncertainties(run: SceneRun) -> dict[str, float]:
     return {c.name: c.relative_uncertainty for c in run.curves if c.relative_uncertainty is not None}
 
 
-def _comparable(case: CaseResult, run: SceneRun | None, record: AcceptedQuantity) -> Quantity | None:
+def _comparable(run: SceneRun | None, record: AcceptedQuantity) -> Quantity | None:
     """Return the quantity if it answers the accepted question; if it does not, its value check says so.
 
     A quantity without values, and one for which neither run states an uncertainty, has nothing to compare.
     """
-    if run is None or not _answers(case, run, record.specification):
+    if run is None or not _answers(run, record.specification):
         return None
     found = {quantity.name: quantity for quantity in run.quantities}.get(record.quantity)
     if found is None or len(found.values) != len(record.values):
@@ -63,9 +59,9 @@ def _comparable(case: CaseResult, run: SceneRun | None, record: AcceptedQuantity
     return found if found.uncertainty or record.uncertainty else None
 
 
-def _answers(case: CaseResult, run: SceneRun, accepted: str) -> bool:
+def _answers(run: SceneRun, accepted: str) -> bool:
     """Whether a solution answers the question that was accepted."""
-    return run.solved and specification(case, run) == accepted
+    return run.solved and run.specification == accepted
 
 
 def _of_quantity(quantity: Quantity, record: AcceptedQuantity) -> Judgement:

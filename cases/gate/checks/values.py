@@ -4,11 +4,9 @@ from collections.abc import Iterator, Mapping
 
 from cases.gate.baseline import AcceptedQuantity
 from cases.gate.checks.check import BaselineCheck, extra, missing
-from cases.gate.specification import specification
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
 from cases.judgement.rules.regression import judge_regression
 from cases.judgement.rules.tolerance import permitted_difference
-from cases.results.records.run import CaseResult
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.results.status import Status
 
@@ -16,12 +14,11 @@ FROM_SPREAD = "max(10 x measured spread, 1e-12) of the accepted value or its sca
 
 
 def value_checks(
-    case: CaseResult, rows: Mapping[str, SceneRun], accepted: Mapping[tuple[str, str], AcceptedQuantity]
+    rows: Mapping[str, SceneRun], accepted: Mapping[tuple[str, str], AcceptedQuantity]
 ) -> Iterator[BaselineCheck]:
     """Compare every quantity of one method, accepted or new.
 
     Args:
-        case: the case as run.
         rows: solutions of the method by scene.
         accepted: records by scene and quantity.
     """
@@ -33,7 +30,7 @@ def value_checks(
         elif quantity is None:
             yield _named(scene, name, record.unit, missing(name, scene, rows.get(scene)))
         else:
-            yield _compared(quantity, record, specification(case, rows[scene]))
+            yield _compared(quantity, record, rows[scene].specification)
 
 
 def _compared(quantity: Quantity, record: AcceptedQuantity, specified: str) -> BaselineCheck:

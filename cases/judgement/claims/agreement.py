@@ -7,7 +7,7 @@ from typing import ClassVar
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers
 from cases.judgement.claims.declared import DeclaredClaim, first_missing
-from cases.judgement.rules.agreement import judge_agreement
+from cases.judgement.rules.agreement import judge_agreement, without_uncertainty
 from cases.judgement.rules.judgement import Judgement, nothing_compared, worst_judgement
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.scene_run import Quantity, SceneRun
@@ -60,13 +60,15 @@ class Agreement(DeclaredClaim):
 
     def _compared(self, fast: SceneRun, reference: SceneRun) -> tuple[Judgement, dict[str, float]]:
         a, b = fast.quantity(self.quantity), reference.quantity(self.quantity)
-        refused = _incomparable(a, b, fast.method, reference.method)
+        refused = _incomparable(a, b)
         if refused is not None:
             return refused, {}
         steps = range(len(b.values))
         scales = [max(abs(b.values[i]), b.scale if b.values[i] == 0 else 0.0) for i in steps]
-        u_fast = [a.uncertainty[i] / scales[i] for i in steps]
-        u_reference = [b.uncertainty[i] / scales[i] for i in steps]
+        u_fast, u_reference = (
+            [u / (max(abs(x), scale) or 1.0) for x, u, scale in zip(q.values, _stated(q), scales, strict=True)]
+            for q in (a, b)
+        )
         judgements = [
             judge_agreement(
                 (a.values[i] - b.values[i]) / scales[i],
@@ -78,17 +80,21 @@ class Agreement(DeclaredClaim):
             for i in steps
         ]
         worst = worst_judgement(judgements)
+        silent = [run.method for run, q in ((fast, a), (reference, b)) if not q.uncertainty]
+        if silent:
+            return without_uncertainty(worst, silent[0], self.quantity), {}
         step = judgements.index(worst)
         return worst, {fast.method: u_fast[step], reference.method: u_reference[step]}
 
 
-def _incomparable(a: Quantity, b: Quantity, first: str, second: str) -> Judgement | None:
+def _stated(quantity: Quantity) -> tuple[float, ...]:
+    """Stated uncertainties of the values, zeros where the method states none."""
+    return quantity.uncertainty or (0.0,) * len(quantity.values)
+
+
+def _incomparable(a: Quantity, b: Quantity) -> Judgement | None:
     """Return why two quantities cannot be compared, or None."""
     if a.unit != b.unit or len(a.values) != len(b.values):
         message = f"{len(a.values)} values in {a.unit} against {len(b.values)} in {b.unit}"
         return nothing_compared(Status.INCOMPARABLE, message)
-    for quantity, method in ((a, first), (b, second)):
-        if not quantity.uncertainty:
-            message = f"{method} states no uncertainty of {quantity.name}: no verdict is possible"
-            return nothing_compared(Status.INCONCLUSIVE, message)
     return None

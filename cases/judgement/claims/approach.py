@@ -1,8 +1,8 @@
 """A limit: along a sequence of scenes the answer approaches a closed form at a known rate."""
 
 import math
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from typing import ClassVar
 
 from cases.declare.case import Case, CaseScene
@@ -27,7 +27,6 @@ class Approach(PerMethod):
         limit: the closed form the quantity's last step tends to.
         formal_order: of the distance in the parameter.
         largest: the relative distance of the last scene must not exceed this.
-        accuracies: that methods claim for themselves, relative, by label.
     """
 
     kind: ClassVar[Kind] = Kind.ORDER
@@ -38,23 +37,28 @@ class Approach(PerMethod):
     limit: Callable[[Scene], float]
     formal_order: float = 1.0
     largest: float
-    accuracies: Mapping[str, float] = field(default_factory=dict)
 
     def judge(self, case: Case, answers: Answers) -> Iterator[Claim]:
         """Judge the sequence once for each method."""
         scenes = self.scenes_of(case)[-2:]
-        for label in self.labels(case, scenes[-1]):
+        first, last = (self.labels(case, scene) for scene in (scenes[0], scenes[-1]))
+        for label in (label for label in last if label in first):
             runs = [answers.of(case.task(scene, case.use(scene, label))) for scene in scenes]
-            judged = first_missing(*runs) or self._judged(scenes, runs, self.accuracies.get(label, 0.0))
+            judged = first_missing(*runs) or self._judged(scenes, runs)
             yield self.record(judged, scenes[-1].name, (label,), expected=self.formal_order)
 
-    def _judged(self, scenes: tuple[CaseScene, ...], runs: list[SceneRun], claimed: float) -> Judgement:
-        """Judge the rate; what fails inside the method's stated or claimed error stays open."""
+    def _judged(self, scenes: tuple[CaseScene, ...], runs: list[SceneRun]) -> Judgement:
+        """Judge the rate; what fails inside the method's stated error stays open."""
         pairs = [
             (run.quantity(self.quantity), self.limit(scene.scene)) for scene, run in zip(scenes, runs, strict=True)
         ]
         far, near = (quantity.values[-1] / limit - 1 for quantity, limit in pairs)
-        errors = [max([claimed, *(u / abs(limit) for u in found.uncertainty[-1:])]) for found, limit in pairs]
+        # A value that is too large does not widen its own error.
+        sizes = [max(abs(found.values[-1]), abs(limit)) for found, limit in pairs]
+        errors = [
+            found.uncertainty[-1] / size if found.uncertainty else 0.0
+            for (found, _), size in zip(pairs, sizes, strict=True)
+        ]
         ratio = self.parameter(scenes[0].scene) / self.parameter(scenes[1].scene)
         judged = self._rate(far, near, ratio)
         if judged.status is not Status.FAIL or not self._may_hold((far, near), errors, ratio):

@@ -53,7 +53,6 @@ class DeclaredClaim(ABC):
         reason: why it should hold, and where its numbers come from.
         scenes: names of the scenes it speaks about; empty for all.
         expected_to_fail: reason, for a known failure that is tracked; empty otherwise.
-        relaxed: of methods whose own claim of accuracy widens the tolerance, by label: what they claim.
         identities: of methods for which it holds by construction, by label: why; such checks are not counted.
         nightly: whether it takes too long for the suite "ci".
     """
@@ -66,7 +65,6 @@ class DeclaredClaim(ABC):
     reason: Reason
     scenes: tuple[str, ...] = ()
     expected_to_fail: str = ""
-    relaxed: Mapping[str, str] = field(default_factory=dict)
     identities: Mapping[str, str] = field(default_factory=dict)
     nightly: bool = False
 
@@ -153,7 +151,6 @@ class DeclaredClaim(ABC):
             shared_inputs=shared,
             message=message,
             identity=identity,
-            relaxed="; ".join(self.relaxed[label] for label in methods if label in self.relaxed),
         )
 
     def _origin(self, shared: tuple[str, ...]) -> Origin:
@@ -182,16 +179,27 @@ class PerMethod(DeclaredClaim, ABC):
     tolerances: Mapping[str, float] = field(default_factory=dict)
 
     def labels(self, case: Case, scene: CaseScene) -> tuple[str, ...]:
-        """Return the labels named, or those of every method that solves ``scene``."""
-        return self.methods or tuple(use.label for use in case.methods_of(scene))
+        """Return the labels of the methods that solve ``scene``, of those that are named if any are."""
+        solving = tuple(use.label for use in case.methods_of(scene))
+        return tuple(label for label in self.methods if label in solving) if self.methods else solving
+
+    def check(self, case: Case) -> None:
+        """Refuse unknown scenes, and named methods that solve none of the claim's scenes.
+
+        Raises:
+            InvalidInput: naming the first of them.
+        """
+        scenes = self.scenes_of(case)
+        solving = {label for scene in scenes for label in self.labels(case, scene)}
+        for label in self.methods:
+            if label not in solving:
+                case.use(scenes[0], label)
 
     def left(self, case: Case, solvers: Mapping[str, Set[str]]) -> tuple[Self, ...]:
-        """Return the claim where a method is left, with the named methods that are left on all those scenes."""
+        """Return the claim on the scenes where a method is left, with the named methods that are left on any."""
         scenes = [s.name for s in self.scenes_of(case) if not solvers[s.name].isdisjoint(self.labels(case, s))]
-        if not self.methods:
-            return self._on(scenes)
-        methods = tuple(label for label in self.methods if all(label in solvers[name] for name in scenes))
-        return tuple(replace(claim, methods=methods) for claim in self._on(scenes) if methods)
+        methods = tuple(label for label in self.methods if any(label in solvers[name] for name in scenes))
+        return tuple(replace(claim, methods=methods) for claim in self._on(scenes))
 
     def answered(self, case: Case, answers: Answers) -> Iterator[tuple[CaseScene, str, SceneRun, float]]:
         """Return scene, label, answer and tolerance of every method on every scene."""

@@ -9,7 +9,7 @@ import numpy as np
 from cases.declare.case import Case, CaseScene
 from cases.declare.task import Answers, Task
 from cases.judgement.claims.declared import DeclaredClaim, first_missing
-from cases.judgement.rules.agreement import judge_agreement
+from cases.judgement.rules.agreement import judge_agreement, without_uncertainty
 from cases.judgement.rules.judgement import Judgement, nothing_compared
 from cases.judgement.rules.norms import RingQuadrature, relative_difference, ring_load_difference, ring_quadrature
 from cases.results.records.claim import Claim, Kind
@@ -77,12 +77,11 @@ class FieldAgreement(DeclaredClaim):
             if _curve(run, self.quantity) is None:
                 return nothing_compared(Status.SKIP, f"{run.method} gives no {self.quantity}"), uncertainty
             own = self._uncertainty(case, scene, answers, run)
-            if own is None:
-                message = f"{run.method} states no uncertainty of {self.quantity}: no verdict is possible"
-                return nothing_compared(Status.INCONCLUSIVE, message), uncertainty
-            uncertainty[run.method] = own
-        difference = self._difference(scene, *runs)
-        return judge_agreement(difference, uncertainty, tolerance=self.tolerance), uncertainty
+            if own is not None:
+                uncertainty[run.method] = own
+        judged = judge_agreement(self._difference(scene, *runs), uncertainty, tolerance=self.tolerance)
+        silent = [run.method for run in runs if run.method not in uncertainty]
+        return (without_uncertainty(judged, silent[0], self.quantity) if silent else judged), uncertainty
 
     def _difference(self, scene: CaseScene, first: SceneRun, second: SceneRun) -> float:
         a, b = first.curve(self.quantity), second.curve(self.quantity)

@@ -10,7 +10,6 @@ from cases.results.status import Status
 _STATUS = {
     Verdict.AGREE: Status.PASS,
     Verdict.DISAGREE: Status.FAIL,
-    Verdict.MARGINAL: Status.INCONCLUSIVE,
     Verdict.INCONCLUSIVE: Status.INCONCLUSIVE,
 }
 
@@ -33,8 +32,8 @@ def judge_agreement(
         model_gap: declared difference of the models (a half-space used for a layer), relative and signed.
 
     Returns:
-        AGREE when E + u <= tolerance, DISAGREE when E - u > tolerance, MARGINAL between, INCONCLUSIVE when u alone
-        exceeds the tolerance; then the message names the coarser method.
+        DISAGREE when E - u > tolerance, however wide u is; AGREE when E + u <= tolerance; otherwise INCONCLUSIVE, and
+        the message names the coarser method.
     """
     positive_tolerance(tolerance)
     numbers = [difference, input_uncertainty, model_gap, *uncertainties.values()]
@@ -44,7 +43,7 @@ def judge_agreement(
     spread = math.hypot(input_uncertainty, *uncertainties.values())
     verdict = _verdict(error, spread, tolerance)
     seen = f"relative difference {difference:+.1e}, uncertainty {spread:.1e}, tolerance {tolerance:.0e}"
-    advice = f"; refine {max(uncertainties, key=lambda m: uncertainties[m])}" if spread > tolerance else ""
+    advice = f"; refine {max(uncertainties, key=lambda m: uncertainties[m])}" if verdict is Verdict.INCONCLUSIVE else ""
     advice += "; more than the methods' own uncertainties explain" if error > spread else ""
     return Judgement(
         status=_STATUS[verdict],
@@ -56,8 +55,14 @@ def judge_agreement(
 
 
 def _verdict(error: float, spread: float, tolerance: float) -> Verdict:
-    if spread > tolerance:
-        return Verdict.INCONCLUSIVE
-    if error + spread <= tolerance:
-        return Verdict.AGREE
-    return Verdict.DISAGREE if error - spread > tolerance else Verdict.MARGINAL
+    if error - spread > tolerance:
+        return Verdict.DISAGREE
+    return Verdict.AGREE if error + spread <= tolerance else Verdict.INCONCLUSIVE
+
+
+def without_uncertainty(judged: Judgement, method: str, quantity: str) -> Judgement:
+    """Return the verdict where a method states no uncertainty: a difference beyond the tolerance, or none."""
+    if judged.status.is_failure:
+        return judged
+    message = f"{method} states no uncertainty of {quantity}: no verdict is possible"
+    return nothing_compared(Status.INCONCLUSIVE, message)

@@ -13,7 +13,8 @@ def judge_exact(
     """Judge |value - expected| / max(|expected|, scale) <= tolerance.
 
     The tolerance is a requirement. An error beyond it that the method's own ``uncertainty`` (absolute) explains is
-    inconclusive: the method says itself that it is too coarse to be judged.
+    inconclusive: the method says itself that it is too coarse to be judged. The uncertainty is relative to the larger
+    of the two values, so that a value that is too large does not widen its own uncertainty.
     """
     positive_tolerance(tolerance)
     if not (math.isfinite(value) and math.isfinite(expected)):
@@ -21,7 +22,10 @@ def judge_exact(
     size = max(abs(expected), scale)
     error = (value - expected) / size
     message = f"{value:.10g} against {expected:.10g}: relative error {error:.1e}, tolerance {tolerance:.0e}"
-    explained = abs(error) > tolerance and abs(error) - uncertainty / size <= tolerance
+    stated = uncertainty / max(abs(value), size)
+    explained = tolerance < abs(error) <= tolerance + stated
     if explained:
-        message += f"; stated error {uncertainty / size:.1e}: refine"
+        message += f"; stated error {stated:.1e}: refine"
+    elif abs(error) > stated > 0:
+        message += f"; the stated error {stated:.1e} does not cover it"
     return passed_or_failed(error, tolerance, message, Status.INCONCLUSIVE if explained else Status.FAIL)

@@ -36,7 +36,6 @@ class Verdict(StrEnum):
     FAIL = "FAIL"
     AGREE = "AGREE"
     DISAGREE = "DISAGREE"
-    MARGINAL = "MARGINAL"
     INCONCLUSIVE = "INCONCLUSIVE"
     NONE = "NONE"  # nothing could be compared: the status says why
 
@@ -65,7 +64,6 @@ class Claim:
         derived_from: how the tolerance was chosen.
         shared_inputs: what the compared answers share; agreement says nothing about those.
         message: what was seen, one sentence.
-        relaxed: whose own claim of accuracy has widened the tolerance, and from what; empty when nobody's has.
         identity: why the comparison holds by construction, empty where it can fail; identities are not counted.
     """
 
@@ -88,5 +86,4 @@ class Claim:
     derived_from: str
     shared_inputs: tuple[str, ...] = ()
     message: str
-    relaxed: str = ""
     identity: str = ""

@@ -1,24 +1,25 @@
-"""A whole run: its cases with all their records, where it was made, and what was accepted.
+"""A whole run: its cases with all their records, and where it was made.
 
 A non-finite number cannot be stored: what could not be computed is ``None`` beside a status that says why.
 """
 
+from collections.abc import Iterable
 from dataclasses import field
 from typing import Literal
 
 from pydantic.dataclasses import dataclass
 
-from cases.results.records.claim import Claim
+from cases.results.records.claim import Claim, Kind
 from cases.results.records.convergence import ConvergenceStudy
-from cases.results.records.cost import EffectEntry, ScalingFit, WorkPrecision
-from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative
+from cases.results.records.cost import EffectEntry, WorkPrecision
+from cases.results.records.field_types import RECORD, Mapping, NotNegative
 from cases.results.records.figure import Figure
-from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
+from cases.results.records.reliability import Ladder
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status, worst
 
 # Files of another version are refused.
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -46,31 +47,20 @@ class CaseResult:
     work_precision: tuple[WorkPrecision, ...] = ()
     effects: tuple[EffectEntry, ...] = ()
     ladders: tuple[Ladder, ...] = ()
-    coverage: tuple[CoverageRecord, ...] = ()
-    maps: tuple[ErrorMap, ...] = ()
-    scaling: tuple[ScalingFit, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property
     def status(self) -> Status:
-        """The status that decides for this case, of solutions that broke down and of claims."""
-        return worst([claim.status for claim in self.claims] + [run.status for run in self.runs])
+        """The status that decides for this case, of claims and of solutions that broke down; SKIP if there is none."""
+        broken = [run.status for run in self.runs if run.status.is_failure]
+        measured = [Status.PASS] if self.work_precision and not self.claims else []
+        return worst([claim.status for claim in self.claims] + broken + measured)
 
-
-@dataclass(frozen=True, kw_only=True, config=RECORD)
-class Acceptance:
-    """An entry of the baseline history: who accepted which change, and why; tolerances are relative."""
-
-    date: str
-    case: str
-    method: str
-    quantity: str
-    old: Finite | None
-    new: Finite | None
-    old_tolerance: NotNegative | None
-    new_tolerance: NotNegative | None
-    reason: str
-    revision: str
+    def unjudged(self, methods: Iterable[str]) -> tuple[str, ...]:
+        """Return those of ``methods`` about which no claim was judged; numbers accepted earlier are no claim."""
+        claims = (claim for claim in self.claims if claim.kind is not Kind.REGRESSION)
+        judged = {method for claim in claims if claim.status is not Status.SKIP for method in claim.methods}
+        return tuple(method for method in methods if method not in judged)
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -111,13 +101,12 @@ class RunResult:
     Its ``methods`` are those that were chosen; none if the cases were solved by their own.
     """
 
-    schema_version: Literal[1] = 1
+    schema_version: Literal[2] = 2
     suite: str
     methods: tuple[str, ...] = ()
     complete: bool
     stamp: Stamp
     cases: tuple[CaseResult, ...]
-    acceptances: tuple[Acceptance, ...] = ()
 
     def case(self, name: str) -> CaseResult:
         """Return the case called ``name``.
@@ -126,6 +115,14 @@ class RunResult:
             KeyError: if the run has none of that name.
         """
         return {case.name: case for case in self.cases}[name]
+
+    @property
+    def unjudged(self) -> tuple[str, ...]:
+        """The chosen methods about which no claim was judged in any case."""
+        left = self.methods
+        for case in self.cases:
+            left = case.unjudged(left)
+        return left
 
     @property
     def statuses(self) -> tuple[Status, ...]:

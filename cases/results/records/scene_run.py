@@ -96,7 +96,8 @@ class SceneRun:
         key: content key; equal keys mean equal scene, settings, code and versions.
         scene: name of the scene within its case.
         method: name of the method in the method table.
-        settings: numerical settings of the method.
+        settings: numerical settings that the answer reports.
+        specification: hash of the scene and of the settings asked for; empty where nothing was solved.
         status: PASS when solved.
         reason: why not, when not solved; one sentence.
         shared_inputs: names of the inputs (a flat-punch table, a kernel) other methods may use as well.
@@ -108,6 +109,7 @@ class SceneRun:
     scene: str
     method: str
     settings: Mapping
+    specification: str = ""
     status: Status
     reason: str
     quantities: tuple[Quantity, ...] = ()

@@ -70,12 +70,14 @@ def test_another_unit_or_shape_is_incomparable(folder, change, message):
     assert message in claim.message
 
 
-def test_another_scene_or_other_settings_are_incomparable_and_not_a_change_of_number(folder):
-    changed = with_rows(lambda row: dataclasses.replace(row, settings={**row.settings, "extra": 1}))
+def test_another_question_is_incomparable_and_not_a_change_of_number(folder):
+    changed = with_rows(lambda row: dataclasses.replace(row, specification="0" * 16))
     assert {claim.status for claim in failures(changed, folder)} == {Status.INCOMPARABLE}
-    scenes = [dataclasses.replace(scene, canonical='{"layer":1}') for scene in passing_case().scenes]
-    moved = clean_run(dataclasses.replace(passing_case(), scenes=tuple(scenes)))
-    assert {claim.status for claim in failures(moved, folder)} == {Status.INCOMPARABLE}
+
+
+def test_settings_that_only_the_answer_reports_are_no_other_question(folder):
+    changed = with_rows(lambda row: dataclasses.replace(row, settings={**row.settings, "mesh": "0123"}))
+    assert not failures(changed, folder)
 
 
 def test_a_missing_quantity_fails_by_its_name(folder):
@@ -163,9 +165,9 @@ def test_a_case_that_left_the_suite_fails_by_its_name(folder):
 
 @pytest.mark.parametrize(
     ("unknowns", "solves", "status"),
-    [(21000, 5, Status.PASS), (21001, 3, Status.DIFF), (20999, 3, Status.DIFF), (21000, 6, Status.DIFF)],
+    [(21420, 6, Status.PASS), (21421, 3, Status.DIFF), (20579, 3, Status.DIFF), (21000, 7, Status.DIFF)],
 )
-def test_unknowns_repeat_exactly_and_other_counters_nearly(folder, unknowns, solves, status):
+def test_unknowns_within_2_percent_and_other_counters_within_a_fifth_or_three(folder, unknowns, solves, status):
     def counted(row):
         if row.method != "fem":
             return row

@@ -3,6 +3,7 @@
 import pytest
 
 from cases.declare.registry import load_cases
+from cases.declare.selection import in_suite
 from cases.measurements.cost.work_precision import WorkStudy
 from cases.results.records.claim import Kind, Origin
 
@@ -28,6 +29,7 @@ FAMILIES = {
     "three_zone_cartilage",
     "graded_layer",
     "friction_paraboloid",
+    "round_and_worn_tips",
 }
 
 
@@ -59,6 +61,16 @@ def test_an_independent_method_takes_part(name):
         for claim in CASES[name].claims
         for scene in claim.scenes_of(CASES[name])
     )
+
+
+def test_a_method_that_solves_some_scenes_only_is_judged_on_these():
+    """In the suite ci finite elements solve one of four scenes; a claim that named them then judged them on none."""
+    case = in_suite(CASES["inside_half_space"], "ci")
+    claim = next(claim for claim in case.claims if claim.name == "the force passes every depth")
+    assert [(scene.name, claim.labels(case, scene)) for scene in claim.scenes_of(case)] == [
+        ("paraboloid nu=0.3", ("mdr", "fem")),
+        ("paraboloid nu=0.5", ("mdr",)),
+    ]
 
 
 @pytest.mark.parametrize("name", sorted(CASES))

@@ -5,7 +5,6 @@ import dataclasses
 import pytest
 
 from cases.declare.case import CaseScene
-from cases.declare.foreign_methods import with_foreign_methods
 from cases.declare.task import Answers
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.declared import Reason
@@ -76,25 +75,13 @@ def test_a_wrong_limit_fails():
 WRONG_RATE, WRONG_LIMIT = (1 + 0.3**2, 1 + 0.1**2), (2.6, 2.2)
 
 
-@pytest.mark.parametrize(("values", "error"), [(WRONG_RATE, 0.05), (WRONG_LIMIT, 0.8)])
+@pytest.mark.parametrize(("values", "error"), [(WRONG_RATE, 0.05), (WRONG_LIMIT, 0.8 * 2.2)])
 def test_what_is_within_its_own_error_does_not_fail(values, error):
     """Of a rate only the part beyond the errors of both distances is known."""
     record = judged(values, stated=(error,))
     assert record.status is Status.INCONCLUSIVE
-    assert f"error {error:.1e}: refine" in record.message
+    assert ": refine" in record.message
     assert judged(values, stated=(error / 1e3,)).status is Status.FAIL
-
-
-@pytest.mark.parametrize(("values", "error"), [(WRONG_RATE, 0.05), (WRONG_LIMIT, 0.8)])
-def test_a_claim_of_accuracy_relaxes_the_rate_and_says_so(values, error):
-    (asked, *_) = with_foreign_methods(case_of(claim(methods=())), {"newcomer": error}).claims
-    assert asked.accuracies == {"newcomer": error}
-    assert asked.relaxed == {"newcomer": f"newcomer claims {error:.2g}; a rate is known beyond that only"}
-    record = judged(values, accuracies={"fast": error}, relaxed={"fast": asked.relaxed["newcomer"]})
-    assert record.status is Status.INCONCLUSIVE
-    assert record.relaxed == asked.relaxed["newcomer"]
-    assert judged(values, accuracies={"another": error}).status is Status.FAIL
-    assert not with_foreign_methods(case_of(claim(methods=())), {"newcomer": 0.0}).claims[0].relaxed
 
 
 def test_a_right_rate_passes_whatever_is_stated():

@@ -24,10 +24,12 @@ def verdict(difference, u_fast, u_reference, **options):
         (-4e-6, 3e-6, (Verdict.AGREE, Status.PASS)),
         (2e-5, 3e-6, (Verdict.DISAGREE, Status.FAIL)),
         (-2e-5, 3e-6, (Verdict.DISAGREE, Status.FAIL)),
-        (9e-6, 3e-6, (Verdict.MARGINAL, Status.INCONCLUSIVE)),
-        (1.1e-5, 3e-6, (Verdict.MARGINAL, Status.INCONCLUSIVE)),
+        (9e-6, 3e-6, (Verdict.INCONCLUSIVE, Status.INCONCLUSIVE)),
+        (1.1e-5, 3e-6, (Verdict.INCONCLUSIVE, Status.INCONCLUSIVE)),
         (0.0, 2e-5, (Verdict.INCONCLUSIVE, Status.INCONCLUSIVE)),
-        (1.0, 2e-5, (Verdict.INCONCLUSIVE, Status.INCONCLUSIVE)),
+        (2e-5, 2e-5, (Verdict.INCONCLUSIVE, Status.INCONCLUSIVE)),
+        (1.0, 2e-5, (Verdict.DISAGREE, Status.FAIL)),
+        (5.9, 0.35, (Verdict.DISAGREE, Status.FAIL)),
     ],
 )
 def test_verdicts(difference, u, expected):

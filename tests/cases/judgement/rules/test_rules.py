@@ -85,13 +85,13 @@ def test_regression_rule_uses_the_larger_of_value_and_scale():
 
 
 def test_counters_are_hard():
-    assert judge_counter("unknowns", 1001, 1000).status is Status.DIFF
-    assert judge_counter("unknowns", 1000, 1000).status is Status.PASS
-    assert judge_counter("iterations", 12, 10).status is Status.PASS
-    assert judge_counter("iterations", 13, 10).status is Status.DIFF
-    assert judge_counter("iterations", 110, 100).status is Status.PASS
-    assert judge_counter("iterations", 111, 100).status is Status.DIFF
-    assert judge_counter("factorisations", 1, 4).status is Status.DIFF
+    assert judge_counter("unknowns", 1021, 1000).status is Status.DIFF
+    assert judge_counter("unknowns", 1020, 1000).status is Status.PASS
+    assert judge_counter("iterations", 13, 10).status is Status.PASS
+    assert judge_counter("iterations", 14, 10).status is Status.DIFF
+    assert judge_counter("iterations", 120, 100).status is Status.PASS
+    assert judge_counter("iterations", 121, 100).status is Status.DIFF
+    assert judge_counter("factorisations", 1, 5).status is Status.DIFF
 
 
 def test_the_worst_judgement_decides_and_an_empty_claim_is_refused():
