@@ -169,8 +169,7 @@ def _limited(found: CurveFit, limit: Limit, d: FloatArray, f: FloatArray) -> Cur
         deepest = point + limit.value
         if limit.kind != "depth":
             order = np.argsort(found.depth)
-            line = found.values.get("baseline", 0.0) + found.values.get("tilt", 0.0) * (found.depth - point)
-            contact = np.maximum.accumulate((found.fitted - line)[order])
+            contact = np.maximum.accumulate((found.fitted - found.background)[order])
             largest = contact[-1] if math.isnan(largest) else largest
             share = limit.value if limit.kind == "force" else limit.value * largest
             deepest = float(np.interp(share, contact, found.depth[order]))

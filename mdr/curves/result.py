@@ -84,6 +84,12 @@ class CurveFit:
         return self.values[self.modulus_name]
 
     @property
+    def background(self) -> FloatArray:
+        """Baseline and tilt [N] at the depths, shape (n,)."""
+        shifted = self.depth - self.values.get("contact_point", 0.0)
+        return self.values.get("baseline", 0.0) + self.values.get("tilt", 0.0) * shifted
+
+    @property
     def modulus_name(self) -> str:
         """Name of the first fitted modulus."""
         return next(name for name in self.values if is_modulus(name))

@@ -31,9 +31,9 @@ def _curve_panel(found: CurveFit) -> Panel:
         _line(found, "measured", found.force / factor, "symbols"),
         _line(found, f"fit, E = {modulus}", found.fitted / factor, "solid", band),
     ]
-    shifted = found.depth - found.values.get("contact_point", 0.0)
+    shifted, line = found.depth - found.values.get("contact_point", 0.0), found.background
     series += [
-        _line(found, f"{one.formula.name}, E = {modulus}", found.youngs_modulus * phi / factor, "dashed")
+        _line(found, f"{one.formula.name}, E = {modulus}", (found.youngs_modulus * phi + line) / factor, "dashed")
         for one in found.formulas
         for phi in [one.formula.per_modulus(shifted)]
     ]
@@ -45,13 +45,12 @@ def _apparent_panel(found: CurveFit) -> Panel:
     factor, prefix = prefix_for([found.youngs_modulus])
     shifted = found.depth - found.values.get("contact_point", 0.0)
     pressed = shifted > _LEAST_SHARE * shifted.max()
-    baseline = found.values.get("baseline", 0.0)
     level = np.full(found.depth.shape, found.youngs_modulus / factor)
     series = [_line(found, f"fit, E = {with_prefix(found.youngs_modulus, 'Pa')}", level, "solid", kept=pressed)]
     for one in found.formulas:
         phi = np.where(pressed, one.formula.per_modulus(shifted), 1.0)
         label = f"{one.formula.name}, E = {with_prefix(found.youngs_modulus, 'Pa')}"
-        series.append(_line(found, label, (found.fitted - baseline) / (factor * phi), "dashed", kept=pressed))
+        series.append(_line(found, label, (found.fitted - found.background) / (factor * phi), "dashed", kept=pressed))
     labels: Any = {"x_label": _depth_label(found), "y_label": f"E by a formula [{prefix}Pa]"}
     return Panel(title="Modulus by a formula at each depth", y_scale="log", series=tuple(series), **labels)
 
