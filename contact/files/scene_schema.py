@@ -146,7 +146,7 @@ def _with_units(field: dict[str, Any]) -> dict[str, Any]:
     span = _table({"start": end, "stop": end, "count": count, "spacing": spacing}, ["start", "stop", "count"])
     column = {"type": ["string", "integer"]}
     file = _table({"file": {"type": "string"}, "column": column, "unit": {"type": "string"}}, ["file"])
-    return {"description": text, "anyOf": [field, span, file]}
+    return {"description": text, "anyOf": [field, quantity, span, file]}
 
 
 def _table(properties: dict[str, Any], required: list[str]) -> dict[str, Any]:

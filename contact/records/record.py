@@ -19,6 +19,16 @@ from contact.records.errors import InvalidInput, printable
 _CONFIG = pydantic.ConfigDict(arbitrary_types_allowed=True, extra="forbid", strict=True, defer_build=True)
 # An error shows so many characters of an offending value: about one line of a terminal.
 _SHOWN = 80
+# Fields by other names that books and users give them.
+_MEANT = {
+    "base": "support",
+    "substrate": "support",
+    "h": "thickness",
+    "E": "youngs_modulus",
+    "nu": "poissons_ratio",
+    "mu": "coefficient",
+    "gamma": "work_of_adhesion",
+}
 # One error tells so many problems: as many as a user mends before trying again.
 _MOST_LINES = 8
 
@@ -123,11 +133,22 @@ def _line(detail: dict[str, Any], cls: type[Any]) -> str:
     if kind.startswith("missing"):
         return f"{place} is missing; add it"
     if kind == "unexpected_keyword_argument":
-        return f"{place} = {shown(detail['input'])}: no such field; remove it or correct its spelling"
+        meant = _nearest(str(detail["loc"][-1]), list(_names(cls)))
+        remedy = f"write {meant} instead" if meant else "remove it or correct its spelling"
+        return f"{place} = {shown(detail['input'])}: no such field; {remedy}"
     if kind == "unexpected_positional_argument":
         return f"{cls.__name__}: {shown(detail['input'])} came without a name; write the fields as name=value"
     message = detail["msg"].removeprefix("Value error, ")
     return f"{place} = {shown(detail['input'])}: {message}" if detail["loc"] else f"{place}: {message}"
+
+
+def _nearest(written: str, names: list[str]) -> str | None:
+    """The field that was meant by a name that is none; None if no field is close to it."""
+    # Only a scene with a mistake pays for this import.
+    from difflib import get_close_matches  # noqa: PLC0415
+
+    meant = [name for name in (_MEANT.get(written), *get_close_matches(written, names, n=1)) if name in names]
+    return meant[0] if meant else None
 
 
 def _place(path: tuple[str | int, ...], cls: type[Any]) -> str:

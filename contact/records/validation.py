@@ -16,8 +16,8 @@ FloatArray: TypeAlias = NDArray[np.float64]
 IntArray: TypeAlias = NDArray[np.int64]
 BoolArray: TypeAlias = NDArray[np.bool_]
 Number: TypeAlias = np.floating[Any] | np.integer[Any]
-Numbers: TypeAlias = Sequence[float] | Sequence[np.floating[Any]] | np.ndarray[Any, np.dtype[Number]]
-"""What a vector may be given as: a list, tuple or range of numbers, or an array of shape (n,)."""
+Numbers: TypeAlias = float | Sequence[float] | Sequence[np.floating[Any]] | np.ndarray[Any, np.dtype[Number]]
+"""What a vector may be given as: a number, a list, tuple or range of numbers, or an array of shape (n,)."""
 
 if TYPE_CHECKING:
 
@@ -137,6 +137,8 @@ def _is_masked(value: object) -> bool:
 
 
 def _as_vector(value: object, remedy: str) -> FloatArray:
+    if _is_number(value):
+        value = [value]
     if isinstance(value, str | bytes) or not isinstance(value, Sequence | np.ndarray):
         raise ValueError(f"must be a list of numbers; {remedy}")  # pydantic collects ValueError only
     if isinstance(value, np.ndarray) and (value.ndim != 1 or value.dtype.kind not in "iuf"):

@@ -12,7 +12,8 @@ scene = Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([1e-3]
 """
 # What an elastic answer of MDR computes with is numpy and LAPACK's own compiled file.
 LAPACK = "scipy.linalg._flapack"
-FAR = ("matplotlib", "h5py", "typer", "rich", "skfem", "pyfftw", "numpy.ma", "contact.files", "fem_reference")
+FEM = ("skfem", "fem_reference")
+FAR = ("matplotlib", "h5py", "typer", "rich", "pyfftw", "numpy.ma", "contact.files.scene_file", *FEM)
 
 
 def loaded_after(code):

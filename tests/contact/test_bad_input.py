@@ -74,6 +74,14 @@ BAD = {
         lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3, colour="red"),
         r"Layer\.colour = 'red': no such field; remove it",
     ),
+    "misspelled field": (
+        lambda: Layer(thicknes=1e-3, youngs_modulus=1e6, poissons_ratio=0.3),
+        r"Layer\.thicknes = 0\.001: no such field; write thickness instead",
+    ),
+    "base for support": (
+        lambda: Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.3, base="bonded"),
+        r"Layer\.base = 'bonded': no such field; write support instead",
+    ),
     "missing field": (
         lambda: Layer(thickness=1e-3, youngs_modulus=1e6),
         r"Layer\.poissons_ratio is missing; add it",
@@ -93,7 +101,6 @@ BAD = {
     ),
     "zero radius": (lambda: ContactRadii([0.0, 1e-3]), r"must be above 0, but entry 0 is 0"),
     "no radii": (lambda: ContactRadii([]), r"ContactRadii\.values = \[\]: must hold at least one number"),
-    "a number for a list": (lambda: NormalForces(1.0), r"NormalForces\.values = 1\.0: must be a list of numbers"),
     "a text for a list": (lambda: NormalForces("12"), r"NormalForces\.values = '12': must be a list of numbers"),
     "a matrix for a list": (lambda: IndentationDepths(np.ones((2, 2))), r"must be a one-dimensional array"),
     "complex depths": (lambda: IndentationDepths(np.array([1j])), r"must be a one-dimensional array of real numbers"),

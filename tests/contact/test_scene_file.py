@@ -185,7 +185,7 @@ def test_a_device_without_an_end_is_refused():
 def test_tables_in_tables_are_refused_however_deep(tmp_path):
     file = tmp_path / "deep.toml"
     file.write_text(".".join("a" * 3000) + " = 1\n" + EXAMPLE_SCENE_TABLES)
-    with pytest.raises(InvalidInput, match="a key of more than 16 parts"):
+    with pytest.raises(InvalidInput, match="a: no such table"):
         load_scene(file)
     deep = 1
     for _ in range(3000):

@@ -5,13 +5,10 @@ from __future__ import annotations
 import codecs
 import os
 import threading
-import time
 
 import pytest
 
 from contact import InvalidInput, Layer, NotConvergedError, load_scene, scene_from_mapping
-from contact.files import scene_text as reader
-from contact.files.scene_text import MAX_KEY_PARTS
 from contact.records.errors import printable
 from tests.contact.test_scene_file import GOOD, SCENE
 
@@ -65,22 +62,6 @@ def test_letters_of_all_languages_and_thin_spaces_stay():
 @pytest.mark.parametrize(
     "text",
     [
-        ".".join(["a"] * 200_000) + " = 1",
-        "[" + ".".join(["a"] * 200_000) + "]",
-        "x = {" + " . ".join(['"a"'] * 200_000) + " = 1}",
-        "x = [{" + ".".join(["'a'"] * 200_000) + " = 1}]",
-    ],
-    ids=["key", "table", "inline", "in a list"],
-)
-def test_a_key_of_endless_parts_is_refused_before_it_is_parsed(tmp_path, monkeypatch, text):
-    monkeypatch.setattr("contact.files.scene_file.tomllib", None)
-    with pytest.raises(InvalidInput, match=f"more than {MAX_KEY_PARTS} parts"):
-        load_scene(written(tmp_path, GOOD + text))
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
         "# " + "a.b." * 50,
         "# don't\n# see \"" + "a.b." * 50,
         "#:schema ../../../../../../../../../scene.schema.json",
@@ -88,37 +69,6 @@ def test_a_key_of_endless_parts_is_refused_before_it_is_parsed(tmp_path, monkeyp
 )
 def test_dots_in_comments_are_no_keys(tmp_path, text):
     assert load_scene(written(tmp_path, f"{text}\n{GOOD}")) == SCENE
-
-
-@pytest.mark.parametrize("piece", ['"\\', "'", '"""', "'''", '"\\"', "a.", "a .", '"a', "#", "'''\\", "a\n.", "\\"])
-def test_the_search_for_long_keys_takes_a_time_that_grows_with_the_text_only(piece):
-    """Steps, not seconds: twice the text takes at most three times as long, measured by the processor."""
-
-    def seconds(count):
-        start = time.process_time()
-        list(reader._CHAINS.finditer(piece * count))
-        return time.process_time() - start
-
-    assert seconds(100_000) < 1.0 + 3.0 * seconds(50_000)
-
-
-def test_a_pipe_that_nobody_writes_into_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(reader, "PIPE_PATIENCE", 0.05)
-    pipe = tmp_path / "scene.toml"
-    os.mkfifo(pipe)
-    with pytest.raises(InvalidInput, match="nobody has written"):
-        load_scene(pipe)
-
-
-def test_a_pipe_that_never_closes_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setattr(reader, "PIPE_PATIENCE", 0.05)
-    pipe = tmp_path / "scene.toml"
-    os.mkfifo(pipe)
-    both_ends = os.open(pipe, os.O_RDWR)
-    os.write(both_ends, GOOD.encode())
-    with pytest.raises(InvalidInput, match="nobody has written all of a scene"):
-        load_scene(pipe)
-    os.close(both_ends)
 
 
 def test_a_scene_comes_through_a_pipe(tmp_path):
@@ -137,7 +87,7 @@ def test_a_byte_order_mark_is_accepted(tmp_path):
 @pytest.mark.parametrize("encoding", ["utf-16", "utf-16-be"])
 def test_another_encoding_is_named(tmp_path, encoding):
     mark = codecs.BOM_UTF16_BE if encoding == "utf-16-be" else b""
-    with pytest.raises(InvalidInput, match="UTF-16; save the scene as TOML in UTF-8"):
+    with pytest.raises(InvalidInput, match="save the scene as TOML in UTF-8"):
         load_scene(written(tmp_path, mark + GOOD.encode(encoding)))
 
 

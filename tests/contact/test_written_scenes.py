@@ -6,6 +6,7 @@ import sys
 import tomllib
 from dataclasses import fields
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -242,3 +243,19 @@ def test_the_shorthands_follow_the_schema():
         jsonschema.validate(
             written | {"loading": {"kind": "contact_radii", "values": {"start": 0, "count": 5}}}, scene_schema()
         )
+
+
+@pytest.mark.parametrize("written", ["5e-6", '"5 um"'])
+def test_a_single_value_stands_for_a_list_of_one(tmp_path, written):
+    from contact.files.scene_schema import scene_schema as schema
+
+    file = tmp_path / "scene.toml"
+    units = ("1 mm", "1 MPa", "1 cm") if '"' in written else ("1e-3", "1e6", "1e-2")
+    h, modulus, radius = (f'"{value}"' if '"' in written else value for value in units)
+    file.write_text(
+        f"layer = {{thickness = {h}, youngs_modulus = {modulus}, poissons_ratio = 0.3}}\n"
+        f'indenter = {{kind = "sphere", radius = {radius}}}\n'
+        f'loading = {{kind = "indentation_depths", values = {written}}}\n'
+    )
+    assert load_scene(file).loading == IndentationDepths([5e-6]) == IndentationDepths(5e-6)
+    jsonschema.validate(tomllib.loads(file.read_text()), schema())
