@@ -7,9 +7,9 @@
 - ``references``: reference numbers in extended precision, with the scripts that compute them
 - ``results``: the records of a run, how a check can end, the files
 - ``gate``: numbers and times against accepted ones
-- ``measurements``: what accuracy costs, where methods break, whether stated errors hold; settings and advice from that
+- ``measurements``: what accuracy costs, where methods break, what matters in a scene; answers to an accuracy
 
-``solve(scene, accuracy=1e-4)`` chooses method and settings from measurements. `cases.run.propagation` carries the
+``solve(scene, accuracy=1e-4)`` tries methods from cheap to fine. `cases.run.propagation` carries the
 uncertainty of inputs to every quantity.
 """
 
@@ -17,7 +17,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from cases.measurements.evidence.choice import solve
+    from cases.measurements.accuracy import solve
 
 __all__ = ["solve"]
 
@@ -25,4 +25,4 @@ __all__ = ["solve"]
 def __getattr__(name: str) -> Any:
     if name != "solve":
         raise AttributeError(f"module 'cases' has no attribute {name!r}; it offers solve")
-    return import_module("cases.measurements.evidence.choice").solve
+    return import_module("cases.measurements.accuracy").solve

@@ -1,16 +1,17 @@
 """Sphinx settings of the documentation. `make docs` builds it with warnings as errors; nothing is downloaded."""
 
+import sys
 from pathlib import Path
 
 from docutils import nodes
 from latex2mathml.converter import convert
 
 from cases.declare.registry import load_cases
-from cases.gate.baseline import read_baselines
 from reports.pages.book import write_book, write_equations
 
 HERE = Path(__file__).parent
-write_book(load_cases().values(), read_baselines(HERE.parent / "baselines"), HERE / "book")
+sys.path.insert(0, str(HERE.parent))  # scripts of the gallery import their common parts
+write_book(load_cases().values(), HERE / "book")
 write_equations(HERE.parent, HERE / "generated" / "equations.md")
 
 project = "contact-verification"
@@ -34,7 +35,6 @@ html_theme_options = {"show_prev_next": False, "navigation_with_keys": False, "s
 html_show_sourcelink = False
 # Pages without neighbours of their own need no list of them.
 ALONE = (
-    "accuracy",
     "api",
     "contributing",
     "formulas",
@@ -48,11 +48,19 @@ ALONE = (
 html_sidebars = {page: [] for page in ALONE}
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"
-exclude_patterns = ["tutorials", "generated", "start/sg_execution_times.rst", "sg_execution_times.rst"]
+exclude_patterns = [
+    "tutorials",
+    "gallery",
+    "figures/sg_execution_times.rst",
+    "generated",
+    "start/sg_execution_times.rst",
+    "sg_execution_times.rst",
+]
 sphinx_gallery_conf = {
-    "examples_dirs": "tutorials",
-    "gallery_dirs": "start",
+    "examples_dirs": ["tutorials", "gallery"],
+    "gallery_dirs": ["start", "figures"],
     "filename_pattern": r"\.py$",
+    "ignore_pattern": r"/_",
     "abort_on_example_error": True,
     "download_all_examples": False,
     "show_memory": False,

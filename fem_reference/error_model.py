@@ -162,6 +162,14 @@ class HistoryCoefficients:
     edge_reading_at_kink: float = 1.0
     # How many cells from a kink count as beside it.
     kink_reach: float = 2.0
+    # Safety factor on the changes of prescribed histories, whose first steps after a jump are of an order below one;
+    # half of it misses depths just after a jump of force by a quarter, twice of it only widens.
+    path_safety: float = 2.0
+    # Every instant of a prescribed history states at least this share of the mean changes; half and twice of it change
+    # stated errors by a tenth where they are smallest.
+    share_of_path_mean: float = 0.2
+    # Contact narrower than so many cells states the largest change while it is; the first cells err in every way.
+    narrow_path: float = 8.0
     # Kinks below this share of a cell count as none.  Derived: a paraboloid with such a flat end is 4.03 times as high
     # at a cell as at half of it, four times without.
     unseen_kink: float = 0.05

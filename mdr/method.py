@@ -32,6 +32,7 @@ from contact.answer.solution import Setting
 from contact.records.record import Record, record
 from contact.records.validation import in_range
 from mdr.dispatch import solver_of
+from mdr.springs.error_model import DEFAULT_ACCURACY
 
 # The coarsest accuracy that time steps are chosen for: what coarser steps would save is too little to be measured.
 COARSEST = 1e-4
@@ -53,7 +54,7 @@ class Mdr(Record):
     name: ClassVar[str] = "mdr"
 
     flat_punch: FlatPunchSource = Field(default_factory=IntegralEquation)
-    accuracy: Annotated[float, *in_range(1e-13, 0.1, "1e-9 costs twice as much as 1e-6")] = 1e-9
+    accuracy: Annotated[float, *in_range(1e-13, 0.1, "1e-9 costs twice as much as 1e-6")] = DEFAULT_ACCURACY
     compiled: bool = False
 
     def supports(self, scene: Scene) -> Supported | Unsupported:
@@ -92,8 +93,9 @@ class Mdr(Record):
         return solver.load()(scene, self.flat_punch, self._settings() | compiled)
 
     def refined(self) -> Self:
-        """Flat-punch data with half the discretisation length, one more digit in time."""
-        return self.replace(flat_punch=self.flat_punch.refined(), accuracy=max(0.1 * self.accuracy, 1e-13))
+        """Flat-punch data with half the discretisation length; one more digit in time, from the default on."""
+        accuracy = max(min(0.1 * self.accuracy, DEFAULT_ACCURACY), 1e-13)
+        return self.replace(flat_punch=self.flat_punch.refined(), accuracy=accuracy)
 
     def _settings(self) -> dict[str, Setting]:
         source = self.flat_punch

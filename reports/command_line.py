@@ -24,6 +24,18 @@ EPILOG = (
 INTERRUPTED, INTERNAL_ERROR, USAGE = 2, 3, 4
 # Every complaint of the option parser derives from this class.
 USAGE_ERROR: Any = typer.BadParameter.__base__
+# Commands that were, and where their purpose went.
+GONE = {
+    "accuracy": "solve --accuracy tries methods from cheap to fine and states what it reached",
+    "accuracy-page": "every report shows stated errors and agreement per case, method and quantity",
+    "calibrate": "solve --accuracy needs no measurements any more",
+    "campaign": "random scenes are tests now (pytest -m slow)",
+    "coverage": "coverage of stated errors is tested on random scenes (pytest -m slow)",
+    "explain": "run --resume solves again whatever changed",
+    "maps": "docs/formulas.md shows where closed forms hold",
+    "paper-page": "docs/paper.md is kept by a test (tests/verification/test_paper.py)",
+    "scaling": "times are compared with another revision by python -m benchmarks.race",
+}
 
 
 @contextmanager
@@ -95,15 +107,6 @@ def _print_example(wanted: bool) -> None:
     if wanted:
         typer.echo(EXAMPLE_SCENE, nl=False)
         raise typer.Exit
-
-
-def _seconds(text: str) -> float:
-    """A time in seconds, with or without its unit."""
-    number, unit = (text[:-2], 1e-3) if text.endswith("ms") else (text.removesuffix("s"), 1.0)
-    try:
-        return unit * float(number)
-    except ValueError:
-        raise typer.BadParameter(f"{text!r} is no time; write 0.1, 0.1s or 100ms") from None
 
 
 def _print_version(wanted: bool) -> None:
@@ -262,7 +265,7 @@ def accept(
         typer.Argument(metavar="[CASE]...", help="Cases whose numbers become the baseline; all of RUN."),
     ] = None,
     *,
-    reason: Annotated[str, typer.Option(help="Why these numbers are right; the report shows it.")],
+    reason: Annotated[str, typer.Option(help="Why these numbers are right; it is kept beside them.")],
     run: Annotated[Path, typer.Option(help="Folder of the finished run they come from.")] = Path("build/verification"),
     baseline: Baselines = Path("baselines"),
     write: Annotated[bool, typer.Option("--write", help="Write; without it only show what would change.")] = False,
@@ -291,20 +294,11 @@ def solve(
         float | None,
         typer.Option(
             help="Relative accuracy of radius, depth, force and stiffness, of critical numbers, or of restitution and "
-            "peaks: chooses method and settings from measured evidence, and refuses an answer that is less."
+            "peaks: tries methods from cheap to fine, and refuses an answer that states a larger error."
         ),
     ] = None,
     pressure_accuracy: Annotated[
         float | None, typer.Option(help="Relative accuracy of the contact pressure, besides --accuracy.")
-    ] = None,
-    within: Annotated[
-        float | None,
-        typer.Option(
-            parser=_seconds, metavar="SECONDS", help="Processor time that --accuracy may take: 0.1, 0.1s or 100ms."
-        ),
-    ] = None,
-    evidence: Annotated[
-        Path | None, typer.Option(help="Measurements of this machine from calibrate, in place of those shipped.")
     ] = None,
     uncertain: Annotated[
         str,
@@ -341,8 +335,6 @@ def solve(
         accuracy=accuracy,
         pressure_accuracy=pressure_accuracy,
         outputs=write or [],
-        within=within,
-        evidence=evidence,
         uncertain=uncertain,
         samples=samples,
     )
@@ -350,38 +342,6 @@ def solve(
 
 for _command in (*curves.COMMANDS, *studies.COMMANDS):
     app.command()(_command)
-
-
-@app.command("accuracy-page")
-def accuracy_page(
-    out: Annotated[Path, typer.Argument(help="File for the page, Markdown.")] = Path("docs/accuracy.md"),
-    baseline: Baselines = Path("baselines"),
-) -> None:
-    """Write the page of stated errors and observed agreement per case, method and quantity, from stored numbers."""
-    from reports.commands.accuracy_page import write_page  # noqa: PLC0415
-
-    write_page(baseline, out)
-
-
-@app.command("paper-page")
-def paper_page(
-    out: Annotated[Path, typer.Argument(help="File for the page, Markdown.")] = Path("docs/paper.md"),
-) -> None:
-    """Write the page of what the paper says and what is measured, with numbers computed now."""
-    from reports.commands.paper_page import write_page  # noqa: PLC0415
-
-    write_page(out)
-
-
-@app.command()
-def explain(
-    key: Annotated[str, typer.Argument(help="Content key of a finished solution, from results.json or OUT/tasks.")],
-    out: Out = Path("build/verification"),
-) -> None:
-    """Say what has changed since a solution was stored: scene, settings, source files, versions."""
-    from reports.commands.explain import explain as run_command  # noqa: PLC0415
-
-    run_command(key, out)
 
 
 @app.command()
@@ -407,10 +367,7 @@ def report(
     other: Annotated[Path | None, typer.Argument(help="A second run to compare with the first.")] = None,
     single_file: Annotated[bool, typer.Option("--single-file", help="All cases on one page.")] = False,
 ) -> int:
-    """Build the pages of a run again without computing; with two runs, compare the second with the first.
-
-    A run that was changed after it was written is refused by its seal.
-    """
+    """Build the pages of a run again without computing; with two runs, compare the second with the first."""
     from reports.commands.report import compare_runs, rebuild  # noqa: PLC0415
 
     return rebuild(run, single_file=single_file) if other is None else compare_runs(run, other)
@@ -429,6 +386,8 @@ def main() -> None:
 
 def run(arguments: list[str]) -> int:
     """Carry out a command line and return its exit code; what a user can mend is one clear line, never a traceback."""
+    if arguments and arguments[0] in GONE:
+        return _complain(f"{arguments[0]}: {GONE[arguments[0]]}", USAGE)
     try:
         code = app(arguments, standalone_mode=False)
     except USAGE_ERROR as error:

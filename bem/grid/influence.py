@@ -1,155 +1,159 @@
-"""Displacement at the centre of one square cell under a uniform pressure on another: half-space and layer.
+"""Displacement of cell centres by a uniform pressure on one square cell, for every kind of layer.
 
-All functions are dimensionless: lengths in units of the cell size, pressures in units of E*. The displacement of a
-layer is Love's rectangle solution of the half-space plus a smooth correction,
+Lengths in cell sizes, pressures in units of E* of the material at the surface. With the kernel chi of a layer,
 
-    u(r) = (1/pi E*) int_cell dA'/|r - r'|  +  (1/pi E*) int_cell V(|r - r'|/h)/h dA',
-    V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq.
+    u(r) = (1/pi) int_cell [1/|r - r'| + V(|r - r'|/h)/h] dA',      V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq.
 
-chi(q)/q is an even analytic function of q, so the two parts cancel exponentially far away: beyond `REACH` thicknesses
-the sum is below 1e-15 of its parts and is set to zero, which also spares the cancellation. (The slowest decay is that
-of the bonded incompressible layer, exp(-0.739 r/h): the pole of chi at q = iy with cos y = y.)
+The first term is Love's rectangle. The second is smooth where chi - 1 falls exponentially, and logarithmic at the axis
+where chi - 1 = c_1/q + ... (graded surfaces). V is a Hankel transform over many orders of magnitude of q, which FFTLog
+computes from logarithmically spaced samples of chi (Hamilton 2000, Mon. Not. R. Astron. Soc. 312, 257).
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import lru_cache
-from math import ceil, isinf
+from math import ceil, log, pi
 from typing import Final
 
 import numpy as np
-import numpy.typing as npt
+from scipy.fft import fht, fhtoffset
+from scipy.interpolate import CubicSpline
+from scipy.special import itj0y0
 
 from bem.grid.transforms import cosine_plan
-from bem.kernels.layer import one_minus_kernel, zero_mode
-from bem.polynomials.cubics import PiecewiseCubic
-from bem.polynomials.gauss import legendre_rule
-from contact.answer.compiled_files import compiled
+from bem.kernels.of_layer import surface_kernel
+from bem.kernels.protocol import SurfaceKernel
+from contact import ElasticLayer
 from contact.records.validation import FloatArray
-from contact.scene.layer import Support
 
-# Distance r/h beyond which a layer does not answer: exp(-0.739 REACH) is 4e-16.
+# Wavenumbers q of FFTLog. Half as many samples leave 7e-9 of V, twice as many 1e-9 as these do.
+SAMPLES: Final = 1024
+LEAST_Q, LARGEST_Q = 1e-9, 1e5
+# Exponent of the power of q that damps both ends of the samples: half and twice of it leave 1e-8 of V.
+BIAS: Final = -0.25
+# Least rho at which the smooth part of V is read: it is even in rho, so that 1e-6 of it is lost within.
+NEAR: Final = 1e-3
+# Distance in thicknesses from which on a layer on a rigid base is at rest: exp(-0.739 * 48) = 4e-16.
 REACH: Final = 48.0
-# From so many cells across a layer on, the correction's Laplacian tells its mean over a cell, to 1.4e-10 of the largest
-# influence (nu = 0.3 and 0.5, either support, 2026-11-26).
-THICK: Final = 32.0
+# Mean of ln r over a unit square about its centre.
+MEAN_LOGARITHM: Final = (pi / 2 - 3.0 - log(2.0)) / 2
+# Cells from the loaded one within which means over cells are taken by Gauss points, and half of the most of them across
+# a cell. Answers with cells wider than a layer is thick are refused.
+CLOSE: Final = 12
+MOST_POINTS: Final = 4.0
+
+
+def kernel_of(layer: ElasticLayer) -> SurfaceKernel:
+    """The kernel of a layer that is no half-space: chi and 1 - chi over q = k h, h the surface material's thickness."""
+    return surface_kernel(layer)
+
+
+@dataclass(frozen=True, eq=False)
+class PointResponse:
+    """V(rho) of one layer, rho = r/h.
+
+    Attributes:
+        smooth: What FFTLog computes, over ln rho.
+        limit: 1 - chi at q = 0, one on a rigid base.
+        logarithm: c_1 in chi = 1 + c_1/q + ....
+    """
+
+    smooth: Callable[[FloatArray], FloatArray]
+    limit: float
+    logarithm: float
+
+    def __call__(self, rho: FloatArray) -> FloatArray:
+        """V at rho > 0: the smooth part and closed forms of exp(-q) and (1 - exp(-q))/q."""
+        near = np.log(np.clip(rho, NEAR, 1e5))
+        known = self.logarithm * np.arcsinh(1.0 / rho) if self.logarithm else 0.0
+        return np.asarray(self.smooth(near) - (self.limit + self.logarithm) / np.hypot(1.0, rho) + known)
+
+
+@lru_cache(maxsize=32)
+def point_response(kernel: SurfaceKernel) -> PointResponse:
+    """V of a kernel."""
+    q = np.geomspace(LEAST_Q, LARGEST_Q, SAMPLES)
+    step, less = log(q[1] / q[0]), kernel.one_minus_chi(q)
+    limit = float(less[0])
+    logarithm = float(-less[-1] * q[-1])
+    rest = -less + logarithm * np.expm1(-q) / q + (limit + logarithm) * np.exp(-q)
+    offset = fhtoffset(step, 0.0, bias=BIAS)
+    rho = np.exp(offset) / q[::-1]
+    values = fht(rest, step, 0.0, offset=offset, bias=BIAS) / rho
+    return PointResponse(CubicSpline(np.log(rho), values), limit, logarithm)
 
 
 def rectangle_influence(offsets: int) -> FloatArray:
-    """Half-space: displacement at cell offset (i, j) by a unit pressure on one unit cell, E* = 1.
+    """Half-space: displacement at cell offset (i, j), 0 <= i, j <= offsets, by a unit pressure on a unit cell.
 
-    Love's solution is the second difference over the cell's corners of
-    `J(x, y) = x asinh(y/x) + y asinh(x/y)`, the double integral of 1/r. Cancellation grows with the offset r as
-    r^2 ln r: about 1e-9 relative at r = 1000, absolutely harmless since the value decays as 1/r.
-
-    Args:
-        offsets: Largest offset m.
-
-    Returns:
-        Influence [cell sizes], shape (m + 1, m + 1).
+    Love's solution is the second difference over the cell's corners of J = x asinh(y/x) + y asinh(x/y).
     """
     corner = np.arange(offsets + 2) - 0.5
     x, y = corner[:, None], corner[None, :]
     half = x * np.arcsinh(y / np.abs(x))
-    antiderivative = half + half.T
-    return np.asarray(np.diff(np.diff(antiderivative, axis=0), axis=1) / np.pi)
+    return np.asarray(np.diff(np.diff(half + half.T, axis=0), axis=1) / pi)
 
 
-def layer_influence(offsets: int, thickness: float, support: Support, poissons_ratio: float) -> FloatArray:
-    """The same for a layer of `thickness` cell sizes; an infinite thickness gives the half-space.
-
-    Args:
-        offsets: Largest offset m.
-        thickness: h in cell sizes.
-        support: "bonded" or "unbonded".
-        poissons_ratio: nu.
-
-    Returns:
-        Influence [cell sizes], shape (m + 1, m + 1).
-    """
+def layer_influence(offsets: int, layer: ElasticLayer, cell_size: float) -> FloatArray:
+    """The same for any layer, cells of `cell_size` [m], shape (offsets + 1, offsets + 1)."""
     influence = rectangle_influence(offsets)
-    if isinf(thickness):
+    if layer.is_half_space:
         return influence
-    near = min(offsets, ceil(REACH * thickness) + 1)
-    influence[near + 1 :] = influence[:, near + 1 :] = 0.0
-    i, j = np.tril_indices(near + 1)
-    correction = _cell_average(i, j, thickness, support, poissons_ratio)
-    beyond = np.hypot(i, j) > REACH * thickness + 1.0
-    total = np.where(beyond, 0.0, influence[i, j] + correction)
-    influence[i, j] = influence[j, i] = total
+    thickness = layer.surface.thickness / cell_size
+    response = point_response(kernel_of(layer))
+    influence += _cell_means(response, offsets, thickness) / (pi * thickness)
+    if not layer.has_elastic_base:
+        cells = np.arange(offsets + 1)
+        influence[np.hypot(cells[:, None], cells) > REACH * thickness + 1.0] = 0.0
     return influence
 
 
-def _cell_average(
-    i: npt.NDArray[np.intp], j: npt.NDArray[np.intp], thickness: float, support: Support, poissons_ratio: float
-) -> FloatArray:
-    """Gauss quadrature of V(r/h)/(pi h) over the unit cell at (i, j); more points as the cell outgrows h.
-
-    The mean over a cell many of which span h is V + s^2/24 times its Laplacian.
-    """
-    smooth, laplacian = _correction_and_laplacian(support, poissons_ratio)
-    if thickness >= THICK:
-        smooth = PiecewiseCubic(smooth.x, smooth.powers + laplacian.powers / (24.0 * thickness**2))
-    points, weights = legendre_rule(1 if thickness >= THICK else 2 + ceil(4.0 / thickness))
-    total = np.zeros(i.shape)
-    for x, wx in zip(points / 2.0, weights / 2.0, strict=True):
-        for y, wy in zip(points / 2.0, weights / 2.0, strict=True):
-            rho = np.hypot(i + x, j + y) / thickness
-            total += wx * wy * np.where(rho < REACH, smooth(np.minimum(rho, REACH)), -1.0 / np.maximum(rho, 1.0))
-    return total / (np.pi * thickness)
-
-
-def correction_function(support: Support, poissons_ratio: float) -> PiecewiseCubic:
-    """V(rho) = int_0^inf (chi(q) - 1) J0(q rho) dq on [0, REACH]."""
-    return _correction_and_laplacian(support, poissons_ratio)[0]
+def _cell_means(response: PointResponse, offsets: int, thickness: float) -> FloatArray:
+    """Mean of V over each cell: V + (1/24) of its Laplacian, from differences, and Gauss points close to the load."""
+    i, j = np.tril_indices(offsets + 2)
+    V = np.empty((offsets + 2, offsets + 2))
+    V[i, j] = V[j, i] = response(np.maximum(np.hypot(i, j), 0.5) / thickness)
+    W = np.pad(V, ((1, 0), (1, 0)), mode="reflect")
+    neighbours = W[2:, 1:-1] + W[:-2, 1:-1] + W[1:-1, 2:] + W[1:-1, :-2]
+    means = V[:-1, :-1] + (neighbours - 4.0 * V[:-1, :-1]) / 24.0
+    # An even number of points leaves out the centre, where V of a graded layer is infinite.
+    points, weights = np.polynomial.legendre.leggauss(2 + 2 * ceil(min(2.0 / thickness, MOST_POINTS)))
+    points, weights = points / 2, weights / 2
+    near = np.arange(min(offsets, CLOSE) + 1)
+    x, y = near[:, None] + points, near[:, None, None, None] + points[:, None]
+    values = response(np.hypot(y, x[None, :, None, :]) / thickness)
+    means[: near.size, : near.size] = np.einsum("ijkl,k,l", values, weights, weights)
+    logarithm = weights @ np.log(np.hypot(points[:, None], points)) @ weights
+    means[0, 0] += response.logarithm * (logarithm - MEAN_LOGARITHM)
+    return means
 
 
-@lru_cache(maxsize=32)
-def _correction_and_laplacian(support: Support, poissons_ratio: float) -> tuple[PiecewiseCubic, PiecewiseCubic]:
-    """V(rho) by Gauss-Legendre with 8 nodes a period of J0, and its Laplacian, in which J0 counts -q^2 times.
-
-    The integral ends at q = 24, where 1 - chi is about 1e-18. The spline's 1200 knots are dense near the axis, which
-    makes its error less than 1e-9.
-    """
-    points, weights = legendre_rule(32)
-    largest_q, knots = 24.0, 1200
-    panels = ceil(largest_q * REACH / (8.0 * np.pi))
-    half = largest_q / (2 * panels)
-    q = (half * (2.0 * np.arange(panels)[:, None] + 1.0 + points)).ravel()
-    density = np.tile(half * weights, panels) * one_minus_kernel(q, support, poissons_ratio)
-    rho = REACH * np.sinh(4.0 * np.linspace(0.0, 1.0, knots)) / np.sinh(4.0)
-    j0 = compiled("scipy.special._special_ufuncs", "scipy.special").j0
-    waves = j0(rho[:, None] * q)
-    return PiecewiseCubic.spline(rho, -waves @ density), PiecewiseCubic.spline(rho, waves @ (q**2 * density))
-
-
-def uniform_response(support: Support, poissons_ratio: float) -> float:
-    """Displacement by a uniform pressure over a whole layer, times E*/(2 h p); zero if bonded and incompressible."""
-    return zero_mode(support, poissons_ratio)
+def layer_symbol(wavenumber: FloatArray, layer: ElasticLayer, cell_size: float) -> FloatArray:
+    """u^/p^ = 2 chi(k h)/k, Eq. (27), at k per cell size; at k = 0 its finite limit on a rigid base, zero otherwise."""
+    k = np.where(wavenumber == 0.0, 1.0, wavenumber)
+    if layer.is_half_space:
+        return np.where(wavenumber == 0.0, 0.0, 2.0 / k)
+    h, kernel = layer.surface.thickness / cell_size, kernel_of(layer)
+    zero = 0.0 if layer.has_elastic_base else 2.0 * h * kernel.zero_mode
+    values, place = np.unique(k, return_inverse=True)
+    grid = np.geomspace(values[0], values[-1] * (1.0 + 1e-12), min(SAMPLES, values.size) + 4)
+    chi = CubicSpline(np.log(grid), kernel.chi(grid * h))(np.log(values))[place].reshape(k.shape)
+    return np.where(wavenumber == 0.0, zero, 2.0 * chi / k)
 
 
 def band_limited_influence(offsets: int) -> FloatArray:
     """Half-space: displacement at offset (i, j) by the trigonometric interpolant of a unit pressure at one point.
 
-    This is the free-space partner of the periodic operator, whose symbol is 2/k up to the lattice's largest
-    wavenumbers. The kernel 1/(pi r) is cut off at a radius R beyond the grid, which makes its transform the smooth
-    `(2/k) int_0^(kR) J0(t) dt` without changing any displacement on the grid (Vico, Greengard and Ferrando 2016,
-    J. Comput. Phys. 323, 191). E* = 1, lengths in cell sizes.
-
-    Args:
-        offsets: Largest offset m.
-
-    Returns:
-        Influence [cell sizes], shape (m + 1, m + 1).
+    It is the free-space partner of the periodic operator. The kernel 1/(pi r) is cut off at a radius R beyond the grid,
+    which makes its transform (2/k) int_0^(kR) J0(t) dt without changing a displacement on the grid (Vico, Greengard
+    and Ferrando 2016, J. Comput. Phys. 323, 191).
     """
-    # Only thin layers ask, and it takes 0.1 s to import.
-    from scipy.special import itj0y0  # noqa: PLC0415
-
-    # Half of the period: with it no image of the cut-off kernel reaches back to sqrt(2) m.
-    half = 2 * offsets
-    cut_off = 2.0 * offsets
+    # With half of the period twice the grid no image of the cut-off kernel reaches back to sqrt(2) offsets.
+    half, cut_off = 2 * offsets, 2.0 * offsets
     modes = np.arange(half + 1)
-    k = np.pi / half * np.hypot(modes[:, None], modes)
+    k = pi / half * np.hypot(modes[:, None], modes)
     k[0, 0] = 1.0
     symbol = 2.0 / k * itj0y0(k * cut_off)[0]
     symbol[0, 0] = 2.0 * cut_off

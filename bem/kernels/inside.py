@@ -8,7 +8,7 @@ the tractions become ``b = A^T t``, and with M of what lies below, ``v = M b`` a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -32,6 +32,11 @@ class Transfer(NamedTuple):
     normal: FloatArray
 
 
+EPS: Final = float(np.finfo(float).eps)
+# Roundings of a depth within which it lies at an interface: one for each of some thicknesses, and two of the unit.
+ROUNDINGS: Final = 32.0
+
+
 @dataclass(frozen=True)
 class Place:
     """A depth in a stack, or several of one layer.
@@ -46,10 +51,14 @@ class Place:
 
 
 def place_of(kernel: StackKernel, depth: float) -> Place:
-    """Where a depth over the first layer's thickness lies; below a rigid base it counts as on it."""
+    """Where a depth over the first layer's thickness lies; below a rigid base it counts as on it.
+
+    A depth that differs from a sum of thicknesses by roundings lies at the interface, which is the upper layer's.
+    """
+    rounding = ROUNDINGS * EPS * depth
     for number, sheet in enumerate(kernel.sheets):
-        if depth <= sheet.thickness:
-            return Place(number, depth)
+        if depth <= sheet.thickness + rounding:
+            return Place(number, min(depth, sheet.thickness))
         depth -= sheet.thickness
     if kernel.base is None:
         return Place(len(kernel.sheets) - 1, kernel.sheets[-1].thickness)

@@ -109,10 +109,15 @@ class IntegralEquationSolution(FlatPunchSolution):
         truncated = self._left_out(self._stiffness_share, ratio) / k + springs
         return self.shares.stiffness_safety * truncated + self.stiffness_rounding(ratio)
 
+    @property
+    def _roundings(self) -> float:
+        """Roundings of values that are of order one."""
+        return self.shares.rounded
+
     def stiffness_rounding(self, ratio: FloatArray) -> FloatArray:
         """What of the relative error of k_bar is rounding times condition."""
         k = self.normalized_contact_stiffness(ratio)
-        return np.asarray(EPS * (self.shares.rounded + self.shares.stiffness_growth * k))
+        return np.asarray(EPS * (self._roundings + self.shares.stiffness_growth * k))
 
     def spring_error(self, ratio: ArrayLike) -> FloatArray:
         """Error of c_bar, relative, made likewise."""
@@ -215,7 +220,7 @@ class IntegralEquationSolution(FlatPunchSolution):
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:
         """Solved for without polynomials in the contact radius: those between the kernel's nodes, and roundings."""
         panels, _ = self._panels.locate(ratio)
-        rounded = 4 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
+        rounded = 4 * self._roundings + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return self.contact_pressure_error(ratio, 2 * self.factor.truncation[panels] + EPS * rounded)
 
     def _slope_truncation(self, ratio: FloatArray) -> FloatArray:
@@ -244,7 +249,7 @@ class IntegralEquationSolution(FlatPunchSolution):
         self, ratio: FloatArray, own_share: float | FloatArray, kernel_share: float | FloatArray
     ) -> FloatArray:
         own, of_kernel = self._spring_truncation(ratio)
-        rounded = 2 * self.shares.rounded + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
+        rounded = 2 * self._roundings + self.shares.spring_growth * self.normalized_contact_stiffness(ratio)
         return own_share * own + kernel_share * of_kernel + EPS * rounded
 
     def _spring_truncation(self, ratio: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -37,6 +37,18 @@ ANY_RUNGS: Final = (2.0, 5.0, 10.0, 20.0, 40.0, 80.0, 160.0, 320.0)
 # The same on a graded layer.
 GRADED_RUNGS: Final = (1.0, 2.0, 4.0, 8.0, 16.0)
 
+# Wavenumbers at which sup chi is looked for, times the longest length and times the first thickness: twice as many
+# change it by less than 1 %.
+LONGEST_WAVE, SHORTEST_WAVE, SAMPLED_WAVES = 1e-4, 10.0, 200
+# Nodes of a panel by default, and the most.
+USUAL_NODES: Final = 24
+MOST_NODES: Final = 64
+# Nodes that a refined setting has more: they leave 4.2^-4 of what was left out; two leave 4.2^-2.
+MORE_NODES: Final = 4
+# Nodes of a graded layer's panel by default, and the fewest: one more for two nodes more of other layers' panels.
+GRADED_COUNT: Final = 12
+GRADED_FEWEST: Final = 2
+
 
 @record
 class IntegralEquation(Record):
@@ -47,7 +59,7 @@ class IntegralEquation(Record):
         panel_width: H in units of the layer thickness; the kernel is analytic within 2 of the real axis.
     """
 
-    nodes: int = Field(default=24, ge=4, le=64)
+    nodes: int = Field(default=USUAL_NODES, ge=4, le=MOST_NODES)
     panel_width: Annotated[float, *positive("panels about as wide as the layer is thick")] = 1.0
 
     @one_thread
@@ -67,7 +79,8 @@ class IntegralEquation(Record):
         if not isinstance(layer, Layer):
             surface = surface_kernel(layer)
             if not surface.is_smooth:
-                return _graded_solution(surface, _any_rung(layer, max_ratio, GRADED_RUNGS))
+                count = GRADED_COUNT + (int(self.nodes) - USUAL_NODES) // 2
+                return _graded_solution(surface, _any_rung(layer, max_ratio, GRADED_RUNGS), max(count, GRADED_FEWEST))
             return _any_solution(self, surface, _any_rung(layer, max_ratio, ANY_RUNGS))
         rung = next((rung for rung in RUNGS if rung >= max_ratio), None)
         # Poisson's ratio has no influence on the unbonded layer.
@@ -77,8 +90,8 @@ class IntegralEquation(Record):
         return _solution(self, layer.support, nu, rung)
 
     def refined(self) -> Self:
-        """Panels half as wide."""
-        return self.replace(panel_width=self.panel_width / 2)
+        """Panels half as wide with more nodes, since panels towards the axis and of graded layers keep their widths."""
+        return self.replace(panel_width=self.panel_width / 2, nodes=min(self.nodes + MORE_NODES, MOST_NODES))
 
 
 def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> float:
@@ -94,12 +107,12 @@ def _any_rung(layer: ElasticLayer, ratio: float, rungs: tuple[float, ...]) -> fl
 
 
 @lru_cache(maxsize=8)
-def _graded_solution(surface: SurfaceKernel, ratio: float) -> GradedSolution:
+def _graded_solution(surface: SurfaceKernel, ratio: float, count: int) -> GradedSolution:
     # Plain layers, here and below, are answered without the modules of others.
     from bem.layer_equation.any_layer.graded_solution import GradedSolution  # noqa: PLC0415
     from bem.layer_equation.any_layer.point_kernel import PointKernel  # noqa: PLC0415
 
-    return GradedSolution(PointKernel.of_surface(surface), ratio)
+    return GradedSolution(PointKernel.of_surface(surface), ratio, count)
 
 
 # A factor for the largest ratio takes 110 MB on thin sublayers.
@@ -109,7 +122,9 @@ def _any_solution(settings: IntegralEquation, surface: SurfaceKernel, ratio: flo
 
     kernel, width = FredholmKernel.of_surface(surface), ANY_WIDTH * settings.panel_width
     factor = GradedFactor.of_any(kernel, int(np.ceil(ratio / width)), width, int(settings.nodes))
-    return AnyLayerSolution(kernel, factor)
+    waves = np.geomspace(LONGEST_WAVE / surface.longest, SHORTEST_WAVE, SAMPLED_WAVES)
+    largest = float(np.max(1.0 - surface.one_minus_chi(waves), initial=1.0))
+    return AnyLayerSolution(kernel, factor, largest)
 
 
 @lru_cache(maxsize=32)

@@ -21,9 +21,16 @@ from scipy.special import j0
 
 from bem.kernels.of_layer import surface_kernel
 from bem.layer_equation.inside.density import Density, Piece, pieces_of
-from bem.layer_equation.profiles.half_space_slope import profile_slope
+from bem.layer_equation.profiles.half_space_slope import profile_slope, room_to_pole
 from bem.layer_equation.triangular import solve_positive
-from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, even_abel_integral
+from bem.polynomials.abel_integral import (
+    AbelNodes,
+    Stretch,
+    abel_integral,
+    arc_integral,
+    even_abel_integral,
+    graded_ends,
+)
 from bem.polynomials.gauss_panels import gauss_nodes
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
@@ -177,11 +184,15 @@ class DirectDensity:
     @cached_property
     def _stretches(self) -> list[Stretch]:
         """Where the profile has risen; it has its pole, if any, where it ends."""
-        ends = self.stretch_ends[self.stretch_ends >= 0]
-        rooms = np.full(len(ends) - 1, np.inf)
-        rooms[-1:] = _room(self.indenter, self.reach) / self.unit
-        starts = zip(ends[:-1], ends[1:], rooms, strict=True)
+        ends = self.stretch_ends[self.stretch_ends >= 0].tolist()
+        graded = graded_ends(ends, min((self._room_at(end) for end in ends[1:]), default=np.inf))
+        rooms = [self._room_at(end) for end in graded[1:]]
+        starts = zip(graded[:-1], graded[1:], rooms, strict=True)
         return [Stretch(self.flat, float(start), float(stop), float(room)) for start, stop, room in starts]
+
+    def _room_at(self, offset: float) -> float:
+        room = _room(self.indenter, self.reach)
+        return room_to_pole(self.indenter, self.unit * (self.flat + offset), room) / self.unit
 
     def _profile_slope(self, nodes: AbelNodes) -> FloatArray:
         return self._slope_at(nodes.offset, nodes.room)
@@ -193,7 +204,7 @@ class DirectDensity:
 
     @cached_property
     def _sampled_slope(self) -> StretchSlopes:
-        ends = self.stretch_ends[self.stretch_ends >= 0]
+        ends = np.array([stretch.start for stretch in self._stretches] + [self.excess])
         unit, count = self.unit, SLOPE_SHARE * self.grid.count
         return StretchSlopes.of(lambda d: half_space_load(self.indenter, unit * d) / unit, self.flat, ends, count)
 
@@ -285,7 +296,12 @@ def graded_pieces(indenter: Profile, excess: float, unit: float, widest: float, 
     points = np.unique(np.concatenate([[0.0], bends[(bends > 0) & (bends < end)], [end]]))
     ends = [points[:1], _towards_pole(end, room)]
     for start, stop in pairwise(points):
+        pole = room_to_pole(indenter, indenter.flat_radius + unit * float(start), np.inf) / unit
+        ends.append(_towards_pole(start, pole))
         levels = SMOOTHER_LEVELS if start > 0 else LEVELS if indenter.flat_radius > 0 else TIP_LEVELS
+        levels += (
+            max(int(np.ceil(np.log((stop - start) / pole) / -np.log(GRADING))), 0) if start > 0 and pole > 0 else 0
+        )
         ends.append(start + (stop - start) * GRADING ** np.arange(levels, -1, -1.0))
     # Beside a distant point the smallest pieces round to nothing.
     coarse = np.unique(np.concatenate(ends))

@@ -332,7 +332,8 @@ def resolve(
     for _ in range(MAX_SPLITS):
         resolved = MappedFunction(grid, function(grid.nodes, grid.to_end), lead)
         right = grid.left + grid.width
-        smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, 0.1 * (far - right))
+        beside_pole = np.where(right < far, 0.1 * (far - right), np.inf) if right[-1] > far else 0.1 * (far - right)
+        smallest = np.minimum(np.where(grid.power > 1, 1e-13, 1e-3) * right, beside_pole)
         coarse = (resolved.truncation() > RESOLVED) & (grid.width > smallest)
         if coarse.any():
             coarse &= resolved.truncation() > tolerance()

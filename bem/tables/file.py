@@ -19,7 +19,7 @@ from typing import Any, Final, Self
 import numpy as np
 from scipy.integrate import simpson
 
-from bem.grid.influence import correction_function, uniform_response
+from bem.grid.influence import kernel_of, point_response
 from bem.tables.table import FlatPunchTable
 from bem.tables.tabulated_layer import Tabulable, described, same_kernel, tabulable
 from contact import ElasticLayer, InvalidInput, Layer, LayerStack
@@ -229,7 +229,13 @@ def _check_limits(path: str | Path, table: FlatPunchTable) -> float:
     except for 0.45 < nu < 0.5.
     """
     first, last = float(table.ratios[0]), table.max_ratio
-    thick = 1.0 / (1.0 + 2.0 / np.pi * float(correction_function(table.support, table.poissons_ratio)(0.0)) * first)
+    thick = 1.0 / (
+        1.0
+        + 2.0
+        / np.pi
+        * float(point_response(kernel_of(_plain(table.support, table.poissons_ratio)))(np.array([1e-3]))[0])
+        * first
+    )
     defect = abs(float(table.stiffness[0]) / thick - 1.0) if first <= 0.05 else 0.0
     if defect > LIMIT_TOLERANCE:
         raise InvalidInput(f"{path}: k_bar({first:g}) is {table.stiffness[0]:.6g}, but must be near {thick:.6g}")
@@ -242,5 +248,5 @@ def _check_limits(path: str | Path, table: FlatPunchTable) -> float:
 
 def _thin_layer_stiffness(table: FlatPunchTable) -> float:
     """k_bar of a thin layer at the largest ratio, Eqs. (16), (18), (21)."""
-    xi, compliance = table.max_ratio, uniform_response(table.support, table.poissons_ratio)
+    xi, compliance = table.max_ratio, kernel_of(_plain(table.support, table.poissons_ratio)).zero_mode
     return 3.0 * np.pi / 64.0 * xi**3 if compliance == 0.0 else np.pi / 4.0 * xi / compliance

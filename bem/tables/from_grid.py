@@ -10,9 +10,9 @@ from typing import Final, Self
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from bem.grid.calibrated_disc import FILL, GAP, THIN, measured_disc
+from bem.grid.discs import FILL, IMAGE_GAP, Disc, disc_of
 from bem.grid.error_model import TABLES
-from bem.tables.grid_rows import grid_rows
+from bem.tables.grid_rows import THIN, grid_rows
 from bem.tables.table import LEAST_ROWS, FlatPunchTable, chebyshev_radii
 from bem.tables.tabulated_layer import Tabulable, lowest_face, tabulable
 from contact import ElasticLayer, InvalidInput, LayerStack
@@ -140,13 +140,23 @@ def _weighed(fine: FlatPunchTable, coarse: FlatPunchTable, share: float, cells: 
     On layers many cells thick k_bar is off by what the discs' mean square distances are off, which is known of both:
     the error is far smaller than the difference.
     """
-    own, finer, coarser = (measured_disc(n, False) for n in (cells, cells // times, cells // (2 * times)))
-    error = max(abs(own.moment_error), TABLES.least_moment / own.radius**2)
-    known = TABLES.moment_share / share * error / abs(coarser.moment_error - finer.moment_error)
+    own, finer, coarser = (disc_of(n) for n in (cells, cells // times, cells // (2 * times)))
+    error = max(abs(_moment_error(own)), TABLES.least_moment / own.radius**2)
+    known = TABLES.moment_share / share * error / abs(_moment_error(coarser) - _moment_error(finer))
     per_thickness = own.radius / fine.ratios
     thin = np.log(TABLES.thick_cells / per_thickness) / np.log(TABLES.thick_cells / TABLES.thin_cells)
     counted = min(known, 1.0) ** (1.0 - np.clip(thin, 0.0, 1.0))
     return dataclasses.replace(coarse, stiffness=fine.stiffness * (coarse.stiffness / fine.stiffness) ** counted)
+
+
+def _moment_error(disc: Disc) -> float:
+    """Relative error of the mean square distance of two points of a disc's pressure, (4/3) a^2 on a circle.
+
+    A layer many cells thick responds to that distance alone. Pressures are uniform on cells, displacements those of the
+    cells' centres, hence the square of a cell over six.
+    """
+    square = np.average((disc.radius * disc.centres) ** 2, weights=disc.pressure)
+    return float((2.0 * square + 1.0 / 6.0) / (4.0 / 3.0 * disc.radius**2) - 1.0)
 
 
 def _with_errors(fine: FlatPunchTable, coarse: FlatPunchTable, cells: int, row_share: float) -> FlatPunchTable:
@@ -238,7 +248,7 @@ def _provenance(settings: FftTable, table: FlatPunchTable) -> dict[str, str | in
         "kernel": f"{table.support}, Forsbach (2023) Eq. {equation}" if own else "stack of layers",
         "poissons_ratio": table.poissons_ratio,
         "cells": settings.cells,
-        "box": f"free space to a/h = {THIN:g}, beyond it periodic with {GAP:g} h between images"
+        "box": f"free space to a/h = {THIN:g}, beyond it periodic with {IMAGE_GAP:g} h between images"
         if own
         else "free space",
         "error": f"difference to {settings.cells // 2} cells, {nearby}",

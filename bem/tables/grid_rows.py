@@ -2,24 +2,31 @@
 
 from __future__ import annotations
 
-import dataclasses
 from dataclasses import dataclass, field
 from functools import lru_cache
 from threading import Lock
+from typing import NamedTuple
 
 import numpy as np
 
-from bem.grid.calibrated_disc import THIN, PunchSolution, measured_disc
+from bem.grid.discs import punch
 from bem.tables.tabulated_layer import Tabulable
-from contact import Layer
 from contact.records.validation import FloatArray
+
+# Ratio a/h from which on rows are solved with periodic images, a gap between them.
+THIN = 8.0
+
+
+class TableRow(NamedTuple):
+    """k_bar, and Chebyshev coefficients of q in 2 rho^2 - 1."""
+
+    stiffness: float
+    shape: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
 class GridRows:
     """The punches that are known so far, and how to solve the next one.
-
-    Each starts from the one before, so that it does not matter how many rows were asked for first.
 
     Attributes:
         cells: Grid cells across the punch's box.
@@ -30,11 +37,11 @@ class GridRows:
     cells: int
     ratios: FloatArray
     layer: Tabulable
-    _known: list[PunchSolution] = field(default_factory=list)
+    _known: list[TableRow] = field(default_factory=list)
     _growing: Lock = field(default_factory=Lock)
 
-    def first(self, rows: int) -> list[PunchSolution]:
-        """The punches of the first `rows` ratios; of all but the last, only stiffness and shape are kept."""
+    def first(self, rows: int) -> list[TableRow]:
+        """The punches of the first `rows` ratios."""
         with self._growing:
             while len(self._known) < rows:
                 self._solve_next()
@@ -43,15 +50,9 @@ class GridRows:
     def _solve_next(self) -> None:
         """Solve one more ratio. An elastic base is felt beyond any period."""
         ratio = float(self.ratios[len(self._known)])
-        disc = measured_disc(self.cells, self.layer.is_uniform and ratio > THIN)
-        thickness = disc.radius / ratio
-        layer = self.layer
-        stretched = layer.replace(thickness=thickness) if isinstance(layer, Layer) else layer.stretched(thickness)
-        start = self._known[-1].pressure if self._known else None
-        solved = disc.on_layer(stretched, ratio, start)
-        if self._known:
-            self._known[-1] = dataclasses.replace(self._known[-1], pressure=np.zeros((0, 0)))
-        self._known.append(solved)
+        thin = self.layer.is_uniform and ratio > THIN
+        found = punch(self.layer, ratio * self.layer.surface.thickness, self.cells, "periodic" if thin else "free")
+        self._known.append(TableRow(found.growth, found.series(found.degree) / (2.0 * found.growth)))
 
 
 @lru_cache(maxsize=32)

@@ -61,8 +61,6 @@ REFEREES: Mapping[str, EntryPoint] = {
         "calculix": "calculix.method:CalculiX",
         "contact_mechanics": "contact_mechanics:ContactMechanics",
         "tamaas": "tamaas:Tamaas",
-        "nanite": "nanite:Nanite",
-        "adhesion_jkr": "jkr:Jkr",
     }.items()
 }
 

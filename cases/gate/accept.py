@@ -2,20 +2,18 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 from cases.gate.baseline import write_baseline
-from cases.gate.history import append_history, blank_entry
 from cases.gate.proposal import BaselineChange, Proposal
 from cases.gate.write_permission import WriteConditions
 from cases.results.records.claim import Kind
-from cases.results.records.run import Acceptance, CaseResult, RunResult
+from cases.results.records.run import CaseResult, RunResult
 from contact import InvalidInput
 
 
 def accept(folder: Path, proposal: Proposal, run: RunResult, now: WriteConditions, *, loosen: bool = False) -> None:
-    """Write the proposed baselines into ``folder`` and append every change to its history.
+    """Write the proposed baselines into ``folder``.
 
     Raises:
         InvalidInput: naming every reason why this may not be accepted; nothing is written then.
@@ -25,7 +23,6 @@ def accept(folder: Path, proposal: Proposal, run: RunResult, now: WriteCondition
         raise InvalidInput(f"{proposal.case} is not accepted: " + "; ".join(refused))
     for baseline in proposal.baselines:
         write_baseline(folder, baseline)
-    append_history(folder, _entries(proposal, now))
 
 
 def refusals(proposal: Proposal, run: RunResult, now: WriteConditions, *, loosen: bool = False) -> tuple[str, ...]:
@@ -85,29 +82,3 @@ def _loosening(change: BaselineChange) -> str:
     if change.old is None or change.new is None:
         return f"{name} would no longer be watched"
     return f"the tolerance of {name} would grow from {change.old.tolerance:.1e} to {change.new.tolerance:.1e}"
-
-
-def _entries(proposal: Proposal, now: WriteConditions) -> Iterator[Acceptance]:
-    """Return one entry for all new records of a method, and one for each that changed, was loosened or withdrawn."""
-    blank = blank_entry(now, proposal.case, "", "", proposal.reason)
-    for baseline in proposal.baselines:
-        changes = [change for change in proposal.changes if change.method == baseline.method]
-        new = sum(change.old is None for change in changes)
-        if new:
-            yield replace(blank, method=baseline.method, quantity=f"{new} new records")
-        yield from (_changed(blank, change) for change in changes if change.old is not None)
-    for name in proposal.lost:
-        yield replace(blank, method=name.rpartition(" by ")[2], quantity=f"{name} withdrawn")
-
-
-def _changed(blank: Acceptance, change: BaselineChange) -> Acceptance:
-    old, new = change.values
-    return replace(
-        blank,
-        method=change.method,
-        quantity=f"{change.record.quantity} of {change.record.scene}{'' if change.new else ' withdrawn'}",
-        old=old,
-        new=new,
-        old_tolerance=change.old.tolerance if change.old else None,
-        new_tolerance=change.new.tolerance if change.new else None,
-    )

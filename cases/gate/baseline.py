@@ -1,6 +1,6 @@
 """What was accepted: one file a case and method, ``baselines/<case>/<method>.json``, every float with all its digits.
 
-A file is written by ``accept`` alone.  It is sealed, so that a tolerance edited by hand is refused.
+A file is written by ``accept`` alone.
 """
 
 import math
@@ -14,7 +14,7 @@ from cases.judgement.rules.tolerance import relative_tolerance
 from cases.results.files import write_whole
 from cases.results.records.claim import Kind
 from cases.results.records.field_types import Finite, NotNegative, Positive, Vector
-from cases.results.sealed import read_sealed, sealed_text, validated
+from cases.results.strict_json import json_text, read_json, validated
 from contact import InvalidInput
 
 # Files of another version are refused.
@@ -137,20 +137,20 @@ def write_baseline(folder: Path, baseline: Baseline) -> None:
     """Write the file of ``baseline``, whole or not at all; only ``accept`` calls this."""
     path = baseline_path(folder, baseline.case, baseline.method)
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, sealed_text({_ENTRY: _BASELINE.dump_python(baseline, mode="json")}, covered=_ENTRY))
+    write_whole(path, json_text({_ENTRY: _BASELINE.dump_python(baseline, mode="json")}))
 
 
 def read_baselines(folder: Path) -> tuple[Baseline, ...]:
     """Return every baseline below ``folder``, ordered by case and method; none if there is no folder.
 
     Raises:
-        InvalidInput: if a file is damaged, non-finite, of another version or edited by hand.
+        InvalidInput: if a file is damaged, non-finite or of another version.
     """
     return tuple(_read(path) for path in sorted(folder.glob("*/*.json")))
 
 
 def _read(path: Path) -> Baseline:
-    tree = read_sealed(path, remedy=REMEDY, covered=_ENTRY)[_ENTRY]
+    tree: Any = read_json(path, remedy=REMEDY).get(_ENTRY)
     version = tree.get("version") if isinstance(tree, dict) else None
     if version != BASELINE_VERSION:
         raise InvalidInput(f"{path} has version {version!r}, this program reads {BASELINE_VERSION}; accept it anew")

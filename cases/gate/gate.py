@@ -13,7 +13,7 @@ from cases.gate.ladders import ladder_claims
 from cases.measurements.measurement import grouped
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.reliability import Ladder
-from cases.results.records.run import Acceptance, CaseResult, RunResult
+from cases.results.records.run import CaseResult, RunResult
 from cases.results.records.scene_run import SceneRun
 
 Watched = Callable[[str, SceneRun], bool]
@@ -22,7 +22,6 @@ Watched = Callable[[str, SceneRun], bool]
 def gate(
     run: RunResult,
     baselines: Iterable[Baseline],
-    history: Iterable[Acceptance] = (),
     ladders: Iterable[Ladder] = (),
     watched: Watched = lambda case, row: True,
 ) -> RunResult:
@@ -34,7 +33,6 @@ def gate(
     Args:
         run: a run whose own claims are judged.
         baselines: what was accepted; a case of the run's suite that the run does not have counts as missing.
-        history: acceptances, for the report.
         ladders: accepted stability ladders.
         watched: whether a solution of a case needs accepted numbers; those of the nightly suite alone do not.
     """
@@ -43,7 +41,7 @@ def gate(
     present = {case.name for case in run.cases}
     lost = [_lost_case(name) for name in sorted(accepted) if name not in present and _belongs(accepted[name], run)]
     cases = tuple(_gated(case, accepted.get(case.name, []), accepted_ladders, watched) for case in (*run.cases, *lost))
-    return replace(run, cases=cases, acceptances=tuple(history))
+    return replace(run, cases=cases)
 
 
 def _belongs(baselines: list[Baseline], run: RunResult) -> bool:

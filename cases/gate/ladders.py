@@ -1,6 +1,6 @@
 """Accepted ladders: no method may give up earlier than it did, or lose more than one digit on a rung.
 
-One file a method, ``baselines/ladders-<method>.json``, written by ``accept`` alone; a digest covers it.
+One file a method, ``baselines/ladders-<method>.json``, written by ``accept`` alone.
 """
 
 from collections.abc import Iterable, Iterator
@@ -11,15 +11,13 @@ from pydantic import TypeAdapter
 
 from cases.gate.baseline import REMEDY
 from cases.gate.checks.check import regression_claim
-from cases.gate.history import append_history, blank_entry
-from cases.gate.write_permission import WriteConditions
 from cases.judgement.rules.judgement import Judgement, nothing_compared, passed_or_failed
 from cases.results.files import write_whole
 from cases.results.records.claim import Claim
 from cases.results.records.reliability import Ladder
 from cases.results.records.run import CaseResult
-from cases.results.sealed import read_sealed, sealed_text, validated
 from cases.results.status import Status
+from cases.results.strict_json import json_text, read_json, validated
 from contact import InvalidInput
 
 _LADDERS: TypeAdapter[tuple[Ladder, ...]] = TypeAdapter(tuple[Ladder, ...])
@@ -30,13 +28,13 @@ def read_ladders(folder: Path) -> tuple[Ladder, ...]:
     """Return every accepted ladder; none if there is no file.
 
     Raises:
-        InvalidInput: if a file is damaged or edited by hand.
+        InvalidInput: if a file is damaged.
     """
     return tuple(ladder for path in sorted(folder.glob(_NAME.format("*"))) for ladder in _read(path))
 
 
 def _read(path: Path) -> tuple[Ladder, ...]:
-    return validated(_LADDERS, read_sealed(path, remedy=REMEDY).get("ladders"), place=f"{path}, ladders", remedy=REMEDY)
+    return validated(_LADDERS, read_json(path, remedy=REMEDY).get("ladders"), place=f"{path}, ladders", remedy=REMEDY)
 
 
 def ladder_claims(case: CaseResult, accepted: Iterable[Ladder]) -> Iterator[Claim]:
@@ -79,10 +77,8 @@ def _judged(ladder: Ladder, before: Ladder | None) -> Judgement:
     return passed_or_failed(float(len(worse)), 0.5, message, failure=Status.DIFF)
 
 
-def accept_ladders(
-    folder: Path, ladders: Iterable[Ladder], now: WriteConditions, *, reason: str, loosen: bool = False
-) -> None:
-    """Write ladders into ``folder``, those of a method over those accepted before, and a line into its history.
+def accept_ladders(folder: Path, ladders: Iterable[Ladder], *, loosen: bool = False) -> None:
+    """Write ladders into ``folder``, those of a method over those accepted before.
 
     Raises:
         InvalidInput: if a ladder is worse than the accepted one and ``loosen`` is not said; nothing is written then.
@@ -95,11 +91,9 @@ def accept_ladders(
     for method in dict.fromkeys(ladder.method for ladder in new.values()):
         merged = [ladder for ladder in (accepted | new).values() if ladder.method == method]
         _write(folder / _NAME.format(method), merged)
-        count = sum(ladder.method == method for ladder in new.values())
-        append_history(folder, [blank_entry(now, "stability", method, f"{count} ladders", reason)])
 
 
 def _write(path: Path, ladders: list[Ladder]) -> None:
     tree = _LADDERS.dump_python(tuple(sorted(ladders, key=lambda ladder: ladder.name)), mode="json")
     path.parent.mkdir(parents=True, exist_ok=True)
-    write_whole(path, sealed_text({"ladders": tree}))
+    write_whole(path, json_text({"ladders": tree}))

@@ -18,8 +18,8 @@ from cases.declare.task import Task
 from cases.judgement.rules.tolerance import relative_spread
 from cases.results.records.scene_run import Quantity, SceneRun
 from cases.run.executors import ahead, closing, process_pool
-from cases.run.many.window import Window
 from cases.run.solve_task import solve
+from cases.run.window import Window
 from contact import (
     ContactRadii,
     DepthHistory,

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-from cases.library._figures._symbols import series
-from cases.results.records.figure import Series
 from contact.records.validation import FloatArray
 
 # Four digits or three; the first column is quoted up to a/h = 2 only.
@@ -59,8 +57,3 @@ COMMON = {label: tuple(column[ratio] for ratio in RATIOS) for label, column in T
 def column(label: str) -> tuple[FloatArray, FloatArray]:
     """Return a/h and kbar of a layer."""
     return np.array(list(TABLE[label])), np.array(list(TABLE[label].values()))
-
-
-def hayes_symbols(label: str, ratio: FloatArray, values: FloatArray) -> Series:
-    """Return symbols of the table, or of what follows from it."""
-    return series(f"Hayes {label}", "Hayes et al. 1972", label, ratio, values, style="symbols")

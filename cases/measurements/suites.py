@@ -92,20 +92,6 @@ def all_ladders() -> CaseResult:
     return ladder_case(LADDERS)
 
 
-def quick_coverage() -> CaseResult:
-    """Stated errors of the fast method on a few scenes."""
-    from cases.measurements.campaigns.coverage import QUICK_PLANS, coverage_case  # noqa: PLC0415
-
-    return coverage_case(QUICK_PLANS)
-
-
-def nightly_coverage() -> CaseResult:
-    """The same, and stated errors on grids of many cells, of adhering measured profiles and between solved radii."""
-    from cases.measurements.campaigns.coverage import NIGHTLY_PLANS, QUICK_PLANS, coverage_case  # noqa: PLC0415
-
-    return coverage_case((*QUICK_PLANS, *NIGHTLY_PLANS))
-
-
 def code_verification() -> CaseResult:
     """Orders, stability and locking of the finite elements."""
     from cases.library._code_verification.finite_elements import finite_element_case  # noqa: PLC0415
@@ -113,5 +99,5 @@ def code_verification() -> CaseResult:
     return finite_element_case()
 
 
-QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_coverage, quick_ladders)
-NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, nightly_coverage, all_ladders)
+QUICK: tuple[Callable[[], CaseResult], ...] = (code_verification, quick_ladders)
+NIGHTLY: tuple[Callable[[], CaseResult], ...] = (code_verification, all_ladders)

@@ -13,7 +13,7 @@ from cases.declare.uncertain_inputs import UncertainInputs, read_inputs
 from contact import InvalidInput, Scene
 from contact.records.validation import FloatArray
 from mdr.curves import CurveFit, fit_curve
-from mdr.curves.fit import Parameter
+from mdr.curves.fit import DEFAULT_PARAMETERS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,7 +37,7 @@ def fit_uncertain(
     force: Sequence[float] | FloatArray,
     uncertain: str | UncertainInputs,
     *,
-    parameters: Sequence[Parameter] = ("youngs_modulus", "contact_point"),
+    parameters: Sequence[str] = DEFAULT_PARAMETERS,
     confidence: float = 0.95,
 ) -> UncertainFit:
     """Fit as `mdr.curves.fit_curve` does, with intervals that hold the uncertain inputs too.

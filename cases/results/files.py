@@ -1,8 +1,4 @@
-"""A run on disk: ``results.json`` is the whole run without loss; ``results.h5`` holds its arrays for other programs.
-
-``results.json`` is sealed: what it says of verdicts and numbers is believed because nothing but a run can have written
-it.
-"""
+"""A run on disk: ``results.json`` is the whole run without loss; ``results.h5`` holds its arrays for other programs."""
 
 import os
 from pathlib import Path
@@ -12,7 +8,7 @@ import numpy as np
 from pydantic import TypeAdapter
 
 from cases.results.records.run import SCHEMA_VERSION, CaseResult, RunResult
-from cases.results.sealed import read_sealed, sealed_text, unsealed, validated
+from cases.results.strict_json import json_object, json_text, read_json, validated
 from contact import InvalidInput
 from contact.files.storage import write_tree
 from contact.records.record import shown
@@ -23,17 +19,17 @@ _REMEDY = "run the cases again (with --resume finished solutions are kept)"
 
 
 def to_json(run: RunResult) -> str:
-    """Return ``run`` as sealed JSON text; every float keeps all its digits, none can be non-finite."""
-    return sealed_text(_RUN.dump_python(run, mode="json"))
+    """Return ``run`` as JSON text; every float keeps all its digits, none can be non-finite."""
+    return json_text(_RUN.dump_python(run, mode="json"))
 
 
 def from_json(text: str) -> RunResult:
     """Return the run stored in ``text``.
 
     Raises:
-        InvalidInput: if the text is no such JSON, or was changed after it was written.
+        InvalidInput: if the text is no such JSON.
     """
-    return _validated(unsealed(text.encode("utf-8", "surrogatepass"), place=_NAME, remedy=_REMEDY), _NAME)
+    return _validated(json_object(text.encode("utf-8", "surrogatepass"), place=_NAME, remedy=_REMEDY), _NAME)
 
 
 def _validated(tree: dict[str, Any], place: str) -> RunResult:
@@ -44,12 +40,8 @@ def _validated(tree: dict[str, Any], place: str) -> RunResult:
 
 
 def json_schema() -> dict[str, Any]:
-    """Return the JSON Schema of results.json: a run with the digest that seals it."""
-    schema = _RUN.json_schema()
-    digest = {"type": "string", "title": "Digest", "description": "Seal over all other entries."}
-    schema["properties"] = {**schema["properties"], "digest": digest}
-    schema["required"] = [*schema["required"], "digest"]
-    return schema
+    """Return the JSON Schema of results.json."""
+    return _RUN.json_schema()
 
 
 def write_run(run: RunResult, directory: Path) -> None:
@@ -68,10 +60,10 @@ def read_run(directory: Path) -> RunResult:
     """Return the run stored in ``directory``.
 
     Raises:
-        InvalidInput: in one line, if there is none, it cannot be read, or it was changed after it was written.
+        InvalidInput: in one line, if there is none, or it cannot be read.
     """
     path = require_run(directory)
-    return _validated(read_sealed(path, remedy=_REMEDY), str(path))
+    return _validated(read_json(path, remedy=_REMEDY), str(path))
 
 
 def require_run(directory: Path) -> Path:

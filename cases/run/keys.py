@@ -43,15 +43,6 @@ def content_key(parts: Mapping[str, Any]) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:32]
 
 
-def differences(old: Any, new: Any, place: str = "") -> list[str]:  # trees of plain values
-    """Return what changed between two key parts, one line each."""
-    if isinstance(old, Mapping) and isinstance(new, Mapping):
-        names = sorted({*old, *new})
-        return [line for n in names for line in differences(old.get(n), new.get(n), f"{place}.{n}".lstrip("."))]
-    return [] if old == new else [f"{place}: {_shown(old)} -> {_shown(new)}"]
-
-
-# The value may be any setting of any method.
 def plain(value: Any) -> Any:
     """Return a record of settings as plain values that JSON can hold."""
     if dataclasses.is_dataclass(value) and not isinstance(value, type):

@@ -23,12 +23,12 @@ from cases.results.status import Status
 from cases.run.executors import ClusterLost, ExecutorFactory, ahead, closing, fresh_processes, process_pool, serial
 from cases.run.keys import content_key, key_parts
 from cases.run.lock import locked
-from cases.run.many.window import Window
 from cases.run.progress import Progress, ProgressEvent, silent
 from cases.run.solve_task import solve, without_numbers
 from cases.run.specification import specification
 from cases.run.stamp import stamp
 from cases.run.store import TaskStore
+from cases.run.window import Window
 from contact import InvalidInput
 
 # Seconds that one solution by a method of an installed package may take unless told otherwise: nobody here knows

@@ -1,4 +1,4 @@
-"""Finished tasks on disk, one whole sealed file each, so that a killed run can go on where it stopped."""
+"""Finished tasks on disk, one whole file each, so that a killed run can go on where it stopped."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -8,10 +8,9 @@ from pydantic import TypeAdapter, ValidationError
 
 from cases.results.files import write_whole
 from cases.results.records.scene_run import SceneRun
-from cases.results.sealed import read_sealed, sealed_text
-from cases.run.keys import content_key, differences
+from cases.results.strict_json import json_text, read_json
+from cases.run.keys import content_key
 from contact import InvalidInput
-from contact.records.record import shown
 
 _RUN: TypeAdapter[SceneRun] = TypeAdapter(SceneRun)
 _REMEDY = "delete it; the task is then solved again"
@@ -27,7 +26,7 @@ class TaskStore:
     def put(self, key: str, parts: Mapping[str, Any], run: SceneRun) -> None:
         """Store a finished task with everything its key was made of."""
         tree = {"parts": parts, "run": _RUN.dump_python(run, mode="json")}
-        write_whole(self._path(key), sealed_text(tree))
+        write_whole(self._path(key), json_text(tree))
 
     def get(self, key: str) -> SceneRun | None:
         """Return the stored row of ``key``; None when there is none.
@@ -37,7 +36,7 @@ class TaskStore:
         """
         if not self._path(key).exists():
             return None
-        tree = self._tree(key)
+        tree = read_json(self._path(key), remedy=_REMEDY)
         try:
             run = _RUN.validate_python(tree["run"])
             same = content_key(tree["parts"]) == run.key == key
@@ -47,18 +46,5 @@ class TaskStore:
             raise InvalidInput(f"{self._path(key)} holds the answer to another question; {_REMEDY}")
         return run
 
-    def explain(self, key: str, parts: Mapping[str, Any]) -> list[str]:
-        """Return what changed between the stored task ``key`` and ``parts``, one line each.
-
-        Raises:
-            InvalidInput: if no such task is stored, or its file is damaged.
-        """
-        return differences(self._tree(key).get("parts"), parts)
-
     def _path(self, key: str) -> Path:
         return self._directory / f"{key}.json"
-
-    def _tree(self, key: str) -> dict[str, Any]:
-        if not self._path(key).exists():
-            raise InvalidInput(f"no finished task {shown(key)} in {self._directory}")
-        return read_sealed(self._path(key), remedy=_REMEDY)

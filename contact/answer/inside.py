@@ -22,6 +22,8 @@ Searched: TypeAlias = Literal["von_mises", "interface_shear"]
 
 # The surface is looked at this share of the contact radius below it, and points as close to a sharp rim count as on it.
 SURFACE = 1e-11
+# Depths larger by this share than an interface's lie below it; within 32 roundings they are the interface.
+_BELOW = 1e-13
 # Points deeper than a layer by so many roundings of its thickness lie on its base.
 _ROUNDED = 4.0 * float(np.finfo(float).eps)
 _KINDS = ("displacement", "stress", "hydrostatic_pressure", "pressure_gradient")
@@ -158,7 +160,7 @@ class Inside:
             top = _BELOW_RIMS * a if self._rims else 0.0
             deepest = min(self.scene.layer.thickness, 4.0 * a)
             inner = [d for d in faces if top < d < deepest]
-            rows = [*np.linspace(top, deepest, _SAMPLES), *inner, *np.nextafter(inner, np.inf)]
+            rows = [*np.linspace(top, deepest, _SAMPLES), *inner, *(d * (1.0 + _BELOW) for d in inner)]
             box = Box((0.0, top), (1.5 * a, deepest))
             points = np.meshgrid(np.linspace(0.0, 1.5 * a, _SAMPLES), rows)
             return largest_in(box, points, lambda r, z: self.fields.at(r, z).von_mises)

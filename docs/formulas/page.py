@@ -29,7 +29,7 @@ A formula is judged at the Poisson's ratios that it claims.
 read in its place on 2026-11-22. Public programs that cite the papers (AtomicJ; Python programs for force curves; a
 script for Long; an R package and a Python program for Hayes' table) were compared digit by digit; where several have a
 number, they agree. AtomicJ is by the author of Hermanowicz 2021, whose abstract says that the formulas hold for any
-thickness. A test asks the installed nanite for Hertz, the cone and Clifford. Abstracts were found of Dimitriadis, of
+thickness. Hertz, the cone and Clifford are those of nanite 4.2.3. Abstracts were found of Dimitriadis, of
 Gavara and Chadwick, and of Lin, Hui and Conway: finite elements of a punch that sticks and of one that slides, fitted
 by analytic compliances, without their numbers. Limits of thick and thin layers are tests with our own solver. From
 memory remain the numbers of the fit of Lin, Hui and Conway, the ranges of Dimitriadis, Garcia, Gavara and Managuli, and

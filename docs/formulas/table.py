@@ -52,7 +52,7 @@ HAYES = "Hayes et al., J. Biomech. 5 (1972) 541; table of an R package that cite
 PROGRAMS = "two public programs, digit by digit"
 AUTHORS_PROGRAM = "the author's own program AtomicJ, digit by digit; the abstract has the range"
 OUR_LIMIT = "our own solver: its error falls with growing a/h (test)"
-NANITE = "nanite 4.2.3, as installed (test)"
+NANITE = "nanite 4.2.3, digit by digit"
 THICK = "layers that are thick beside the contact"
 
 PARABOLOIDS = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contact.records.validation import FloatArray
-from fem_reference.in_time.surface_memory import ViscoelasticSurface
+from fem_reference.in_time.top import Top
 
 
 @dataclass(frozen=True)
@@ -22,7 +22,7 @@ class CondensedLayer:
         unknowns: size of the condensed system.
     """
 
-    surface: ViscoelasticSurface
+    surface: Top
     radii: FloatArray
     profile: FloatArray
     radius: float

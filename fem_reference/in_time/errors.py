@@ -1,27 +1,26 @@
-"""Error bars of histories: what half the cells change, what half the steps change, and what neither shows.
+"""Error bars of impacts and of prescribed histories: changes by half the cells, by half the steps, and what both miss.
 
-The trajectory is simulated three times.  Contact sets are resolved to one cell, so two meshes may agree in one number
-by accident.  Hence no error by the cells is stated below a share of the mean change of all numbers, and no peak's below
-a share of the largest change near it; a flat punch has no contact set and needs neither.  The steps in which contact
-begins and ends do not keep the energy, now more, now less: what is missing of it at the end is told beside the
-restitution.  The coefficients stand in `error_model.IN_TIME`.
+Every motion is simulated three times.  Prescribed histories state the changes near every instant.  Contact sets are
+resolved to one cell, so two meshes may agree in one number by accident.  Hence no error of an impact by the cells is
+stated below a share of the mean change of all numbers, and no peak's below a share of the largest change near it; a
+flat punch has no contact set and needs neither.  The steps in which contact begins and ends do not keep the energy,
+now more, now less: what is missing of it at the end is told beside the restitution.  The coefficients stand in
+`error_model.IN_TIME`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TypeVar
 
 import numpy as np
 
 from contact import HistoryPath, ImpactHistory
+from contact.records.validation import FloatArray
 from contact.scene.extent import radius_of_depth
 from fem_reference.discrete_layer.indenter import height
 from fem_reference.error_model import IN_TIME
 from fem_reference.in_time.relaxation import relaxation_of
-
-H = TypeVar("H", bound=HistoryPath | ImpactHistory)
 
 # Numbers of an impact that follow from its channels.
 DERIVED = ("coefficient_of_restitution", "contact_time")
@@ -61,8 +60,10 @@ class KnownErrors:
     heights: float = 0.0
 
 
-def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
-    """The finest history with its error estimates.
+def with_errors(
+    fine: ImpactHistory, half_cells: ImpactHistory, half_both: ImpactHistory, known: KnownErrors
+) -> ImpactHistory:
+    """The finest simulation of an impact with its error estimates.
 
     Args:
         fine: history as asked.
@@ -71,14 +72,14 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
         known: what these do not show.
     """
     channels = [name for name in fine.ARRAYS if name != "time"]
-    scalars = [*fine.SCALARS, *(name for name in DERIVED if hasattr(fine, name))]
+    scalars = [*fine.SCALARS, *DERIVED]
     space = {name: known.space * _channel_change(fine, half_cells, name) for name in channels}
     space |= {name: known.space * _scalar_change(fine, half_cells, name) for name in scalars}
     space |= {
         name: max(space[name], _share_beside_peak(name) * _change_beside_peak(fine, half_cells, PEAKS[name]))
         for name in fine.SCALARS
     }
-    if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
+    if "contact_radius" not in known.exact:
         last = _time_after_last_cell(fine, known.cell)
         space["contact_time"] = max(IN_TIME.first_order * space["contact_time"], last)
         space["coefficient_of_restitution"] *= IN_TIME.uneven_end
@@ -86,10 +87,8 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
     time |= {name: _scalar_change(half_cells, half_both, name) for name in scalars}
     judged = [name for name in ("indentation_depth", "normal_force", *scalars) if name not in _OF_THE_EDGE]
     typical = IN_TIME.share_of_mean * float(np.mean([space[name] for name in judged if name not in known.exact]))
-    lost = 0.0
-    if isinstance(fine, ImpactHistory):
-        time["contact_time"] += _time_in_rounding(fine)
-        lost = _energy_lost(fine)
+    time["contact_time"] += _time_in_rounding(fine)
+    lost = _energy_lost(fine)
     error = {}
     for name in (*channels, *scalars):
         floor = IN_TIME.share_of_mean * space[CHANNELS[name]] if name in CHANNELS else typical
@@ -101,19 +100,53 @@ def with_errors(fine: H, half_cells: H, half_both: H, known: KnownErrors) -> H:
         size += reading if name in channels else 0.0
         size += known.everywhere * _share(fine, name)
         error[name] = np.full(len(fine) if name in channels else 1, 0.0 if name in known.exact else size)
-    if isinstance(fine, ImpactHistory) and "contact_radius" not in known.exact:
+    if "contact_radius" not in known.exact:
         error["contact_radius"][-1] += _steep_end(fine, error["contact_time"][0])
-    if "contact_time" in error and known.heights > 0.0:
+    if known.heights > 0.0:
         times = [getattr(each, DERIVED[1]) for each in (fine, half_cells, half_both)]
         error["contact_time"] = np.array([_smooth_end(times, known.heights) + known.everywhere])
     return replace(fine, error_estimate=error)
+
+
+def path_with_errors(
+    fine: HistoryPath, half_cells: HistoryPath, half_both: HistoryPath, known: KnownErrors
+) -> HistoryPath:
+    """The finest simulation of a prescribed history with error estimates for every instant, shape (n,).
+
+    Error = safety x (|fine - half the cells| + |half the cells - half of both|), each the largest change at the
+    instants near by, plus a share of their means.  The instants of half the steps are every other one.
+    """
+    error = {}
+    for name in (name for name in fine.ARRAYS if name != "time"):
+        values, halves, both = (getattr(each, name) for each in (fine, half_cells, half_both))
+        cells = known.space * np.abs(values - halves)
+        steps = np.abs(np.interp(half_both.time, half_cells.time, halves) - both)
+        size = _largest_near(cells, fine.time, fine, known.cell) + _largest_near(
+            steps, half_both.time, fine, known.cell
+        )
+        size += IN_TIME.share_of_path_mean * float(cells.mean() + steps.mean())
+        size = IN_TIME.path_safety * size / max(np.abs(values).max(), np.finfo(float).tiny) + known.everywhere
+        if "radius" in name:
+            # Pressures of a layer that relaxes do not end like sqrt(a - r): radii are known to a cell.
+            size += known.radius + (known.cell / values.max() if fine.scene.effects else 0.0)
+        error[name] = np.zeros(len(fine)) if name in known.exact else size
+    return replace(fine, error_estimate=error)
+
+
+def _largest_near(change: FloatArray, time: FloatArray, fine: HistoryPath, cell: float) -> FloatArray:
+    """Largest change at six of the instants ``time`` to either side, and while contact is narrower than some cells."""
+    place = np.searchsorted(time, fine.time)
+    near: FloatArray = np.max([change[np.clip(place + k, 0, len(change) - 1)] for k in range(-6, 6)], axis=0)
+    narrow = fine.contact_radius < IN_TIME.narrow_path * cell
+    at_narrow = change[np.isin(time, fine.time[narrow])]
+    return np.asarray(np.where(narrow, np.maximum(near, at_narrow.max(initial=0.0)), near))
 
 
 def _share_beside_peak(name: str) -> float:
     return IN_TIME.radius_beside_peak if "radius" in name else IN_TIME.share_beside_peak
 
 
-def _change_beside_peak(fine: H, half_cells: H, name: str) -> float:
+def _change_beside_peak(fine: ImpactHistory, half_cells: ImpactHistory, name: str) -> float:
     """Largest change of a channel while it is near its peak, relative to the peak.
 
     The force errs now more, now less as the edge passes a cell, so two grids may agree at the peak itself by accident.
@@ -123,9 +156,9 @@ def _change_beside_peak(fine: H, half_cells: H, name: str) -> float:
     return float(change[others >= IN_TIME.beside_peak * others.max()].max() / max(values.max(), np.finfo(float).tiny))
 
 
-def _share(history: HistoryPath | ImpactHistory, name: str) -> float:
+def _share(history: ImpactHistory, name: str) -> float:
     """The restitution errs with the energy W lost: d(eps)/eps = -(1/eps^2 - 1)/2 dW/W, nothing on an elastic layer."""
-    if name != "coefficient_of_restitution" or not isinstance(history, ImpactHistory):
+    if name != "coefficient_of_restitution":
         return 1.0
     return float(np.clip((history.coefficient_of_restitution**-2 - 1) / 2, 0.0, 1.0))
 
@@ -196,11 +229,11 @@ def _steep_end(history: ImpactHistory, time_error: float) -> float:
     return float(max(reached - last, 0.0) / history.contact_radius.max())
 
 
-def _scalar_change(fine: H, coarse: H, name: str) -> float:
+def _scalar_change(fine: ImpactHistory, coarse: ImpactHistory, name: str) -> float:
     return float(abs(getattr(coarse, name) / getattr(fine, name) - 1))
 
 
-def _channel_change(fine: H, coarse: H, name: str) -> float:
+def _channel_change(fine: ImpactHistory, coarse: ImpactHistory, name: str) -> float:
     """Largest change at the instants of the coarser history, relative to the largest value."""
     values, others = getattr(fine, name), getattr(coarse, name)
     change = np.interp(coarse.time, fine.time, values) - others

@@ -15,77 +15,80 @@ from fem_reference.in_time.impact import HistorySamples
 from fem_reference.in_time.relaxation import ShearRelaxation
 from fem_reference.in_time.relaxation_step import INSTANT, RelaxationStep, relaxation_step
 
+# Steps of a segment between given instants: at least one in so many of the whole history, and at least four.
+# Half as many segments' steps double the error of a ramp that is short; twice as many cost as much time again.
+LEAST_SHARE = 20
+LEAST_STEPS = 4
 
-def segment_steps(time: FloatArray, steps: int) -> list[int]:
-    """How many equal steps each segment between given instants gets: about ``steps`` in all, four at least."""
-    share = np.diff(time) / (time[-1] - time[0]) * steps
-    return [max(4, round(float(s))) for s in share]
+
+def segment_steps(time: FloatArray, steps: int, coarser: int) -> list[int]:
+    """Equal steps of each segment between given instants.
+
+    Args:
+        time: given instants [s].
+        steps: about how many steps in all; short segments add some.
+        coarser: 1, or 2 for exactly half the steps, whose instants are every other one.
+    """
+    share = np.diff(time) / (time[-1] - time[0]) * steps / 2
+    least = max(LEAST_STEPS, steps // (2 * LEAST_SHARE))
+    return [2 // coarser * max(least, round(float(s))) for s in share]
 
 
-def simulate_depths(
-    condensed: CondensedLayer, relaxation: ShearRelaxation, time: FloatArray, depth: FloatArray, steps: int
+def simulate_prescribed(
+    condensed: CondensedLayer,
+    relaxation: ShearRelaxation,
+    time: FloatArray,
+    values: FloatArray,
+    counts: list[int],
+    *,
+    by_depth: bool,
 ) -> HistorySamples:
-    """Depths linear between the given instants.
+    """Response to depths or forces that are linear between the given instants; a first load above zero acts at once.
 
     Args:
         condensed: the layer at rest and its indenter.
         relaxation: shear relaxation.
         time: instants [s].
-        depth: depths at these instants, in the units of the condensed layer.
-        steps: about how many steps in all.
-    """
-    record = _at_rest(time[0], depth[0])
-    surface = condensed.surface
-
-    def advance(step: RelaxationStep, depth: float, active: BoolArray | None) -> Complementary:
-        """Pressures at the end of a step to this depth, remembered; the search begins with the contact `active`."""
-        matrix, offset = surface.begin(step)
-        state = solve_complementarity(matrix, depth * surface.resultants - condensed.profile - offset, active)
-        surface.accept(step, state.pressure)
-        return state
-
-    for (t0, t1), (d0, d1), count in zip(pairwise(time), pairwise(depth), segment_steps(time, steps), strict=True):
-        step = relaxation_step(relaxation, (t1 - t0) / count)
-        # The rates jump with that of the depth.
-        if step.dashpot > 0:
-            advance(step.instant, d0 + (d1 - d0) * INSTANT / count, None)
-        active = None
-        for n in range(1, count + 1):
-            now = (1.0 - n / count) * d0 + n / count * d1
-            state = advance(step.first if n == 1 else step, now, active)
-            active = state.active
-            _add(record, condensed, state, t0 + (t1 - t0) * n / count, now)
-    return record
-
-
-def simulate_forces(
-    condensed: CondensedLayer, relaxation: ShearRelaxation, time: FloatArray, force: FloatArray, steps: int
-) -> HistorySamples:
-    """Forces linear between the given instants, in the units of the condensed layer; see `simulate_depths`.
+        values: depths or forces at these instants, in the units of the condensed layer.
+        counts: equal steps of each segment.
+        by_depth: whether ``values`` are depths.
 
     Raises:
         NotConvergedError: no depth carries the force.
     """
-    record = _at_rest(time[0], 0.0)
-    surface, depth = condensed.surface, 0.0
+    record, surface, depth = HistorySamples(), condensed.surface, 0.0
+    active: BoolArray | None = None
 
-    def advance(step: RelaxationStep, force: float, depth: float) -> tuple[Complementary, float]:
-        """Pressures and depth at the end of a step to this force, remembered; the search begins at `depth`."""
+    def advance(step: RelaxationStep, load: float) -> Complementary:
+        """Pressures at the end of a step to this load; the memory and the depth move on."""
+        nonlocal depth, active
         matrix, offset = surface.begin(step)
-        state, depth = _depth_of_force(matrix, surface.resultants, condensed.profile + offset, force, depth)
+        if by_depth:
+            approach = load * surface.resultants - condensed.profile - offset
+            state, depth = solve_complementarity(matrix, approach, active), load
+        else:
+            state, depth = _depth_of_force(matrix, surface.resultants, condensed.profile + offset, load, depth)
         surface.accept(step, state.pressure)
-        return state, depth
+        active = state.active
+        return state
 
-    for (t0, t1), (f0, f1), count in zip(pairwise(time), pairwise(force), segment_steps(time, steps), strict=True):
+    for n, ((t0, t1), (v0, v1), count) in enumerate(zip(pairwise(time), pairwise(values), counts, strict=True)):
         step = relaxation_step(relaxation, (t1 - t0) / count)
-        # The only jump of the force, hence of the rates.
-        if step.dashpot > 0 and t0 == time[0] and f0 > 0:
-            _, depth = advance(step.instant, float(f0), depth)
-        for n in range(1, count + 1):
-            # The last is the force given, to the bit: a rounding beside zero would be no force that a depth carries.
-            now = (1.0 - n / count) * f0 + n / count * f1
-            state, depth = advance(step.first if n == 1 else step, now, depth)
-            _add(record, condensed, state, t0 + (t1 - t0) * n / count, depth)
+        active = None
+        if n == 0 and v0 > 0:
+            _add(record, condensed, advance(step.instant, float(v0)), t0, depth)
+        elif n == 0:
+            start = float(v0) if by_depth else 0.0
+            record.add(time=float(t0), depth=start, force=0.0, radius=0.0, stored=0.0, dissipated=0.0)
+        if by_depth and step.dashpot > 0:
+            # The rates jump with that of the depth.
+            advance(step.instant, v0 + (v1 - v0) * INSTANT / count)
+            active = None
+        for k in range(1, count + 1):
+            # The last instant and its load are the given ones, to the bit.
+            now = t1 if k == count else t0 + (t1 - t0) * k / count
+            load = float((1.0 - k / count) * v0 + k / count * v1)
+            _add(record, condensed, advance(step.first if k == 1 else step, load), now, depth)
     return record
 
 
@@ -97,22 +100,18 @@ def _depth_of_force(
     least = float(np.min(gap / w))
     if force == 0:
         return solve_complementarity(matrix, least * w - gap), min(depth, least)
-    depth = max(depth, least + 1e-9 * abs(least) + 1e-15)
+    depth, change = max(depth, least + 1e-9 * abs(least) + 1e-15), np.inf
     for _ in range(60):
         state = solve_complementarity(matrix, depth * w - gap)
         defect = force - float(w @ state.pressure)
-        if abs(defect) <= 1e-10 * force:
+        # A force far below the layer's own stresses is known to the rounding of its depth only.
+        if abs(defect) <= 1e-10 * force or abs(change) <= 1e-14 * abs(depth):
             return state, depth
         act = state.active if state.active.any() else gap / w <= depth + 1e-12
         block = matrix[np.ix_(act, act)]
-        depth += defect / float(w[act] @ np.linalg.solve(block, w[act]))
+        change = defect / float(w[act] @ np.linalg.solve(block, w[act]))
+        depth += change
     raise NotConvergedError("no depth carries the prescribed force", {"force_defect": defect})
-
-
-def _at_rest(time: float, depth: float) -> HistorySamples:
-    record = HistorySamples()
-    record.add(time=float(time), depth=float(depth), force=0.0, radius=0.0, stored=0.0, dissipated=0.0)
-    return record
 
 
 def _add(record: HistorySamples, condensed: CondensedLayer, state: Complementary, time: float, depth: float) -> None:

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 
@@ -77,17 +76,17 @@ class RelaxationStep:
         _, w_now, w_before, w_rate = self.rule
         return np.asarray((w_now * now + w_before * before) / self.duration + w_rate * rate)
 
-    def dissipation(self, before: FloatArray, change: FloatArray, product: Any) -> float:
+    def dissipation(self, before: FloatArray, change: FloatArray, weights: FloatArray) -> float:
         """Energy lost in the branches and the dashpot during a step.
 
         Args:
             before: s_j at its beginning, shape (m, n).
             change: e_1 - e_0, shape (n,).
-            product: symmetric matrix of the energy product, dense or sparse, shape (n, n).
+            weights: of the energy product, shape (n,).
         """
 
         def inner(a: FloatArray, b: FloatArray) -> float:
-            return float(a @ (product @ b))
+            return float(a @ (weights * b))
 
         rate = change / self.duration
         lost = self.dashpot * self.duration * inner(rate, rate)

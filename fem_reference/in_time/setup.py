@@ -27,10 +27,9 @@ from fem_reference.elastic.surface_compliance import SurfaceCompliance, condense
 from fem_reference.error_model import FIXED_RADIUS, IN_TIME
 from fem_reference.in_time.condensed_layer import CondensedLayer
 from fem_reference.in_time.errors import KnownErrors
-from fem_reference.in_time.field_memory import CompressibleSurface
 from fem_reference.in_time.impact import HistorySamples
 from fem_reference.in_time.relaxation import relaxation_of
-from fem_reference.in_time.surface_memory import ProportionalSurface
+from fem_reference.in_time.top import compressible_top, proportional_top
 
 # Growth of cells away from a strip of 120 cells.  The energy of a contact errs like 1 / cells^3, and so does the peak
 # depth, which follows from it; the mesh outside must not add more.  Measured on a relaxing layer (a/h = 0.8,
@@ -81,10 +80,10 @@ class HistorySetup:
         if self._needs_field:
             mesh = self._mesh(radius, cells)
             with self.log.stage("factor"):
-                field = CompressibleSurface(self.scene.layer, mesh, self._branches, self._backend)
-            return CondensedLayer(field, field.radii, self._profile(field.radii, radius), radius, field.unknowns)
+                top, radii, unknowns = compressible_top(self.scene.layer, mesh, self._branches, self._backend)
+            return CondensedLayer(top, radii, self._profile(radii, radius), radius, unknowns)
         strip = self._strip(radius, cells)
-        surface = ProportionalSurface(strip.matrix * self._per_shear, strip.resultants, self._branches)
+        surface = proportional_top(strip.matrix * self._per_shear, strip.resultants, self._branches)
         return CondensedLayer(surface, strip.radii, self._profile(strip.radii, radius), radius, strip.unknowns)
 
     def _strip(self, radius: float, cells: int) -> SurfaceCompliance:
@@ -141,7 +140,7 @@ class HistorySetup:
         contact = self._punch_contact
         stiffness = contact.answer.stiffness * (1 if is_fine else 1 + contact.error["stiffness"])
         compliance = np.array([[self._per_shear / stiffness]])
-        surface = ProportionalSurface(compliance, np.ones(1), self._branches)
+        surface = proportional_top(compliance, np.ones(1), self._branches)
         return CondensedLayer(surface, np.ones(1), np.zeros(1), punch.radius, contact.answer.unknowns)
 
     @cached_property

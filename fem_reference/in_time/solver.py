@@ -10,17 +10,27 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from contact import DepthHistory, FlatPunch, ForceHistory, HistoryPath, Impact, ImpactHistory, InvalidInput, Scene
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    HistoryPath,
+    Impact,
+    ImpactHistory,
+    InvalidInput,
+    Scene,
+    UnsupportedSceneError,
+)
 from contact.records.validation import FloatArray
 from contact.scene.extent import first_radius
 from fem_reference.discrete_layer.indenter import height
 from fem_reference.discrete_layer.material import contact_modulus, shear_modulus
 from fem_reference.elastic.beside_contact import refuse_touching_at
 from fem_reference.in_time.condensed_layer import CondensedLayer
-from fem_reference.in_time.errors import with_errors
+from fem_reference.in_time.errors import path_with_errors, with_errors
 from fem_reference.in_time.impact import FallingBody, HistorySamples, simulate_impact
 from fem_reference.in_time.pilot import pilot
-from fem_reference.in_time.prescribed import simulate_depths, simulate_forces
+from fem_reference.in_time.prescribed import segment_steps, simulate_prescribed
 from fem_reference.in_time.setup import HistorySetup
 
 Settings = Mapping[str, bool | int | float | str | None]
@@ -110,27 +120,37 @@ def prescribed_history(setup: HistorySetup, loading: DepthHistory | ForceHistory
     scene, log = setup.scene, setup.log
     modulus = shear_modulus(scene.layer)
 
-    def simulate(condensed: CondensedLayer, steps: int) -> HistorySamples:
-        """The prescribed history on this mesh of the strip with about so many time steps."""
+    by_depth = isinstance(loading, DepthHistory)
+    prescribed = _prescribed(loading)
+    if by_depth and prescribed[0] > 0 and setup.relaxation.viscosity > 0:
+        raise UnsupportedSceneError(
+            f"loading.depth begins at {prescribed[0]:g} m: a dashpot answers this jump by an infinite force; "
+            "begin at zero and give the ramp"
+        )
+
+    def simulate(condensed: CondensedLayer, steps: int, coarser: int = 1) -> HistorySamples:
+        """The prescribed history on this mesh of the strip with about so many time steps, or half of them."""
+        values = prescribed / condensed.radius * (1.0 if by_depth else 1.0 / (modulus * condensed.radius))
+        counts = segment_steps(loading.time, steps, coarser)
         with log.stage("time_steps"):
-            if isinstance(loading, DepthHistory):
-                depth = loading.depth / condensed.radius
-                record = simulate_depths(condensed, setup.relaxation, loading.time, depth, steps)
-            else:
-                force = loading.force / (modulus * condensed.radius**2)
-                record = simulate_forces(condensed, setup.relaxation, loading.time, force, steps)
+            record = simulate_prescribed(condensed, setup.relaxation, loading.time, values, counts, by_depth=by_depth)
         log.count("steps", len(record.time))
         return record
 
     radius, _ = setup.fitted_radius(1.6 * _history_radius(scene, loading), lambda condensed: simulate(condensed, 40))
     histories = []
-    for cells, steps in ((2, 2), (2, 1), (1, 1)):
+    for cells, coarser in ((2, 2), (2, 1), (1, 1)):
         condensed = setup.condensed(radius, setup.resolution.cells // cells)
-        record = simulate(condensed, setup.resolution.steps // steps)
+        record = simulate(condensed, setup.resolution.steps, coarser)
         histories.append(_history_in_si(setup, condensed, record, shown))
     half_both, half_cells, fine = histories
     refuse_touching_at(scene, float(fine.contact_radius.max()), log)
-    return with_errors(fine, half_cells, half_both, setup.known_errors(radius, fine.contact_radius.max()))
+    return path_with_errors(fine, half_cells, half_both, setup.known_errors(radius, fine.contact_radius.max()))
+
+
+def _prescribed(loading: DepthHistory | ForceHistory) -> FloatArray:
+    """Depths [m] or forces [N]."""
+    return loading.depth if isinstance(loading, DepthHistory) else loading.force
 
 
 def _history_in_si(
@@ -156,8 +176,7 @@ def _history_radius(scene: Scene, loading: DepthHistory | ForceHistory) -> float
     """A contact radius [m] for the largest load: f(r) = delta, or 4 E* r f(r) = F."""
     if isinstance(scene.indenter, FlatPunch):
         return scene.indenter.radius
-    prescribed = loading.depth if isinstance(loading, DepthHistory) else loading.force
-    largest = float(prescribed.max())
+    largest = float(_prescribed(loading).max())
     if largest <= 0:
         raise InvalidInput("the history never presses; give a positive depth or force somewhere")
     if isinstance(loading, DepthHistory):

@@ -13,7 +13,7 @@ import numpy as np
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from contact import IndentationDepths, InvalidInput, Scene
-from contact.records.validation import FloatArray
+from contact.records.validation import BoolArray, FloatArray
 from mdr.springs.reach import covering_system
 
 # Radii of the table, evenly in the logarithm over three decades: the error of straight lines between them falls with
@@ -43,26 +43,44 @@ class AdhesiveCurve:
     stiffness: FloatArray
     spring: FloatArray
 
-    def error(self, depth: FloatArray, youngs_modulus: float, work_of_adhesion: float) -> float:
+    def error(
+        self, depth: FloatArray, youngs_modulus: float, work_of_adhesion: float, attached: BoolArray | None = None
+    ) -> float:
         """Of the force over the largest one: with every other radius it is four times as large."""
         coarse = AdhesiveCurve(*(getattr(self, name)[::2] for name in _FIELDS))
-        force, other = (one.force(depth, youngs_modulus, work_of_adhesion) for one in (self, coarse))
+        force, other = (one.force(depth, youngs_modulus, work_of_adhesion, attached) for one in (self, coarse))
         in_contact = (force != 0.0) & (other != 0.0)
-        return float(np.abs(force - other)[in_contact].max(initial=0.0) / (3 * np.abs(force).max()))
+        return float(np.abs(force - other)[in_contact].max(initial=0.0) / (3 * np.abs(force).max(initial=1e-300)))
 
-    def force(self, depth: FloatArray, youngs_modulus: float, work_of_adhesion: float) -> FloatArray:
-        """F [N] at depths [m] on withdrawal under control of the depth; zero beyond pull-off.
-
-        Raises:
-            InvalidInput: If a depth is beyond the table.
-        """
+    def branch(self, youngs_modulus: float, work_of_adhesion: float) -> tuple[FloatArray, FloatArray]:
+        """Depths [m] and forces [N] of the stable equilibria under control of the depth, from pull-off on."""
         stretch = np.sqrt(2 * np.pi * self.radius * work_of_adhesion / (youngs_modulus * self.spring))
         depths = self.depth - stretch
         forces = youngs_modulus * (self.elastic_force - self.stiffness * stretch)
         stable = slice(int(np.argmin(depths)), None)
+        return depths[stable], forces[stable]
+
+    def force(
+        self, depth: FloatArray, youngs_modulus: float, work_of_adhesion: float, attached: BoolArray | None = None
+    ) -> FloatArray:
+        """F [N] at depths [m] on withdrawal under control of the depth; zero beyond pull-off.
+
+        Args:
+            depth: [m], shape (n,).
+            youngs_modulus: E [Pa].
+            work_of_adhesion: w [J/m^2].
+            attached: Which points are in contact, shape (n,). Beyond pull-off they have the force of pull-off, all
+                others zero: a fit whose data say where the contact ends has no jump then. None: as the branch says.
+
+        Raises:
+            InvalidInput: If a depth is beyond the table.
+        """
+        depths, forces = self.branch(youngs_modulus, work_of_adhesion)
         if float(depth.max(initial=0.0)) > depths[-1]:
             raise InvalidInput(f"depth = {float(depth.max()):g} m: adhesion draws the contact beyond the table")
-        return np.interp(depth, depths[stable], forces[stable], left=0.0)
+        if attached is None:
+            return np.interp(depth, depths, forces, left=0.0)
+        return np.where(attached, np.interp(depth, depths, forces), 0.0)
 
 
 @lru_cache(maxsize=64)

@@ -4,12 +4,13 @@ Enters: a scene, and measured depths and forces. Leaves: moduli with intervals, 
 Read `force_curve` first, then `fit`.
 """
 
-from mdr.curves.fit import CurveFit, FormulaFit, fit_curve
+from mdr.curves.fit import Limit, fit_curve
 from mdr.curves.force_curve import ForceCurve
 from mdr.curves.formulas import Formula, formulas_for
 from mdr.curves.map_fit import MapFit, fit_map
 from mdr.curves.reading import read_curve, read_map
-from mdr.curves.start import CurveShape
+from mdr.curves.result import CurveFit, FormulaFit
+from mdr.curves.search import CurveShape
 
 __all__ = [
     "CurveFit",
@@ -17,6 +18,7 @@ __all__ = [
     "ForceCurve",
     "Formula",
     "FormulaFit",
+    "Limit",
     "MapFit",
     "fit_curve",
     "fit_map",

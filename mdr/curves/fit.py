@@ -1,106 +1,46 @@
 """Young's modulus from one force curve, with intervals, warnings, and what formulas in use would have said.
 
-Model: F = E phi(d - d0) + f0, with phi the master curve of the scene. Least squares by scipy. The covariance is
-s^2 (J^T J)^-1 with s from the residuals; intervals are Student's.
+Model: F = E phi(d - d0) + f0 + k (d - d0), with phi the force curve of the scene; where one modulus of several is
+fitted, the force curve of the scene with that modulus.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import partial
-from typing import Final, Literal, TypeAlias
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Final, Literal
 
 import numpy as np
 
-from contact import Adhesion, IndentationDepths, InvalidInput, NotConvergedError, Scene
-from contact.answer.small_strains import depth_note
+from contact import Adhesion, InvalidInput, NotConvergedError, Scene, UnsupportedSceneError
 from contact.records.validation import FloatArray
-from mdr.curves.force_curve import ForceCurve
-from mdr.curves.formulas import Formula, formulas_for
-from mdr.curves.start import CurveShape, linear_start
+from mdr.curves.adhering import fit_adhesive
+from mdr.curves.formulas import formulas_for
+from mdr.curves.models import BACKGROUND, Model, check_parameters, curve_to, is_modulus, linearised, modulus_of
+from mdr.curves.result import CurveFit, FormulaFit, check_contact, stated
+from mdr.curves.search import FURTHEST, CurveShape, Values, best_point, least_squares, rough_fit
 
-Parameter: TypeAlias = Literal["youngs_modulus", "contact_point", "baseline", "thickness", "work_of_adhesion"]
-
-UNIT_OF_PARAMETER: Final[Mapping[str, str]] = {
-    "youngs_modulus": "Pa",
-    "contact_point": "m",
-    "baseline": "N",
-    "thickness": "m",
-    "work_of_adhesion": "J/m^2",
-}
+DEFAULT_PARAMETERS: Final = ("youngs_modulus", "contact_point", "baseline", "tilt")
 # A fitted thickness stays within this factor of the scene's: beyond it the scene is another one.
 _THICKNESS_FACTOR: Final = 10.0
-# Correlation beyond which data hardly tell two parameters apart: the interval of each is then 7 times that with the
-# other one known, 1/sqrt(1 - 0.99^2).
-_CONFOUNDED: Final = 0.99
-# Relative step of differences by thickness and work of adhesion: the cube root of rounding and interpolation errors.
-_STEP: Final = 1e-3
+# First guesses of a named modulus over the scene's: one is within a factor of 1.7 of any from 1/200 to 200 times it.
+_FACTORS: Final = tuple(3.0**k for k in range(-5, 6))
+# Halvings of the reach until an indenter is long enough for it: from a travel of a thousand times its length.
+_HALVINGS: Final = 20
 
 
-@dataclass(frozen=True, kw_only=True)
-class FormulaFit:
-    """What a fit by a formula in use gives on the same curve.
-
-    Attributes:
-        formula: Which.
-        youngs_modulus: E [Pa].
-        bias: E over that of the scene's own curve, less one.
-    """
-
-    formula: Formula
-    youngs_modulus: float
-    bias: float
-
-
-@dataclass(frozen=True, kw_only=True)
-class CurveFit:
-    """A fitted force curve.
+@dataclass(frozen=True)
+class Limit:
+    """How deep points are fitted.
 
     Attributes:
-        scene: As given; the fitted numbers are in `values`.
-        depth: As measured [m], shape (n,).
-        force: As measured [N], shape (n,).
-        fitted: Force [N] of the fit at these depths, shape (n,).
-        values: Each fitted parameter, SI.
-        standard_error: Of each, from the scatter of the curve.
-        covariance: Of the parameters in the order of `values`, shape (p, p).
-        quantile: Student's, for intervals of `confidence`.
-        confidence: Of intervals and bands.
-        band: Half width [N] of the band in which the curve lies with that confidence, shape (n,).
-        numerical_error: Relative error of E by the computation itself; no part of `standard_error`.
-        warnings: What a reader should know before relying on the numbers.
-        input_error: Standard uncertainty of each parameter by uncertain numbers of the scene, where they were asked
-            for (`cases.measurements.uncertain_fit`).
-        formulas: The same curve fitted by formulas in use.
+        kind: "depth" of indentation [m], "force" of the contact [N], or "fraction" of its largest force.
+        value: Points beyond it are left out.
     """
 
-    scene: Scene
-    depth: FloatArray
-    force: FloatArray
-    fitted: FloatArray
-    values: Mapping[str, float]
-    standard_error: Mapping[str, float]
-    covariance: FloatArray
-    quantile: float
-    confidence: float
-    band: FloatArray
-    numerical_error: float
-    warnings: tuple[str, ...] = ()
-    formulas: tuple[FormulaFit, ...] = field(default=())
-    input_error: Mapping[str, float] = field(default_factory=dict)
-
-    @property
-    def youngs_modulus(self) -> float:
-        """E [Pa]."""
-        return self.values["youngs_modulus"]
-
-    def interval(self, parameter: str) -> tuple[float, float]:
-        """In which the parameter lies with `confidence`; with uncertain inputs, and of E with the numerical error."""
-        half = self.quantile * float(np.hypot(self.standard_error[parameter], self.input_error.get(parameter, 0.0)))
-        if parameter == "youngs_modulus":
-            half += self.numerical_error * self.youngs_modulus
-        return self.values[parameter] - half, self.values[parameter] + half
+    kind: Literal["depth", "force", "fraction"]
+    value: float
 
 
 def fit_curve(
@@ -108,254 +48,164 @@ def fit_curve(
     depth: Sequence[float] | FloatArray,
     force: Sequence[float] | FloatArray,
     *,
-    parameters: Sequence[Parameter] = ("youngs_modulus", "contact_point"),
+    parameters: Sequence[str] = DEFAULT_PARAMETERS,
     confidence: float = 0.95,
+    limit: Limit | None = None,
+    formulas: bool = True,
 ) -> CurveFit:
     """Fit Young's modulus, and what else is asked for, to one curve.
 
     Args:
-        scene: Tip and layer; its modulus is not used, and its loading only says that depths are prescribed. With
-            Adhesion among its effects the curve is that of withdrawal.
-        depth: Measured depths [m], shape (n,); those before contact may be among them.
+        scene: Tip and layer. A modulus that is fitted is a first guess, the others are kept. The loading is not used.
+            With Adhesion among its effects the curve is that of withdrawal.
+        depth: Measured depths [m] from any zero if the contact point is fitted, shape (n,). A baseline before contact
+            of any length may be among them.
         force: Measured forces [N], shape (n,).
-        parameters: "youngs_modulus" and any of "contact_point", "baseline", "thickness", "work_of_adhesion".
+        parameters: "youngs_modulus", or of a stack "layer[0].youngs_modulus", "base.youngs_modulus"; and any of
+            "contact_point", "baseline", "tilt", "thickness", "work_of_adhesion".
         confidence: Of the intervals.
+        limit: Points up to a depth, a force or a fraction of the largest force are fitted; by default all.
+        formulas: Whether formulas in use are fitted too.
 
     Raises:
-        InvalidInput: For data that are no curve, or parameters that the scene does not have.
-        NotConvergedError: If the least squares do not converge.
+        InvalidInput: For data that are no curve or show no contact, parameters that the scene does not have, and
+            effects that a fit would leave out.
+        NotConvergedError: If the least squares do not converge, or end in several places.
     """
+    check_parameters(scene, parameters)
     d, f = _checked(depth, force, parameters)
-    if "work_of_adhesion" in parameters and scene.effect(Adhesion) is None:
-        raise InvalidInput("work_of_adhesion: list Adhesion among the effects of the scene, with a first guess")
-    # The contact point may be looked for half a curve before the first depth, and a step of differences beyond.
-    deepest = float(np.ptp(d)) + max(float(d.max()), (0.5 + 2 * _STEP) * float(np.ptp(d)))
-    model = _Model(_elastic(scene, deepest), scene, d, tuple(parameters))
-    found = model.solved(f)
-    bare = [name for name in parameters if name in ("youngs_modulus", "contact_point", "baseline")]
-    fits = _by_formulas(scene, d, f, bare, found["youngs_modulus"]) if not scene.effects else ()
-    return _stated(model, found, f, confidence, fits)
+    found = _fitted(scene, d, f, tuple(parameters), confidence)
+    if limit is not None:
+        found = _limited(found, limit, d, f)
+    bare = [name for name in parameters if name in ("youngs_modulus", *BACKGROUND)]
+    if not formulas or scene.effects or "youngs_modulus" not in parameters:
+        return found
+    return replace(found, formulas=_by_formulas(found, bare))
 
 
-def _elastic(scene: Scene, deepest: float) -> Scene:
-    return scene.replace(loading=IndentationDepths([deepest]), effects=(), beyond_small_strains=True)
+def fit_elastic(scene: Scene, d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> tuple[Model, Values, bool]:
+    """The model and values of least squares of a curve without adhesion, and whether the steps have converged.
+
+    Raises:
+        InvalidInput: If the indenter is shorter than the depth of indentation.
+    """
+    rough, deepest = check_contact(d, f, parameters), float(d.max())
+    reach, tip_ends = _reach(scene, 2.0 ** math.ceil(math.log2(4 * rough)))
+    while True:
+        model = Model(scene, d, parameters, reach)
+        lowest = max(deepest - reach, deepest - FURTHEST * float(np.ptp(d)))
+        ends = []
+        for start in _starts(model, f, min(rough, reach)):
+            bounds = _bounds(start, lowest, deepest)
+            ends.append(least_squares(model.linearised, start, f, bounds))
+        values, _, converged = min(ends, key=lambda end: end[1])
+        if model.family is not None:
+            model.family = None
+            values, _, converged = least_squares(model.linearised, values, f, _bounds(values, lowest, deepest))
+        shallow = values.get("contact_point", 0.0) > lowest + 1e-6 * reach
+        if shallow or lowest > deepest - reach:
+            return model, values, converged
+        if tip_ends:
+            curve_to(scene, 2 * reach)
+        rough, reach = reach, 2 * reach
+
+
+def _reach(scene: Scene, reach: float) -> tuple[float, bool]:
+    """The reach [m], halved until the indenter is that long, and whether it was."""
+    for halvings in range(60):
+        try:
+            curve_to(scene, reach)
+        except (InvalidInput, UnsupportedSceneError):
+            if halvings == _HALVINGS:
+                raise
+            reach /= 2
+        else:
+            return reach, halvings > 0
+    raise AssertionError
+
+
+def _starts(model: Model, force: FloatArray, rough: float) -> list[Values]:
+    """First values: the best trial contact point of the curve's own shape, for named moduli at each of many factors."""
+    scene, names, starts = model.scene, model.parameters, list[Values]()
+    named = [name for name in names if "." in name]
+    if len(named) == 1:
+        model.tabulate(named[0], [factor * modulus_of(scene, named[0]) for factor in _FACTORS])
+    for factor in _FACTORS if named else (1.0,):
+        guess = {name: factor * modulus_of(scene, name) for name in named}
+        curve = model.curve(guess)
+        modulus = curve.scene.layer.surface.youngs_modulus if named else None
+        best = best_point(curve, model.depth, force, names, rough=rough, reach=model.reach, modulus=modulus) | guess
+        best["thickness"] = scene.layer.thickness
+        if not named:
+            best["youngs_modulus"] = abs(best["youngs_modulus"]) or 1.0
+        starts.append({name: best[name] for name in names})
+    return starts
+
+
+def _bounds(start: Values, lowest: float, deepest: float) -> dict[str, tuple[float, float]]:
+    """Least and largest value of each parameter that has them."""
+    bounds = {"contact_point": (lowest, deepest)}
+    for name, value in start.items():
+        if is_modulus(name):
+            bounds[name] = (1e-6 * value, 1e6 * value) if "." not in name else (1e-3 * value, 1e3 * value)
+        elif name == "thickness":
+            bounds[name] = (value / _THICKNESS_FACTOR, value * _THICKNESS_FACTOR)
+    return bounds
+
+
+def _fitted(scene: Scene, d: FloatArray, f: FloatArray, parameters: tuple[str, ...], confidence: float) -> CurveFit:
+    solve = fit_elastic if scene.effect(Adhesion) is None else fit_adhesive
+    model, values, converged = solve(scene, d, f, parameters)
+    if not converged:
+        raise NotConvergedError("the fit did not converge; fit fewer parameters, or a shorter range of the curve")
+    return stated(model, values, f, confidence)
+
+
+def _limited(found: CurveFit, limit: Limit, d: FloatArray, f: FloatArray) -> CurveFit:
+    """The fit up to the limit; twice, for the first one finds the contact point from all points."""
+    names, largest = tuple(found.values), math.nan
+    for _ in range(2):
+        point = found.values.get("contact_point", 0.0)
+        deepest = point + limit.value
+        if limit.kind != "depth":
+            order = np.argsort(found.depth)
+            line = found.values.get("baseline", 0.0) + found.values.get("tilt", 0.0) * (found.depth - point)
+            contact = np.maximum.accumulate((found.fitted - line)[order])
+            largest = contact[-1] if math.isnan(largest) else largest
+            share = limit.value if limit.kind == "force" else limit.value * largest
+            deepest = float(np.interp(share, contact, found.depth[order]))
+        kept = d <= deepest
+        found = _fitted(found.scene, *_checked(d[kept], f[kept], names), names, found.confidence)
+    return found
+
+
+def _by_formulas(found: CurveFit, parameters: Sequence[str]) -> tuple[FormulaFit, ...]:
+    return tuple(
+        FormulaFit(formula=formula, youngs_modulus=other, bias=other / found.youngs_modulus - 1.0)
+        for formula in formulas_for(found.scene)
+        for other in [_modulus_by(formula, found.depth, found.force, parameters)]
+    )
+
+
+def _modulus_by(shape: CurveShape, d: FloatArray, f: FloatArray, parameters: Sequence[str]) -> float:
+    """E [Pa] by least squares with the same parameters as the curve itself."""
+    start = best_point(shape, d, f, parameters, rough=rough_fit(d, f, parameters)[0], reach=math.inf)
+    start = {name: start[name] for name in parameters}
+    bounds = {"contact_point": (float(d.max()) - FURTHEST * float(np.ptp(d)), float(d.max()))}
+    values, _, _ = least_squares(lambda values: linearised(shape, d, values), start, f, bounds)
+    return values["youngs_modulus"]
 
 
 def _checked(
     depth: Sequence[float] | FloatArray, force: Sequence[float] | FloatArray, parameters: Sequence[str]
 ) -> tuple[FloatArray, FloatArray]:
     d, f = (np.asarray(values, dtype=np.float64) for values in (depth, force))
-    unknown = [name for name in parameters if name not in UNIT_OF_PARAMETER]
-    if unknown or len(set(parameters)) < len(parameters) or "youngs_modulus" not in parameters:
-        raise InvalidInput(
-            f"parameters = {', '.join(parameters)}: fit youngs_modulus, and any of contact_point, baseline, thickness, "
-            "work_of_adhesion, each once"
-        )
     if d.ndim != 1 or d.shape != f.shape or d.size <= len(parameters):
         raise InvalidInput(
             f"a curve of {d.size} depths and {f.size} forces: give one force for each depth, and more points than the "
             f"{len(parameters)} parameters"
         )
-    if not (np.isfinite(d).all() and np.isfinite(f).all() and d.max() > 0.0 and np.ptp(d) > 0.0):
+    fixed = "contact_point" not in parameters
+    if not (np.isfinite(d).all() and np.isfinite(f).all() and np.ptp(d) > 0.0) or (fixed and not d.max() > 0.0):
         raise InvalidInput("a curve needs finite numbers, and depths that grow beyond 0; pressing is positive")
     return d, f
-
-
-class _Model:
-    """Forces of a curve and their derivatives by the parameters, in units that make all parameters about one."""
-
-    def __init__(self, scene: Scene, whole: Scene, depth: FloatArray, parameters: tuple[str, ...]) -> None:
-        self.scene, self.whole, self.depth, self.parameters = scene, whole, depth, parameters
-        self.curve = ForceCurve(scene)
-        adhesion = whole.effect(Adhesion)
-        self.work = None if adhesion is None else adhesion.work_of_adhesion
-        self.unit: dict[str, float] = {}
-
-    def force(self, values: Mapping[str, float]) -> FloatArray:
-        """F [N] at the depths of the data."""
-        curve = self.curve
-        if "thickness" in values:
-            curve = curve.replaced(thickness=values["thickness"])
-        shifted = self.depth - values.get("contact_point", 0.0)
-        modulus = values["youngs_modulus"]
-        if self.work is None:
-            force = modulus * curve.per_modulus(shifted)
-        else:
-            from mdr.adhesion.force_curve import adhesive_curve  # noqa: PLC0415  # only where something adheres
-
-            work = values.get("work_of_adhesion", self.work)
-            force = adhesive_curve(curve.scene).force(shifted, modulus, work)
-        return force + values.get("baseline", 0.0)
-
-    def numerical_error(self, values: Mapping[str, float]) -> float:
-        """Relative error of the force by the computation."""
-        if self.work is None:
-            return self.curve.error
-        from mdr.adhesion.force_curve import adhesive_curve  # noqa: PLC0415  # as above
-
-        shifted = self.depth - values.get("contact_point", 0.0)
-        work = values.get("work_of_adhesion", self.work)
-        return self.curve.error + adhesive_curve(self.curve.scene).error(shifted, values["youngs_modulus"], work)
-
-    def jacobian(self, values: Mapping[str, float]) -> FloatArray:
-        """dF by each parameter in its unit, shape (n, p)."""
-        return np.stack([self._derivative(values, name) * self.unit[name] for name in self.parameters], axis=1)
-
-    def _derivative(self, values: Mapping[str, float], name: str) -> FloatArray:
-        if name == "baseline":
-            return np.ones_like(self.depth)
-        if name == "youngs_modulus" and self.work is None:
-            return (self.force(values) - values.get("baseline", 0.0)) / values["youngs_modulus"]
-        step = _STEP * self.unit[name]
-        up, down = (self.force({**values, name: values[name] + sign * step}) for sign in (1.0, -1.0))
-        return (up - down) / (2 * step)
-
-    def solved(self, force: FloatArray) -> dict[str, float]:
-        """The parameters of least squares."""
-        from scipy.optimize import least_squares  # noqa: PLC0415  # loaded only when a curve is fitted
-
-        start = self._start(force)
-        lower = [self._bound(name, start[name], -1.0) for name in self.parameters]
-        upper = [self._bound(name, start[name], 1.0) for name in self.parameters]
-        scale = max(float(np.abs(force).max()), np.finfo(float).tiny)
-
-        def values_of(x: FloatArray) -> dict[str, float]:
-            return {name: float(v) * self.unit[name] for name, v in zip(self.parameters, x, strict=True)}
-
-        def misfit(x: FloatArray) -> FloatArray:
-            return (self.force(values_of(x)) - force) / scale
-
-        def slopes(x: FloatArray) -> FloatArray:
-            return self.jacobian(values_of(x)) / scale
-
-        found = least_squares(
-            misfit,
-            [start[name] / self.unit[name] for name in self.parameters],
-            jac=slopes,
-            bounds=(lower, upper),
-            xtol=1e-12,
-            ftol=1e-12,
-            gtol=1e-12,
-        )
-        if not found.success:
-            raise NotConvergedError(f"the fit did not converge: {found.message}")
-        return values_of(found.x)
-
-    def _start(self, force: FloatArray) -> dict[str, float]:
-        """Modulus and baseline by linear least squares at the best of many contact points; the rest as in the scene."""
-        point, modulus, baseline = linear_start(
-            self.curve,
-            self.depth,
-            force,
-            contact_point="contact_point" in self.parameters,
-            baseline="baseline" in self.parameters,
-        )
-        known = {
-            "youngs_modulus": modulus,
-            "contact_point": point,
-            "baseline": baseline,
-            "thickness": self.scene.layer.thickness,
-            "work_of_adhesion": self.work or 0.0,
-        }
-        sizes = known | {"contact_point": float(np.ptp(self.depth)), "baseline": float(np.abs(force).max())}
-        self.unit = {name: sizes[name] or 1.0 for name in self.parameters}
-        return {name: known[name] for name in self.parameters}
-
-    def _bound(self, name: str, start: float, sign: float) -> float:
-        """Of a parameter in its unit."""
-        if name == "thickness":
-            return float(_THICKNESS_FACTOR**sign)
-        if name == "contact_point":
-            edge = self.depth.max() if sign > 0 else self.depth.min() - 0.5 * np.ptp(self.depth)
-            return float(edge) / self.unit[name]
-        if name == "baseline":
-            return sign * np.inf
-        return np.inf if sign > 0 else 1e-6
-
-
-def _by_formulas(
-    scene: Scene, depth: FloatArray, force: FloatArray, parameters: Sequence[str], modulus: float
-) -> tuple[FormulaFit, ...]:
-    return tuple(
-        FormulaFit(formula=formula, youngs_modulus=other, bias=other / modulus - 1.0)
-        for formula in formulas_for(scene)
-        for other in [_modulus_by(formula, depth, force, parameters)]
-    )
-
-
-def _modulus_by(shape: CurveShape, depth: FloatArray, force: FloatArray, parameters: Sequence[str]) -> float:
-    """E [Pa] by least squares, contact point and baseline fitted too where they are for the curve itself."""
-    from scipy.optimize import minimize_scalar  # noqa: PLC0415  # loaded only when a curve is fitted
-
-    has_point, has_baseline = "contact_point" in parameters, "baseline" in parameters
-    start = partial(linear_start, shape, depth, force, baseline=has_baseline)
-    if not has_point:
-        return start(contact_point=False)[1]
-    around, width = start(contact_point=True)[0], float(np.ptp(depth))
-
-    def misfit(point: float) -> float:
-        return float(start(contact_point=False, at=point, misfit=True)[0])
-
-    best = minimize_scalar(
-        misfit,
-        bounds=(around - 0.05 * width, around + 0.05 * width),
-        method="bounded",
-        options={"xatol": 1e-9 * width},
-    )
-    return float(start(contact_point=False, at=float(best.x))[1])
-
-
-def _stated(
-    model: _Model, found: Mapping[str, float], force: FloatArray, confidence: float, fits: tuple[FormulaFit, ...]
-) -> CurveFit:
-    """Covariance, intervals, band and warnings."""
-    from scipy.stats import t as student  # noqa: PLC0415  # as above
-
-    fitted, jacobian = model.force(found), model.jacobian(found)
-    freedom = force.size - len(found)
-    variance = float(np.sum((fitted - force) ** 2)) / freedom
-    covariance: FloatArray = np.asarray(
-        variance * np.linalg.pinv(jacobian.T @ jacobian, hermitian=True), dtype=np.float64
-    )
-    units = np.array([model.unit[name] for name in found])
-    errors = dict(zip(found, (np.sqrt(np.diag(covariance)) * units).tolist(), strict=True))
-    quantile = float(student.ppf(0.5 + confidence / 2, freedom))
-    return CurveFit(
-        scene=model.whole,
-        depth=model.depth,
-        force=force,
-        fitted=fitted,
-        values=found,
-        standard_error=errors,
-        covariance=np.asarray(covariance * np.outer(units, units)),
-        quantile=quantile,
-        confidence=confidence,
-        band=quantile * np.sqrt(np.maximum(np.einsum("ij,jk,ik->i", jacobian, covariance, jacobian), 0.0)),
-        numerical_error=model.numerical_error(found),
-        warnings=_warnings(model, found, errors, covariance, quantile),
-        formulas=fits,
-    )
-
-
-def _warnings(
-    model: _Model, found: Mapping[str, float], errors: Mapping[str, float], covariance: FloatArray, quantile: float
-) -> tuple[str, ...]:
-    names = list(found)
-    spread = np.sqrt(np.maximum(np.diag(covariance), np.finfo(float).tiny))
-    correlation = covariance / np.outer(spread, spread)
-    told = [
-        f"{names[i]} and {names[j]} can hardly be told apart on this curve (correlation {correlation[i, j]:.4f}); "
-        "measure one of them by itself, or press deeper"
-        for i in range(len(names))
-        for j in range(i)
-        if abs(correlation[i, j]) > _CONFOUNDED
-    ]
-    told += [
-        f"{name} is not determined by this curve: its interval is wider than itself"
-        for name in names
-        if name in ("youngs_modulus", "thickness", "work_of_adhesion") and quantile * errors[name] > abs(found[name])
-    ]
-    pressed = float(model.depth.max()) - found.get("contact_point", 0.0)
-    layer = model.scene.layer.replace(thickness=found["thickness"]) if "thickness" in found else model.scene.layer
-    note = depth_note(model.scene.replace(layer=layer), pressed)
-    return (*told, note) if note else tuple(told)

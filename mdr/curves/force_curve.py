@@ -6,6 +6,8 @@ with the exact slopes d k_N / F at its ends, for dF/dd = k_N. Below the first de
 
 from __future__ import annotations
 
+import copy
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -113,6 +115,23 @@ class ForceCurve:
         x, y, slope = self._log_depth[::2], self._log_force[::2], self._power[::2]
         coarse = _cubic(x, y, slope, self._log_depth[1::2], 2 * self._step)[0]
         return float(np.abs(coarse - self._log_force[1::2]).max()) / _CLAIMED_GAIN
+
+
+def blended(numbers: Sequence[float], curves: Sequence[ForceCurve]) -> Callable[[float], ForceCurve]:
+    """Curves of one reach between those at the given numbers, by cubic splines of ln(F) over ln(number)."""
+    from scipy.interpolate import CubicSpline  # noqa: PLC0415  # loaded only where one modulus of several is fitted
+
+    parts = [np.stack([one._log_force + np.log(one.scene.layer.surface.youngs_modulus), one._power]) for one in curves]
+    spline = CubicSpline(np.log(numbers), np.stack(parts))
+
+    def at(number: float) -> ForceCurve:
+        """The curve at a number."""
+        curve = copy.copy(curves[0])
+        log_force, curve._power = spline(np.log(number))
+        curve._log_force = log_force - np.log(curve.scene.layer.surface.youngs_modulus)
+        return curve
+
+    return at
 
 
 def _solved(method: Mdr, scene: Scene, deepest: float) -> ContactPath:

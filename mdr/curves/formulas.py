@@ -53,6 +53,10 @@ class Formula:
         terms = np.polynomial.polynomial.polyval(x, powers * np.array(self.coefficients))
         return np.where(np.asarray(depth) > 0.0, self.factor * d ** (self.power - 1.0) * terms, 0.0)
 
+    def with_slope(self, depth: ArrayLike) -> tuple[FloatArray, FloatArray]:
+        """phi and its derivative together."""
+        return self.per_modulus(depth), self.per_modulus_slope(depth)
+
 
 HERTZ = "Hertz 1882"
 SNEDDON = "Sneddon 1965"

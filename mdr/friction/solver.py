@@ -136,8 +136,14 @@ def _flat_punch(scene: Scene) -> dict[str, Any]:
 
 
 def _refinement(flat_punch: FlatPunchSource) -> float:
-    """Nodes of the integral equation over the usual ones: growth takes that many unknowns more."""
-    return flat_punch.nodes / IntegralEquation().nodes if isinstance(flat_punch, IntegralEquation) else 1.0
+    """Nodes of the integral equation over the usual ones, and the root of usual panel widths over its own.
+
+    Growth takes that many unknowns more.
+    """
+    if not isinstance(flat_punch, IntegralEquation):
+        return 1.0
+    usual = IntegralEquation()
+    return flat_punch.nodes / usual.nodes * math.sqrt(usual.panel_width / flat_punch.panel_width)
 
 
 def _growing(scene: Scene, refinement: float) -> dict[str, Any]:

@@ -81,6 +81,7 @@ class _Contact:
         depth: delta [m].
         punch: The unit punch of this radius.
         load: What the indenter presses in, in the punch's basis [m].
+        edges: Flat radius and breakpoints within the contact, over its radius.
     """
 
     scene: Scene
@@ -88,6 +89,7 @@ class _Contact:
     depth: float
     punch: FrictionlessPunch
     load: FloatArray
+    edges: tuple[float, ...]
 
     @property
     def force(self) -> float:
@@ -97,7 +99,7 @@ class _Contact:
     @property
     def mean_slip(self) -> float:
         """int p_0 u_r1 dA/F_0."""
-        return self.punch.mean_slip(lambda t: _pressed(self.scene, self.radius, self.depth, t), self.load)
+        return self.punch.mean_slip(lambda t: _pressed(self.scene, self.radius, self.depth, t), self.load, self.edges)
 
 
 def _contact(scene: Scene, radius: float, depth: float) -> _Contact:
@@ -105,9 +107,10 @@ def _contact(scene: Scene, radius: float, depth: float) -> _Contact:
     punch = frictionless_punch(
         0.0 if layer.is_half_space else float(radius) / layer.surface.thickness, sticking_kernel(layer)
     )
-    edges = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
-    x, load = punch.projection(tuple(sorted({float(b / radius) for b in edges if 0.0 < b < radius})))
-    return _Contact(scene, radius, depth, punch, load @ _pressed(scene, radius, depth, x))
+    breaks = (scene.indenter.flat_radius, *scene.indenter.breakpoints)
+    edges = tuple(sorted({float(b / radius) for b in breaks if 0.0 < b < radius}))
+    x, load = punch.projection(edges)
+    return _Contact(scene, radius, depth, punch, load @ _pressed(scene, radius, depth, x), edges)
 
 
 def _pressed(scene: Scene, radius: float, depth: float, x: FloatArray) -> FloatArray:

@@ -75,7 +75,8 @@ def _by_force(
     law: SpringLaw, bed: SpringBed, loading: ForceHistory, substeps: NDArray[np.intp]
 ) -> Iterator[tuple[BedState, float]]:
     force, durations = loading.force, np.diff(loading.time)
-    state = pressed_at_once(law, bed, float(force[0])) if force[0] > 0.0 else undeformed(law, bed.profile, 0.0)
+    at_once = force[0] > 0.0 and law.viscosity == 0.0
+    state = pressed_at_once(law, bed, float(force[0])) if at_once else undeformed(law, bed.profile, 0.0)
     yield state, 0.0
     for i, duration in enumerate(durations):
         ramp = Ramp(float(force[i]), float(force[i + 1]), float(duration))

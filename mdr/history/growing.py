@@ -142,7 +142,7 @@ def growing_history(
         time=loading.time,
         indentation_depth=at_all(depth),
         normal_force=loading.force,
-        contact_radius=np.where(loading.force > 0.0, at_all(radius), 0.0),
+        contact_radius=np.where(loading.force > 0.0, np.maximum(at_all(radius), scene.indenter.flat_radius), 0.0),
         fields=fields,
     )
 
@@ -166,7 +166,8 @@ def elastic_force(law: SpringLaw, loading: ForceHistory) -> FloatArray:
         z > 1.0, (1.0 - steady) / np.maximum(z, 1.0), np.polynomial.polynomial.polyval(np.minimum(z, 1.0), _SERIES)
     )
     gained = modes.of_force * steps * (force[:-1, None] * steady + np.diff(force)[:, None] * rising)
-    amplitudes = [modes.of_surface[:, 0] * force[0]]
+    # A dashpot beside the springs holds them where they are: a force that is there at first does not move it.
+    amplitudes = [np.zeros(modes.rates.size)]
     for decay, gain in zip(np.exp(-z), gained, strict=True):
         amplitudes.append(amplitudes[-1] * decay + gain)
     crept = np.sum(amplitudes, axis=1)

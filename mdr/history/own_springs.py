@@ -104,6 +104,8 @@ class OwnSprings:
             y = low + step * beyond
             y = y[(y >= within[0]) & (y <= within[1])]
             found = self.at(y)
+            if not found.touching.any():
+                return FrontPlace(float(y[0]), float(high - y[0]))
             first = int(np.flatnonzero(found.touching)[-1]) + 1
             if first == y.size:
                 return FrontPlace(float(y[-1]))

@@ -39,6 +39,7 @@ from mdr.springs.assembly import equivalent_system
 from mdr.springs.beside_contact import refuse_touching_at
 from mdr.springs.error_model import (
     DEFAULT_ACCURACY,
+    EPS,
     EXCESS_ERRORS,
     HISTORY_SAFETY,
     LARGEST_HISTORY_ERROR,
@@ -427,8 +428,12 @@ def _turns(loading: DepthHistory | ForceHistory) -> NDArray[np.bool_]:
     """At which instants the speed of a prescribed depth changes, shape (n,); under a force it is not prescribed."""
     if isinstance(loading, ForceHistory):
         return np.full(loading.time.size, False)
-    speeds = np.diff(loading.depth) / np.diff(loading.time)
-    return np.concatenate([[True], ~np.isclose(speeds[1:], speeds[:-1], rtol=_SAME_SPEED, atol=0.0), [True]])
+    steps = np.diff(loading.time)
+    speeds = np.diff(loading.depth) / steps
+    # Given depths and instants are rounded, and so are their differences.
+    rounded = 2.0 * EPS * (np.abs(loading.depth).max() + np.abs(speeds) * np.abs(loading.time).max()) / steps
+    same = np.abs(np.diff(speeds)) <= _SAME_SPEED * np.abs(speeds[1:]) + rounded[1:] + rounded[:-1]
+    return np.concatenate([[True], ~same, [True]])
 
 
 def _check_circle(law: SpringLaw, state: BedState, speed: float, time: float) -> bool:

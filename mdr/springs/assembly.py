@@ -12,7 +12,7 @@ from bem.kernels.moduli import contact_modulus
 from bem.layer_equation.half_space import HalfSpaceFlatPunch
 from bem.layer_equation.protocol import LARGEST_FACTORISED_RATIO, FlatPunchSolution, FlatPunchSource, LayerShare
 from bem.polynomials.mapped import GAP, MappedFunction, MappedGrid, apart, resolve
-from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, UnsupportedSceneError
+from contact import ElasticLayer, FlatPunch, InvalidInput, Profile, Spheroconical, UnsupportedSceneError
 from contact.records.validation import FloatArray
 from mdr.springs.equivalent_system import EquivalentSystem
 from mdr.springs.error_model import EPS, POSITION_ROUNDINGS
@@ -223,7 +223,8 @@ def half_space_function(solution: FlatPunchSolution, indenter: Profile, unit: fl
         rest = MappedGrid(np.zeros(1), np.full(1, np.finfo(float).tiny), np.ones(1), count)
         return MappedFunction(rest, np.zeros((1, count)), 0.0)
     grid, lead = _initial_grid(solution, indenter, unit, excess, count)
-    far = (indenter.max_radius - indenter.flat_radius) / unit
+    end = indenter.radius if isinstance(indenter, Spheroconical) else indenter.max_radius
+    far = (end - indenter.flat_radius) / unit
     return resolve(
         _in_units(indenter, unit, excess),
         grid,

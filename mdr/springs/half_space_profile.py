@@ -24,6 +24,7 @@ from contact.scene.profiles import (
     PowerLaw,
     Profile,
     Sphere,
+    Spheroconical,
     TruncatedCone,
     TruncatedParaboloid,
 )
@@ -90,10 +91,12 @@ def rounding_beside_end(indenter: Profile, largest: float, radius: FloatArray) -
 
     The largest radius is where the grid ends, with all its digits.
     """
-    inside = (radius > indenter.flat_radius) & (radius != largest)
-    if not (np.any(inside) and is_endless(indenter, indenter.max_radius)):
+    end = indenter.radius if isinstance(indenter, Spheroconical) else indenter.max_radius / 2
+    is_steep = isinstance(indenter, Spheroconical)
+    inside = (radius > indenter.flat_radius) & (is_steep | (radius != largest))
+    if not (np.any(inside) and (is_steep or is_endless(indenter, indenter.max_radius))):
         return np.zeros_like(radius)
-    edge = np.where(inside, radius, indenter.max_radius / 2)
+    edge = np.where(inside, radius, end)
     slope = profile_slope(indenter, edge, indenter.max_radius - edge)
     share = 0.0 if slope is None else POSITION_ROUNDINGS * EPS * edge * slope / half_space_profile(indenter, edge)
     return np.where(inside, share, 0.0)
@@ -117,6 +120,15 @@ def _(indenter: Paraboloid, excess: FloatArray) -> FloatArray:
 @half_space_profile.register
 def _(indenter: Sphere, excess: FloatArray) -> FloatArray:
     return profile_beside_end(indenter, excess, indenter.radius - excess)
+
+
+@half_space_profile.register
+def _(indenter: Spheroconical, excess: FloatArray) -> FloatArray:
+    """The sphere's up to b; x {ln[(R + x)/(c + q)] + slope arctan(q/b)} beyond, c and q as in `profile_slope`."""
+    R, b, x = indenter.radius, indenter.tangent_radius, excess
+    c, q = R / math.hypot(1.0, indenter.slope), np.sqrt(np.maximum(x - b, 0.0) * (x + b))
+    cone = x * (np.log((R + x) / (c + q)) + indenter.slope * np.arctan2(q, b))
+    return np.where(x < b, x * np.log1p(2 * x / np.where(x < b, R - x, R)) / 2, cone)
 
 
 @half_space_profile.register

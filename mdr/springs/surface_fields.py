@@ -15,9 +15,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bem.layer_equation.profiles.half_space_slope import profile_slope
+from bem.layer_equation.profiles.half_space_slope import profile_slope, room_to_pole
 from bem.layer_equation.protocol import FlatPunchSolution, LayerShare
-from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral
+from bem.polynomials.abel_integral import AbelNodes, Stretch, abel_integral, arc_integral, graded_ends
 from bem.polynomials.mapped import MappedFunction, MappedGrid
 from bem.polynomials.stretch_slopes import StretchSlopes
 from contact.records.errors import InvalidInput
@@ -110,11 +110,15 @@ class ContactFields:
         """Between the breakpoints of the profile, whose slope has a pole where it ends upright."""
         indenter, unit = self.indenter, self.unit
         breaks = [(k - indenter.flat_radius) / unit for k in indenter.breakpoints]
-        ends = [0.0, *(k for k in breaks if 0 < k < self.excess), self.excess]
-        room = np.inf if indenter.max_radius in indenter.breakpoints else self.room
-        rooms = [*np.full(len(ends) - 2, np.inf), room]
+        inner = [k for k in breaks if 0 < k < self.excess]
+        ends = graded_ends([0.0, *inner, self.excess], min(self._room_at(k) for k in [*inner, self.excess]))
+        rooms = [self._room_at(end) for end in ends[1:]]
         stretches = zip(ends[:-1], ends[1:], rooms, strict=True)
         return [Stretch(self._flat, start, stop, room) for start, stop, room in stretches if stop > start]
+
+    def _room_at(self, offset: float) -> float:
+        radius = self.indenter.flat_radius + self.unit * offset
+        return room_to_pole(self.indenter, radius, self.unit * self.room) / self.unit
 
     def _slope(self, nodes: AbelNodes) -> FloatArray:
         """g_hs', or with a table g' and the pressure of the punch whose edge is at t."""

@@ -101,7 +101,7 @@ def _accept_ladders(study: CaseResult, result: RunResult, request: AcceptRequest
     for claim in ladder_claims(study, read_ladders(request.baselines)):
         terminal.print(f"{claim.scene}, {claim.methods[0]}: {claim.message}", markup=False)
     if request.write:
-        accept_ladders(request.baselines, study.ladders, now, reason=request.reason, loosen=request.loosen)
+        accept_ladders(request.baselines, study.ladders, loosen=request.loosen)
         terminal.print(f"{study.name}: {len(study.ladders)} ladders written", style=STYLES["good"])
     else:
         terminal.print(f"{study.name}: nothing written; say --write to write it", style=STYLES["warn"])

@@ -18,14 +18,21 @@ def fit(
     curve: Annotated[
         Path,
         typer.Argument(
-            help="CSV with columns of depth and force, units in the heads or SI; or .jpk-force, .h5, .tab, .ibw."
+            help="Table with columns of depth (or height) and force (or deflection); or .jpk-force, .h5, .tab, .ibw."
         ),
     ],
     scene: SceneFile,
     *,
+    moduli: Annotated[
+        str, typer.Option("--fit", help="Fitted modulus; of stacks layer[0].youngs_modulus, base.youngs_modulus.")
+    ] = "youngs_modulus",
     also: Annotated[
-        str, typer.Option("--with", help="Fitted beside E: contact_point, baseline, thickness, work_of_adhesion.")
-    ] = "contact_point",
+        str, typer.Option("--with", help="Fitted beside: contact_point, baseline, tilt, thickness, work_of_adhesion.")
+    ] = "contact_point,baseline,tilt",
+    units: Annotated[str, typer.Option(help='Of columns whose heads have none, "nm,nN".')] = "",
+    spring_constant: Annotated[str, typer.Option(help='Of the cantilever, "0.05 N/m": for height, deflection.')] = "",
+    sensitivity: Annotated[str, typer.Option(help='Of the deflection, "50 nm/V".')] = "",
+    until: Annotated[str, typer.Option(help="Fitted up to a depth, force or share of it: 300nm, 2nN, 60%.")] = "",
     curves: Annotated[bool, typer.Option("--map", help="One force curve in each column after the depths.")] = False,
     uncertain: Annotated[
         str, typer.Option(help='What is known to a tolerance, "radius=5%, thickness=4e-6..6e-6"; joins the intervals.')
@@ -38,18 +45,26 @@ def fit(
 
     Says what Hertz, Dimitriadis and other formulas would have found on the same curve.
     """
-    from reports.commands.bench import fit_file, fit_map_file  # noqa: PLC0415 - see the first lines of this module
+    from reports.commands.bench import FitRequest, fit_file, fit_map_file  # noqa: PLC0415 - see the first lines
 
-    names = [name.strip() for name in also.split(",") if name.strip()]
+    request = FitRequest(
+        fit=moduli,
+        also=also,
+        units=units,
+        spring_constant=spring_constant,
+        sensitivity=sensitivity,
+        until=until,
+        number=number,
+        confidence=confidence,
+        outputs=write or [],
+    )
+    if uncertain and (curves or until):
+        raise typer.BadParameter("--uncertain is for whole single curves; leave --map and --until out")
     with _bar("curves") as progress:
-        if curves and uncertain:
-            raise typer.BadParameter("--uncertain is for single curves: all curves of a map share the tolerance")
         if curves:
-            fit_map_file(curve, scene, names, confidence=confidence, outputs=write or [], progress=progress)
+            fit_map_file(curve, scene, request, progress=progress)
         else:
-            fit_file(
-                curve, scene, names, uncertain=uncertain, number=number, confidence=confidence, outputs=write or []
-            )
+            fit_file(curve, scene, request, uncertain=uncertain)
 
 
 def sweep(

@@ -8,7 +8,6 @@ from cases.declare.registry import load_cases
 from cases.declare.selection import nightly_only
 from cases.gate.baseline import Baseline, read_baselines
 from cases.gate.gate import gate
-from cases.gate.history import read_history
 from cases.gate.ladders import read_ladders
 from cases.results.files import read_run, require_run, write_verdicts
 from cases.results.records.claim import Kind
@@ -57,7 +56,7 @@ def _gated(run: RunResult, baselines: Path, methods: Collection[str]) -> RunResu
     def watched(case: str, row: SceneRun) -> bool:
         return (case, row.scene, row.method) not in unwatched and (not methods or row.method in methods)
 
-    return gate(run, accepted, read_history(baselines), ladders, watched)
+    return gate(run, accepted, ladders, watched)
 
 
 def _of_methods(baseline: Baseline, methods: Collection[str]) -> Baseline:

@@ -62,19 +62,17 @@ def run(
     foreign = bool(methods) and set(methods) <= set(registered())
     asked = read_settings(settings, methods)
     if others:
-        cases, solvers = _against(names, methods, others, options.suite), (*methods, *others)
+        cases = list(_against(names, methods, others, options.suite))
     elif foreign:
-        solvers = (*methods, REFEREE)
         cases = [beside(case, methods, REFEREE) for case in _chosen(methods, names, options.suite)]
     else:
-        solvers = tuple(methods)
         chosen = _chosen(methods, names, options.suite)
         # Of a suite those cases run that have one of the methods.
         solved = [case for case in chosen if not methods or any(use.label in methods for use in case.methods)]
         cases = [only_methods(case, methods) for case in ((not names and solved) or chosen)]
     cases = [with_settings(case, asked) for case in cases]
-    options = dataclasses.replace(options, methods=tuple(dict.fromkeys(solvers)), executor=by_name(executor))
-    studied = options.suite in USUAL_SUITES and not names and not solvers
+    options = dataclasses.replace(options, methods=tuple(dict.fromkeys(methods)), executor=by_name(executor))
+    studied = options.suite in USUAL_SUITES and not names and not methods
     with locked(options.out):
         result = _carried_out(cases, options, studied, quiet=quiet)
         write_pages(result, options.out)

@@ -22,7 +22,7 @@ from contact.answer.small_strains import depth_note, depths_of
 from contact.files.scene_file import scene_notes, uses_units
 from reports.tables.solution_table import solution_csv, solution_facts, solution_table
 from reports.terminal.terminal import console, show_facts, show_table
-from reports.words.numbers import duration, with_prefix
+from reports.words.numbers import with_prefix
 
 ENDINGS = {".csv": "CSV", ".h5": "HDF5", ".svg": "SVG", ".vtu": "VTU for ParaView", ".xdmf": "XDMF for ParaView"}
 MESHES = (".vtu", ".xdmf")
@@ -38,22 +38,18 @@ def solve(
     accuracy: float | None,
     outputs: list[Path],
     pressure_accuracy: float | None = None,
-    within: float | None = None,
-    evidence: Path | None = None,
     uncertain: str = "",
     samples: int = 0,
 ) -> None:
     """Solve the scene of a TOML file, print the answer and write it to `outputs`, whose endings choose the format.
 
-    With an accuracy and no method, both method and settings come from measured evidence.
+    With an accuracy and no method, methods are tried from cheap to fine.
 
     Raises:
         InvalidInput: for a wrong scene, method or ending; before anything is solved.
     """
     for path in outputs:
         _check_ending(path)
-    if (within is not None or evidence is not None) and (accuracy is None or method):
-        raise InvalidInput("--within and --evidence choose a method for an --accuracy; give one, and no --method")
     _check_accuracies(accuracy, pressure_accuracy)
     if samples and not uncertain:
         raise InvalidInput("--samples: of what? name the inputs with --uncertain")
@@ -65,12 +61,16 @@ def solve(
         return
     facts: list[tuple[str, str]] = []
     if accuracy is not None and not method:
-        solution, facts = _by_evidence(scene, accuracy, pressure_accuracy, within, evidence)
+        from cases.measurements.accuracy import solve as solve_to_accuracy  # noqa: PLC0415 - only where it is asked for
+
+        found = solve_to_accuracy(scene, accuracy=accuracy, pressure_accuracy=pressure_accuracy)
+        solution: Solution = found.answer
+        facts = [("achieved", f"stated error {found.stated_error:.1e}, asked for {accuracy:g}, by {found.method}")]
     else:
         solution = _solver(method or "mdr", accuracy, pressure_accuracy).solve(scene)
-    if accuracy is not None:
-        _refuse_less(solution, accuracy, pressure_accuracy)
-        solution = told_where_less(solution, accuracy, pressure_accuracy)
+        if accuracy is not None:
+            _refuse_less(solution, accuracy, pressure_accuracy)
+            solution = told_where_less(solution, accuracy, pressure_accuracy)
     terminal = console()
     _show_answer(solution)
     show_facts(solution_facts(solution) + facts + _notes(scene_file, solution), on=terminal)
@@ -115,28 +115,6 @@ def _solve_uncertain(scene: Scene, uncertain: UncertainInputs, samples: int, met
     _show_answer(found.answer)
     show_table(propagated_table(found), on=console())
     return found.answer
-
-
-def _by_evidence(
-    scene: Scene, accuracy: float, pressure_accuracy: float | None, within: float | None, file: Path | None
-) -> tuple[Solution, list[tuple[str, str]]]:
-    """The answer with measured settings, and what was expected of them."""
-    from cases.measurements.evidence import solve as solve_by_evidence  # noqa: PLC0415 - only where it is asked for
-    from cases.measurements.evidence.records import read  # noqa: PLC0415 - as above
-
-    measured = None if file is None else read(file)
-    found = solve_by_evidence(
-        scene, accuracy=accuracy, pressure_accuracy=pressure_accuracy, within=within, evidence=measured
-    )
-    choice = found.choice
-    settings = ", ".join(f"{name} = {value}" for name, value in choice.settings.items())
-    expected = f"error {choice.expected_error:.1e} in {duration(choice.expected_seconds)}"
-    reached = f"reached in {choice.reached} of {choice.evidence.scenes} measured scenes"
-    return found.answer, [
-        ("chosen", f"{choice.method} ({settings}), {reached}"),
-        ("expected", expected),
-        ("achieved", f"stated error {found.stated_error:.1e} in {duration(found.seconds)} of processor time"),
-    ]
 
 
 def _check_accuracies(accuracy: float | None, pressure_accuracy: float | None) -> None:

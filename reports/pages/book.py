@@ -1,14 +1,11 @@
 """Pages of the documentation that are written from the project: a page a case, and where each equation stands."""
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 
 from cases.declare.case import Case
-from cases.gate.accuracy_figures import AccuracyFigure, accuracy_figures
-from cases.gate.baseline import Baseline
 from cases.results.files import write_whole
-from reports.pages.accuracy import figure_table
 from reports.tables.declaration_tables import claim_table, method_table, scene_table
 from reports.tables.table import Table
 from reports.words.file_names import file_name
@@ -19,37 +16,29 @@ CITED = re.compile(r"Eqs?\. \((\d+)\)(?: to \((\d+)\))?(?:, \((\d+)\))?")
 HEAD = """\
 # Verification book
 
-One page a case: the question, the scenes, what is claimed and why, and what was accepted. Nothing is computed for
-these pages: they come from the declarations of the cases and the accepted numbers.
+One page a case: the question, the scenes, what is claimed and why. Nothing is computed for these pages: they come
+from the declarations of the cases.
 
 ```{toctree}
 :maxdepth: 1
 
 """
-ACCEPTED = """\
-## Accepted numbers
-Relative errors over all accepted states of the case: what each method states, and its difference to a partner.
-"Within both" counts differences no larger than the two stated errors together.
-"""
 
 
-def write_book(cases: Iterable[Case], baselines: Iterable[Baseline], folder: Path) -> None:
+def write_book(cases: Iterable[Case], folder: Path) -> None:
     """Write the contents and a page for each case into `folder`, which is made."""
     folder.mkdir(parents=True, exist_ok=True)
-    figures = list(accuracy_figures(baselines))
     names = []
     for case in cases:
         names.append(file_name(case.name))
-        write_whole(folder / f"{names[-1]}.md", case_page(case, [f for f in figures if f.case == case.name]))
+        write_whole(folder / f"{names[-1]}.md", case_page(case))
     write_whole(folder / "index.md", HEAD + "\n".join(names) + "\n```\n")
 
 
-def case_page(case: Case, figures: Sequence[AccuracyFigure]) -> str:
+def case_page(case: Case) -> str:
     """The page of a case as Markdown."""
     parts = [f"# {case.title}", f"**{case.question}** {', '.join(case.equations)}".rstrip(), case.text.strip()]
     parts += [_section(table) for table in (scene_table(case), method_table(case), claim_table(case)) if table.rows]
-    if figures:
-        parts += [ACCEPTED, figure_table(figures)]
     return "\n\n".join(parts) + "\n"
 
 

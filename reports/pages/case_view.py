@@ -5,7 +5,7 @@ from typing import Any
 
 from cases.results.records.cost import WorkPrecision
 from cases.results.records.run import CaseResult
-from reports.charts import agreement, convergence, coverage, error_map, ladder, scaling, work_precision
+from reports.charts import agreement, convergence, ladder, work_precision
 from reports.figures.figure import ReportFigure
 from reports.figures.figure_files import FigureFolder, PlacedFigure
 from reports.figures.renderer import report_figure
@@ -34,11 +34,6 @@ def case_view(case: CaseResult, folder: FigureFolder, command: str) -> CaseView:
         "work": tuple(map(_timed, placed(work_precision.figures(case)), case.work_precision)),
         "ladders": placed(ladder.figures(case)),
         "breakdowns": hard_tables.ladders(case),
-        "coverage": placed(coverage.figures(case)),
-        "covered": hard_tables.coverage(case),
-        "maps": placed(error_map.figures(case)),
-        "good_ranges": hard_tables.good_ranges(case),
-        "scaling": placed(scaling.figures(case)),
         "refusals": tuple(ladder.refusals(case)),
         "effects": case_tables.effects(case),
         "stages": case_tables.stages(case),

@@ -91,7 +91,6 @@ def _price(works: Iterable[WorkPrecision], names: Iterable[str], tau: float) -> 
 
 def _breakdown(run: RunResult) -> list[str]:
     ladders = [ladder for case in run.cases for ladder in case.ladders]
-    records = [record for case in run.cases for record in case.coverage]
     lines = []
     if ladders:
         ends = sum(climbed(ladder) == len(ladder.rungs) for ladder in ladders)
@@ -102,13 +101,6 @@ def _breakdown(run: RunResult) -> list[str]:
             + f", {refused} end with a refusal by name" * bool(refused)
             + f", {failed} with a wrong or missing answer" * bool(failed)
             + "."
-        )
-    if checks := sum(record.checks for record in records):
-        held = sum(record.covered * record.checks for record in records)
-        crashed = sum(record.crashed for record in records)
-        lines.append(
-            f"Random scenes: {100 * held / checks:.1f} % of {checks} answers lie within the error they state; "
-            f"{crashed} crashed."
         )
     return lines or ["No ladder was climbed in this run: the suite nightly does that."]
 

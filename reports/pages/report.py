@@ -9,21 +9,18 @@ from pathlib import Path
 import jinja2
 from markupsafe import Markup
 
-from cases.measurements.measurement import grouped
 from cases.results.files import write_whole
-from cases.results.records.run import Acceptance, CaseResult, RunResult
-from reports.charts import history
-from reports.figures.figure_files import ROOM, FigureFolder, PlacedFigure
+from cases.results.records.run import CaseResult, RunResult
+from reports.figures.figure_files import ROOM, FigureFolder
 from reports.pages.case_view import CaseView, case_view
 from reports.pages.claim_blocks import is_wide
 from reports.pages.front import Answer, pairs_table, three_answers_of
 from reports.pages.matrix import run_matrix
 from reports.tables import convergence_table, cost_tables
 from reports.tables.sharing_tables import shared_things
-from reports.tables.table import Table
 from reports.words.file_names import file_name
 from reports.words.moves import baseline_sentence
-from reports.words.numbers import duration, small
+from reports.words.numbers import duration
 from reports.words.one_factor import one_factor
 from reports.words.outcomes import EXPLANATIONS, counts, headline, outcomes, tone_of
 
@@ -51,7 +48,6 @@ def write_report(run: RunResult, directory: Path, jobs: int = 1, *, single_file:
     out = shlex.quote(str(directory))
     answers = three_answers_of(run, folder, f"contact-verify report {out}")
     cases = [case_view(case, folder, f"contact-verify {_subcommand(case)} --out {out}") for case in run.cases]
-    moved = folder.place(history.figures(run.acceptances), f"contact-verify report {out}")
     folder.draw(jobs)
     (directory / CASES).mkdir(exist_ok=True)
     for stale in (directory / CASES).glob("*.html"):
@@ -59,7 +55,7 @@ def write_report(run: RunResult, directory: Path, jobs: int = 1, *, single_file:
     for case in () if single_file else cases:
         write_whole(directory / CASES / _page_name(case["result"].name), case_page(case, run))
     page = directory / "report.html"
-    write_whole(page, render(run, directory, cases, answers, moved, single_file=single_file))
+    write_whole(page, render(run, directory, cases, answers, single_file=single_file))
     return page
 
 
@@ -81,10 +77,6 @@ def case_page(case: CaseView, run: RunResult) -> str:
 
 STUDY_COMMANDS = {
     "stability": "ladders",
-    "coverage": "coverage",
-    "error_maps": "maps",
-    "scaling": "scaling",
-    "requested_accuracy": "accuracy",
 }
 
 
@@ -101,7 +93,6 @@ def render(
     directory: Path,
     cases: Sequence[CaseView],
     answers: Sequence[Answer],
-    moved: Sequence[PlacedFigure],
     *,
     single_file: bool,
 ) -> str:
@@ -137,8 +128,6 @@ def render(
         orders=convergence_table.orders(run),
         cases=cases,
         notable=notable,
-        moved=moved,
-        tolerances=tolerance_history(run.acceptances),
         stamp=stamp_lines(run),
         directory=shlex.quote(str(directory)),
         css=stylesheet(),
@@ -149,62 +138,6 @@ def render(
 def without_optional_end_tags(page: str) -> str:
     """The page without the end tags of rows and cells, which HTML lets out: a tenth of a report with many tables."""
     return page.replace("</td>", "").replace("</tr>", "").replace("</th>", "")
-
-
-def tolerance_history(acceptances: Sequence[Acceptance]) -> Table | None:
-    """What each accepted run changed, case by case, latest first, under its date and reason.
-
-    A loosened tolerance says so. Each single number would be thousands of rows: those stand in results.json.
-    """
-    runs = grouped(acceptances, lambda entry: (entry.date, entry.revision[:12], entry.reason))
-    rows: list[tuple[str, ...]] = []
-    for (date, revision, reason), entries in sorted(runs.items(), key=lambda run: run[0][0], reverse=True):
-        cases = grouped(entries, lambda entry: entry.case)
-        rows += [(f"{date}, {revision}: {reason}",), *(_accepted_row(*case) for case in sorted(cases.items()))]
-    if not rows:
-        return None
-    return Table(
-        title="Accepted changes",
-        note="Only `contact-verify accept` writes baselines; it loosens a tolerance only when told to. Each number and "
-        "tolerance, old and new, stands in results.json under acceptances.",
-        heads=("case", "methods", "new and gone", "largest loosening", "changed numbers", "largest relative change"),
-        rows=tuple(rows),
-        words=4,
-    )
-
-
-def _accepted_row(case: str, entries: Sequence[Acceptance]) -> tuple[str, ...]:
-    """What was accepted of a case: by which methods, how many numbers, how far the farthest moved."""
-    methods = ", ".join(sorted({entry.method for entry in entries if entry.method}))
-    changed = [e for e in entries if e.old is not None and e.new is not None]
-    moved = [abs(e.new / e.old - 1.0) for e in changed if e.old and e.new is not None]
-    farthest = small(max(moved)) if moved else ""
-    return case, methods, _came_and_went(entries), _loosening(entries), str(len(changed)), farthest
-
-
-def _came_and_went(entries: Sequence[Acceptance]) -> str:
-    """Numbers that are new, numbers that are gone, and the first of the entries that are in words."""
-    counted = {
-        "new": sum(e.old is None and e.new is not None for e in entries),
-        "gone": sum(e.old is not None and e.new is None for e in entries),
-    }
-    records = list(dict.fromkeys(e.quantity for e in entries if e.old is None and e.new is None))
-    others = [f"{len(records) - 1} more"] if len(records) > 1 else []
-    return ", ".join([f"{number} {word}" for word, number in counted.items() if number] + records[:1] + others)
-
-
-def _loosening(entries: Sequence[Acceptance]) -> str:
-    """How many tolerances were loosened, and which the most."""
-    loosened = [(e.new_tolerance or 0.0, e.old_tolerance or 0.0, e) for e in entries if _loosened(e)]
-    if not loosened:
-        return ""
-    new, old, entry = max(loosened, key=lambda change: change[0] - change[1])
-    place = f"{entry.quantity} of {entry.method}"
-    return f"{len(loosened)} LOOSENED, {place} from {small(old)} to {small(new)}"
-
-
-def _loosened(entry: Acceptance) -> bool:
-    return entry.old_tolerance is not None and (entry.new_tolerance or 0.0) > entry.old_tolerance
 
 
 def stamp_lines(run: RunResult) -> list[tuple[str, str]]:

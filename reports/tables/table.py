@@ -35,8 +35,3 @@ def tabulated(
     """
     rows = tuple(tuple(cell(record) for cell in columns.values()) for record in records)
     return Table(title=title, note=note, heads=tuple(columns), rows=rows, words=words) if rows else None
-
-
-def per_cent(share: float) -> str:
-    """A share as 97.5 %."""
-    return f"{100.0 * share:.1f} %"

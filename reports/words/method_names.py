@@ -12,7 +12,6 @@ NAMES: Mapping[str, str] = {
     "calculix": "CalculiX",
     "contact_mechanics": "ContactMechanics",
     "tamaas": "Tamaas",
-    "adhesion_jkr": "Adhesion (JKR)",
 }
 
 

@@ -184,7 +184,7 @@ def nothing_ran(run: RunResult) -> bool:
 
 
 def _measured(run: RunResult) -> int:
-    return sum(bool(case.work_precision or case.maps or case.scaling) for case in run.cases)
+    return sum(bool(case.work_precision) for case in run.cases)
 
 
 def claim_outcome(case: str, claim: Claim) -> CheckOutcome:

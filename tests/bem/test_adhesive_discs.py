@@ -3,22 +3,13 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from bem.adhesion.branch import DiscBranch
-from bem.adhesion.broken_profile import BrokenProfile, PunchDensities
-from bem.adhesion.disc import AdheringDisc
-from bem.layer_equation.flat_punch_source import IntegralEquation
-from bem.layer_equation.one_radius import half_space_load
-from bem.layer_equation.profiles.half_space_moment import half_space_moment
 from bem.method import Bem
-from cases.measurements.campaigns.referee import direct_density
 from contact import (
     Adhesion,
     Cone,
     ContactRadii,
     Detachment,
-    ExponentialDepth,
     FlatPunch,
-    GradedLayer,
     IndentationDepths,
     InvalidInput,
     Layer,
@@ -27,10 +18,8 @@ from contact import (
     Scene,
     Tabulated,
     TruncatedCone,
-    UnsupportedSceneError,
 )
 from mdr import Mdr
-from mdr.springs.assembly import equivalent_system
 
 WORK = 0.1
 HALF_SPACE = Layer.half_space(youngs_modulus=0.75e6, poissons_ratio=0.5)  # E* = 1 MPa
@@ -44,15 +33,6 @@ WAY_IN_AND_OUT = np.array([-3e-6, 2e-6, 8e-6, 2e-6, -3e-6, -9e-6, -3e-6, 1e-6])
 
 def scene(layer, indenter, loading):
     return Scene(layer=layer, indenter=indenter, loading=loading, effects=(Adhesion(work_of_adhesion=WORK),))
-
-
-@pytest.fixture(scope="module", autouse=True)
-def _discs_solved_once():
-    """Branches of one layer and profile go through the same discs, whatever is prescribed: 1667 of 4387 are new."""
-    right, remembered = AdheringDisc.__dict__["solved"], lru_cache(maxsize=1024)(AdheringDisc.solved)
-    AdheringDisc.solved = staticmethod(remembered)
-    yield
-    AdheringDisc.solved = right
 
 
 @lru_cache
@@ -159,17 +139,6 @@ def test_errors_along_a_branch_on_a_layer_are_covered_and_sharp(poissons_ratio):
         assert stated[0] < 10.0 * error[0], name
 
 
-def test_errors_at_given_radii_are_those_of_the_branch():
-    """Stiffness and moment tell them there, too: by two grids and the ring 32 times the true one was stated."""
-    scene_ = scene(LAYER.replace(poissons_ratio=0.29), SPHERE, ContactRadii(np.linspace(4e-4, 8e-4, 5)))
-    path, exact = Bem(points=96).solve(scene_), Mdr().solve(scene_)
-    for name in ("indentation_depth", "normal_force"):
-        error = np.abs(getattr(path, name) - getattr(exact, name)) / path.scale(name)
-        stated = path.error_estimate[name]
-        assert np.all(error < stated), name
-        assert np.median(stated / error) < 4.0, name
-
-
 @pytest.mark.parametrize("control", ["displacement", "force"])
 def test_a_contact_lost_at_the_rim_is_as_wide_as_the_rim(control):
     """No edge value says so: of such radii 2e-5 was stated where 1e-8 is true."""
@@ -220,13 +189,6 @@ def test_nothing_adheres_without_work_of_adhesion():
         Bem(points=96).solve(scenes[1].replace(loading=Detachment()))
 
 
-def test_a_wrong_moment_is_seen(monkeypatch):
-    right = AdheringDisc.moment.fget
-    monkeypatch.setattr(AdheringDisc, "moment", property(lambda disc: 1.1 * right(disc)))
-    path = Bem(points=96).solve(scene(HALF_SPACE, SPHERE, Detachment(control="force")))
-    assert path.pull_off_force != pytest.approx(-1.5 * np.pi * 0.01 * WORK, rel=0.02, abs=0.0)
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("layer", [HALF_SPACE, LAYER, LAYER.replace(poissons_ratio=0.3, thickness=0.3e-3)])
 def test_pull_off_force_converges_to_a_part_in_a_thousand_at_512(layer):
@@ -234,28 +196,6 @@ def test_pull_off_force_converges_to_a_part_in_a_thousand_at_512(layer):
     errors = [abs(detached(layer, SPHERE, "force", points).pull_off_force / exact - 1.0) for points in (128, 256, 512)]
     assert errors[2] < 3e-4
     assert errors[2] < errors[0] / 4.0  # order above one
-
-
-@pytest.mark.parametrize("indenter", [FlatPunch(radius=8e-3), SPHERE], ids=lambda i: type(i).__name__)
-def test_a_layer_thinner_than_the_ring_that_tells_the_edge_is_refused(indenter):
-    """At a/h = 8, nu = 0.38 two grids agreed within 7 % on a pull-off that was 15 % off."""
-    layer = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.38)
-    loading = Detachment() if isinstance(indenter, FlatPunch) else ContactRadii([8e-3])
-    with pytest.raises(UnsupportedSceneError, match=r"cells thick and needs 12; take 1\.\d times as many points"):
-        Bem(points=128).solve(scene(layer, indenter, loading))
-
-
-def test_a_pull_off_that_the_grid_does_not_resolve_is_refused():
-    """On a thin layer under strong adhesion 128 points once said -2e12 N, where -9 N is right."""
-    layer = Layer(thickness=1.6e-3, youngs_modulus=6.7e7, poissons_ratio=0.5)
-    thin = Scene(
-        layer=layer,
-        indenter=Cone(slope=3e-5),
-        loading=Detachment(control="displacement"),
-        effects=(Adhesion(work_of_adhesion=4.6e-3),),
-    )
-    with pytest.raises(UnsupportedSceneError, match=r"cells thick and needs 12"):
-        Bem(points=128).solve(thin)
 
 
 @pytest.mark.parametrize("control", ["displacement", "force"])
@@ -303,26 +243,6 @@ def test_pull_off_near_a_kink_of_a_measured_profile_is_sharp(kink, work):
     assert cells.pull_off_contact_radius == pytest.approx(exact.pull_off_contact_radius, rel=4e-4, abs=0.0)
     assert cells.pull_off_force == pytest.approx(exact.pull_off_force, rel=4e-4, abs=0.0)
     assert cells.pull_off_depth == pytest.approx(exact.pull_off_depth, rel=5e-3, abs=0.0)
-
-
-@pytest.mark.parametrize("beyond", [1.001, 1.005, 1.05])
-def test_a_ring_narrower_than_a_cell_beyond_a_rim_has_its_depth_and_moment(beyond):
-    # On the grid such a ring has a moment that is wrong by a tenth or more, or none.
-    layer, radius = LAYER.replace(thickness=4e-2), beyond * CONE.flat_radius
-    disc = AdheringDisc.solved(layer, CONE, radius, 96, 1)
-    exact = direct_density(layer, CONE, radius - CONE.flat_radius)
-    depth = exact.depth * exact.unit
-    moment = disc.stiffness * depth - exact.unit**2 * exact.force(exact.depth)
-    assert disc.edge_risen / disc.edge_flat == pytest.approx(depth, rel=1e-7, abs=0.0)
-    assert disc.moment == pytest.approx(moment, rel=1e-6, abs=0.0)
-
-
-def test_a_measured_profile_on_the_half_space_is_followed_between_its_breakpoints():
-    profile = Tabulated(radii=[0.0, 0.2, 0.5, 0.6, 1.3], heights=[0.0, 0.01, 0.08, 0.12, 0.7])
-    radii = np.linspace(0.01, 1.2, 60)
-    load, moment, _ = BrokenProfile.pressed(profile, 1.25)(radii)
-    assert load == pytest.approx(half_space_load(profile, radii), rel=1e-11, abs=1e-14)
-    assert moment == pytest.approx([half_space_moment(profile, a) for a in radii.tolist()], rel=1e-11, abs=1e-14)
 
 
 MEASURED = Tabulated(radii=[0.0, 0.25, 0.5, 0.85, 1.0, 3.0], heights=[0.0, 0.02, 0.06, 0.15, 0.22, 1.6])
@@ -375,27 +295,17 @@ def test_a_profile_of_parabolic_pieces_lets_go_once_under_each_control(method):
 
 
 @pytest.mark.parametrize(
-    "indenter", [SPHERE, pytest.param(CONE.replace(flat_radius=5e-4), marks=pytest.mark.slow)], ids=["sphere", "cone"]
+    ("layer", "indenter", "work"),
+    [
+        (Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.38), FlatPunch(radius=8e-3), WORK),
+        (Layer(thickness=1.6e-3, youngs_modulus=6.7e7, poissons_ratio=0.5), Cone(slope=3e-5), 4.6e-3),
+    ],
 )
-def test_edges_on_graded_layers_are_told_by_stiffness_and_moment(indenter):
-    """By rings of cells edge values were 5e-3 to 1.1e-2 off, and 0.19 with a rim among those cells."""
-    graded = GradedLayer(
-        thickness=1e-3, youngs_modulus=ExponentialDepth(surface=1e6, base=4e6), poissons_ratio=0.3, support="bonded"
-    )
-    radii, system = np.array([6e-4, 8e-4]), equivalent_system(graded, indenter, 1e-3, IntegralEquation())
-    edge = np.sqrt([system.spring_stiffness(a) / graded.contact_modulus for a in radii.tolist()])
-    branch = DiscBranch.up_to(1e-3, scene(graded, indenter, Detachment()), 64, 1)
-    flat, risen, _, _ = branch.values(radii)
-    assert flat == pytest.approx(edge, rel=2e-4, abs=0)
-    assert risen == pytest.approx(edge * [system.mdr_profile(a) for a in radii.tolist()], rel=6e-4, abs=0)
-
-
-def test_a_broken_profile_grows_its_moment_by_its_edge_value():
-    """dM/da = 2 phi(a; a) phi_f(a), whatever densities the flat punches have."""
-    densities = PunchDensities(np.array([[1.4, 0.2], [0.3, 0.1], [0.05, 0.02]]), outer=1.0)
-    table = Tabulated(radii=[0.0, 0.3, 0.7, 1.2], heights=[0.0, 0.05, 0.3, 1.1])
-    known, a, h = BrokenProfile.pressed(table, 1.0, densities), np.array([0.2, 0.5, 0.9]), 1e-5
-    edge = densities(a[:, None], a[:, None])[0][:, 0]
-    risen, _, slope = known(a)
-    assert (known(a + h)[1] - known(a - h)[1]) / (2 * h) == pytest.approx(slope, rel=1e-7, abs=0.0)
-    assert slope == pytest.approx(2 * edge * risen, rel=1e-9, abs=0.0)
+def test_pull_offs_of_thin_layers_are_within_their_stated_errors(layer, indenter, work):
+    """They were refused: the ring of cells that showed the edge was wider than the layer."""
+    thin = Scene(layer=layer, indenter=indenter, loading=Detachment(), effects=(Adhesion(work_of_adhesion=work),))
+    path, exact = Bem(points=128).solve(thin), Mdr().solve(thin)
+    for name in path.SCALARS:
+        error = abs(getattr(path, name) / getattr(exact, name) - 1.0)
+        assert error < 2e-3, name
+        assert error <= path.error_estimate[name][0], name

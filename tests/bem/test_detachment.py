@@ -4,11 +4,8 @@ import numpy as np
 import pytest
 from scipy.integrate import dblquad
 
-from bem.adhesion.cell_by_cell.indenter import CELL_ENERGY, AdheringIndenter, dilated, rim, strength
-from bem.grid.calibrated_disc import disc
+from bem.cells import CELL_ENERGY
 from bem.grid.influence import rectangle_influence
-from bem.grid.operators import FreeSpaceOperator
-from bem.grid.quadrant import QuadrantGrid
 from bem.method import Bem
 from contact import (
     Adhesion,
@@ -17,10 +14,8 @@ from contact import (
     IndentationDepths,
     Layer,
     NormalForces,
-    NotConvergedError,
     Paraboloid,
     Scene,
-    StageLog,
 )
 from mdr import Mdr
 
@@ -64,20 +59,6 @@ def test_the_constant_agrees_with_the_grids_own_influence():
     multiplicity = (n - np.arange(n)) * count
     total = multiplicity @ influence[:n, :n] @ multiplicity
     assert total / (2.0 * n**3) == pytest.approx(CELL_ENERGY, rel=1e-3, abs=0.0)
-
-
-def test_strength_balances_energy_and_work():
-    tau, s = strength(2e6, 0.1, 1e-5), 1e-5
-    assert CELL_ENERGY * tau**2 * s**3 / 2e6 == pytest.approx(0.1 * s**2, rel=1e-14, abs=0.0)
-
-
-def test_rim_and_dilation_know_the_mirrors():
-    contact = disc(16, 5.0)
-    edge = rim(contact)
-    assert not edge[0, 0]
-    assert edge[0, 4]
-    assert edge[4, 0]
-    assert np.count_nonzero(dilated(contact, 1) & ~contact) == np.count_nonzero(rim(dilated(contact, 1)))
 
 
 @pytest.mark.parametrize("control", ["displacement", "force"])
@@ -128,25 +109,8 @@ def test_the_branch_agrees_with_mdr_at_every_radius():
     assert path.stable_force_control[0]
 
 
-def test_loading_follows_the_unloading_branch():
-    cells, radius = 64, 0.35e-3
-    grid = QuadrantGrid(cells, 2.0 * radius / (0.9 * cells))
-    operator = FreeSpaceOperator(HALF_SPACE, cell_size=grid.cell_size, cells=cells, quarter=True)
-    tension = strength(1e6, WORK, grid.cell_size)
-    indenter = AdheringIndenter(operator, grid, SPHERE.height(grid.radius), tension, StageLog())
-    start = indenter.first_state(disc(cells, 0.9 * cells / 2))
-    first = indenter.settle(start, start.indentation_depth)
-    states = indenter.unload(first, lambda states: len(states) > 10)
-    back = indenter.load(states[-1], np.array([state.indentation_depth for state in states[-2::-1]]))
-    for state, again in zip(states[-2::-1], back, strict=True):
-        assert indenter.contact_radius(again) == pytest.approx(indenter.contact_radius(state), abs=2 * grid.cell_size)
-        assert indenter.normal_force(again) == pytest.approx(indenter.normal_force(state), abs=0.1 * 0.0047)
-    with pytest.raises(NotConvergedError, match="no adhering contact"):
-        indenter.load(states[-1], np.array([-1.0]))
-
-
 def test_a_wrong_constant_is_seen(monkeypatch):
-    monkeypatch.setattr("bem.adhesion.cell_by_cell.indenter.CELL_ENERGY", 2.0 * CELL_ENERGY)
+    monkeypatch.setattr("bem.cells.CELL_ENERGY", 2.0 * CELL_ENERGY)
     path = Bem(points=96, adhesion="cells").solve(scene(HALF_SPACE, FlatPunch(radius=1e-3)))
     assert path.pull_off_force != pytest.approx(-np.sqrt(8 * np.pi * 1e6 * WORK * 1e-9), rel=0.2, abs=0.0)
 

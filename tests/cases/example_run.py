@@ -3,14 +3,12 @@
 The numbers are made up (a stiffness 2.48 with errors of a first-order and a spectral method); nothing was solved.
 """
 
-import dataclasses
-
 from cases.results.records.claim import Claim, Kind, Origin, Verdict
 from cases.results.records.convergence import ConvergenceClass, ConvergenceStudy, Grid
 from cases.results.records.cost import CheapestRun, DigitPrice, EffectEntry, WorkPoint, WorkPrecision
 from cases.results.records.figure import Figure, Panel, Series
 from cases.results.records.reliability import Ladder, Rung
-from cases.results.records.run import Acceptance, CaseResult, RunResult, SceneDescription, Stamp
+from cases.results.records.run import CaseResult, RunResult, SceneDescription, Stamp
 from cases.results.records.scene_run import CostRecord, Curve, Quantity, SceneRun, Stage
 from cases.results.status import Status
 
@@ -26,7 +24,6 @@ def example_run() -> RunResult:
         complete=True,
         stamp=example_stamp(),
         cases=(passing_case(), failing_case()),
-        acceptances=(acceptance(),),
     )
 
 
@@ -512,38 +509,6 @@ def figure() -> Figure:
                 ),
             ),
         ),
-    )
-
-
-def acceptance() -> Acceptance:
-    return Acceptance(
-        date="2026-01-01",
-        case="example_failures",
-        method="mdr",
-        quantity="normal_force",
-        old=1.49,
-        new=1.5,
-        old_tolerance=1.5e-9,
-        new_tolerance=1.5e-9,
-        reason="the quadrature was corrected",
-        revision="0" * 40,
-    )
-
-
-def accepted_numbers(count: int) -> tuple[Acceptance, ...]:
-    """So many moved numbers of eleven accepted runs, each with the reason of its run."""
-    return tuple(
-        dataclasses.replace(
-            acceptance(),
-            date=f"2026-01-{1 + i % 11:02}",
-            revision=f"{i % 11:x}" * 40,
-            case=f"case_{i % 7}",
-            quantity=f"normal_force of scene {i}",
-            new=1.49 + 1e-6 * i,
-            new_tolerance=1.5e-9 if i % 5 else 3e-9,
-            reason=f"reason {i % 11}",
-        )
-        for i in range(count)
     )
 
 

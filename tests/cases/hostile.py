@@ -29,13 +29,13 @@ import numpy as np
 
 from cases.declare.foreign_methods import check_claim
 from cases.declare.methods import check_name
-from cases.measurements.campaigns.random_scenes import FAMILIES, random_scene
 from cases.results.files import from_json
-from cases.results.sealed import sealed_text
+from cases.results.strict_json import json_text
 from contact import ContactPath, ContactRadii, Cost, InvalidInput, Scene, StageRecord
 from contact.files.scene_file import load_scene, scene_from_mapping, scene_to_mapping
 from contact.files.storage import load_solution, read_tree, save_solution, write_tree
 from contact.records.errors import printable
+from tests.drawn_scenes import FAMILIES, random_scene
 
 End: TypeAlias = Literal["refused", "accepted", "altered", "crashed"]
 Kind: TypeAlias = Literal["mapping", "toml", "hdf5", "json", "writing", "file", "method"]
@@ -316,7 +316,7 @@ def _equal(first: Any, second: Any) -> bool:
     return type(first) is type(second) and bool(np.array_equal(first, second))
 
 
-_RUN = {"schema_version": 1, "suite": "ci", "complete": True, "cases": [], "acceptances": []}
+_RUN = {"schema_version": 2, "suite": "ci", "complete": True, "cases": []}
 _STAMP = {"started": "2020-01-01T00:00:00Z", "wall_seconds": 1.0, "revision": "x", "dirty": False, "python": "3"}
 _MACHINE = {"platform": "x", "processor": "x", "cores": 1, "threads": {}, "versions": {}, "mesh_hashes": {}}
 
@@ -333,7 +333,7 @@ def _json_trial(draw: Draw) -> tuple[End, str]:
 def _sealed(tree: Any) -> str:
     """Under a right seal where there can be one, so that the reader looks at the content."""
     try:
-        return sealed_text(tree) if isinstance(tree, dict) else json.dumps(tree)
+        return json_text(tree) if isinstance(tree, dict) else json.dumps(tree)
     except (TypeError, ValueError):
         return json.dumps(tree, skipkeys=True)
 

@@ -11,11 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from cases.measurements.kept_scenes import KeptScenes
 from cases.results.files import read_run
 from cases.results.status import Status
 from cases.run.executors import by_name, serial
-from cases.run.many.blocks import InBlocks
 from cases.run.runner import RunOptions, run_cases
 from cases.run.store import TaskStore
 from contact import InvalidInput
@@ -156,47 +154,3 @@ def slowly(numbers):
     """Numbers that take a while."""
     time.sleep(0.01 * len(numbers))
     return list(numbers)
-
-
-@pytest.mark.parametrize("count", [300, 1200])
-def test_the_scheduler_knows_few_tasks_however_many_numbers(cluster, count, monkeypatch):
-    monkeypatch.setattr("cases.run.many.blocks.SHORTEST", 0.05)
-    blocks = InBlocks(slowly, by_name(cluster.scheduler_address), 1, None)
-    known = [len(cluster.scheduler.tasks) for _ in blocks.results(range(count))]
-    assert blocks.blocks > 20
-    # Two for each of two workers, and those whose results are on their way.
-    assert max(known) <= 6
-    assert len(cluster.scheduler.task_groups) <= 1
-
-
-def test_a_killed_worker_costs_its_own_blocks(cluster, monkeypatch):
-    monkeypatch.setattr("cases.run.many.blocks.SHORTEST", 0.2)
-    victims = [worker.process.pid for worker in cluster.workers.values()][:1]
-    found = []
-    for block in InBlocks(slowly, by_name(cluster.scheduler_address), 2, None).results(range(600)):
-        found += block
-        if victims and len(found) > 200:
-            os.kill(victims.pop(), signal.SIGKILL)
-    assert sorted(found) == list(range(600))
-
-
-def test_a_campaign_whose_scheduler_dies_is_one_line_and_goes_on(scheduler, tmp_path, monkeypatch, capfd):
-    address, process = scheduler
-    add, kept = KeptScenes.add, []
-
-    def add_and_kill(self, lines):
-        add(self, lines)
-        kept.append(lines.count("\n"))
-        process.kill()
-
-    monkeypatch.setattr(KeptScenes, "add", add_and_kill)
-    words = ["campaign", "displacement", "--count", "8", "--out", str(tmp_path)]
-    assert command_line.run([*words, "--executor", address]) == 2
-    printed = " ".join("".join(capfd.readouterr()).split())
-    assert "Traceback" not in printed
-    assert printed.count("does not answer any more") == 1
-    assert f"{sum(kept)} of 8 scenes are finished, go on with --resume" in printed
-    before = sum(kept)
-    assert command_line.run([*words, "--resume"]) == 0
-    assert sum(kept) == 8 > before
-    assert "within: 8" in capfd.readouterr().out

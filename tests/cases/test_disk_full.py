@@ -9,11 +9,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cases.gate.history import append_history, read_history
 from cases.results.files import write_run, write_whole
 from contact import InvalidInput
 from contact.files.storage import read_tree, write_tree
-from tests.cases.example_run import acceptance, example_run
+from tests.cases.example_run import example_run
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -36,7 +35,6 @@ def full_disk(monkeypatch):
         ("picture.png", lambda folder: write_whole(folder / "picture.png", b"x" * 1000)),
         ("tree.h5", lambda folder: write_tree(folder / "tree.h5", {"a": np.zeros(100)})),
         ("results.json", lambda folder: write_run(example_run(), folder)),
-        ("history.jsonl", lambda folder: append_history(folder, [acceptance()])),
     ],
 )
 def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, tmp_path):
@@ -50,7 +48,6 @@ def test_a_full_disk_is_one_line_with_the_path_and_leaves_nothing(name, write, t
 
 def test_the_old_file_survives_a_full_disk(tmp_path, monkeypatch):
     write_tree(tmp_path / "tree.h5", {"a": 1.0})
-    append_history(tmp_path, [acceptance()])
     before = sorted(tmp_path.iterdir())
 
     def refuse(descriptor):
@@ -59,11 +56,8 @@ def test_the_old_file_survives_a_full_disk(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "fsync", refuse)
     with pytest.raises(InvalidInput):
         write_tree(tmp_path / "tree.h5", {"a": 2.0})
-    with pytest.raises(InvalidInput):
-        append_history(tmp_path, [acceptance()])
     assert sorted(tmp_path.iterdir()) == before
     assert read_tree(tmp_path / "tree.h5") == {"a": 1.0}
-    assert read_history(tmp_path) == (acceptance(),)
 
 
 LIMITED = """

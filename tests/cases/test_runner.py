@@ -156,7 +156,7 @@ def test_a_task_file_changed_by_hand_is_refused_in_words_and_solved_again(tmp_pa
     events = []
     second = run(fake_case(), tmp_path, resume=True, progress=events.append)
     (refused,) = (e for e in events if e.kind == "refused")
-    assert "changed after it was written" in refused.reason
+    assert "holds the answer to another question" in refused.reason
     assert [e.kind for e in events].count("finished") == 1
     assert strip_times(first, second).cases == first.cases
 

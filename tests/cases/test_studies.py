@@ -1,4 +1,4 @@
-"""A suite's report contains quick studies of stability, coverage and closed forms, and they pass."""
+"""A suite's report contains quick studies of stability and code verification, and they pass."""
 
 import dataclasses
 
@@ -15,8 +15,7 @@ from tests.cases.example_run import example_run
 from tests.cases.fake_case import fake_case
 
 # The claims of `code_verification` are judged by tests/verification/test_fem_code_verification.py, too.
-# Suite ci runs the study of coverage itself; tests/cases/measurements/stability/test_coverage.py plants its faults.
-SLOW = dict.fromkeys((studies.quick_ladders, studies.quick_coverage, studies.code_verification), pytest.mark.slow)
+SLOW = dict.fromkeys((studies.quick_ladders, studies.code_verification), pytest.mark.slow)
 
 
 @pytest.mark.parametrize(
@@ -25,7 +24,7 @@ SLOW = dict.fromkeys((studies.quick_ladders, studies.quick_coverage, studies.cod
 def test_quick_studies_pass(study):
     found = study()
     assert not found.status.is_failure, [claim.message for claim in found.claims if claim.status.is_failure]
-    assert found.claims
+    assert found.claims or found.ladders
 
 
 def test_an_interrupt_keeps_the_run_and_says_that_it_is_incomplete(tmp_path, monkeypatch):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from cases.declare.methods import build
-from cases.measurements.evidence.choice import solve
+from cases.measurements.accuracy import solve
 from contact import (
     ContactRadii,
     ExponentialDepth,

@@ -15,13 +15,13 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.method import IntegralEquationMethod
 from bem.method import Bem
-from cases.measurements.campaigns.random_scenes import FAMILIES, random_scene
 from cases.run.empty_caches import forget
 from contact import ContactRadii, IndentationDepths, Layer, Paraboloid, Scene, TruncatedCone
 from contact.answer.one_thread import one_thread
 from fem_reference import Fem
 from mdr import Mdr
 from mdr.batches import equilibria
+from tests.drawn_scenes import FAMILIES, random_scene
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 CONE = Scene(

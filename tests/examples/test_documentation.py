@@ -11,14 +11,13 @@ import matplotlib.pyplot as plt
 import pytest
 
 from cases.declare.registry import load_cases
-from cases.gate.baseline import read_baselines
 from reports.pages.book import write_book, write_equations
 
 ROOT = Path(__file__).parents[2]
 TUTORIALS = sorted((ROOT / "docs" / "tutorials").glob("*.py"))
 PAGES = sorted((ROOT / "docs").glob("*.md"))
 # Pages that the build writes.
-WRITTEN = ("book/", "generated/", "start/")
+WRITTEN = ("book/", "generated/", "start/", "figures/")
 
 
 @pytest.mark.parametrize("path", TUTORIALS, ids=lambda path: path.stem)
@@ -41,14 +40,13 @@ def test_links_and_modules_of_a_page_exist(page):
         assert importlib.util.find_spec(module), module
 
 
-def test_the_book_has_a_page_for_every_case_with_its_claims_and_accepted_numbers(tmp_path):
+def test_the_book_has_a_page_for_every_case_with_its_claims(tmp_path):
     cases = load_cases()
-    write_book(cases.values(), read_baselines(ROOT / "baselines"), tmp_path)
+    write_book(cases.values(), tmp_path)
     assert {page.stem for page in tmp_path.glob("*.md")} == {*cases, "index"}
     page = (tmp_path / "paraboloid.md").read_text(encoding="utf-8")
     assert cases["paraboloid"].question in page
     assert all(claim.name.replace("|", "&#124;") in page for claim in cases["paraboloid"].claims)
-    assert "| fem | normal_force |" in page
 
 
 def test_every_equation_that_the_code_cites_stands_in_the_table(tmp_path):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from cases.referees import process
 from contact import Cone, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 from docs.formulas import cone, paraboloid, punch
 from docs.formulas.audit import RATIOS, force_errors, holds_to, modulus_errors
@@ -23,34 +22,6 @@ def at(name, ratio, nu=0.5, errors=force_errors):
 def test_at_least_fourteen_formulas_each_with_a_source():
     assert len(BY_NAME) == len(FORMULAS) >= 14
     assert all(formula.source and formula.checked and formula.claim for formula in FORMULAS)
-
-
-INSTALLED = {
-    "Hertz 1882": ("hertz_paraboloidal", {"E": 1.0, "R": 1.0}, 4 / 3),
-    "Sneddon 1965, cone": ("conical_indenter", {"E": 1.0, "alpha": 45.0}, 2 / np.pi),
-    # The layer's modulus is read as E*, and a base of infinite modulus is rigid.
-    "Clifford 2009, rigid base": (
-        "power_layer_clifford_2009",
-        {"E_S": 1e14, "E_L": 1.0, "R": 1.0, "nu_S": 0.0, "t": 1.0},
-        4 / 3,
-    ),
-}
-
-
-@pytest.mark.skipif(bool(process.lacks("nanite")), reason="nanite is not installed")
-@pytest.mark.slow
-@pytest.mark.parametrize(("name", "nu"), list(zip(INSTALLED, (0.3, 0.0, 0.49), strict=True)))
-def test_formulas_that_nanite_has_are_those_that_are_judged(name, nu):
-    """Forces at depths from 0.0025 to 4, lengths in thicknesses."""
-    worker, parameters, half_space = INSTALLED[name]
-    x = np.array([0.05, 0.5, 2.0])
-    pointed = BY_NAME[name].shape == "cone"
-    ratio = {"nu_L": nu} if "E_L" in parameters else {"nu": nu}
-    modulus = 1.0 if "E_L" in parameters else 1.0 / (1.0 - nu**2)
-    depth = x if pointed else x**2
-    force = process.ask("nanite_formulas", {**parameters, **ratio, "formula": worker, "depths": depth.tolist()})
-    ours = BY_NAME[name].factor(x, nu) * half_space * modulus * depth ** (2.0 if pointed else 1.5)
-    assert force["normal_force"] == pytest.approx(ours, rel=1e-9, abs=0.0)
 
 
 # Quadratics that were fitted to tables from a/h = 0.2 on miss the half-space.

@@ -8,7 +8,6 @@ from typing import Any, cast
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import scene_of
 from contact import (
     Adhesion,
     Cone,
@@ -32,6 +31,7 @@ from fem_reference.adhesion.superposed import superposed
 from fem_reference.discrete_layer.indenter import ScaledIndenter
 from fem_reference.error_model import ON_BRANCH
 from mdr import Mdr
+from tests.drawn_scenes import scene_of
 
 RADII = np.array([0.3, 0.7, 1.3])
 # Rate at which changes fall in the made-up contacts below.

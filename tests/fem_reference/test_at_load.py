@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import scene_of
 from contact import (
     Cone,
     ContactRadii,
@@ -20,6 +19,7 @@ from fem_reference import Fem
 from fem_reference.elastic.at_load import Load
 from fem_reference.elastic.prescribed_radius import quick_solution
 from mdr import Mdr
+from tests.drawn_scenes import scene_of
 
 LAYER = Layer(thickness=2e-3, youngs_modulus=0.8e6, poissons_ratio=0.49)
 TRUNCATED = TruncatedCone(flat_radius=0.5e-3, slope=0.2)

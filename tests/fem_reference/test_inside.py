@@ -9,7 +9,6 @@ from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXdmf2 import vtkXdmfReader
 from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
-from cases.measurements.campaigns.inside.campaign import inside_campaign
 from contact import (
     Cone,
     ContactRadii,
@@ -135,33 +134,6 @@ HARD_SCENES = [
     # On the axis no volume weighs an error of the stress, and averages of gradients are those of one side.
     pytest.param(52, ("stress", "displacement", "pressure_gradient"), id="axis", marks=pytest.mark.slow),
 ]
-
-
-@pytest.mark.parametrize(
-    ("seed", "number"),
-    [
-        # At found edges stresses are small and change by shares of the pressure beside, and the radius is not exact.
-        pytest.param(19301, 23, id="cone at a force"),
-        pytest.param(19105, 19, id="power law at a force", marks=pytest.mark.slow),
-        # The tip of r^1.94 is no smooth one, though its curvature hardly grows.
-        pytest.param(19301, 13, id="hardly sharp tip"),
-    ],
-)
-def test_errors_hold_close_to_found_edges_and_tips(seed, number):
-    """Stresses and gradients were off by 1.1 to 2.1 times what was stated."""
-    rows = inside_campaign(Fem(), seed=seed, count=number + 1, numbers=[number])
-    judged = [row for row in rows if row.quantity]
-    assert len(judged) == 15
-    assert [(row.quantity, row.error, row.stated) for row in judged if not row.holds] == []
-
-
-@pytest.mark.parametrize(("number", "quantities"), HARD_SCENES)
-def test_errors_hold_beside_found_edges_the_end_of_the_mesh_and_on_the_axis(number, quantities):
-    """Against a referee of single points in extended precision."""
-    rows = inside_campaign(Fem(), seed=19102, count=number + 1, numbers=[number])
-    judged = [row for row in rows if row.quantity in quantities]
-    assert len(judged) == 5 * len(quantities)
-    assert [(row.quantity, row.error, row.stated) for row in judged if not row.holds] == []
 
 
 def test_the_end_of_the_mesh_is_stated_only_near_it():

@@ -5,7 +5,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import random_scenes
 from contact import (
     ContactRadii,
     IndentationDepths,
@@ -20,6 +19,7 @@ from fem_reference import Fem
 from fem_reference.discrete_layer.settings import narrowest_radius
 from fem_reference.elastic.at_load import Load
 from mdr import Mdr
+from tests.drawn_scenes import random_scenes
 
 LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
 COARSE = Fem(growth=1.0, edge_cell=1e-3, truncation=1e-6)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import scene_of
 from contact import IndentationDepths, Layer, NormalForces, Paraboloid, Scene, TruncatedCone
 from fem_reference import Fem
 from mdr import Mdr
+from tests.drawn_scenes import scene_of
 
 H = 1e-3
 LAYER = Layer(thickness=H, youngs_modulus=1e6, poissons_ratio=0.5, support="bonded")

@@ -9,7 +9,6 @@ import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from cases.declare.quantities import IMPACT_NUMBERS
-from cases.measurements.campaigns.random_scenes import random_scenes
 from contact import (
     Cone,
     ContactRadii,
@@ -30,6 +29,7 @@ from contact import (
 from mdr import Mdr
 from mdr.batches import impacts
 from mdr.impact.compiled import choice, integrate, walk
+from tests.drawn_scenes import random_scenes
 
 PUNCH = IntegralEquation()
 LAYER = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)

@@ -43,7 +43,8 @@ def exactly(spectrum, time, force):
         g, d = [mpmath.mpf(w) for w in weights], [mpmath.mpf(r) for r in rates]
         whole, n = mpmath.mpf(long_term) + mpmath.fsum(g), len(g)
         of_u = [w / whole for w in g]
-        u, q, found = mpmath.mpf(force[0]) / whole, [mpmath.mpf(0)] * n, []
+        # A dashpot beside the springs holds them at the first instant.
+        u, q, found = mpmath.mpf(0 if viscosity > 0.0 else force[0]) / whole, [mpmath.mpf(0)] * n, []
         for i in range(len(time)):
             if i:
                 step, f = mpmath.mpf(time[i]) - mpmath.mpf(time[i - 1]), mpmath.mpf(force[i - 1])

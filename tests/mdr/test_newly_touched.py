@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import scene_of
 from contact import Cone, DepthHistory, IndentationDepths, KelvinVoigt, Layer, PronySeries, Scene
 from mdr import Mdr
+from tests.drawn_scenes import scene_of
 
 LAYER = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 CONE = Cone(slope=0.1)

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from cases.measurements.campaigns.referee import second_opinion
 from contact import ContactPath, ContactRadii, IndentationDepths, Layer, NormalForces, PowerLaw, Profile, Scene
 from contact.records.validation import FloatArray
 from mdr import Mdr
 from mdr.batches import equilibria
 from mdr.springs import assembly
 from mdr.springs.half_space_profile import half_space_profile
+from tests.referees.second_opinion import second_opinion
 
 LAYER = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded")
 

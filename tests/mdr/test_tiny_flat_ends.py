@@ -7,7 +7,6 @@ import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.method import IntegralEquationMethod
-from cases.measurements.campaigns.referee import second_opinion
 from contact import (
     ContactPath,
     ContactRadii,
@@ -22,6 +21,7 @@ from contact import (
     TruncatedParaboloid,
 )
 from mdr import Mdr
+from tests.referees.second_opinion import second_opinion
 
 BODIES = {
     "layer": Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.3, support="bonded"),

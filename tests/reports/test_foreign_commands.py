@@ -12,7 +12,6 @@ from cases.declare.foreign_methods import with_registered
 from cases.declare.registry import load_cases
 from cases.declare.selection import in_suite
 from cases.judgement.claims.agreement import Agreement
-from cases.measurements.advice.error_maps import plans_of
 from cases.results.files import read_run
 from cases.results.status import Status
 from contact import InvalidInput
@@ -108,13 +107,3 @@ def test_cost_times_only_the_methods_named(library, capsys, monkeypatch):
     ]
     assert run(["cost", "--suite", "ci", "--out", "out", "--quiet", "--method", "bem"]) == 4
     assert "nothing times bem" in capsys.readouterr().err
-
-
-def test_maps_are_drawn_of_the_methods_named():
-    assert [plan.name for plan in plans_of([], ["mine", "fem"])] == ["mine", "fem"]
-    assert [plan.name for plan in plans_of(["half-space"], ["mine"])] == ["half-space", "mine"]
-    assert len(plans_of([], [])) > 4
-    with pytest.raises(InvalidInput, match="no method 'abaqus'"):
-        plans_of([], ["abaqus"])
-    with pytest.raises(InvalidInput, match="no map of 'nowhere'"):
-        plans_of(["nowhere"], [])

@@ -1,13 +1,11 @@
-"""advise, ladders and campaign say what they found, and their exit code says whether something is wrong."""
+"""advise and ladders say what they found, and their exit code says whether something is wrong."""
 
 from __future__ import annotations
 
 import dataclasses
-import re
 
 import pytest
 
-from cases.measurements.campaigns.coverage import QUICK_PLANS
 from cases.results.records.reliability import Ladder, Rung
 from cases.results.status import Status
 from reports.charts.ladder import refusals
@@ -36,62 +34,6 @@ def test_a_climbed_ladder_tells_its_digits(capsys):
 def test_an_unknown_ladder_names_those_there_are(capsys):
     assert run(["ladders", "nonsense"]) == 4
     assert "nearly incompressible" in capsys.readouterr().err.replace("\n", " ")
-
-
-def test_a_small_campaign_counts_its_ends(capsys):
-    assert run(["campaign", "elastic", "--count", "3", "--seed", "5"]) == 0
-    assert "beyond: 0, crashed: 0" in capsys.readouterr().out
-
-
-def test_a_campaign_that_is_kept_goes_on(tmp_path, capsys):
-    words = ["campaign", "elastic", "--seed", "5", "--out", str(tmp_path)]
-    assert run([*words, "--count", "2"]) == 0
-    begun = (tmp_path / "scenes.jsonl").read_text(encoding="utf-8")
-    assert run([*words, "--count", "3", "--resume"]) == 0
-    assert (tmp_path / "scenes.jsonl").read_text(encoding="utf-8").startswith(begun)
-    assert [line.split(",")[0] for line in capsys.readouterr().out.splitlines() if "beyond" in line] == [
-        "within: 2",
-        "within: 3",
-    ]
-    assert run(["campaign", "elastic", "--resume"]) == 4
-    assert "name it by --out" in capsys.readouterr().err
-
-
-def test_displacements_have_a_door(capsys):
-    """Seen to fail: the campaign was no family."""
-    assert run(["campaign", "displacement", "--count", "1"]) == 0
-    assert "displacement" in capsys.readouterr().out
-
-
-def test_a_campaign_of_fields_inside_has_a_door(capsys):
-    """Seen to fail: the campaign was no family."""
-    assert run(["campaign", "inside", "--count", "1", "--seed", "19101"]) == 0
-    assert "within: 1, refused: 0, beyond: 0, crashed: 0" in capsys.readouterr().out
-
-
-def test_an_unknown_family_names_those_there_are(capsys):
-    assert run(["campaign", "plastic"]) == 4
-    told = capsys.readouterr().err.replace("\n", " ")
-    assert "elastic, many_loads, adhesive, adhering_table, impact, history, creep" in told
-
-
-def test_coverage_writes_a_run_with_its_figure(tmp_path, capsys, monkeypatch):
-    plan = dataclasses.replace(QUICK_PLANS[0], settings={"nodes": 12}, count=8)
-    monkeypatch.setattr("cases.measurements.campaigns.coverage.PLANS", (plan,))
-    assert run(["coverage", "--method", "mdr", "--out", str(tmp_path)]) == 0
-    shown = capsys.readouterr().out
-    assert "100.0 % of 8 covered" in shown
-    assert re.search(r"bem\.layer_equation\.FACTOR\.spring_safety +all quantities +2\.5 +\d+ +100\.0 %", shown)
-    assert re.search(r"mdr\.springs\.LEAVING_SHARE +contact time +0\.25 +0 *\n", shown)
-    assert "fem_reference" not in shown
-    page = (tmp_path / "report.html").read_text(encoding="utf-8")
-    assert "Coverage and sharpness" in page
-    assert (tmp_path / "figures" / "coverage-stated-over-true.csv").is_file()
-
-
-def test_coverage_of_an_unknown_method_names_those_there_are(capsys):
-    assert run(["coverage", "--method", "guess"]) == 4
-    assert "mdr, integral_equation" in capsys.readouterr().err.replace("\n", " ")
 
 
 def test_ladders_write_a_run_with_their_table(tmp_path):
@@ -135,16 +77,9 @@ def test_an_answer_lists_the_stages_that_ran_and_no_others(scene, capsys):
     assert "adhes" not in line
 
 
-@pytest.mark.parametrize(
-    "command", [["ladders", "--out"], ["scaling", "--out"], ["cost", "--out"], ["maps", "--out"], ["run", "--out"]]
-)
+@pytest.mark.parametrize("command", [["ladders", "--out"], ["cost", "--out"], ["run", "--out"]])
 def test_a_file_in_the_way_of_a_report_is_refused_before_the_study(command, tmp_path, capsys):
     (tmp_path / "report").write_text("mine")
     assert run([*command, str(tmp_path / "report")]) == 4
     assert "report" in capsys.readouterr().err.replace("\n", " ")
     assert (tmp_path / "report").read_text() == "mine"
-
-
-def test_measurements_that_could_not_be_written_are_not_begun(tmp_path, capsys):
-    assert run(["calibrate", str(tmp_path / "nowhere" / "measured.json")]) == 4
-    assert "no file can be there" in capsys.readouterr().err.replace("\n", " ")

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import scene_of
-from cases.measurements.campaigns.units import Units, in_units
+from cases.measurements.ladders.units import Units, in_units
 from contact import Cone, DepthHistory, Layer, PowerLaw, PronySeries, Scene
 from mdr import Mdr
 from mdr.history.contact_edge import SpringBed, total_force
 from mdr.history.solver import _turns
+from tests.drawn_scenes import scene_of
 
 HALF_SPACE = Layer.half_space(youngs_modulus=3.0, poissons_ratio=0.5)
 LAYER = Layer.incompressible(thickness=1.0, shear_modulus=1.0)

@@ -1,15 +1,8 @@
 """Boundary elements against the integral equation, an independent method, and against printed values."""
 
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 
-from bem.grid.calibrated_disc import PixelDisc, disc
-from bem.grid.conjugate_gradients import solve_contact, solve_on_contact
-from bem.grid.operators import FreeSpaceOperator
-from bem.grid.quadrant import prolonged
 from bem.layer_equation.contact_density import ContactDensity
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.method import Bem
@@ -34,35 +27,6 @@ def layer(support, nu, thickness=1e-3):
 
 def exact_stiffness(support, nu, ratio):
     return float(IntegralEquation().solution(layer(support, nu), ratio).normalized_contact_stiffness(ratio))
-
-
-def raw_stiffness(support, nu, ratio, cells):
-    """k_bar of the drawn disc, its radius taken as drawn: the plain FFT boundary element method."""
-    radius = 0.97 * cells / 2
-    material = Layer(thickness=radius / ratio, youngs_modulus=1 - nu**2, poissons_ratio=nu, support=support)
-    operator = FreeSpaceOperator(material, cell_size=1.0, cells=cells, quarter=True)
-    answer = solve_on_contact(operator, disc(cells, radius), 1.0)
-    return 4.0 * answer.pressure.sum() / (2.0 * radius)
-
-
-@pytest.mark.parametrize(("support", "nu"), KERNELS)
-def test_printed_stiffness_is_met_on_a_grid_of_256(support, nu):
-    punch = PixelDisc.measured(256, periodic=False)
-    for ratio, printed in zip((0.2, 1.0), PRINTED[support, nu], strict=True):
-        assert punch.solve(ratio, support, nu, None).stiffness == pytest.approx(printed, rel=2e-6, abs=0.0)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(("support", "nu"), KERNELS)
-@pytest.mark.parametrize("ratio", [0.2, 1.0, 5.0])
-def test_raw_flat_punch_is_of_first_order_and_the_measured_disc_far_better(support, nu, ratio):
-    # the staircase makes single raw errors erratic; the fitted order over 128 .. 1024 cells is about one
-    exact, cells = exact_stiffness(support, nu, ratio), np.array([128, 181 * 2 - 2, 256, 512, 724, 1024])
-    raw = [abs(raw_stiffness(support, nu, ratio, int(n)) / exact - 1.0) for n in cells]
-    order = -np.polyfit(np.log(cells), np.log(raw), 1)[0]
-    assert 0.5 < order < 1.6
-    treated = PixelDisc.measured(512, periodic=False).solve(ratio, support, nu, None).stiffness
-    assert treated == pytest.approx(exact, rel=1e-6, abs=0.0)
 
 
 @pytest.mark.slow
@@ -173,51 +137,6 @@ def test_direct_contact_at_512(indenter, ratio):
     path, exact = Bem(points=512).solve(scene), Mdr().solve(scene)
     for name in ("indentation_depth", "normal_force"):
         assert getattr(path, name)[0] == pytest.approx(getattr(exact, name)[0], rel=5e-5, abs=0.0), name
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("indenter", [PARABOLOID, CONE], ids=["paraboloid", "truncated cone"])
-def test_iterations_and_order_from_128_to_1024(indenter):
-    material, box, start = layer("bonded", 0.5), 2.3e-3, None
-    depth = Mdr().solve(Scene(layer=material, indenter=indenter, loading=ContactRadii([1e-3])))
-    delta, force = float(depth.indentation_depth[0]), float(depth.normal_force[0])
-    iterations, errors = {}, {}
-    for cells in (64, 128, 256, 512, 1024):
-        s = box / cells
-        x = s * (np.arange(cells // 2) + 0.5)
-        operator = FreeSpaceOperator(material, cell_size=s, cells=cells, quarter=True)
-        height = indenter.height(np.hypot(x[:, None], x))
-        answer = solve_contact(operator, height, depth=delta, start=start)
-        start, iterations[cells] = prolonged(answer.pressure), answer.iterations
-        errors[cells] = abs(4 * s**2 * answer.pressure.sum() / force - 1.0)
-    assert iterations[1024] < 1.5 * iterations[128]
-    assert np.log2(errors[64] / errors[256]) / 2 == pytest.approx(2.0, abs=0.4)
-    assert errors[1024] < 5e-6
-
-
-@pytest.mark.slow
-def test_a_2048_grid_needs_less_than_a_gigabyte_and_a_half():
-    program = (
-        "import numpy as np\n"
-        "from bem.grid.conjugate_gradients import solve_contact\n"
-        "from bem.grid.operators import FreeSpaceOperator\n"
-        "from contact import Layer\n"
-        "from contact.answer.stages import peak_memory_bytes\n"
-        "n, s = 2048, 2.3 / 2048\n"
-        "x = s * (np.arange(n) - (n - 1) / 2)\n"
-        "layer = Layer(thickness=1.0, youngs_modulus=0.75, poissons_ratio=0.5)\n"
-        "operator = FreeSpaceOperator(layer, cell_size=s, cells=n)\n"
-        "solve_contact(operator, (x[:, None] ** 2 + x**2) / 2, depth=0.56, tolerance=1e-5)\n"
-        "print(peak_memory_bytes())\n"
-    )
-    answer = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert int(answer.stdout) < 1.5e9  # whole grid, no symmetry used
-
-
-def test_a_wrong_kernel_is_seen():
-    # planted: the layer of the table is another one than that of the reference
-    punch = PixelDisc.measured(128, periodic=False).solve(1.0, "bonded", 0.35, None)
-    assert punch.stiffness != pytest.approx(PRINTED["bonded", 0.3][1], rel=0.01, abs=0.0)
 
 
 def test_force_control_and_depth_control_are_inverse():

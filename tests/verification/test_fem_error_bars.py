@@ -7,9 +7,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.coverage import CoveragePlan, records_of
-from cases.measurements.campaigns.random_scenes import random_scene
-from cases.measurements.campaigns.referee import adhesive_states, second_opinion
 from contact import (
     Adhesion,
     Cone,
@@ -36,17 +33,10 @@ from fem_reference.adhesion.branch import solve_branch
 from fem_reference.adhesion.equilibria import adhesive_equilibrium, work_of_adhesion
 from fem_reference.adhesion.pull_off_errors import pull_off_errors
 from mdr import Mdr
+from tests.drawn_scenes import random_scene
+from tests.referees.second_opinion import adhesive_states, second_opinion
 
 LAYER = Layer(thickness=0.5, youngs_modulus=1.0, poissons_ratio=0.3)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
-def test_requested_accuracies_of_random_scenes_are_covered(accuracy):
-    plan = CoveragePlan(method="fem", settings={"accuracy": accuracy}, family="elastic", count=80, only_radii=True)
-    for record in records_of(plan, seed=1):
-        assert record.covered >= 0.95, record.quantity
-        assert record.sharpness is None or record.sharpness < 10, record.quantity
 
 
 @pytest.mark.parametrize("stream", [[2, 13], [3, 23], [6, 0], [6, 7]])

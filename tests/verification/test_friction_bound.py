@@ -7,7 +7,19 @@ import os
 import numpy as np
 import pytest
 
-from contact import Cone, ContactRadii, Friction, IndentationDepths, Layer, Paraboloid, PowerLaw, Scene, Sphere
+from contact import (
+    Cone,
+    ContactRadii,
+    FlatPunch,
+    Friction,
+    IndentationDepths,
+    Layer,
+    Paraboloid,
+    PowerLaw,
+    Scene,
+    Sphere,
+    TruncatedCone,
+)
 from fem_reference import Fem
 from mdr import Mdr
 from mdr.friction.statement import friction_effect
@@ -54,3 +66,35 @@ def test_the_bound_holds_and_the_first_order_is_the_first():
         assert lower - error <= change <= upper + error, (scene, coefficient)
         if not math.isnan(first):
             assert abs(change - first) <= max(1.0, (upper / coefficient) ** 2) * coefficient**2 + error
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.5])
+def test_the_first_order_under_a_truncated_cone_is_the_integral_over_pressure_and_slip(nu):
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=nu)
+    worn = Scene(layer=layer, indenter=TruncatedCone(flat_radius=0.5, slope=0.1), loading=ContactRadii([1.0]))
+    path = Mdr().solve(worn)
+    punch = Mdr().solve(Scene(layer=layer, indenter=FlatPunch(radius=1.0), loading=IndentationDepths([1.0]))).inside()
+    # r = sin(angle); between the kink and the ends nodes crowd towards both, as the pressure is logarithmic there.
+    u, weights = np.polynomial.legendre.leggauss(60)
+    u, weights = (1.0 + u) / 2.0, weights / 2.0
+    total = 0.0
+    for low, high in ((0.0, np.arcsin(0.5)), (np.arcsin(0.5), np.pi / 2.0)):
+        angle = low + (high - low) * u**2 * (3.0 - 2.0 * u)
+        step = (high - low) * 6.0 * u * (1.0 - u) * weights
+        radius = np.minimum(np.sin(angle), 1.0 - 1e-9)
+        slip = punch.at(radius, np.zeros_like(angle)).radial_displacement
+        total += np.sum(step * np.cos(angle) * 2.0 * np.pi * radius * path.pressure(radius, 0) * slip)
+    exact = 0.3 * abs(total) / path.normal_force[0]
+    assert friction_effect(path, 0.3).first_order[0] == pytest.approx(exact, rel=1e-6, abs=0.0)
+
+
+def test_the_bound_takes_the_largest_slip_between_any_radii():
+    layer = Layer(thickness=1.0, youngs_modulus=1.0, poissons_ratio=0.5)
+    path = Mdr().solve(Scene(layer=layer, indenter=Cone(slope=0.1), loading=ContactRadii([5.0])))
+    punch = Mdr().solve(Scene(layer=layer, indenter=FlatPunch(radius=5.0), loading=IndentationDepths([1.0]))).inside()
+    radius = 5.0 * np.linspace(0.01, 0.999, 300)
+    for _ in range(2):
+        slip = np.abs(punch.at(radius, np.zeros_like(radius)).radial_displacement)
+        widest = radius[slip.argmax()]
+        radius = np.linspace(widest - 0.02, widest + 0.02, 300)
+    assert friction_effect(path, 0.3).upper[0] >= (1.0 / (1.0 - 0.3 * slip.max()) - 1.0) * (1.0 - 1e-7)

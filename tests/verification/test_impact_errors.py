@@ -9,9 +9,9 @@ import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from cases.declare.quantities import IMPACT_NUMBERS
-from cases.measurements.campaigns.random_scenes import random_scenes
 from contact import Impact, Layer, PowerLaw, Scene
 from mdr.impact.solver import impact_batch
+from tests.drawn_scenes import random_scenes
 
 PUNCH = IntegralEquation()
 

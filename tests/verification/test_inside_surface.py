@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.inside.campaign import inside_campaign
 from contact import (
     Cone,
     ContactRadii,
@@ -51,12 +50,3 @@ def test_the_pressure_and_no_shear_come_back_at_the_surface(layer, indenter):
     slope = (near[0] - 8.0 * near[1] + 8.0 * near[2] - near[3]) / (12.0 * step)
     left = -BELOW * (slope + (surface.radial_stress - surface.hoop_stress) / RADII)
     assert found.shear_stress == pytest.approx(left, rel=0, abs=1e-10 * mean)
-
-
-@pytest.mark.slow
-def test_points_of_many_contacts_have_nine_digits_of_the_largest_stress():
-    """Five hundred points of a hundred contacts beside rims, faces and the axis, those below 1e-4 a and others too."""
-    rows = inside_campaign(Mdr(), seed=19104, count=100)
-    stresses = [row for row in rows if row.quantity == "stress"]
-    assert len(stresses) == 500
-    assert max(row.error for row in stresses) < 1e-9

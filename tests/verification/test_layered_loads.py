@@ -31,7 +31,7 @@ def strains(r, z, *, below, slips):
         for h, G, nu, slip in zip(THICKNESSES, shear, RATIOS, faces, strict=False)
     )
     kernel = StackKernel(sheets, Sheet(math.inf, shear[2] / shear[0], RATIOS[2], slips_below=False))
-    depth = np.nextafter(z / top, math.inf if below else 0.0)
+    depth = z / top * (1.0 + (1e-13 if below else -1e-13))
     sheet = place_of(kernel, depth).sheet
     assert sheet == (0 if not below else 1 if z == top else 2)
     load = lambda k: RADIUS / top * j1(k * RADIUS / top) / k  # noqa: E731

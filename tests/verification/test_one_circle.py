@@ -8,7 +8,6 @@ import pytest
 from bem.layer_equation.flat_punch_source import IntegralEquation
 from bem.layer_equation.method import IntegralEquationMethod
 from bem.method import Bem
-from cases.measurements.campaigns.random_scenes import falling_table
 from contact import (
     Adhesion,
     Cone,
@@ -37,6 +36,7 @@ from contact import (
 from contact.answer.one_circle import Circle, touching_radius
 from fem_reference import Fem
 from mdr import Mdr, equivalent_system
+from tests.drawn_scenes import falling_table
 
 LAYER = Layer(thickness=1e-3, youngs_modulus=1e6, poissons_ratio=0.45)
 INCOMPRESSIBLE = Layer.incompressible(thickness=1e-3, shear_modulus=1e6)

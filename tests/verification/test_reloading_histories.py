@@ -5,10 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cases.measurements.campaigns.random_scenes import random_scene, random_scenes
-from cases.measurements.campaigns.restated import RESTATEMENTS, changes_when_restated
-from cases.measurements.campaigns.spring_by_spring import spring_by_spring
-from cases.measurements.campaigns.units import Units, in_units
+from cases.measurements.ladders.units import Units, in_units
 from contact import (
     ContactError,
     DepthHistory,
@@ -22,6 +19,9 @@ from contact import (
     Scene,
 )
 from mdr import Mdr
+from tests.drawn_scenes import random_scene, random_scenes
+from tests.referees.restated import RESTATEMENTS, changes_when_restated
+from tests.referees.spring_by_spring import spring_by_spring
 
 TIME_UNITS = (1.0, 2.0, 3.7, 0.1, 1e5, 1e-7)
 MODULUS = 1e6

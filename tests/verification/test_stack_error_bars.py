@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from bem.layer_equation.flat_punch_source import IntegralEquation
-from cases.measurements.campaigns.coverage import LARGEST_AT_90, LARGEST_MEDIAN
 from contact import (
     Adhesion,
     Cone,
@@ -15,7 +14,6 @@ from contact import (
     ElasticBase,
     FlatPunch,
     IndentationDepths,
-    InvalidInput,
     LayerStack,
     NormalForces,
     Paraboloid,
@@ -211,15 +209,6 @@ def pressure_and_stated(number, seed=3, nodes=12, finer=24):
     return np.sqrt(weight @ (p - q) ** 2 / (weight @ q**2)), float(coarse.error_estimate["pressure"][0])
 
 
-def test_pressures_state_what_the_kernel_leaves_on_the_last_panel():
-    """Seen to fail: 151 times the true error at 90 %, from the kernel's distance to its singularity alone."""
-    true, stated = np.array([pressure_and_stated(number) for number in range(24) if number not in PULLING]).T
-    ratio = stated[true > 2e-14] / true[true > 2e-14]
-    assert np.mean(true <= stated + 2e-14) > 0.95
-    assert np.median(ratio) < 1.5 * LARGEST_MEDIAN
-    assert np.quantile(ratio, 0.9) < LARGEST_AT_90
-
-
 def test_a_wrong_depth_moves_pressures_by_what_is_stated():
     """Seen to fail: 0.34 to 13 times as much, 0.9 to 3 now; a punch's psi may be large and hardly vary."""
     ratio = []
@@ -259,24 +248,6 @@ def test_pressures_beside_a_rim_hardly_left_count_what_the_excess_errs():
     assert 1e-12 < np.median(change[r > 0.2273]) < coarse.error_estimate["pressure"][0]
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(("nodes", "seed"), [(12, 401), (16, 402)])
-def test_pressures_on_few_nodes_are_covered_and_sharp(nodes, seed):
-    """Seen to fail: 36 times the true error in the median on 16 nodes, 102 at 90 %; of punches 89 % were covered."""
-    found = []
-    for number in range(160):
-        try:
-            found.append(pressure_and_stated(number, seed, nodes, 36))
-        except (InvalidInput, UnsupportedSceneError):
-            continue
-    true, stated = np.array(found).T
-    ratio = stated[true > 2e-14] / true[true > 2e-14]
-    assert true.size > 100
-    assert np.mean(true <= stated + 2e-14) >= 0.97
-    assert np.median(ratio) < LARGEST_MEDIAN
-    assert np.quantile(ratio, 0.9) < LARGEST_AT_90
-
-
 @pytest.mark.parametrize("number", [72, 104, 146])
 def test_pressures_of_small_punches_count_what_their_edge_value_errs(number):
     """Seen to fail: 0.91, 0.18 and 0.37 of the true error were stated."""
@@ -310,31 +281,3 @@ def test_jumps_between_panels_of_few_nodes_are_no_rough_springs(number):
     """Seen to fail: NotConvergedError, as panels were halved towards jumps of 3e-7 that no polynomial resolves."""
     true, stated, own = lost_and_stated(77, number)
     assert np.all(true <= stated + own)
-
-
-@pytest.mark.parametrize("number", [42, 47, 93])
-def test_detachments_do_not_count_jumps_elsewhere_on_their_panel(number):
-    """Seen to fail: 7 351, 280 and 14 111 times the true error, by polynomials that ran across jumps."""
-    true, stated, own = lost_and_stated(77, number)
-    assert np.all(true <= stated + own)
-    assert np.all(stated[true > 2e-14] < LARGEST_AT_90 * true[true > 2e-14])
-
-
-@pytest.mark.slow
-def test_detachments_on_few_nodes_are_covered_and_sharp():
-    """Seen to fail: of 150 scenes 11 did not converge; the radius 17 in the median, 146 to 371 at 90 %."""
-    found = []
-    for number in range(150):
-        try:
-            found.append(lost_and_stated(78, number))
-        except (InvalidInput, UnsupportedSceneError):
-            continue
-    assert len(found) > 140
-    true, stated, own = np.swapaxes(found, 0, 1)
-    assert np.all(np.mean(true <= stated + own, axis=0) >= 0.95)
-    for column in range(len(AT_LOSS)):
-        told = true[:, column] > 2e-14
-        ratio = stated[told, column] / true[told, column]
-        assert ratio.size > 40, AT_LOSS[column]
-        assert np.median(ratio) < LARGEST_MEDIAN, AT_LOSS[column]
-        assert np.quantile(ratio, 0.9) < LARGEST_AT_90, AT_LOSS[column]

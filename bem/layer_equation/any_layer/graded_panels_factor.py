@@ -176,10 +176,19 @@ def _between(kernel: FredholmKernel, x: FloatArray, width: float) -> FloatArray:
 
 @dataclass(frozen=True)
 class AnyLayerSolution(IntegralEquationSolution):
-    """The flat punch on a layer of any kind, lengths in units of the thickness of its surface material."""
+    """The flat punch on a layer of any kind, lengths in units of the thickness of its surface material.
+
+    Attributes:
+        largest_compliance: sup chi, by which roundings of 1 - chi grow under a stiff film on a soft base.
+    """
 
     factor: GradedFactor
+    largest_compliance: float = 1.0
     shares: ClassVar[FactorCoefficients] = STACK_FACTOR
+
+    @property
+    def _roundings(self) -> float:
+        return self.shares.rounded * self.largest_compliance
 
     def ending_at(self, ratio: float) -> None:
         """None: its panels are graded to the edges of films."""
@@ -228,7 +237,7 @@ class AnyLayerSolution(IntegralEquationSolution):
         """
         k = self.normalized_contact_stiffness(ratio)
         moved = FORCE_SHARE * np.abs(1.0 - self.edge_density(ratio) / k) * depth_error
-        rounded = 4.0 * EPS * self.shares.rounded / np.minimum(k, 1.0)
+        rounded = 4.0 * EPS * self._roundings / np.minimum(k, 1.0)
         return np.asarray(np.hypot(moved, self._slope_truncation(ratio)) + rounded)
 
     def punch_pressure_error(self, ratio: FloatArray) -> FloatArray:

@@ -34,15 +34,14 @@ FINEST_PIECE: Final = -12
 # thickness on, which leaves itself times 1e-5 of a depth.
 GROWTH: Final = 1.5
 FIRST_STEP: Final = 6e-8
-# Edges on each piece, and nodes on each of a profile's: 12 left 5e-12 of k_bar at the end of an octave, and 2e-9 of a
-# depth was stated (constant moduli, a/h = 1, 2026-11-23).
-PIECE_NODES: Final = 16
-# Nodes of a panel, and those of the coarser panels with which the edges of `CHECKED` are compared.
-COUNT: Final = 12
-COARSER: Final = 9
-# Nodes of a panel where a density's slope is asked for, as pressures do. From 0.005 a to 0.999 a pressures are up to
-# 3e-10 off with 16, and 1.5e-8 with 12 (E = 100^z, a paraboloid at a = H against the direct equation, 2026-11-22).
-DENSITY_COUNT: Final = 16
+# Edges on each piece, and nodes on each of a profile's, beyond the nodes of a panel: without them 5e-12 of k_bar is
+# left at the end of an octave.
+MORE_ON_PIECE: Final = 4
+# Nodes by which the coarser panels fall short with which the edges of `CHECKED` are compared.
+FEWER: Final = 3
+# Further nodes of a panel where a density's slope is asked for, as pressures do: with 12 in all pressures are up to
+# 1.5e-8 off, with 16 3e-10.
+MORE_FOR_DENSITY: Final = 4
 # Edges that are solved with more nodes besides the last: errors grow by powers up to a/h = 2, beyond which panels in
 # the middle are split, fall there, and grow again.
 COMPARED: Final = (0.2, 0.5, 1.0, 2.0, 2.0 + 2e-9)
@@ -147,18 +146,23 @@ class GradedSolution(FlatPunchSolution):
     Attributes:
         kernel: N.
         reach: Largest a/h, a power of two.
-        nodes: On each piece of a profile's grid.
+        count: Nodes of a panel.
     """
 
     kernel: PointKernel
     reach: float
-    nodes: int = PIECE_NODES
+    count: int
     displacement_known: ClassVar[bool] = True
 
     @property
     def max_ratio(self) -> float:
         """Largest a/h that is covered."""
         return self.reach
+
+    @property
+    def nodes(self) -> int:
+        """Nodes on each piece of a profile's grid."""
+        return self.count + MORE_ON_PIECE
 
     @property
     def unknowns(self) -> int:
@@ -279,8 +283,8 @@ class GradedSolution(FlatPunchSolution):
         marks = np.empty(0) if load is None else flat_radius + load.grid.left[load.grid.power > 1]
         marks = marks[marks > 0]
         if not marks.size:
-            return self._edges.panels(ratio, DENSITY_COUNT)
-        return panels_with_bends(tuple((marks / ratio).tolist()), WIDEST / ratio, DENSITY_COUNT)
+            return self._edges.panels(ratio, self.count + MORE_FOR_DENSITY)
+        return panels_with_bends(tuple((marks / ratio).tolist()), WIDEST / ratio, self.count + MORE_FOR_DENSITY)
 
     def contact_pressure_error(self, ratio: FloatArray, depth_error: FloatArray) -> FloatArray:
         """What the slopes of interpolated densities lose."""
@@ -289,7 +293,7 @@ class GradedSolution(FlatPunchSolution):
     @cached_property
     def discretisation_error(self) -> float:
         """Relative error of edge values, from fewer nodes on a panel."""
-        coarse = EdgeSystems(self.kernel, COARSER)
+        coarse = EdgeSystems(self.kernel, max(self.count - FEWER, 1))
         edges = [share * self.max_ratio for share in CHECKED]
         changes = [abs(coarse.at(x).edge_density / self._edges.at(x).edge_density - 1) for x in edges]
         return SHARE * max(changes) + 1e-14
@@ -327,15 +331,15 @@ class GradedSolution(FlatPunchSolution):
     @cached_property
     def _resolvent(self) -> ResolventTable:
         ends = np.log(self._ends)
-        return ResolventTable.of_edges(self._finer_edges, ends, _piece_nodes(ends))
+        return ResolventTable.of_edges(self._finer_edges, ends, _piece_nodes(ends, self.nodes))
 
     @cached_property
     def _finer_edges(self) -> EdgeSystems:
-        return EdgeSystems(self.kernel, DENSITY_COUNT)
+        return EdgeSystems(self.kernel, self.count + MORE_FOR_DENSITY)
 
     @cached_property
     def _edges(self) -> EdgeSystems:
-        return EdgeSystems(self.kernel, COUNT)
+        return EdgeSystems(self.kernel, self.count)
 
     @property
     def _ends(self) -> tuple[float, ...]:
@@ -346,8 +350,8 @@ class GradedSolution(FlatPunchSolution):
     def _tables(self) -> tuple[LogPieces, LogPieces]:
         """(y1 - 1)/x and (k_bar - 1)/x."""
         u = np.log(self._ends)
-        states = [[self._edges.at(float(x)) for x in row] for row in _piece_nodes(u)]
-        x = _piece_nodes(u)
+        states = [[self._edges.at(float(x)) for x in row] for row in _piece_nodes(u, self.nodes)]
+        x = _piece_nodes(u, self.nodes)
         springs = (np.array([[state.edge_density for state in row] for row in states]) - 1) / x
         stiffness = (np.array([[state.stiffness for state in row] for row in states]) - 1) / x
         return _pieces(u, springs), _pieces(u, stiffness)
@@ -358,7 +362,7 @@ class GradedSolution(FlatPunchSolution):
         u = np.log(np.array([*(e for e in self._ends if e < end * (1 - 1e-9)), end]))
         if u.size == 1:
             u = np.append(u[0] - 1.0, u)
-        x = _piece_nodes(u)
+        x = _piece_nodes(u, self.nodes)
         share = np.empty_like(x)
         for place, edge in np.ndenumerate(x):
             state, panels = self._edges.at(float(edge)), self._edges.panels(float(edge))
@@ -383,10 +387,10 @@ def _by_powers(x: FloatArray, edges: FloatArray, errors: FloatArray) -> FloatArr
     return np.asarray(np.exp(np.interp(position, np.log(edges), np.log(errors))))
 
 
-def _piece_nodes(u: FloatArray) -> FloatArray:
+def _piece_nodes(u: FloatArray, count: int) -> FloatArray:
     """x at the nodes of all pieces, shape (P, m)."""
-    return np.asarray(np.exp(u[:-1, None] + np.diff(u)[:, None] * gauss_nodes(PIECE_NODES)[0]))
+    return np.asarray(np.exp(u[:-1, None] + np.diff(u)[:, None] * gauss_nodes(count)[0]))
 
 
 def _pieces(u: FloatArray, values: FloatArray) -> LogPieces:
-    return LogPieces(u, values @ chebyshev_from_nodes(PIECE_NODES).T)
+    return LogPieces(u, values @ chebyshev_from_nodes(values.shape[1]).T)

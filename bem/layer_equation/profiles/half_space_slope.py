@@ -11,7 +11,16 @@ from functools import singledispatch
 import numpy as np
 
 from contact.records.validation import FloatArray
-from contact.scene.profiles import Cone, Paraboloid, PowerLaw, Profile, Sphere, TruncatedCone, TruncatedParaboloid
+from contact.scene.profiles import (
+    Cone,
+    Paraboloid,
+    PowerLaw,
+    Profile,
+    Sphere,
+    Spheroconical,
+    TruncatedCone,
+    TruncatedParaboloid,
+)
 
 
 @singledispatch
@@ -46,6 +55,32 @@ def _(indenter: Sphere, excess: FloatArray, room: FloatArray) -> FloatArray:
     """artanh(t/R) + R t/(R^2 - t^2)."""
     R = indenter.radius
     return np.log1p(2 * excess / room) / 2 + R * excess / (room * (R + excess))
+
+
+@profile_slope.register
+def _(indenter: Spheroconical, excess: FloatArray, room: FloatArray) -> FloatArray:
+    """The sphere's slope up to b, and beyond it the cone's.
+
+    ln[(R + t)/(c + q)] + t/(R + t) + slope arctan(q/b) + (b^2 - c q)/(c (c + q)), c^2 = R^2 - b^2, q^2 = t^2 - b^2.
+    """
+    R, b, t = indenter.radius, indenter.tangent_radius, excess
+    c, q = R / math.hypot(1.0, indenter.slope), np.sqrt(np.maximum(t - b, 0.0) * (t + b))
+    cone = np.log((R + t) / (c + q)) + t / (R + t) + indenter.slope * np.arctan2(q, b) + (b**2 - c * q) / (c * (c + q))
+    left = np.where(t < b, np.where(np.isfinite(room), room, R - t), R)
+    return np.where(t < b, np.log1p(2 * t / left) / 2 + R * t / (left * (R + t)), cone)
+
+
+def room_to_pole(indenter: Profile, radius: float, room: float) -> float:
+    """Distance [m] from a radius to the pole of g_hs' beyond it, where a sphere is upright; infinite without one.
+
+    Args:
+        indenter: Profile of revolution.
+        radius: End [m] of a stretch between breakpoints.
+        room: What is left [m] from there to the end of the profile.
+    """
+    if isinstance(indenter, Spheroconical):
+        return indenter.radius - radius if radius <= indenter.tangent_radius else math.inf
+    return math.inf if indenter.max_radius in indenter.breakpoints else room
 
 
 @profile_slope.register

@@ -25,9 +25,8 @@ from contact.records.validation import FloatArray
 
 # Gauss nodes of the density between a radius and the edge.
 _NODES = 64
-# Radii among which the largest slip is looked for; between two of them it is missed by at most 6e-5
-# of itself (50 layers, against 4001 samples, 2026-11-22).
-_SAMPLES = 201
+# Legendre coefficients of the slip below this share of the largest are roundings, and no roots are taken of them.
+_ROUNDED = 1e-14
 # Nodes of the angle, and of a profile's stretches, beyond the functions that they resolve; chosen.
 _ANGLES = 24
 
@@ -44,8 +43,7 @@ class SlipTables:
         radius: r/a at the nodes of the angle, shape (s,).
         waves: J_1(kappa r/a) times the weights of the wavenumbers, shape (s, k).
         enclosing: Takes coefficients to int_s^1 phi t/sqrt(t^2 - s^2) dt, shape (s, n).
-        slope: Takes values to derivatives over the angle times its weights, shape (s, s).
-        samples: Takes values to evenly spaced radii, shape (samples, s).
+        to_legendre: Takes values to Legendre coefficients over the angle, shape (s, s).
     """
 
     transforms: BasisTransforms
@@ -53,8 +51,7 @@ class SlipTables:
     radius: FloatArray
     waves: FloatArray
     enclosing: FloatArray
-    slope: FloatArray
-    samples: FloatArray
+    to_legendre: FloatArray
 
 
 @dataclass(frozen=True)
@@ -108,8 +105,17 @@ class FrictionlessPunch:
         return _at_radii(self.tables.radius.size, radius) @ self.slip
 
     def largest(self) -> float:
-        """max |u_r1| under the punch."""
-        return float(np.abs(self.tables.samples @ self.slip).max())
+        """max |u_r1| under the punch: at the edge, or where the slope of its interpolant vanishes."""
+        coefficients = self._slip_coefficients
+        kept = np.flatnonzero(np.abs(coefficients) > _ROUNDED * np.abs(coefficients).max())[-1] + 1
+        roots = legendre.legroots(legendre.legder(coefficients[:kept])) if kept > 1 else np.empty(0)
+        places = np.clip(np.append(np.real(roots), [-1.0, 1.0]), -1.0, 1.0)
+        return float(np.abs(np.append(legendre.legval(places, coefficients), self.slip)).max())
+
+    @property
+    def _slip_coefficients(self) -> FloatArray:
+        """Legendre coefficients of u_r1 over 2 angle - 1, shape (s,)."""
+        return np.asarray(self.tables.to_legendre @ self.slip)
 
     def projection(self, edges: tuple[float, ...]) -> tuple[FloatArray, FloatArray]:
         """Nodes r/a, and what takes a transform there to its load in the basis, shape (n, nodes).
@@ -123,17 +129,28 @@ class FrictionlessPunch:
         """int_0^1 phi dt of the density under a load, by reciprocity with the punch's own."""
         return float(self.even_coefficients @ load) / 2.0
 
-    def mean_slip(self, transform: Callable[[FloatArray], FloatArray], load: FloatArray) -> float:
+    def mean_slip(
+        self, transform: Callable[[FloatArray], FloatArray], load: FloatArray, edges: tuple[float, ...]
+    ) -> float:
         """int p u_r1 dA/F of the contact whose pressed surface has this transform, and this load.
 
         By parts it is the slope of u_r1 times int_r^a phi t/sqrt(t^2 - r^2) dt. The half-space's share of phi is the
         transform itself, the layer's is smooth, so that no edge of a profile need be resolved by the basis.
+
+        Args:
+            transform: Of places r/a.
+            load: In the basis.
+            edges: Places between 0 and 1, in order, beyond which the transform may begin like a root.
         """
-        tables, twice = self.tables, 2.0 * self.material.beta
+        twice = 2.0 * self.material.beta
         layer = load - twice * solve_factored(self.lower, load)
-        t, height, weights = _towards_edge(tables.radius)
-        enclosing = (height * (transform(t) @ weights) - tables.enclosing @ layer) / twice
-        return float((tables.slope @ self.slip) @ enclosing) / self.force(load)
+        angle, outer = _between(2.0 / math.pi * np.arcsin(np.array([[0.0, *edges, 1.0]])), self.slip.size)
+        radius = np.sin(math.pi / 2.0 * angle[0])
+        t, height, inner = _towards_edge(radius, edges)
+        density = transform(t) - _even_basis(t, layer.size) @ layer
+        enclosing = height * np.sum(density * inner, axis=1) / twice
+        slope = legendre.legval(2.0 * angle[0] - 1.0, legendre.legder(self._slip_coefficients, scl=2.0))
+        return float((outer[0] * slope) @ enclosing) / self.force(load)
 
 
 @lru_cache(maxsize=64)
@@ -165,19 +182,19 @@ def slip_tables(rung: float, longest: float) -> SlipTables:
     transforms = basis_transforms(0.0, rung, functions_for(rung), longest=2.0 * longest)
     even = transforms.cosine[::2]
     count = len(even) + _ANGLES
-    angle, weights = gauss_nodes(count)
+    angle, _ = gauss_nodes(count)
     radius = np.sin(math.pi / 2.0 * angle)
     t, height, of_edge = _towards_edge(radius)
-    to_legendre = np.linalg.inv(legendre.legvander(2.0 * angle - 1.0, count - 1))
-    slopes = legendre.legval(2.0 * angle - 1.0, legendre.legder(np.eye(count), scl=2.0)).T
+    to_legendre: FloatArray = np.asarray(
+        np.linalg.inv(legendre.legvander(2.0 * angle - 1.0, count - 1)), dtype=np.float64
+    )
     return SlipTables(
         transforms=transforms,
         even=even,
         radius=radius,
         waves=j1(np.multiply.outer(radius, transforms.wavenumber)) * transforms.weights,
-        enclosing=height[:, None] * np.einsum("sv,svn->sn", of_edge + np.zeros_like(t), _even_basis(t, len(even))),
-        slope=weights[:, None] * (slopes @ to_legendre),
-        samples=_at_radii(count, np.linspace(0.0, 1.0, _SAMPLES)),
+        enclosing=height[:, None] * np.einsum("sv,svn->sn", of_edge, _even_basis(t, len(even))),
+        to_legendre=to_legendre,
     )
 
 
@@ -196,11 +213,30 @@ def _at_radii(count: int, radius: FloatArray) -> FloatArray:
     return lagrange_matrix(count, 2.0 / math.pi * np.arcsin(radius))
 
 
-def _towards_edge(radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """t = sqrt(s^2 + (1 - s^2) v^2) at Gauss nodes v, sqrt(1 - s^2), and the weights of v."""
-    v, weights = gauss_nodes(_NODES)
+def _towards_edge(radius: FloatArray, edges: tuple[float, ...] = ()) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """t = sqrt(s^2 + (1 - s^2) v^2) at nodes v between the edges, sqrt(1 - s^2), and the weights of v."""
     square = (1.0 - radius) * (1.0 + radius)
+    inside = (np.array(edges) - radius[:, None]) * (np.array(edges) + radius[:, None])
+    ends = np.pad(np.sqrt(np.maximum(inside, 0.0) / square[:, None]), ((0, 0), (1, 1)))
+    ends[:, -1] = 1.0
+    v, weights = _between(ends, _NODES)
     return np.sqrt(radius[:, None] ** 2 + square[:, None] * v**2), np.sqrt(square), weights
+
+
+def _between(ends: FloatArray, count: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights between neighbouring ends of each row, crowding with the square towards both.
+
+    Args:
+        ends: Shape (n, stretches + 1).
+        count: Nodes of a stretch.
+
+    Returns:
+        Shape (n, stretches count) each.
+    """
+    u, weights = gauss_nodes(count)
+    length, shape = np.diff(ends, axis=1)[..., None], (len(ends), -1)
+    nodes = ends[:, :-1, None] + length * (u**2 * (3.0 - 2.0 * u))
+    return nodes.reshape(shape), (length * (6.0 * u * (1.0 - u) * weights)).reshape(shape)
 
 
 def _scales(count: int) -> FloatArray:

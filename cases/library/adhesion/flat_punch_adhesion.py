@@ -15,15 +15,12 @@ from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.task import Answers
 from cases.library._claims import agreements, exact
 from cases.library._convergence import FINEST_MDR, NODES, PUNCH_POINTS, studies
-from cases.library._figures import paper_figure
-from cases.library._figures._symbols import series
 from cases.library._layers import THICKNESS, contact_modulus, half_space, layer, layer_of
 from cases.library._methods import DETACHING_BEM, DETACHING_FEM, EQUATION, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import detachment_costs
-from cases.results.records.figure import Figure, Series
 from cases.results.records.scene_run import SceneRun
 from contact import Adhesion, Detachment, FlatPunch, Layer, Scene
 
@@ -119,44 +116,12 @@ def abrupt_force(scene: Scene) -> list[float]:
     return [-float(2 * contact_modulus(scene.layer) * a * kbar * elongation)]
 
 
-def figures(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 8: largest spring elongation over a/h. Fig. 9: force over depth, both over those of the half-space."""
-    yield paper_figure(8, [*_elongation_symbols(case, answers)])
-    yield paper_figure(9, [*_force_symbols(case, answers)])
-
-
 def _solved(case: Case, answers: Answers, scene: CaseScene) -> Iterator[SceneRun]:
     """Answers of finite and boundary elements."""
     for use in (DETACHING_FEM, DETACHING_BEM):
         task = case.task(scene, use)
         if answers.has(task) and answers.of(task).solved:
             yield answers.of(task)
-
-
-def _elongation_symbols(case: Case, answers: Answers) -> Iterator[Series]:
-    """Contact is lost at the depth -Delta l of the radius at which it is lost, Eqs. (42) and (45)."""
-    for scene in case.scenes:
-        layer = scene.scene.layer
-        for run in () if layer.is_half_space else _solved(case, answers, scene):
-            radius, depth = (run.quantity(f"pull_off_{name}").values[0] for name in ("contact_radius", "depth"))
-            place = [radius / layer.thickness], [-depth / unit_elongation(layer)]
-            group = "unbonded" if layer.support == "unbonded" else f"bonded nu={layer.poissons_ratio:g}"
-            yield series(f"{run.method} {scene.name}", run.method, group, *place)
-
-
-def _force_symbols(case: Case, answers: Answers) -> Iterator[Series]:
-    """The branch down to where contact is lost at a prescribed depth, over the half-space's critical values."""
-    for scene in case.scenes:
-        layer, ratio = scene.scene.layer, scene.scene.indenter.flat_radius / THICKNESS
-        if layer.is_half_space or layer.support != "bonded" or layer.poissons_ratio != 0.5:
-            continue
-        for number, run in enumerate(_solved(case, answers, scene)):
-            depth, force = run.curve("indentation_depth"), run.curve("normal_force")
-            kept = np.flatnonzero(np.array(depth.x) >= run.quantity("pull_off_contact_radius").values[0] * (1 - 1e-9))
-            shown = kept[number :: max(2, len(kept) // SYMBOLS)]
-            x, y = (np.array(curve.y)[shown] for curve in (depth, force))
-            place = x / -kendall_depth(scene.scene)[0], y / -kendall_force(scene.scene)[0]
-            yield series(f"{run.method} {scene.name}", run.method, f"a*/h = {ratio:g}", *place)
 
 
 OTHERS_LOOSER = dict.fromkeys(("fem", "bem", "mdr_table"), 1e-3)
@@ -242,5 +207,4 @@ CASE = Case(
     claims=(*CLAIMS, *FURTHER, *ORDERS),
     ablations=(AblationStudy(scene=BEYOND_MAXIMUM[0].name, nightly=("fem", "bem")),),
     work=detachment_costs(BEYOND_MAXIMUM[0].name),
-    figures=(figures,),
 )

@@ -1,20 +1,13 @@
-"""Exponent m and factor kappa of Eqs. (33) and (34): scenes, claims, and symbols for Fig. 5."""
-
-from collections.abc import Iterator
+"""Exponent m and factor kappa of Eqs. (33) and (34): scenes and claims."""
 
 import numpy as np
 
-from cases.declare.case import Case, CaseScene
-from cases.declare.task import Answers
+from cases.declare.case import CaseScene
 from cases.library._claims import agreements, exact
-from cases.library._figures._symbols import series
-from cases.library._hayes import TABLE as HAYES
-from cases.library._hayes import column, hayes_symbols
 from cases.library._layers import THICKNESS, contact_modulus, layer, scene_name
 from cases.library._methods import MDR, QUICK_FEM
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
-from cases.results.records.figure import Series
 from contact import ContactRadii, Paraboloid, Scene
 from contact.records.validation import FloatArray
 
@@ -94,34 +87,3 @@ EXPONENT_CLAIMS = (
         suffix=", m and kappa",
     ),
 )
-
-
-def exponent_symbols(case: Case, answers: Answers) -> tuple[list[Series], list[Series]]:
-    """Return symbols over m and over kappa: finite elements where they answered, and the table of Hayes et al."""
-    powers, factors = [], []
-    for label, scene in zip(RATIOS, EXPONENT_SCENES, strict=True):
-        task = case.task(scene, QUICK_FEM)
-        if answers.has(task) and answers.of(task).solved:
-            run, ratio = answers.of(task), np.array(RATIOS[label])
-            m = (ratio * THICKNESS) ** 2 / RADIUS_OF_CURVATURE / np.array(run.quantity("indentation_depth").values) - 1
-            unit = 2 * contact_modulus(scene.scene.layer) * ratio * THICKNESS
-            kbar = np.array(run.quantity("contact_stiffness").values) / unit
-            powers.append(_symbols(label, ratio, m, run.method))
-            factors.append(_symbols(label, ratio, kbar / ratio**m, run.method))
-    return powers, [*factors, *_hayes_factors()]
-
-
-def _hayes_factors() -> Iterator[Series]:
-    """His stiffness over (a/h)^m with the exponent of the lines."""
-    # This import loads MDR, so it waits until the figure is drawn.
-    from cases.library._figures._parts import name_of  # noqa: PLC0415
-    from cases.library._figures.figure_05 import LAYERS, exponent  # noqa: PLC0415
-
-    units = {name_of(one): one for one in LAYERS}
-    for label in HAYES:
-        ratio, kbar = column(label)
-        yield hayes_symbols(label, ratio, kbar / ratio ** exponent(units[label], ratio)[0])
-
-
-def _symbols(group: str, x: FloatArray, y: FloatArray, method: str) -> Series:
-    return series(f"{method} {group}", method, group, x, y)

@@ -10,12 +10,10 @@ A paraboloid at growing contact radius walks through every a/h at once: its cont
 and its depth a^2 / ((1 + m) R), Eq. (34), gives the exponent m of Eq. (33).
 """
 
-from collections.abc import Iterator, Sequence
-
 import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Answers, Sampling
+from cases.declare.task import Sampling
 from cases.library._claims import agreements, exact
 from cases.library._convergence import (
     EQUATION_NODES,
@@ -28,19 +26,14 @@ from cases.library._convergence import (
     fem_cells,
     studies,
 )
-from cases.library._figures import paper_figure
-from cases.library._figures._symbols import pressure_symbols, series
 from cases.library._hayes import COMMON as HAYES
 from cases.library._hayes import RATIOS as HAYES_RATIOS
-from cases.library._hayes import TABLE as HAYES_TABLE
-from cases.library._hayes import column, hayes_symbols
 from cases.library._layers import THICKNESS, contact_modulus, edges, layer_of, scene_name
-from cases.library._methods import BEM, EVERY, FEM, MDR
+from cases.library._methods import EVERY, MDR
 from cases.library._reasons import SHARED, reasons
 from cases.library._references import numbers
-from cases.library.elastic._stiffness_exponent import EXPONENT_CLAIMS, EXPONENT_SCENES, exponent_symbols
+from cases.library.elastic._stiffness_exponent import EXPONENT_CLAIMS, EXPONENT_SCENES
 from cases.measurements.cost.settings import elastic_costs
-from cases.results.records.figure import Figure, Series
 from contact import ContactRadii, FlatPunch, IndentationDepths, Layer, Paraboloid, Scene
 
 WHY = reasons("flat_punch_stiffness")
@@ -176,43 +169,6 @@ CLAIMS = (
 )
 
 
-def figure_3(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 3: kbar over a/h from MDR, finite elements, boundary elements and the table of Hayes."""
-    yield paper_figure(3, [*_punch_symbols(case, answers), *_hayes_symbols()])
-
-
-def figure_5(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 5: exponent m and factor kappa of Eqs. (33) and (34), also by finite elements and Hayes."""
-    powers, factors = exponent_symbols(case, answers)
-    yield paper_figure(5, powers, factors)
-
-
-def figure_4(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 4: pressure under the flat punch on a bonded incompressible layer, over its mean."""
-    symbols = pressure_symbols(case, answers, {ratio: scene_name("bonded nu=0.5", ratio) for ratio in (1.0, 2.0)})
-    reference = (_symbols(f"a/h={ratio:g}", PRESSURE_AT, row, "reference") for ratio, row in PRESSURE.items())
-    yield paper_figure(4, [*symbols, *reference])
-
-
-def _punch_symbols(case: Case, answers: Answers) -> Iterator[Series]:
-    for label in LAYERS:
-        for use in (FEM, BEM):
-            tasks = {r: case.task(case.scene(scene_name(label, r)), use) for r in STIFFNESS_RATIOS}
-            runs = {r: answers.of(task) for r, task in tasks.items() if answers.has(task)}
-            solved = {r: run.quantity("contact_stiffness").values[0] for r, run in runs.items() if run.solved}
-            kbar = [k / stiffness(label, 1.0, r) for r, k in solved.items()]
-            if solved:
-                yield _symbols(label, list(solved), kbar, use.label)
-
-
-def _hayes_symbols() -> Iterator[Series]:
-    return (hayes_symbols(label, *column(label)) for label in HAYES_TABLE)
-
-
-def _symbols(group: str, x: Sequence[float], y: Sequence[float], method: str) -> Series:
-    return series(f"{method} {group}", method, group, x, y)
-
-
 AT_ONE, AT_TWO = (tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.5", ratio)) for ratio in (1.0, 2.0))
 COMPRESSIBLE = tuple(s for s in PUNCHES if s.name == scene_name("bonded nu=0.3", 1.0))
 ORDERS = (
@@ -236,5 +192,4 @@ CASE = Case(
     methods=EVERY,
     claims=(*CLAIMS, *EXPONENT_CLAIMS, *ORDERS),
     work=elastic_costs("bonded nu=0.5 a/h=2", ("contact_stiffness",)),
-    figures=(figure_3, figure_4, figure_5),
 )

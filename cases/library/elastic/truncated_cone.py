@@ -13,13 +13,12 @@ the section and never sees that kernel; the two share no input. Depth, force and
 loads of rings with an edge at r = b, never by its maximum.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Answers, Sampling
+from cases.declare.task import Sampling
 from cases.judgement.claims.order import Order
 from cases.judgement.claims.own_laws import IncrementalStiffness, Residual, chebyshev_radii
 from cases.library._claims import (
@@ -31,8 +30,6 @@ from cases.library._claims import (
     same_in_millimetres,
     scaling_law,
 )
-from cases.library._figures import paper_figure
-from cases.library._figures._symbols import pressure_symbols, series
 from cases.library._layers import (
     LAYERS,
     THICKNESS,
@@ -51,7 +48,6 @@ from cases.library._references import numbers
 from cases.library._requirements import VERY_COARSE, required
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import elastic_costs
-from cases.results.records.figure import Figure, Series
 from contact import ContactRadii, Scene, TruncatedCone
 
 WHY = reasons("truncated_cone")
@@ -125,26 +121,6 @@ def profile_scene(label: str, ratio: float) -> CaseScene:
 
 
 FIGURE_SCENES = tuple(profile_scene(label, ratio) for label in FIGURE_LAYERS for ratio in RATIOS)
-
-
-def figure_7(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 7 from both methods: g/f(a) over x/a and p/p_mean over r/a, one row of panels a layer."""
-    symbols = (_profile_symbols, _pressure_symbols)
-    yield paper_figure(7, *(own(case, answers, label) for label in FIGURE_LAYERS for own in symbols))
-
-
-def _profile_symbols(case: Case, answers: Answers, label: str) -> Iterator[Series]:
-    for ratio, scene in zip(RATIOS, (s for s in FIGURE_SCENES if s.parameters["layer"] == label), strict=True):
-        task = case.task(scene, QUICK_FEM)
-        run = answers.of(task) if answers.has(task) else None
-        if run and run.solved:
-            height = SLOPE * (1 - FLAT_FRACTION) * ratio * THICKNESS  # f(a)
-            depth, group = np.array(run.quantity("indentation_depth").values), f"a/h={ratio:g}"
-            yield series(f"{run.method} {group}", run.method, group, SYMBOL_RADII, depth / height)
-
-
-def _pressure_symbols(case: Case, answers: Answers, label: str) -> Iterator[Series]:
-    return pressure_symbols(case, answers, {ratio: scene_name(label, ratio) for ratio in RATIOS})
 
 
 def half_space_depth(scene: Scene) -> list[float]:
@@ -310,5 +286,4 @@ CASE = Case(
     claims=(*EXACT, *AGREEMENTS, *INVARIANTS, *ORDERS),
     ablations=(AblationStudy(scene=scene_name("bonded nu=0.45", 2.0), nightly=("fem",)),),
     work=elastic_costs(scene_name("bonded nu=0.45", 2.0), in_ci=True, as_published=True),
-    figures=(figure_7,),
 )

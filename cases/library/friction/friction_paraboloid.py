@@ -12,7 +12,6 @@ from the edge on, the force is less at each depth, and the loop between is heat;
 """
 
 import math
-from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
@@ -21,7 +20,6 @@ from scipy.integrate import quad
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.methods import MethodUse
-from cases.declare.task import Answers
 from cases.judgement.claims.agreement import Agreement
 from cases.judgement.claims.approach import Approach
 from cases.judgement.claims.changed_scenes import NeverBelow
@@ -33,7 +31,6 @@ from cases.library._methods import MDR
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.cost.work_precision import WorkStudy
-from cases.results.records.figure import Figure
 from contact import ContactPath, DepthHistory, Friction, IndentationDepths, Layer, Paraboloid, Scene
 
 WHY = reasons("friction_paraboloid")
@@ -264,14 +261,6 @@ LAWS = tuple(
 )
 
 
-def cycle_figure(case: Case, answers: Answers) -> Iterator[Figure]:
-    """The hysteresis loop, its tractions and its heat."""
-    # This import loads both methods, so it waits until the figure is drawn.
-    from cases.library._figures.friction_cycle import figure  # noqa: PLC0415
-
-    yield figure(CYCLE.scene)
-
-
 TIMED = MethodUse(label="full stick", method="mdr")
 COST = WorkStudy(
     scene="nu=0.5 stick",
@@ -314,5 +303,4 @@ CASE = Case(
         *LAWS,
     ),
     work=(COST,),
-    figures=(cycle_figure,),
 )

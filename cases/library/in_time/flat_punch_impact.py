@@ -7,21 +7,16 @@ exp(-(2 D/s) artanh(s/D)), s = sqrt(D^2 - 1), through exp(-2) at D = 1.
 """
 
 import math
-from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Answers
 from cases.library._claims import agreements, energy_balance, exact
 from cases.library._convergence import FINEST_MDR, TIME_ACCURACY, TIME_STEP, studies
-from cases.library._figures import paper_figure
-from cases.library._figures._symbols import series
 from cases.library._methods import EVERY, FEM, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import impact_costs
-from cases.results.records.figure import Figure, Series
 from contact import FlatPunch, Impact, KelvinVoigt, Layer, Scene
 
 WHY = reasons("flat_punch_impact")
@@ -159,29 +154,6 @@ def on_layers(name: str) -> dict[str, tuple[float, ...]]:
     return {s.name: (getattr(motion(*place), name),) for s, place in zip(ON_LAYERS, KBAR, strict=True)}
 
 
-def figure_11(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 11: restitution over damping ratio on the half-space, and over a/h on layers; symbols: the whole motion."""
-    yield paper_figure(11, _symbols(case, answers, HALF_SPACE), _symbols(case, answers, ON_LAYERS))
-
-
-def _symbols(case: Case, answers: Answers, scenes: Iterable[CaseScene]) -> Iterator[Series]:
-    for scene in (case.scene(scene.name) for scene in scenes):
-        layer, damping = scene.scene.layer, scene.parameters["damping_ratio"]
-        support = "unbonded" if layer.support == "unbonded" else "bonded nu=0.5"
-        at, group = scene.parameters.get("a_over_h", damping), f"{support}, $D_{{HS}}$ = {damping}"
-        for use in case.methods_of(scene):
-            run = answers.of(case.task(scene, use))
-            if run.solved:
-                yield series(
-                    f"{use.label} {scene.name}",
-                    "mdr, integrated in time" if use.label == "mdr" else use.label,
-                    "any thickness" if layer.is_half_space else group,
-                    (at,),
-                    run.quantity("coefficient_of_restitution").values[:1],
-                    style="symbols",
-                )
-
-
 MOTION = {
     "restitution": "coefficient_of_restitution",
     "contact time": "contact_time",
@@ -237,5 +209,4 @@ CASE = Case(
     claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene=ON_LAYERS[0].name, nightly=("fem",)),),
     work=impact_costs(ON_LAYERS[0].name),
-    figures=(figure_11,),
 )

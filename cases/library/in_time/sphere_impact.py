@@ -6,25 +6,21 @@ in the paper by explicit finite elements only. The thinner the layer the stiffer
 livelier the rebound. R and v0 enter only as a product. Kinetic, stored and dissipated energy must add up.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
 import numpy as np
 
 from cases.declare.case import Case, CaseScene, text_of
 from cases.declare.methods import MethodUse
-from cases.declare.task import Answers
 from cases.judgement.claims.changed_scenes import ScalingLaw
 from cases.judgement.claims.printed import Printed
 from cases.library._claims import agreements, energy_balance, exact, names_of
 from cases.library._convergence import CELLS_AND_STEPS, FINEST_MDR, NODES, TIME_ACCURACY, studies
-from cases.library._figures import paper_figure
-from cases.library._figures._symbols import series
 from cases.library._methods import BEM, EQUATION, MDR, TABLE
 from cases.library._reasons import reasons
 from cases.library._references import numbers
 from cases.measurements.advice.effects import AblationStudy
 from cases.measurements.cost.settings import impact_costs
-from cases.results.records.figure import Figure, Series
 from cases.results.records.scene_run import SceneRun
 from contact import Impact, InvalidInput, Layer, Paraboloid, Scene, StandardSolid
 from contact.records.validation import FloatArray
@@ -97,37 +93,6 @@ def twice_the_radius_at_half_the_speed(scene: Scene) -> Scene:
         indenter=Paraboloid(radius_of_curvature=2 * scene.indenter.radius_of_curvature),
         loading=Impact(mass=scene.loading.mass, velocity=scene.loading.velocity / 2),
     )
-
-
-def figure_12(case: Case, answers: Answers) -> Iterator[Figure]:
-    """Fig. 12: force over depth, a/h over time, velocity over time; in units of the elastic half-space."""
-    # This import loads MDR, so it waits until the figure is drawn.
-    from cases.library._figures.figure_12 import elastic_half_space, kind_name  # noqa: PLC0415
-
-    unit = elastic_half_space()
-    loops: list[Series] = []
-    ratios: list[Series] = []
-    speeds: list[Series] = []
-    summed_up: list[list[Series]] = [[], [], []]
-    units = {"contact_time": unit.contact_time, "peak_contact_radius": unit.peak_contact_radius}
-    for scene in ON_LAYERS:
-        run = answers.of(case.task(scene, FEM))
-        if run.solved:
-            place = [1e3 * scene.scene.layer.thickness]
-            for found, name in zip(summed_up, (*units, "coefficient_of_restitution"), strict=True):
-                value = run.quantity(name).values[0] / units.get(name, 1.0)
-                found.append(series(f"fem {scene.name}", "fem", kind_name(IMPACT_NUMBER), place, [value]))
-            time, depth = _samples(run, "indentation_depth")
-            loops.append(_symbols(scene, depth / unit.peak_depth, _samples(run, "normal_force")[1] / unit.peak_force))
-            radius, velocity = _samples(run, "contact_radius")[1], _samples(run, "velocity")[1]
-            ratios.append(_symbols(scene, time / unit.contact_time, radius / scene.scene.layer.thickness))
-            speeds.append(_symbols(scene, time / unit.contact_time, velocity / VELOCITY))
-    yield paper_figure(12, loops, ratios, speeds, *summed_up)
-
-
-def _symbols(scene: CaseScene, x: FloatArray, y: FloatArray) -> Series:
-    group = f"h = {1e3 * scene.scene.layer.thickness:g} mm"
-    return series(f"fem {scene.name}", "fem", group, x, y)
 
 
 def _samples(run: SceneRun, channel: str) -> tuple[FloatArray, FloatArray]:
@@ -226,5 +191,4 @@ CASE = Case(
     claims=(*CLAIMS, *ORDERS),
     ablations=(AblationStudy(scene=name_of(2e-3), nightly=("fem",)),),
     work=impact_costs(name_of(2e-3)),
-    figures=(figure_12,),
 )

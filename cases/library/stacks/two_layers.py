@@ -10,10 +10,8 @@ here. The figure shows what bodies made simpler err by, also one on an elastic b
 """
 
 import math
-from collections.abc import Iterator
 
 from cases.declare.case import Case, CaseScene, text_of
-from cases.declare.task import Answers
 from cases.library._claims import exact, scaling_law
 from cases.library._convergence import EQUATION_NODES, FINEST_MDR, studies
 from cases.library._layers import THICKNESS
@@ -30,7 +28,6 @@ from cases.library.stacks._stacks import (
     two_methods,
 )
 from cases.measurements.cost.settings import elastic_costs
-from cases.results.records.figure import Figure
 from contact import ElasticLayer, Layer, LayerStack
 
 # Thickness, modulus and nu of each layer, from the top, and whether the two slip.
@@ -127,14 +124,6 @@ def thinness(scene: AnyScene) -> float:
     return float(scene.layer.thickness / scene.indenter.flat_radius)
 
 
-def simpler_bodies(case: Case, answers: Answers) -> Iterator[Figure]:
-    """What is moved by a base taken as rigid, a buried layer left out, and a grading averaged."""
-    # This import loads MDR, so it waits until the figure is drawn.
-    from cases.library._figures.simpler_bodies import figure  # noqa: PLC0415
-
-    yield figure()
-
-
 FIRST_SCENE = on_two(*FIRST)
 CASE = Case(
     name="two_layers",
@@ -170,5 +159,4 @@ CASE = Case(
         *studies((FIRST_SCENE,), EQUATION_NODES, ("normal_force",), against=FINEST_MDR),
     ),
     work=elastic_costs(FIRST_SCENE.name),
-    figures=(simpler_bodies,),
 )

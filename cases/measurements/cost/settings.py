@@ -32,20 +32,16 @@ FEM: Final = (
     ),
     *_each("fem", "accuracy", (1e-2, 1e-4, 1e-6), "accuracy {:g}"),
 )
-# Solvers of others, each refined by its own grid or mesh; the closed forms of nanite have nothing to refine.
+# Solvers of others, each refined by its own grid or mesh.
 OTHERS: Final = (
     *_each("calculix", "cells", (4, 6, 8, 16), "{} cells"),
     *_each("contact_mechanics", "points", (32, 64, 128, 256), "{} points"),
     *_each("tamaas", "points", (32, 64, 128, 256), "{} points"),
-    MethodUse(label="closed form", method="nanite"),
 )
 FEM_BESIDE_OTHERS: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4, 1e-5, 1e-6), "accuracy {:g}")
 FEM_DETACHING: Final = _each("fem", "accuracy", (1e-2, 1e-3, 1e-4), "accuracy {:g}")
 FEM_IN_TIME: Final = _each("fem", "growth", (1.0, 0.5, 0.25), "growth {:g}")
-BEM: Final = (
-    *_each("bem", "points", (128, 256, 512, 1024), "{} cells"),
-    *_each("bem", "tolerance", (1e-3, 1e-5), "256 cells, tolerance {:g}", points=256),
-)
+BEM: Final = _each("bem", "points", (128, 256, 512, 1024), "{} cells")
 PERIODIC: Final = MethodUse(label="256 cells, periodic", method="bem", settings={"points": 256, "boundary": "periodic"})
 TABLE: Final = _each("mdr_table", "cells", (64, 128), "{} cells", ratios=60, radii=200)
 # The route of the paper: 400 rows of a/h, 500 radii.

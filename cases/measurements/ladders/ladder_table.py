@@ -6,8 +6,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from cases.measurements.campaigns.units import Units, in_units
 from cases.measurements.ladders.ladders import LadderPlan
+from cases.measurements.ladders.units import Units, in_units
 from contact import (
     Adhesion,
     Cone,

@@ -9,8 +9,8 @@ import numpy as np
 
 from cases.declare.methods import build
 from cases.declare.quantities import values_of
-from cases.measurements.campaigns.invariants import invariant_residuals
 from cases.measurements.driver import measured
+from cases.measurements.ladders.invariants import invariant_residuals
 from cases.measurements.ladders.repeats import digits_of, relative_spread, repeated
 from cases.measurements.measurement import Measurement
 from cases.results.records.reliability import Ladder, Rung

@@ -8,7 +8,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits  # type: ignore[import-untyped]  # ships no types
 
 from cases.declare.quantities import values_of
-from cases.measurements.campaigns.units import Units, in_units, with_numbers
+from cases.measurements.ladders.units import Units, in_units, with_numbers
 from contact import ContactRadii, DepthFunction, IndentationDepths, Method, NormalForces, Scene, Solution
 
 DOUBLE_DIGITS: Final = -float(np.log10(2.0**-53))

@@ -95,37 +95,6 @@ class WorkPrecision:
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
-class ScalingFit:
-    """Seconds against size, and the exponent of what grows beyond a fixed cost.
-
-    Attributes:
-        method: name in the method table.
-        size: what grows.
-        sizes: shape (n,).
-        seconds: processor time of a first solution, shape (n,).
-        exponent: fitted.
-        half_width: of its 95 % interval.
-        fixed: seconds that do not grow, fitted.
-        growing: seconds beyond them at the largest size, fitted.
-        theory: exponent of the most expensive stage.
-        because: which stage that is.
-        counters: of unknowns, iterations and the like, which no noise disturbs: the exponent of those that grow.
-    """
-
-    method: str
-    size: str
-    sizes: tuple[Positive, ...]
-    seconds: tuple[Positive, ...]
-    exponent: Finite
-    half_width: NotNegative
-    theory: Finite
-    because: str
-    fixed: NotNegative = 0.0
-    growing: NotNegative = 0.0
-    counters: dict[str, Finite] = field(default_factory=dict)
-
-
-@dataclass(frozen=True, kw_only=True, config=RECORD)
 class EffectEntry:
     """What a part of a scene costs and moves: the scene solved with it and without.
 

@@ -1,19 +1,11 @@
-"""Where methods break and how well they state their errors: ladders, coverage, maps of errors."""
+"""Where methods break: stability ladders."""
 
 from dataclasses import field
-from itertools import groupby
-from typing import Self
 
-from pydantic import model_validator
 from pydantic.dataclasses import dataclass
 
-from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative, Positive, Vector
+from cases.results.records.field_types import RECORD, NotNegative, Positive
 from cases.results.status import Status
-
-# Where the distribution of stated over true errors is kept, in per cent.
-PERCENTILES = tuple(range(0, 101, 2))
-# The row of a map for the layer that does not see Poisson's ratio.
-UNBONDED = "unbonded"
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -82,77 +74,3 @@ class Ladder:
             elif rung.digits < before.digits - 1.0:
                 found.append(f"{place}: {rung.digits:.1f} digits, but {before.digits:.1f} were accepted")
         return found
-
-
-@dataclass(frozen=True, kw_only=True, config=RECORD)
-class CoverageRecord:
-    """Stated against true errors of one quantity over random scenes.
-
-    Attributes:
-        method: name in the method table.
-        settings: numerical settings of the method.
-        family: kind of scenes.
-        quantity: whose errors.
-        scenes: how many were drawn.
-        refused: how many the method refused by name.
-        crashed: how many ended with an error that has no name.
-        checks: how many answers were compared with the referee's.
-        covered: share of them whose stated error holds.
-        decided: how many the referee could tell from its own uncertainty.
-        sharpness: median of stated over true error among those; None without any.
-        percentiles: stated over true error at 0, 2, .. 100 percent of those.
-    """
-
-    method: str
-    settings: Mapping
-    family: str
-    quantity: str
-    scenes: int
-    refused: int
-    crashed: int
-    checks: int
-    covered: NotNegative
-    decided: int
-    sharpness: NotNegative | None
-    percentiles: tuple[NotNegative, ...] = ()
-
-    @property
-    def at_90(self) -> float:
-        """Stated over true error at 90 %, zero where no true error could be told."""
-        return self.percentiles[PERCENTILES.index(90)] if self.percentiles else 0.0
-
-
-@dataclass(frozen=True, kw_only=True, config=RECORD)
-class ErrorMap:
-    """Signed relative errors over a/h and Poisson's ratio.
-
-    Attributes:
-        name: of the formula or method.
-        title: for readers.
-        quantity: whose error.
-        reference: what it is relative to.
-        ratios: a/h, shape (n,).
-        rows: Poisson's ratios as words, or "unbonded", shape (m,).
-        errors: shape (m, n); None where there is no answer.
-    """
-
-    name: str
-    title: str
-    quantity: str
-    reference: str
-    ratios: Vector
-    rows: tuple[str, ...]
-    errors: tuple[tuple[Finite | None, ...], ...]
-
-    def good_ranges(self, row: str, limit: float = 1e-2) -> tuple[tuple[float, float], ...]:
-        """Smallest and largest a/h of each run of neighbours of a row with errors within the limit."""
-        errors = zip(self.ratios, self.errors[self.rows.index(row)], strict=True)
-        runs = groupby(errors, key=lambda place: place[1] is not None and abs(place[1]) <= limit)
-        found = [[ratio for ratio, _ in run] for good, run in runs if good]
-        return tuple((run[0], run[-1]) for run in found)
-
-    @model_validator(mode="after")
-    def _full(self) -> Self:
-        if len(self.errors) != len(self.rows) or any(len(row) != len(self.ratios) for row in self.errors):
-            raise ValueError(f"{self.name}: a map needs one error for each row and ratio")
-        return self

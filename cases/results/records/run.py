@@ -1,4 +1,4 @@
-"""A whole run: its cases with all their records, where it was made, and what was accepted.
+"""A whole run: its cases with all their records, and where it was made.
 
 A non-finite number cannot be stored: what could not be computed is ``None`` beside a status that says why.
 """
@@ -11,15 +11,15 @@ from pydantic.dataclasses import dataclass
 
 from cases.results.records.claim import Claim, Kind
 from cases.results.records.convergence import ConvergenceStudy
-from cases.results.records.cost import EffectEntry, ScalingFit, WorkPrecision
-from cases.results.records.field_types import RECORD, Finite, Mapping, NotNegative
+from cases.results.records.cost import EffectEntry, WorkPrecision
+from cases.results.records.field_types import RECORD, Mapping, NotNegative
 from cases.results.records.figure import Figure
-from cases.results.records.reliability import CoverageRecord, ErrorMap, Ladder
+from cases.results.records.reliability import Ladder
 from cases.results.records.scene_run import SceneRun
 from cases.results.status import Status, worst
 
 # Files of another version are refused.
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -47,9 +47,6 @@ class CaseResult:
     work_precision: tuple[WorkPrecision, ...] = ()
     effects: tuple[EffectEntry, ...] = ()
     ladders: tuple[Ladder, ...] = ()
-    coverage: tuple[CoverageRecord, ...] = ()
-    maps: tuple[ErrorMap, ...] = ()
-    scaling: tuple[ScalingFit, ...] = ()
     figures: tuple[Figure, ...] = ()
 
     @property
@@ -64,22 +61,6 @@ class CaseResult:
         claims = (claim for claim in self.claims if claim.kind is not Kind.REGRESSION)
         judged = {method for claim in claims if claim.status is not Status.SKIP for method in claim.methods}
         return tuple(method for method in methods if method not in judged)
-
-
-@dataclass(frozen=True, kw_only=True, config=RECORD)
-class Acceptance:
-    """An entry of the baseline history: who accepted which change, and why; tolerances are relative."""
-
-    date: str
-    case: str
-    method: str
-    quantity: str
-    old: Finite | None
-    new: Finite | None
-    old_tolerance: NotNegative | None
-    new_tolerance: NotNegative | None
-    reason: str
-    revision: str
 
 
 @dataclass(frozen=True, kw_only=True, config=RECORD)
@@ -120,13 +101,12 @@ class RunResult:
     Its ``methods`` are those that were chosen; none if the cases were solved by their own.
     """
 
-    schema_version: Literal[1] = 1
+    schema_version: Literal[2] = 2
     suite: str
     methods: tuple[str, ...] = ()
     complete: bool
     stamp: Stamp
     cases: tuple[CaseResult, ...]
-    acceptances: tuple[Acceptance, ...] = ()
 
     def case(self, name: str) -> CaseResult:
         """Return the case called ``name``.

@@ -5,7 +5,6 @@ import dataclasses
 from cases.gate.accept import accept
 from cases.gate.baseline import read_baselines
 from cases.gate.gate import gate
-from cases.gate.history import read_history
 from cases.gate.proposal import propose
 from cases.gate.write_permission import WriteConditions
 from cases.results.records.claim import Kind
@@ -17,7 +16,7 @@ SPREAD = 1e-10  # tolerance 1e-9
 
 
 def clean_run(case=None):
-    return dataclasses.replace(example_run(), cases=(case or passing_case(),), acceptances=())
+    return dataclasses.replace(example_run(), cases=(case or passing_case(),))
 
 
 def spreads_of(run, spread=SPREAD):
@@ -44,7 +43,7 @@ def accepted(folder, run=None, **how):
 
 
 def gated(run, folder):
-    return gate(run, read_baselines(folder), read_history(folder))
+    return gate(run, read_baselines(folder))
 
 
 def regressions(run):

@@ -8,14 +8,10 @@ import pytest
 from cases.declare.guarded_method import build_guarded
 from cases.declare.methods import REFEREES, build
 from cases.referees import process
-from cases.referees.detachment import answered
 from cases.referees.grid import FAR, box, surface
-from cases.referees.tamaas import Tamaas
 from contact import (
-    Adhesion,
     Cone,
     ContactRadii,
-    Detachment,
     FlatPunch,
     Friction,
     IndentationDepths,
@@ -24,7 +20,6 @@ from contact import (
     NotConvergedError,
     Paraboloid,
     Scene,
-    StageLog,
 )
 
 HALF_SPACE = Layer.half_space(youngs_modulus=1e6, poissons_ratio=0.3)
@@ -108,30 +103,3 @@ def test_heights_on_the_grid_are_those_of_the_indenter_and_nothing_beyond_a_rim_
     assert np.all(cone == cone[::-1, ::-1])
     punch = np.array(surface(pressed(indenter=FlatPunch(radius=1.0)), 4, 4.0))
     assert sorted(set(punch.ravel())) == [-FAR * 4.0, 0.0]
-
-
-def pulled(control, layer=HALF_SPACE):
-    return Scene(
-        layer=layer,
-        indenter=Paraboloid(radius_of_curvature=1e-2),
-        loading=Detachment(control=control),
-        effects=(Adhesion(work_of_adhesion=0.05),),
-    )
-
-
-def test_adhesion_by_grids_is_driven_by_forces_off_half_spaces():
-    assert "driven by forces" in Tamaas().supports(pulled("displacement")).reason
-    assert "half-spaces" in Tamaas().supports(pulled("force", LAYER)).reason
-
-
-@pytest.mark.parametrize(("control", "force"), [("force", -3.0), ("displacement", -4.0)])
-def test_contact_is_lost_where_the_control_says(control, force):
-    found = {
-        "contact_radius": np.array([3.0, 2.0, 1.0]),
-        "indentation_depth": np.array([1.0, 0.0, -1.0]),
-        "normal_force": np.array([0.0, -4.0, -3.0]),
-        "force_control": np.array([2.0]),
-    }
-    path = answered(pulled(control), found, StageLog(), method="some", settings={})
-    assert path.pull_off_force == force
-    assert path.stable_force_control.tolist() == [True, True, False]

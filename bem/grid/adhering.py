@@ -1,0 +1,201 @@
+"""An adhering indenter on discs of cells: its branch of equilibria, and what is met along it.
+
+Flat punches are smooth functions of the radius. They are sampled on a few discs and interpolated. What is steep in
+depth and force, integrals over the profile, is computed where it is asked for.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import exp, log1p, pi, sqrt
+from typing import Final
+
+import numpy as np
+from numpy.polynomial import chebyshev as series
+
+from bem.branch import FORCE, Branch
+from bem.grid.pressed import FIRST_CELLS, Pressing, Punches
+from contact import Adhesion, Detachment, FlatPunch, InvalidInput, Scene
+from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_elongation
+
+# Discs between axis and the largest radius; the coarser companion takes 3/4 of them. With half as
+# many pull-offs of layers lose 1e-5.
+NODES: Final = 20
+# Factor by which the largest radius grows while the branch is too short, and its first value over the thickness.
+GROWTH: Final = 1.6
+FIRST_RATIO: Final = 4.0
+# How much farther than the largest prescribed value a branch reaches.
+BEYOND: Final = 1.1
+
+
+@dataclass(frozen=True, eq=False)
+class SampledPunches:
+    """ln(kappa) and the coefficients of Q by polynomials of u = ln(1 + a/h), from the axis, where both are one.
+
+    Attributes:
+        thickness: h [m].
+        end: u at the largest radius.
+        growth: Chebyshev coefficients of ln(kappa), shape (n,).
+        series: Of the coefficients of Q, shape (n, m).
+    """
+
+    thickness: float
+    end: float
+    growth: FloatArray
+    series: FloatArray
+
+    @classmethod
+    def up_to(cls, pressing: Pressing, radius: float, nodes: int) -> SampledPunches:
+        """From discs at Chebyshev points."""
+        h, x = pressing.layer.surface.thickness, series.chebpts2(nodes)
+        if pressing.layer.is_half_space:
+            return cls(1.0, 1.0, np.zeros(2), np.ones((1, 1)))
+        end = log1p(radius / h)
+        radii = h * np.expm1(0.5 * end * (1.0 + x[1:]))
+        radii[-1] = radius
+        flat = [pressing.punch(a) for a in radii.tolist()]
+        growth = np.asarray(series.chebfit(x, np.log([1.0, *(one.growth for one in flat)]), nodes - 1), np.float64)
+        found = cls(h, end, growth, np.ones((1, 1)))
+        degree = flat[-1].degree - pressing.fewer
+        rows = [np.eye(degree + 1)[0]]
+        for a, one in zip(radii.tolist(), flat, strict=True):
+            near = found.at(a)
+            rows.append(one.series(degree, sqrt(near.growth + near.growth_slope)))
+        return replace(found, series=series.chebfit(x, np.array(rows), nodes - 1))
+
+    def at(self, radius: float) -> Punches:
+        """About one radius [m]."""
+        u = log1p(radius / self.thickness)
+        x, steepness = 2.0 * u / self.end - 1.0, 2.0 / self.end * radius / (self.thickness + radius)
+        growth = exp(float(series.chebval(x, self.growth)))
+        slope = growth * steepness * float(series.chebval(x, series.chebder(self.growth)))
+        Q, change = (np.atleast_1d(series.chebval(x, c)) for c in (self.series, series.chebder(self.series)))
+        return Punches(growth, slope, Q, steepness * change)
+
+
+@dataclass(frozen=True, eq=False)
+class AdheringIndenter:
+    """Equilibria of a scene with adhesion on discs of one size.
+
+    Attributes:
+        pressing: Layer, indenter and discs.
+        length: dgamma/E* [m].
+        punches: Flat punches of all radii.
+        end: Largest radius [m].
+        compliance: 1/K of a machine, over E* [m/N].
+    """
+
+    pressing: Pressing
+    length: float
+    punches: SampledPunches
+    end: float
+    compliance: float = 0.0
+
+    @classmethod
+    def up_to(cls, scene: Scene, pressing: Pressing, radius: float, nodes: int = NODES) -> AdheringIndenter:
+        """All equilibria from the axis to a radius [m]."""
+        stiffness = scene.loading.machine_stiffness if isinstance(scene.loading, Detachment) else None
+        punches = SampledPunches.up_to(pressing, radius, nodes)
+        return cls(pressing, adhesive_length(scene), punches, radius, 1.0 / stiffness if stiffness else 0.0)
+
+    @cached_property
+    def branch(self) -> Branch:
+        """Depth and force over the radius."""
+        indenter = self.pressing.indenter
+        return Branch(self.equilibria, (indenter.flat_radius, *indenter.breakpoints), self.end, self.compliance)
+
+    def equilibria(self, radius: FloatArray) -> FloatArray:
+        """Depth [m] and force [N] at radii [m], shape (2, n)."""
+        stiffness, moment, depth = self._pressed(radius)
+        return np.stack([depth, self.pressing.layer.contact_modulus * (stiffness * depth - moment)])
+
+    def stiffness(self, radius: FloatArray) -> FloatArray:
+        """k_N [N/m]."""
+        return np.asarray(self.pressing.layer.contact_modulus * self._pressed(radius)[0])
+
+    def force(self, radius: float, depth: float) -> float:
+        """F [N] at a depth [m] with this contact, in equilibrium or not."""
+        stiffness, moment, _ = self._pressed(np.array([radius]))
+        return float(self.pressing.layer.contact_modulus * (stiffness * depth - moment)[0])
+
+    def _pressed(self, radius: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """k [m], M [m^2] and delta [m]."""
+        states = [self.punches.at(a).pressed(self.pressing.indenter, a) for a in radius.tolist()]
+        _, stiffness, moment, edge, depth = np.array(states).reshape(-1, 5).T
+        return stiffness, moment, depth - np.sqrt(2.0 * pi * self.length * radius) / edge
+
+
+def adhesive_length(scene: Scene) -> float:
+    """dgamma/E* [m]."""
+    adhesion = scene.effect(Adhesion)
+    return 0.0 if adhesion is None else adhesion.work_of_adhesion / scene.layer.contact_modulus
+
+
+def edge_density(scene: Scene, radius: float) -> float:
+    """phi [m] at an adhering edge, Eq. (40)."""
+    return -sqrt(2.0 * pi * adhesive_length(scene) * radius)
+
+
+def largest_radius(scene: Scene, pressing: Pressing, quantity: int, value: float | None) -> float:
+    """A radius [m] up to which the branch holds a value of depth or force, or without one all of a withdrawal."""
+    indenter = scene.indenter
+    if isinstance(indenter, FlatPunch):
+        return indenter.radius
+    balance = radius_of_elongation(indenter, adhesive_length(scene))
+    radius = GROWTH * max(min(balance, FIRST_RATIO * scene.layer.thickness), indenter.flat_radius)
+    coarse = Pressing(pressing.layer, indenter, min(FIRST_CELLS, pressing.cells), threads=pressing.threads)
+    while radius < indenter.max_radius:
+        found = AdheringIndenter.up_to(scene, coarse, radius, NODES // 2).branch
+        wanted = found.strength if value is None else BEYOND * max(value, 0.0)
+        if found.at(FORCE if value is None else quantity, radius) > wanted:
+            return radius
+        radius *= GROWTH
+    return indenter.max_radius
+
+
+def followed(of: AdheringIndenter, quantity: int, values: FloatArray) -> list[float]:
+    """Radii [m] at prescribed depths [m] or forces [N] in their order, from out of contact; zero without contact.
+
+    Adhesion of this type has no reach: an approaching indenter snaps in as it touches, at zero depth, to the smallest
+    stable contact. Pressed further or withdrawn the edge moves along the stable branch; where that ends it jumps to
+    another stable radius, or off.
+
+    Raises:
+        InvalidInput: If a force pulls that no contact can carry, or the contact outgrows the indenter.
+    """
+    radii, radius = [], 0.0
+    for entry, value in enumerate(values.tolist()):
+        radius = _next_radius(of, quantity, value, radius)
+        if radius == 0.0 and quantity == FORCE:
+            raise InvalidInput(
+                f"loading.values = {value:g} (entry {entry}): no contact carries this tension; "
+                "press first, and pull less than the pull-off force"
+            )
+        radii.append(radius)
+    return radii
+
+
+def _next_radius(of: AdheringIndenter, quantity: int, value: float, radius: float) -> float:
+    """The edge's next place [m]."""
+    indenter, branch = of.pressing.indenter, of.branch
+    if radius == 0.0:
+        if value < 0.0:
+            return 0.0
+        # A flat end touches at once.
+        radius = indenter.flat_radius
+    found = branch.solutions(quantity, value)
+    if radius > 0.0 and value < branch.at(quantity, radius):
+        return max((a for a in found if a <= radius), default=0.0)
+    wider = min((a for a in found if a >= radius), default=None)
+    if wider is None and not isinstance(indenter, FlatPunch):
+        raise InvalidInput(f"loading.values = {value:g}: the contact reaches the end of the indenter at {of.end:g} m")
+    return of.end if wider is None else wider
+
+
+def start_of_withdrawal(of: AdheringIndenter, given: float | None) -> float:
+    """Radius [m] as given, at the punch's edge, or pressed as hard as the contact can pull."""
+    if given is not None or isinstance(of.pressing.indenter, FlatPunch):
+        return of.end
+    return max(of.branch.solutions(FORCE, of.branch.strength), default=of.end)

@@ -1,0 +1,185 @@
+"""Pressure and surface displacement of one contact, from the pressures on its disc of cells."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from math import pi
+from typing import Final
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from bem.grid.discs import EDGE_CELLS, Punch
+from bem.grid.influence import REACH, kernel_of, point_response
+from contact import ElasticLayer, Profile
+from contact.answer.one_circle import no_single_circle
+from contact.records.validation import FloatArray
+
+# Radii summed at a time, which bounds the memory.
+CHUNK: Final = 16
+# Cells along a quadrant that are summed for displacements far from the edge: groups of cells act at their centres.
+GROUPS: Final = 64
+# Share of the largest quotient of pressures below which a cell counts as pulled; noise of rings is a tenth of it.
+PULLED: Final = 1e-3
+# Cells of the coarser grid within which it has to show the same.
+NEARBY: Final = 1.5
+# Cells beside edges and kinks in which the sign of the pressure is not resolved; half of it refuses worn cones.
+BESIDE_KINKS: Final = 8.0
+# Radii r/a at which fields of two grids are compared.
+INSIDE: Final = np.sqrt((np.arange(64) + 0.5) / 64)
+OUTSIDE: Final = np.array([1.01, 1.02, 1.05, 1.1, 1.2, 1.35, 1.6, 2.0, 2.5])
+
+
+@dataclass(frozen=True, eq=False)
+class ContactFields:
+    """Fields under and around one contact; zero without contact.
+
+    Attributes:
+        layer: The layer.
+        indenter: The profile.
+        punch: The flat punch on the disc, of nearly the same radius.
+        radius: a [m].
+        depth: delta [m].
+        load: F/E* [m^2].
+        edge: phi [m] at the edge, zero without adhesion; None where a flat punch without adhesion has any.
+        solved: Depth [m], F/E* and M [m^2] at the radius of the disc.
+    """
+
+    layer: ElasticLayer
+    indenter: Profile
+    punch: Punch
+    radius: float
+    depth: float
+    load: float
+    edge: float | None
+    solved: tuple[float, float, float]
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """p(r) [Pa]; at a singular edge the value half a cell inside."""
+        last = 1.0 - 0.5 / self.punch.disc.radius
+        share = np.minimum(radius / self.radius, 1.0 if self.edge == 0.0 else last)
+        root = np.sqrt(np.maximum((1.0 - share) * (1.0 + share), np.finfo(float).tiny))
+        p = self.layer.contact_modulus / (pi * self.radius) * self.over_half_space(share) / root
+        return np.where((radius <= self.radius) & (share < 1.0), p, 0.0)
+
+    def surface_displacement(self, radius: FloatArray) -> FloatArray:
+        """w(r) [m]: delta - f under the indenter, sums over all cells beyond the first cell outside."""
+        a, s = self.radius, self.radius / self.punch.disc.radius
+        w = np.asarray(self.depth - self.indenter.height(np.minimum(radius, a)), dtype=np.float64)
+        outside = radius > a
+        away = (radius[outside] - a) / s
+        summed = self._summed(np.maximum(radius[outside], a + s))
+        share = np.minimum(away, 1.0) if self.edge == 0.0 else np.sqrt(np.minimum(away, 1.0))
+        w[outside] = (1.0 - share) * w[outside] + share * summed
+        return w
+
+    def refuse_pulling(self, coarser: ContactFields) -> None:
+        """Refuse a contact without adhesion in which cells pull, here and at the same place of a coarser grid.
+
+        Raises:
+            UnsupportedSceneError: With the place.
+        """
+        rings, quotient = self._rings
+        other_rings, other = coarser._rings
+        marks = [self.radius, *(k for k in self.indenter.kinks if k < self.radius)]
+        away = np.min([np.abs(rings - mark / self.radius) for mark in marks], axis=0) * self.punch.disc.radius
+        for place in rings[(away > BESIDE_KINKS) & (quotient < -PULLED * quotient.max())]:
+            near = np.abs(other_rings - place) * coarser.punch.disc.radius < NEARBY
+            if other[near].min(initial=np.inf) < -PULLED * other.max():
+                raise no_single_circle(self.radius, f"would be pulled at r = {self.radius * place:g} m")
+
+    def over_half_space(self, share: FloatArray) -> FloatArray:
+        """Pressure at r/a over that of the half-space under a unit depth [m]."""
+        if self.edge is None:
+            return self.depth * self.punch.quotient(share)
+        return np.asarray(self._quotient(share**2))
+
+    @cached_property
+    def cells(self) -> FloatArray:
+        """p/E* on the cells, at the disc's own radius.
+
+        Few cells beyond a flat end resolve its heights badly; their pressure has the total that is known.
+        """
+        punch, (depth, _, moment) = self.punch, self.solved
+        risen = punch.risen(self.indenter) if moment > 0.0 else np.zeros_like(punch.pressure)
+        total = 4.0 * punch.cell_size**2 * float(risen.sum())
+        return np.asarray(depth / punch.cell_size * punch.pressure - (moment / total if total > 0.0 else 0.0) * risen)
+
+    @cached_property
+    def _scale(self) -> float:
+        """Of pressures of the disc to those of the contact, whose radius is a little different."""
+        load = self.solved[1]
+        return self.load / load * (self.punch.radius / self.radius) ** 2 if self.edge == 0.0 and load > 0.0 else 1.0
+
+    @cached_property
+    def _rings(self) -> tuple[FloatArray, FloatArray]:
+        """r/a and the mean quotient [m] of rings one cell wide, but for those close to the edge."""
+        disc = self.punch.disc
+        share = disc.centres[disc.contact]
+        ring = (share * disc.radius).astype(np.intp)
+        kept = np.arange(max(1, int(disc.radius - EDGE_CELLS)))
+        count = np.bincount(ring)[kept]
+        means = [np.bincount(ring, of)[kept] / count for of in (share**2, disc.quotient(self.cells))]
+        unit = self.radius / disc.radius * self._scale
+        return np.sqrt(means[0]), unit * means[1]
+
+    @cached_property
+    def _quotient(self) -> PchipInterpolator:
+        """Pressure over that of the half-space under a unit depth, over r^2/a^2."""
+        share, values = self._rings
+        return PchipInterpolator(np.append(share**2, 1.0), np.append(values, self.edge or 0.0), extrapolate=True)
+
+    def _summed(self, radius: FloatArray) -> FloatArray:
+        """w [m] at r > a + s: cells, or groups of them far away, act as point forces at their centres."""
+        cells, s = self._scale * self.cells, self.radius / self.punch.disc.radius
+        group = -(-cells.shape[0] // GROUPS)
+        far = radius > self.radius + 4.0 * group * s
+        w = np.empty(radius.shape)
+        w[~far] = self._of_points(cells, s, radius[~far])
+        padded = np.pad(cells, (0, -cells.shape[0] % group))
+        m = padded.shape[0] // group
+        w[far] = self._of_points(padded.reshape(m, group, m, group).sum(axis=(1, 3)) / group**2, group * s, radius[far])
+        return w
+
+    def _of_points(self, cells: FloatArray, size: float, radius: FloatArray) -> FloatArray:
+        i, j = np.nonzero(cells)
+        x, y, force = size * (i + 0.5), size * (j + 0.5), size**2 * cells[i, j] / pi
+        w = np.empty(radius.shape)
+        for start in range(0, radius.size, CHUNK):
+            r = radius[start : start + CHUNK, None]
+            w[start : start + CHUNK] = sum(2.0 * self._response(np.hypot(r + side * x, y)) @ force for side in (-1, 1))
+        return w
+
+    def _response(self, distance: FloatArray) -> FloatArray:
+        """1/r + V(r/h)/h [1/m]."""
+        if self.layer.is_half_space:
+            return 1.0 / distance
+        h = self.layer.surface.thickness
+        answer = 1.0 / distance + point_response(kernel_of(self.layer))(distance / h) / h
+        return answer if self.layer.has_elastic_base else np.where(distance < REACH * h, answer, 0.0)
+
+
+@dataclass(frozen=True, eq=False)
+class NoContact:
+    """Fields without contact."""
+
+    def pressure(self, radius: FloatArray) -> FloatArray:
+        """Zero."""
+        return np.zeros(radius.shape)
+
+    surface_displacement = pressure
+
+
+def pressure_difference(one: ContactFields, other: ContactFields) -> float:
+    """Distance of two pressures at equal r/a in the norm weighted with r (a^2 - r^2), relative to the first."""
+    p, q = (np.sqrt(1.0 - INSIDE**2) * of.pressure(INSIDE * of.radius) for of in (one, other))
+    return float(np.linalg.norm(p - q) / np.linalg.norm(p))
+
+
+def displacement_difference(one: ContactFields, other: ContactFields) -> float:
+    """Largest distance of two displacements outside the contact, relative to depth or height at the edge."""
+    r = OUTSIDE * max(one.radius, other.radius)
+    apart = one.surface_displacement(r) - other.surface_displacement(r)
+    scale = max(abs(one.depth), float(one.indenter.height(one.radius)))
+    return float(np.abs(apart).max() / scale)

@@ -1,0 +1,273 @@
+"""Depth and force of an indenter over the contact radius, from flat punches of nearby radii on discs of cells.
+
+A layer is pressed by a unit depth, with the pressure p_1 = Q p_hs and its total k = k_N/E* = 2 a kappa. Under the
+profile f it bears F = E* (k delta - M), where by reciprocity M = int p_1 f dA (`bem.grid.half_space`). The energy that
+an edge releases, Eqs. (5) and (6), says k' = 2 phi_1^2 and M' = 2 phi_1 phi_f, where phi = delta phi_1 - phi_f is what
+the edge bears. Without adhesion phi = 0, hence
+
+    delta = M'/k',    k' = 2 (kappa + a kappa'),    phi_1 = Q(1) = sqrt(kappa + a kappa').
+
+With adhesion Griffith's balance E* phi^2/(2 pi a) = dgamma gives phi = -sqrt(2 pi a dgamma/E*), Eq. (40). On the
+half-space, the measure of the discs, kappa = Q = 1, and all this is exact by construction.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from math import exp, log, sqrt
+from typing import Final, Literal, NamedTuple, TypeAlias
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.optimize import brentq
+
+from bem.grid.discs import Punch, punch
+from bem.grid.half_space import ProfileOverCircle
+from bem.grid.operators import Boundary
+from contact import ElasticLayer, FlatPunch, InvalidInput, NotConvergedError, Profile
+from contact.answer.one_circle import no_single_circle
+from contact.records.validation import FloatArray
+from contact.scene.extent import radius_of_depth, radius_of_load
+
+# Step of ln(a) of the slopes of kappa and Q, whose errors go with its square: 1e-5 of the depth, four times as much
+# with twice of it. The coarser companion takes twice of it.
+STEP: Final = 0.02
+# a/h from which on uniform layers are thin: at half of it lattices with a gap between images are larger than free ones,
+# at twice of it free cells lose 1e-3 of k_N on incompressible layers.
+THIN: Final = 16.0
+# Degrees by which the polynomial Q of the coarser companion is lower: so that an error of the fit is stated.
+FEWER: Final = 2
+# Cells across the grid on which a radius is first searched, and the fewest of any grid.
+FIRST_CELLS: Final = 64
+LEAST_CELLS: Final = 48
+# Relative change of the radius from which on the contact is extrapolated to first order: 1e-7 of depth and force.
+NEAR: Final = 5e-4
+# Steps of the search on finer discs, which takes one or two.
+MOST_STEPS: Final = 12
+# Least d ln(value)/d ln(excess) of a step, and least value over that prescribed.
+LEAST_EXPONENT: Final = 0.2
+TINY: Final = 1e-30
+
+
+class Punches(NamedTuple):
+    """Flat punches about one radius.
+
+    Attributes:
+        growth: kappa.
+        growth_slope: dkappa/d(ln a).
+        series: Chebyshev coefficients of Q in 2 r^2/a^2 - 1, shape (n,).
+        series_slope: Their derivatives by ln(a).
+    """
+
+    growth: float
+    growth_slope: float
+    series: FloatArray
+    series_slope: FloatArray
+
+    def pressed(self, indenter: Profile, radius: float) -> PressedState:
+        """A profile pressed to this contact radius [m]."""
+        over, squared = ProfileOverCircle.of(indenter, radius), self.growth + self.growth_slope
+        at, series = 2.0 * over.share**2 - 1.0, (self.series, self.series_slope)
+        Q, change = (np.asarray(chebyshev.chebval(at, one), dtype=np.float64) for one in series)
+        depth = 0.5 * over.moment_slope(Q, change) / squared
+        return PressedState(radius, 2.0 * radius * self.growth, over.moment(Q), sqrt(squared), depth)
+
+
+@dataclass(frozen=True)
+class Pressing:
+    """An indenter on discs of one size.
+
+    Attributes:
+        layer: The layer.
+        indenter: The profile.
+        cells: Cells across the grid.
+        boundary: "free" or "periodic".
+        threads: Of the transforms.
+        step: Of ln(a), see `STEP`.
+        fewer: Degrees that Q lacks, see `FEWER`.
+    """
+
+    layer: ElasticLayer
+    indenter: Profile
+    cells: int
+    boundary: Boundary = "free"
+    threads: int = 1
+    step: float = STEP
+    fewer: int = 0
+
+    def coarser(self) -> Pressing:
+        """On half as many cells, with twice the step and fewer degrees."""
+        return replace(self, cells=self.cells // 2, step=2.0 * self.step, fewer=FEWER)
+
+    def punch(self, radius: float, cells: int | None = None, near: float | None = None) -> Punch:
+        """The flat punch of this radius [m], with the operator of a radius nearby.
+
+        Thin layers are solved with trigonometric pressures, which remain accurate on cells wider than a layer.
+        """
+        thin = self.layer.is_uniform and (near or radius) > THIN * self.layer.thickness
+        return punch(self.layer, radius, cells or self.cells, "periodic" if thin else self.boundary, self.threads)
+
+    def punches(self, radius: float) -> Punches:
+        """With slopes from half as many cells, whose errors are smooth functions of the radius."""
+        flat = self.punch(radius)
+        if self.layer.is_half_space:
+            return Punches(1.0, 0.0, np.ones(1), np.zeros(1))
+        cells, e = max(self.cells // 2, LEAST_CELLS), self.step
+        inner, here, outer = (self.punch(radius * exp(x), cells, radius) for x in (-e, 0.0, e))
+        slope = flat.growth * log(outer.growth / inner.growth) / (2.0 * e)
+        edge, degree = sqrt(flat.growth + slope), flat.degree - self.fewer
+        # phi_1 varies as the cells tell, about the value that the stiffness tells.
+        told = float(here.series(degree).sum())
+        inside, outside = (
+            of.series(degree, edge / told * float(of.series(degree).sum())) / of.growth for of in (inner, outer)
+        )
+        series = flat.series(degree, edge)
+        # Q/kappa varies slowly where both go with a power of the radius.
+        return Punches(
+            flat.growth, slope, series, series * slope / flat.growth + flat.growth * (outside - inside) / (2.0 * e)
+        )
+
+    def at(self, radius: float) -> PressedState:
+        """The contact of this radius [m]; within a flat end a flat punch, whose phi_1 is Q(1)."""
+        if radius > self.indenter.flat_radius:
+            return self.punches(radius).pressed(self.indenter, radius)
+        flat = self.punch(radius)
+        return PressedState(radius, 2.0 * radius * flat.growth, 0.0, float(flat.quotient(np.ones(1))[0]), 0.0)
+
+
+class PressedState(NamedTuple):
+    """A contact of one radius.
+
+    Attributes:
+        radius: a [m].
+        stiffness: k = k_N/E* [m].
+        moment: M [m^2].
+        edge_flat: phi_1.
+        depth: delta [m] without adhesion.
+    """
+
+    radius: float
+    stiffness: float
+    moment: float
+    edge_flat: float
+    depth: float
+
+    def load(self, depth: float | None = None) -> float:
+        """F/E* [m^2] at a depth [m], by default the own one."""
+        return self.stiffness * (self.depth if depth is None else depth) - self.moment
+
+
+class Equilibrium(NamedTuple):
+    """A contact without adhesion.
+
+    Attributes:
+        radius: a [m].
+        depth: delta [m].
+        load: F/E* [m^2].
+        stiffness: k_N/E* [m].
+        solved: The disc nearby from which it was extrapolated to first order.
+    """
+
+    radius: float
+    depth: float
+    load: float
+    stiffness: float
+    solved: PressedState
+
+
+Prescribed: TypeAlias = Literal["radius", "depth", "load"]
+
+
+class Guess(NamedTuple):
+    """Where a contact radius may lie.
+
+    Attributes:
+        excess: a - b [m] over the radius b of a flat end.
+        exponent: d ln(value)/d ln(excess) of what is prescribed.
+    """
+
+    excess: float
+    exponent: float
+
+
+def equilibrium(
+    pressing: Pressing, prescribed: Prescribed, value: float, near: Guess | None = None
+) -> tuple[Equilibrium, Guess]:
+    """The contact with this radius [m], depth [m] or F/E* [m^2], a root over the radius; and a guess for other discs.
+
+    Args:
+        pressing: The indenter on discs.
+        prescribed: What is.
+        value: Its value, positive.
+        near: A guess; from discs of `FIRST_CELLS` by default.
+
+    Raises:
+        InvalidInput: If the contact reaches the end of the indenter.
+        NotConvergedError: If the radius is not found.
+    """
+    flat = pressing.indenter.flat_radius
+    if prescribed == "radius" or isinstance(pressing.indenter, FlatPunch):
+        state = pressing.at(value if prescribed == "radius" else flat)
+        depth = {"radius": state.depth, "depth": value, "load": value / state.stiffness}[prescribed]
+        return Equilibrium(state.radius, depth, state.load(depth), state.stiffness, state), Guess(0.0, 1.0)
+    excess, exponent = _first_guess(pressing, prescribed, value) if near is None else near
+    for _ in range(MOST_STEPS):
+        state = pressing.at(flat + excess)
+        miss = log(max(_value(state, prescribed), TINY * value) / value)
+        change = excess * (exp(max(min(-miss / exponent, 1.0), -1.0)) - 1.0)
+        excess += change
+        if abs(change) <= NEAR * state.radius:
+            return _moved(state, change, prescribed, value), Guess(excess, exponent)
+    raise NotConvergedError(f"no contact radius was found at {prescribed} = {value:g}", {"change": abs(change)})
+
+
+def refuse_falling(pressing: Pressing, radius: float) -> None:
+    """Refuse a contact radius [m] at which the depth falls as the contact grows: its edge would be pulled.
+
+    Raises:
+        UnsupportedSceneError: With the radius.
+    """
+    coarse, flat = replace(pressing, cells=min(FIRST_CELLS, pressing.cells)), pressing.indenter.flat_radius
+    if coarse.at(radius).depth < coarse.at(radius - STEP * (radius - flat)).depth:
+        raise no_single_circle(radius, "would be pulled at its edge")
+
+
+def _moved(state: PressedState, change: float, prescribed: Prescribed, value: float) -> Equilibrium:
+    """The state at a radius nearby: F at a given depth, and the depth at a given F, are stationary in the radius."""
+    growth = 2.0 * state.edge_flat**2
+    radius, stiffness = state.radius + change, state.stiffness + growth * change
+    if prescribed == "depth":
+        load = state.load(value) + 0.5 * growth * (value - state.depth) * change
+        return Equilibrium(radius, value, load, stiffness, state)
+    depth = (value + state.moment) / state.stiffness
+    depth += 0.5 * growth * (state.depth - depth) * change / state.stiffness
+    return Equilibrium(radius, depth, value, stiffness, state)
+
+
+def _value(state: PressedState, prescribed: Prescribed) -> float:
+    return state.depth if prescribed == "depth" else state.load()
+
+
+def _first_guess(pressing: Pressing, prescribed: Prescribed, value: float) -> Guess:
+    """The root on coarse discs, bracketed from where the profile is as high as prescribed."""
+    indenter, flat = pressing.indenter, pressing.indenter.flat_radius
+    coarse = replace(pressing, cells=min(FIRST_CELLS, pressing.cells))
+    last = log(min((1.0 - (1e-3 if indenter.ends_upright else 1e-9)) * indenter.max_radius, 1e15) - flat)
+
+    def miss(x: float) -> float:
+        """ln of what the excess exp(x) needs over what is prescribed."""
+        return log(max(_value(coarse.at(flat + exp(x)), prescribed), TINY * value) / value)
+
+    guess = (radius_of_depth if prescribed == "depth" else radius_of_load)(indenter, value)
+    high = min(log(guess - flat), last)
+    while (above := miss(high)) < 0.0:
+        if high == last:
+            raise InvalidInput(f"the contact reaches the end of the indenter at {indenter.max_radius:g} m")
+        high = min(high + 1.0, last)
+    low, below = high, above
+    while below >= 0.0:
+        high, above, low = low, below, low - 1.0
+        below = miss(low)
+    root = brentq(miss, low, high, xtol=1e-4)
+    exponent = (miss(root + STEP) - miss(root - STEP)) / (2.0 * STEP)
+    return Guess(exp(root), max(exponent, LEAST_EXPONENT))

@@ -1,0 +1,98 @@
+"""A requested accuracy: settings in a fixed order, from cheap to fine, until the stated error is small enough."""
+
+import inspect
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Generic
+
+import numpy as np
+from typing_extensions import TypeVar
+
+from cases.declare.methods import build, load
+from contact import InvalidInput, Method, NotConvergedError, Scene, Solution, Unsupported, UnsupportedSceneError
+from contact.answer.accuracy import asked_errors, shortfalls, told_where_less
+
+AnswerT = TypeVar("AnswerT", bound=Solution, default=Solution)
+
+# The fastest first. The direct equation costs tens of MDR's time, finite elements hundreds.
+ORDER: Final = ("mdr", "integral_equation", "fem")
+# Refinements of a method before the next, slower one is tried.
+REFINEMENTS: Final = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome(Generic[AnswerT]):
+    """An answer that states at most the error asked for.
+
+    Attributes:
+        method: name in the method table.
+        settings: as the answer tells them.
+        answer: the solution.
+        stated_error: largest relative error that the answer states of what an accuracy is asked of.
+    """
+
+    method: str
+    settings: Mapping[str, Any]
+    answer: AnswerT
+    stated_error: float
+
+
+def solve(scene: Scene[Any, Any], *, accuracy: float, pressure_accuracy: float | None = None) -> Outcome[Any]:
+    """Return the first answer that states no larger error than wanted.
+
+    Args:
+        scene: what is to be solved.
+        accuracy: largest relative error of radius, depth, force and stiffness, or of critical numbers, or of
+            restitution and peaks (`Solution.ASKED`). Other quantities that state more are named in the notes.
+        pressure_accuracy: largest relative error of the contact pressure; None if it does not matter.
+
+    Raises:
+        InvalidInput: if an accuracy does not lie between 0 and 1.
+        UnsupportedSceneError: if no method models the scene.
+        NotConvergedError: if every answer states a larger error.
+    """
+    for wanted in (accuracy, pressure_accuracy):
+        if wanted is not None and not 0.0 < wanted < 1.0:
+            raise InvalidInput(f"accuracy = {wanted:g}: must lie between 0 and 1; it is a relative error")
+    best = np.inf
+    refusals: list[str] = []
+    for method in _methods(scene, accuracy, pressure_accuracy, refusals):
+        try:
+            answer: Any = method.solve(scene)
+        except NotConvergedError as error:
+            refusals.append(str(error))
+            continue
+        except UnsupportedSceneError as error:
+            refusals.append(f"{method.name}: {error}")
+            continue
+        stated = max(asked_errors(answer).values(), default=np.inf)
+        if not shortfalls(answer, accuracy, pressure_accuracy):
+            told = told_where_less(answer, accuracy, pressure_accuracy)
+            return Outcome(method=method.name, settings=answer.settings, answer=told, stated_error=stated)
+        best = min(best, stated)
+    if best < np.inf:
+        message = f"accuracy = {accuracy:g}: answers to this scene state {best:.1e} at best; ask for less"
+        raise NotConvergedError(message, {"stated_error": best})
+    raise UnsupportedSceneError(f"accuracy = {accuracy:g}: no method answers this scene: {'; '.join(refusals)}")
+
+
+def _methods(
+    scene: Scene[Any, Any], accuracy: float, pressure_accuracy: float | None, refusals: list[str]
+) -> Iterator[Method]:
+    """Methods that model the scene, each as it comes or with the accuracy as its setting, then refined."""
+    asked = {"accuracy": accuracy, "pressure_accuracy": pressure_accuracy}
+    for name in ORDER:
+        settable = inspect.signature(load(name)).parameters
+        settings = {key: value for key, value in asked.items() if key in settable and value is not None}
+        try:
+            method = build(name, settings)
+        except InvalidInput:
+            # The method takes no such accuracy as a setting: its own may be fine enough, or too fine.
+            method = build(name, {})
+        support = method.supports(scene)
+        if isinstance(support, Unsupported):
+            refusals.append(f"{name}: {support.reason}")
+            continue
+        for _ in range(REFINEMENTS + 1):
+            yield method
+            method = method.refined()

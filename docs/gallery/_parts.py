@@ -1,0 +1,129 @@
+"""The figures' common parts: series with an error band, layers, one source of flat-punch data, and the drawing.
+
+Curves are dense, each with its method and an error band. A caption says where the paper's statement is looser than the
+numbers. Ranges are those of the paper's text, since its axes are printed as pictures.
+"""
+
+import importlib
+from dataclasses import replace
+from typing import Literal
+
+import matplotlib.pyplot as plt
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bem.layer_equation.flat_punch_source import IntegralEquation
+from bem.layer_equation.protocol import FlatPunchSolution
+from cases.results.records.figure import Figure, Series
+from contact import Layer
+from contact.records.validation import FloatArray
+
+# Its errors of 1e-8 are far below the width of a line, in a third of the time of the default.
+SOURCE = IntegralEquation(nodes=16)
+MDR = "mdr"
+# The figures end at this a/h.
+LARGEST_RATIO = 100.0
+
+
+def series(
+    label: str,
+    method: str,
+    group: str,
+    x: ArrayLike,
+    y: ArrayLike,
+    *,
+    half_width: ArrayLike = (),
+    style: Literal["by method", "dotted", "symbols"] = "by method",
+) -> Series:
+    """A record of points from arrays."""
+    x, y, half_width = (tuple(np.asarray(values, dtype=np.float64).tolist()) for values in (x, y, half_width))
+    return Series(label=label, method=method, group=group, x=x, y=y, half_width=half_width, style=style)
+
+
+def paper_figure(number: int) -> Figure:
+    """The numbers of a figure of the paper."""
+    return with_errors(importlib.import_module(f"docs.gallery.figure_{number:02d}").figure())
+
+
+def show(figure: Figure) -> None:
+    """Draw a figure: one colour per group, solid lines by MDR, dashed by other methods, and print its caption."""
+    width = 4.5 * len(figure.panels)
+    drawn, axes = plt.subplots(1, len(figure.panels), figsize=(width, 4.0), layout="constrained", squeeze=False)
+    for panel, one in zip(figure.panels, axes[0], strict=True):
+        groups = list(dict.fromkeys(line.group for line in panel.series))
+        for line in panel.series:
+            colour = f"C{groups.index(line.group) % 10}"
+            usual = "solid" if line.method.startswith(MDR) else "dashed"
+            look = {"marker": "o", "linestyle": "none"} if line.style == "symbols" else {"linestyle": usual}
+            if line.style in ("solid", "dashed", "dotted"):
+                look = {"linestyle": line.style}
+            one.plot(line.x, line.y, color=colour, linewidth=1.2, markersize=3, label=line.label, **look)
+        one.set(title=panel.title, xlabel=panel.x_label, ylabel=panel.y_label)
+        one.set(xscale=panel.x_scale, yscale=panel.y_scale, xlim=panel.x_range, ylim=panel.y_range)
+        one.legend(fontsize="xx-small")
+    drawn.suptitle(figure.title)
+    print(figure.caption)
+
+
+def layer(poissons_ratio: float, *, support: Literal["bonded", "unbonded"] = "bonded") -> Layer:
+    """A layer of unit thickness and unit contact modulus E*."""
+    modulus = (1.0 - poissons_ratio) * (1.0 + poissons_ratio)
+    return Layer(thickness=1.0, youngs_modulus=modulus, poissons_ratio=poissons_ratio, support=support)
+
+
+HALF_SPACE = Layer.half_space(youngs_modulus=0.75, poissons_ratio=0.5)
+UNBONDED = layer(0.5, support="unbonded")
+
+
+def name_of(one: Layer) -> str:
+    """Such as "bonded nu=0.45"; nu does not matter for other layers."""
+    if one.is_half_space:
+        return "half-space"
+    return f"bonded nu={one.poissons_ratio:g}" if one.support == "bonded" else "unbonded"
+
+
+def punch(one: Layer, largest: float = LARGEST_RATIO) -> FlatPunchSolution:
+    """Flat-punch data up to a ratio a/h."""
+    return SOURCE.solution(one, largest)
+
+
+def mdr_line(
+    group: str,
+    x: ArrayLike,
+    y: ArrayLike,
+    relative_error: ArrayLike = 0.0,
+    *,
+    style: Literal["by method", "dotted"] = "by method",
+) -> Series:
+    """A line computed by MDR, with its band."""
+    ordinates = np.asarray(y, dtype=np.float64)
+    band = np.abs(ordinates) * np.broadcast_to(np.asarray(relative_error, dtype=np.float64), ordinates.shape)
+    return series(f"{group}, {MDR}", MDR, group, x, ordinates, half_width=band, style=style)
+
+
+def with_errors(figure: Figure) -> Figure:
+    """The figure with the largest error of its MDR curves, over each curve's largest ordinate, in their label."""
+    curves = [one for panel in figure.panels for one in panel.series if one.method == MDR]
+    worst = max(max(one.half_width) / max(map(abs, one.y)) for one in curves)
+    name = f"{MDR}, error below {10.0 ** np.ceil(np.log10(worst)):.0e}"
+    panels = (
+        replace(
+            panel,
+            series=tuple(
+                replace(one, method=name, label=f"{one.group}, {name}") if one.method == MDR else one
+                for one in panel.series
+            ),
+        )
+        for panel in figure.panels
+    )
+    return replace(figure, panels=tuple(panels))
+
+
+def closed_form(group: str, method: str, x: ArrayLike, y: ArrayLike) -> Series:
+    """A closed form or an asymptote; `method` says which, such as "thin layer"."""
+    return series(f"{group}, {method}", method, group, x, y)
+
+
+def percent(value: FloatArray | float) -> str:
+    """A ratio's excess over one, for captions."""
+    return f"{100.0 * (float(value) - 1.0):.1f} %"

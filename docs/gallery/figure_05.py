@@ -1,0 +1,49 @@
+"""
+Fig. 5: exponent m and factor kappa of the contact stiffness, Eqs. (33) and (34)
+================================================================================
+"""
+
+import numpy as np
+
+from cases.results.records.figure import Figure, Panel
+from contact import Layer, Paraboloid
+from contact.records.validation import FloatArray
+from docs.gallery._parts import LARGEST_RATIO, SOURCE, UNBONDED, layer, mdr_line, name_of, punch, show
+from mdr import equivalent_system
+
+LAYERS = (UNBONDED, layer(0.0), layer(0.3), layer(0.4), layer(0.45), layer(0.5))
+RATIOS = np.geomspace(1e-2, LARGEST_RATIO, 161)
+
+
+def exponent(one: Layer, ratio: FloatArray) -> tuple[FloatArray, float]:
+    """m of Eq. (34) from the depth of a paraboloid, and its relative error bound."""
+    system = equivalent_system(one, Paraboloid(radius_of_curvature=1.0), float(ratio.max()), SOURCE)
+    return ratio**2 / system.mdr_profile(ratio) - 1.0, system.relative_error["indentation_depth"]
+
+
+def figure() -> Figure:
+    """Panels A (m) and B (kappa)."""
+    powers, factors = [], []
+    for one in LAYERS:
+        (m, error), data = exponent(one, RATIOS), punch(one)
+        stiffness = data.normalized_contact_stiffness(RATIOS)
+        powers.append(mdr_line(name_of(one), RATIOS, m, error * (1.0 + m) / m))
+        kappa_error = data.relative_error(RATIOS) + error * (1.0 + m) * np.abs(np.log(RATIOS))
+        factors.append(mdr_line(name_of(one), RATIOS, stiffness / RATIOS**m, kappa_error))  # Eq. (33)
+    panels = (
+        Panel(title="A", x_label="$a/h$", y_label="$m$", x_scale="log", x_range=(1e-2, 1e2), series=tuple(powers)),
+        Panel(
+            title="B", x_label="$a/h$", y_label=r"$\kappa$", x_scale="log", x_range=(1e-2, 1e2), series=tuple(factors)
+        ),
+    )
+    caption = (
+        "Lines: MDR with the integral equation. Symbols in A: depths of paraboloids by other methods, Eq. (34); in B: "
+        "their stiffness, and that of Hayes et al. (1972), over (a/h)^m with our m. m tends to 0 "
+        "(half-space), 1 (thin compressible or unbonded) and 3 (thin incompressible); the last slowly: "
+        f"m = {float(exponent(layer(0.5), RATIOS)[0][-1]):.3f} at a/h = 100."
+    )
+    return Figure(name="fig_5", title="Fig. 5: exponent and factor of the stiffness", caption=caption, panels=panels)
+
+
+if __name__ == "__main__":
+    show(figure())

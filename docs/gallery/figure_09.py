@@ -1,0 +1,55 @@
+"""
+Fig. 9: force over depth while a flat punch detaches from a bonded incompressible layer
+=======================================================================================
+"""
+
+import numpy as np
+
+from cases.results.records.figure import Figure, Panel, Series
+from contact import Layer
+from docs.gallery._parts import layer, mdr_line, show
+from docs.gallery.figure_04 import second_maximum
+from docs.gallery.figure_08 import detached, reversals
+
+RATIOS = (0.1, 0.3, 0.46, 1.0, 2.0, 4.0)  # a*/h
+# The radius a* of the punch; it stays the same on thinner and thinner layers.
+_RADIUS = 1.0
+
+
+def figure() -> Figure:
+    """Attached: full lines; peeling stably at prescribed depth: dotted. Units: the half-space's critical values."""
+    lines = [series for ratio in RATIOS for series in _curves(ratio)]
+    panel = Panel(
+        title="",
+        x_label=r"$\delta/|\delta_\mathrm{c}^\mathrm{HS}|$",
+        y_label=r"$F_\mathrm{N}/|F_\mathrm{c}^\mathrm{HS}|$",
+        x_range=(-1.1, 0.0),
+        y_range=(-4.0, 0.0),
+        series=tuple(lines),
+    )
+    caption = (
+        "Lines: MDR with the integral equation, nu = 0.5. Dotted: stable peeling, down to "
+        f"a = {reversals(layer(0.5))[0][1]:.6f} h (the paper: 0.46 h); what follows is abrupt. From "
+        f"a*/h = {second_maximum():.3f} on, the tension has a second maximum in the centre, and cavities or fingers "
+        "may come first; the paper, by its criterion, says 2."
+    )
+    return Figure(name="fig_9", title="Fig. 9: detachment of a flat punch", caption=caption, panels=(panel,))
+
+
+def _curves(ratio: float) -> list[Series]:
+    base = layer(0.5)
+    thinner = Layer(thickness=_RADIUS / ratio, youngs_modulus=base.youngs_modulus, poissons_ratio=0.5)
+    path = detached(thinner, _RADIUS)
+    depth, force = path.indentation_depth, path.normal_force / 2.0
+    start = int(np.flatnonzero(path.contact_radius == path.contact_radius[0])[-1])
+    error = float(path.error_estimate["normal_force"].max())
+    name = f"a*/h = {ratio:g}"
+    found = [mdr_line(name, depth[: start + 1], force[: start + 1], error)]
+    peeling = path.stable_displacement_control & (np.arange(len(path)) >= start)
+    if peeling[start + 1 :].any():
+        found.append(mdr_line(name, depth[peeling], force[peeling], error, style="dotted"))
+    return found
+
+
+if __name__ == "__main__":
+    show(figure())

@@ -1,0 +1,1 @@
+"""Answers of earlier code to random scenes, which today's code must reproduce within both stated errors."""

@@ -1,0 +1,99 @@
+"""The significant numbers of an answer, each with its stated error, in one form for all kinds of answers."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from contact import ContactPath, DetachmentPath, HistoryPath, ImpactHistory, Solution
+
+Array = NDArray[np.float64]
+
+# Radii of pressures and displacements, over the contact radius of the last state.
+PRESSED, MOVED = (0.23, 0.57, 0.88), (0.5, 1.7)
+# Paths with more states are represented by so many.
+_MOST_STATES = 4
+# Least allowance for the difference of two answers, over the scale of the quantity: roundings of both.
+ROUNDING = 1e-11
+
+
+class Stated(NamedTuple):
+    """Values of one quantity, their absolute stated errors, and the scale of relative ones; each of shape (n,)."""
+
+    values: Array
+    error: Array
+    scale: Array
+
+
+def stated_numbers(answer: Solution) -> dict[str, Stated]:
+    """All quantities whose errors the answer states, at a few significant states."""
+    if isinstance(answer, ImpactHistory | DetachmentPath):
+        names = ("coefficient_of_restitution", "contact_time", *answer.SCALARS)
+        return {name: _single(answer, name) for name in names if name in answer.error_estimate}
+    numbers = {name: _along(answer, name) for name in answer.ARRAYS if name in answer.error_estimate}
+    return numbers | (_fields(answer) if isinstance(answer, ContactPath) else {})
+
+
+def _single(answer: Solution, name: str) -> Stated:
+    """A number of the whole answer; its error may be stated along the path, and the largest holds."""
+    error = float(np.max(answer.error_estimate[name])) * float(np.max(answer.scale(name)))
+    value = np.array([float(getattr(answer, name))])
+    return Stated(value, np.array([error]), np.maximum(np.abs(value), np.max(answer.scale(name))))
+
+
+def _along(answer: Solution, name: str) -> Stated:
+    chosen = _states(answer)
+    values = np.asarray(getattr(answer, name))
+    parts = (values, answer.uncertainty(name), answer.scale(name))
+    return Stated(*(np.broadcast_to(part, values.shape)[chosen] for part in parts))
+
+
+def _states(answer: Solution) -> Array:
+    """The instants that the loading names, or a few states from the first to the last."""
+    if isinstance(answer, HistoryPath):
+        given = np.asarray(answer.scene.loading.time)
+        return np.abs(answer.time[:, None] - given).argmin(axis=0)
+    count = len(answer)
+    return np.unique(np.linspace(0, count - 1, min(count, _MOST_STATES)).round().astype(int))
+
+
+def _fields(answer: ContactPath) -> dict[str, Stated]:
+    """Pressure and displacement of the last state at a few radii."""
+    a, step = float(answer.contact_radius[-1]), len(answer) - 1
+    wanted = {"pressure": PRESSED, "surface_displacement": MOVED}
+    found = {}
+    for name, shares in wanted.items():
+        if name in answer.error_estimate and answer.fields is not None and a > 0.0:
+            values = getattr(answer, name)(a * np.array(shares), step)
+            parts = (
+                np.broadcast_to(part, len(answer))[step] for part in (answer.uncertainty(name), answer.scale(name))
+            )
+            found[name] = Stated(values, *(np.full_like(values, part) for part in parts))
+    return found
+
+
+def differences(first: dict[str, Stated], second: dict[str, Stated]) -> dict[str, tuple[float, float]]:
+    """Of each common quantity at its worst value: the difference, and the sum of both stated errors, over the scale."""
+    return {name: _worst(first[name], second[name]) for name in first if name in second}
+
+
+def _worst(first: Stated, second: Stated) -> tuple[float, float]:
+    scale = np.maximum(np.maximum(first.scale, second.scale), np.finfo(float).tiny)
+    apart = np.abs(first.values - second.values) / scale
+    allowed = (first.error + second.error) / scale + ROUNDING
+    worst = int(np.argmax(apart - allowed))
+    return float(apart[worst]), float(allowed[worst])
+
+
+def as_lists(numbers: dict[str, Stated]) -> dict[str, Any]:
+    """For a file: values with all digits, relative stated errors with three, rounded up."""
+    return {
+        name: {"values": one.values.tolist(), "error": [_up(e) for e in one.error / np.maximum(one.scale, 1e-300)]}
+        for name, one in numbers.items()
+    }
+
+
+def _up(value: float) -> float:
+    return float(f"{value * 1.005:.3g}")

@@ -1,0 +1,143 @@
+"""Creep and relaxation with and without a first jump, against closed forms on the half-space.
+
+With the creep function J and the relaxation function G of the material, contact that only grows has the depth that an
+elastic layer of unit shear modulus has under int J dF, and the force that it has under int G d(F_unit(depth)) (Lee and
+Radok 1960, J. Appl. Mech. 27, 438). For nu = 1/2, F_unit = (16/3) sqrt(R) d^(3/2) under a paraboloid, 8 a d under a
+flat punch.
+"""
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+
+from contact import (
+    DepthHistory,
+    FlatPunch,
+    ForceHistory,
+    KelvinVoigt,
+    Layer,
+    Paraboloid,
+    PronySeries,
+    Scene,
+    StandardSolid,
+)
+from mdr import Mdr
+
+G, TAU = 1e3, 1.0
+TIMES = np.array([0.0, 0.5, 1.0, 2.0, 10.0])
+RELAXATIONS = {
+    "kelvin_voigt": KelvinVoigt(shear_modulus=G, viscosity=G * TAU),
+    "standard_solid": StandardSolid(long_term_shear_modulus=G, maxwell_shear_modulus=G, viscosity=G * TAU),
+    "prony": PronySeries(long_term_shear_modulus=G, shear_moduli=[G, 0.5 * G], relaxation_times=[1.0, 1.0]),
+}
+PROFILES = {"paraboloid": Paraboloid(radius_of_curvature=1e-3), "flat_punch": FlatPunch(radius=1e-4)}
+DEPTH, FORCE = 4e-5, 4e-5
+
+
+def creep(name, t):
+    """J(t): G J is 1 - exp(-t) for Kelvin-Voigt, 1 - (1 - g) exp(-g t) with g = G/(G + G_1) for one branch."""
+    if name == "kelvin_voigt":
+        return -np.expm1(-t / TAU) / G
+    share = G / instantaneous(name)
+    return (1.0 - (1.0 - share) * np.exp(-share * t / TAU)) / G
+
+
+def relaxation(name, t):
+    """G(t) without the dashpot's impulse."""
+    return G + (instantaneous(name) - G) * np.exp(-t / TAU)
+
+
+def instantaneous(name):
+    return {"kelvin_voigt": 1.0, "standard_solid": 2.0, "prony": 2.5}[name] * G
+
+
+def unit_force(profile, depth):
+    return 16 / 3 * np.sqrt(1e-3) * depth**1.5 if profile == "paraboloid" else 8e-4 * depth
+
+
+def unit_depth(profile, force):
+    return (force / (16 / 3 * np.sqrt(1e-3))) ** (2 / 3) if profile == "paraboloid" else force / 8e-4
+
+
+def solved(profile, name, loading):
+    half_space = Layer.half_space(youngs_modulus=3 * instantaneous(name), poissons_ratio=0.5)
+    scene = Scene(layer=half_space, indenter=PROFILES[profile], loading=loading, effects=(RELAXATIONS[name],))
+    return Mdr().solve(scene)
+
+
+def within(answer, quantity, exact):
+    values = getattr(answer, quantity)
+    assert np.all(np.abs(values - exact) <= answer.uncertainty(quantity) + 1e-13 * exact.max()), (values, exact)
+
+
+every = [
+    pytest.mark.parametrize("profile", PROFILES),
+    pytest.mark.parametrize("name", RELAXATIONS),
+    pytest.mark.parametrize("ramp", [0.0, 1.0], ids=["jump", "ramp"]),
+]
+
+
+def for_every_history(test):
+    for mark in every:
+        test = mark(test)
+    return test
+
+
+@for_every_history
+def test_depth_under_a_force(profile, name, ramp):
+    force = np.where(ramp <= TIMES, FORCE, FORCE * TIMES)
+    answer = solved(profile, name, ForceHistory(time=TIMES, force=force))
+    if ramp:
+        risen = [FORCE * quad(lambda s, t=t: creep(name, t - s), 0.0, min(t, ramp), epsabs=0.0)[0] for t in TIMES]
+    else:
+        risen = FORCE * creep(name, TIMES)
+    within(answer, "indentation_depth", unit_depth(profile, np.array(risen)))
+
+
+@for_every_history
+def test_force_under_a_depth(profile, name, ramp):
+    depth = np.where(ramp <= TIMES, DEPTH, DEPTH * TIMES)
+    answer = solved(profile, name, DepthHistory(time=TIMES, depth=depth))
+    if not ramp:
+        exact = relaxation(name, TIMES) * unit_force(profile, DEPTH)
+        within(answer, "normal_force", exact)
+        return
+    power = 1.5 if profile == "paraboloid" else 1.0
+    rate = unit_force(profile, DEPTH) * power
+
+    def at(t):
+        """s^(power - 1) is the rate of F_unit; the dashpot adds eta times the rate while the depth grows."""
+        elastic = rate * quad(lambda s: relaxation(name, t - s) * s ** (power - 1), 0.0, min(t, ramp), epsabs=0.0)[0]
+        return elastic + (G * TAU * rate * t ** (power - 1) if name == "kelvin_voigt" and 0 < t <= ramp else 0.0)
+
+    within(answer, "normal_force", np.array([at(t) for t in TIMES]))
+
+
+def test_released_after_a_first_jump_the_depth_is_that_of_a_fast_ramp():
+    force = FORCE * np.array([1.0, 1.0, 0.3, 0.3])
+    time = np.array([0.0, 1.0, 1.5, 3.0])
+    jump = solved("paraboloid", "kelvin_voigt", ForceHistory(time=time, force=force))
+    fast = solved(
+        "paraboloid",
+        "kelvin_voigt",
+        ForceHistory(time=np.concatenate([[0.0, 1e-7], time[1:]]), force=np.concatenate([[0.0], force])),
+    )
+    stated = jump.uncertainty("indentation_depth")[1:] + fast.uncertainty("indentation_depth")[2:]
+    # The ramp delays the force by half of its 1e-7 s.
+    assert np.all(np.abs(jump.indentation_depth[1:] - fast.indentation_depth[2:]) <= stated + 1e-7 * DEPTH)
+
+
+@pytest.mark.parametrize("cycles", [0, 16], ids=["a straight line", "a sine of many segments"])
+def test_kelvin_voigt_under_many_depths_that_begin_above_zero(cycles):
+    if cycles:
+        time = np.linspace(0.0, 1.0, 128 * 20 + 1)
+        bends = np.linspace(0.0, 1.0, 129)
+        depth = DEPTH * np.interp(time, bends, 0.6 + 0.4 * np.sin(2 * np.pi * cycles / 16 * bends))
+    else:
+        time = np.linspace(0.0, 1.0, 16)
+        depth = DEPTH * (0.1 + time)
+    answer = solved("paraboloid", "kelvin_voigt", DepthHistory(time=time, depth=depth))
+    assert np.all(np.isfinite(answer.normal_force))
+    if not cycles:
+        exact = G * unit_force("paraboloid", depth) + G * TAU * 8 * np.sqrt(1e-3 * depth) * DEPTH
+        within(answer, "normal_force", np.append(answer.normal_force[0], exact[1:]))
