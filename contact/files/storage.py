@@ -32,8 +32,6 @@ SCHEMA = "contact-verification/solution/2"
 # Files of the first layout differ in one entry, which only detachments have; the others are read as they are.
 _READABLE = (SCHEMA, "contact-verification/solution/1")
 SEAL = b"contact-verification sha256 "  # what a file begins with, before the digest of its content
-# A larger file [bytes] is refused before memory is taken. Chosen: the format itself has no limit.
-MAX_BYTES = 2_000_000_000
 # Deeper trees are refused, so that reading and writing them needs no deep recursion; a solution is three deep.
 MAX_DEPTH = 32
 # Longer names of entries are refused; those of solutions have fewer than thirty letters.
@@ -131,14 +129,14 @@ def read_tree(path: str | Path) -> dict[str, Any]:
     """Read what `write_tree` wrote.
 
     Raises:
-        InvalidInput: If the file is missing, was not written by `write_tree`, or is damaged or beyond `MAX_BYTES`.
+        InvalidInput: If the file is missing, was not written by `write_tree`, or is damaged.
     """
     file = Path(path)
     try:
         with file.open("rb") as stream:
             _check_seal(file, stream)
         with h5py.File(file, "r") as root:
-            return _read(root, set())
+            return _read(root)
     except InvalidInput:
         raise
     except (OSError, RuntimeError, KeyError, ValueError, TypeError) as error:
@@ -146,8 +144,6 @@ def read_tree(path: str | Path) -> dict[str, Any]:
 
 
 def _check_seal(file: Path, stream: BufferedReader) -> None:
-    if (size := os.fstat(stream.fileno()).st_size) > MAX_BYTES:
-        raise InvalidInput(f"{file}: {size} bytes are more than a file here can have ({MAX_BYTES})")
     start = stream.read(_BLOCK)
     if not start.startswith(SEAL):
         raise InvalidInput(f"{file}: not written by this program, or its beginning is lost; write it again")
@@ -155,28 +151,11 @@ def _check_seal(file: Path, stream: BufferedReader) -> None:
         raise InvalidInput(f"{file}: the content does not match its digest; the file is damaged or truncated")
 
 
-def _read(group: h5py.Group, seen: set[int]) -> dict[str, Any]:
+def _read(group: h5py.Group) -> dict[str, Any]:
     tree = {name: _scalar(value) for name, value in group.attrs.items()}
-    for name in group:
-        item = _owned(group, name, seen)
-        tree[name] = _read(item, seen) if isinstance(item, h5py.Group) else _array(item)
+    for name, item in group.items():
+        tree[name] = _read(item) if isinstance(item, h5py.Group) else np.asarray(item[()])
     return tree
-
-
-def _owned(group: h5py.Group, name: str, seen: set[int]) -> h5py.Group | h5py.Dataset:
-    """The entry of this name; links that lead away, or to what was already read, are refused."""
-    item = group[name] if isinstance(group.get(name, getlink=True), h5py.HardLink) else None
-    address = None if item is None else h5py.h5o.get_info(item.id).addr
-    if address is None or address in seen:
-        raise InvalidInput(f"{group.name}/{name:.80}: a link to another place; a stored tree has none")
-    seen.add(address)
-    return item
-
-
-def _array(item: h5py.Dataset) -> NDArray[Any]:
-    if item.nbytes != item.id.get_storage_size() or item.external is not None or item.dtype.kind not in "biufc":
-        raise InvalidInput(f"{item.name:.80}: {item.nbytes} bytes of {item.dtype} are not all in this file")
-    return np.asarray(item[()])
 
 
 def _scalar(value: Any) -> Any:

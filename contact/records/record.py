@@ -133,7 +133,7 @@ def _line(detail: dict[str, Any], cls: type[Any]) -> str:
     if kind.startswith("missing"):
         return f"{place} is missing; add it"
     if kind == "unexpected_keyword_argument":
-        meant = _nearest(str(detail["loc"][-1]), list(_names(cls)))
+        meant = _nearest(str(detail["loc"][-1]), [field.name for field in dataclasses.fields(cls)])
         remedy = f"write {meant} instead" if meant else "remove it or correct its spelling"
         return f"{place} = {shown(detail['input'])}: no such field; {remedy}"
     if kind == "unexpected_positional_argument":

@@ -61,73 +61,72 @@ def _in_bounds(number: float, remedy: str) -> float:
     return number
 
 
-def positive(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+Checked: TypeAlias = tuple[PlainValidator, WithJsonSchema]
+
+
+def _fitting(
+    value: object, remedy: str, required: str, fits: Callable[[float], bool], *, is_scaled: bool = True
+) -> float:
+    """The number if it fits; where it has a unit, its magnitude lies between `SMALLEST` and `LARGEST`.
+
+    Raises:
+        ValueError: With what is required, and the remedy.
+    """
+    number = _number(value, remedy)
+    if not fits(number):
+        raise ValueError(f"must {required}; {remedy}")
+    return _in_bounds(number, remedy) if is_scaled else number
+
+
+def _checked(remedy: str, required: str, fits: Callable[[float], bool]) -> Checked:
+    schema = {"type": "number", "exclusiveMinimum": 0}
+    return PlainValidator(lambda value: _fitting(value, remedy, required, fits)), WithJsonSchema(schema)
+
+
+def positive(remedy: str) -> Checked:
     """A finite number above zero."""
-
-    def validate(value: object) -> float:
-        """The number if it is positive, finite and between `SMALLEST` and `LARGEST`; else a ValueError."""
-        number = _number(value, remedy)
-        if not 0.0 < number < math.inf:
-            raise ValueError(f"must be positive and finite; {remedy}")
-        return _in_bounds(number, remedy)
-
-    return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
+    return _checked(remedy, "be positive and finite", lambda number: 0.0 < number < math.inf)
 
 
-def positive_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+def positive_or_infinite(remedy: str) -> Checked:
     """A number above zero; infinity is allowed."""
-
-    def validate(value: object) -> float:
-        """The number if it is positive; infinity passes, nothing else beyond `SMALLEST` and `LARGEST`."""
-        number = _number(value, remedy)
-        if not number > 0.0:
-            raise ValueError(f"must be positive; {remedy}")
-        return _in_bounds(number, remedy)
-
-    return PlainValidator(validate), WithJsonSchema({"type": "number", "exclusiveMinimum": 0})
+    return _checked(remedy, "be positive", lambda number: number > 0.0)
 
 
-def not_negative_or_infinite(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+def not_negative_or_infinite(remedy: str) -> Checked:
     """A number of at least zero; infinity is allowed, in files that have none as the text "inf"."""
 
     def validate(value: object) -> float:
         """The number, or one error that names it."""
-        number = math.inf if value == "inf" else _number(value, remedy)
-        if not number >= 0.0:
-            raise ValueError(f"must be at least 0; {remedy}")
-        return _in_bounds(number, remedy)
+        number = math.inf if isinstance(value, str) and value == "inf" else value
+        return _fitting(number, remedy, "be at least 0", lambda number: number >= 0.0)
 
     return PlainValidator(validate), WithJsonSchema({"anyOf": [{"type": "number", "minimum": 0}, {"const": "inf"}]})
 
 
-def not_negative_or_none(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+def not_negative_or_none(remedy: str) -> Checked:
     """A finite number of at least zero, or None."""
 
     def validate(value: object) -> float | None:
         """None, or the number if it is finite and not negative."""
-        if value is None:
-            return None
-        number = _number(value, remedy)
-        if not 0.0 <= number < math.inf:
-            raise ValueError(f"must be finite and at least 0; {remedy}")
-        return _in_bounds(number, remedy)
+        fits = "be finite and at least 0", lambda number: 0.0 <= number < math.inf
+        return None if value is None else _fitting(value, remedy, *fits)
 
     return PlainValidator(validate), WithJsonSchema({"type": "number", "minimum": 0})
 
 
-def in_range(low: float, high: float, remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
-    """A finite number in the closed interval [low, high]."""
+def in_range(low: float, high: float, remedy: str) -> Checked:
+    """A finite number in the closed interval [low, high]; where it has no upper end, `LARGEST` is one."""
+    has_end = math.isfinite(high)
+    required = f"lie in [{low:g}, {high:g}]" if has_end else f"be finite and at least {low:g}"
 
     def validate(value: object) -> float:
-        """The number if it lies in the interval; where the interval has no upper end, `LARGEST` is one."""
-        number = _number(value, remedy)
-        if not (low <= number <= high and math.isfinite(number)):
-            limits = f"lie in [{low:g}, {high:g}]" if math.isfinite(high) else f"be finite and at least {low:g}"
-            raise ValueError(f"must {limits}; {remedy}")
-        return number if math.isfinite(high) else _in_bounds(number, remedy)
+        """The number if it lies in the interval."""
+        fits = required, lambda number: low <= number <= high and math.isfinite(number)
+        return _fitting(value, remedy, *fits, is_scaled=not has_end)
 
     schema: dict[str, Any] = {"type": "number", "minimum": low}
-    return PlainValidator(validate), WithJsonSchema(schema | ({"maximum": high} if math.isfinite(high) else {}))
+    return PlainValidator(validate), WithJsonSchema(schema | ({"maximum": high} if has_end else {}))
 
 
 def _is_masked(value: object) -> bool:
@@ -161,9 +160,7 @@ def _as_vector(value: object, remedy: str) -> FloatArray:
     return vector
 
 
-def _vector_validator(
-    check: Callable[[FloatArray], tuple[str, NDArray[np.bool_]] | None], remedy: str
-) -> tuple[PlainValidator, WithJsonSchema]:
+def _vector_validator(check: Callable[[FloatArray], tuple[str, NDArray[np.bool_]] | None], remedy: str) -> Checked:
     """A validator of finite vectors; `check` returns what is required and where it is violated."""
 
     def validate(value: object) -> FloatArray:
@@ -179,14 +176,12 @@ def _vector_validator(
     return PlainValidator(validate), WithJsonSchema(schema)
 
 
-def finite_vector(remedy: str) -> tuple[PlainValidator, WithJsonSchema]:
+def finite_vector(remedy: str) -> Checked:
     """Finite numbers in any order."""
     return _vector_validator(lambda _: None, remedy)
 
 
-def increasing_vector(
-    remedy: str, *, least: float | None = None, above: float | None = None
-) -> tuple[PlainValidator, WithJsonSchema]:
+def increasing_vector(remedy: str, *, least: float | None = None, above: float | None = None) -> Checked:
     """Strictly increasing finite numbers, the first at `least` or strictly `above` a bound where given."""
 
     def check(vector: FloatArray) -> tuple[str, NDArray[np.bool_]]:
@@ -200,7 +195,7 @@ def increasing_vector(
     return _vector_validator(check, remedy)
 
 
-def bounded_vector(remedy: str, *, least: float, strict: bool = False) -> tuple[PlainValidator, WithJsonSchema]:
+def bounded_vector(remedy: str, *, least: float, strict: bool = False) -> Checked:
     """Finite numbers, each at least (or, if strict, above) a bound."""
     relation = "be above" if strict else "be at least"
 
